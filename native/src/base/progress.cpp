@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/base/progress.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel {
+
+namespace {
+
+/// Length of the longest beginning of `text` that fits into `room` bytes and cuts no UTF-8
+/// character.
+std::size_t whole_characters(const char* text, std::size_t room) {
+    const std::size_t length = std::strlen(text);
+    if (length <= room) return length;
+    std::size_t end = room;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) {
+        --end;
+    }
+    return end;
+}
+
+}  // namespace
+
+void Progress::report(double fraction, const char* text) noexcept {
+    if (!std::isnan(fraction)) fraction_.store(std::clamp(fraction, 0.0, 1.0));
+    if (text == nullptr) return;
+    const std::size_t length = whole_characters(text, text_.size() - 1);
+    const std::lock_guard lock(text_mutex_);
+    std::memcpy(text_.data(), text, length);
+    text_[length] = '\0';
+}
+
+void Progress::cancel() noexcept {
+    cancelled_.store(true);
+}
+
+bool Progress::cancelled() const noexcept {
+    return cancelled_.load();
+}
+
+void Progress::check() const {
+    if (cancelled()) throw Cancelled();
+}
+
+double Progress::fraction() const noexcept {
+    return fraction_.load();
+}
+
+std::string Progress::text() const {
+    const std::lock_guard lock(text_mutex_);
+    return text_.data();
+}
+
+}  // namespace realmodel
