@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "realmodel/exact/key_table.hpp"
+
+namespace realmodel::exact {
+
+/// Index of a plan vertex: an input position (x, y), the same for all surfaces that use it.
+using VertexId = std::int32_t;
+/// Index of a space vertex: an input position (x, y, z).
+using SpaceId = std::int32_t;
+/// Index of a plane: the input triangle that spans it.
+using PlaneId = std::int32_t;
+/// Index of a plan line; ids from `kLocal` on belong to the Scope that made them.
+using LineId = std::int32_t;
+/// Index of a plan point; ids below the number of plan vertices are those vertices.
+using PointId = std::int32_t;
+
+/// First id of lines and points that a Scope holds for itself.
+inline constexpr std::int32_t kLocal = 1 << 29;
+
+/// A line with a direction: `line * 2 + reversed`. Its left side is positive.
+using DirectedLine = std::int32_t;
+inline DirectedLine directed(LineId line, bool reversed) {
+    return line * 2 + (reversed ? 1 : 0);
+}
+inline LineId line_of(DirectedLine line) {
+    return line >> 1;
+}
+inline bool is_reversed(DirectedLine line) {
+    return (line & 1) != 0;
+}
+inline DirectedLine opposite(DirectedLine line) {
+    return line ^ 1;
+}
+
+/// What a plan line is made of, straight from the input. Nothing in the program stands on a line or
+/// a point that was itself rounded, so every decision is exact on the input.
+struct Line {
+    enum class Kind : std::int32_t {
+        kEdge,  ///< through plan vertices `first` < `second`, positive to the left of first->second
+        kTrace  ///< where planes `first` < `second` are equally high, positive where first is
+                ///< higher
+    };
+    Kind kind = Kind::kEdge;
+    std::int32_t first = 0;
+    std::int32_t second = 0;
+};
+
+/// A line in doubles: a * (x - x0) + b * (y - y0) + c, each coefficient with a bound on its error.
+struct LineFilter {
+    double a = 0, b = 0, c = 0;
+    double error_a = 0, error_b = 0, error_c = 0;
+    double x0 = 0, y0 = 0;
+};
+
+/// A plan point: an input vertex, or the crossing of two lines.
+struct Point {
+    LineId first = -1;  ///< -1 for an input vertex
+    LineId second = -1;
+    /// Where an input edge (space vertices edge_from < edge_to) pierces a plane: known by name,
+    /// since the traces of both triangles beside that edge run through it. edge_from is -1
+    /// elsewhere.
+    SpaceId edge_from = -1, edge_to = -1;
+    PlaneId pierced = -1;
+    double x = 0, y = 0;  ///< close to the true position
+    double error = 0;     ///< bound on the distance in x and in y
+};
+
+/// A space vertex: a plan vertex and a height.
+struct SpaceVertex {
+    VertexId plan;
+    double z;
+};
+
+/// The gradient of a plane in doubles, with a bound on its error.
+struct PlaneFilter {
+    double gx = 0, gy = 0, error_x = 0, error_y = 0;
+};
+
+/// A triangle that spans a plane: space vertices, counter-clockwise in plan.
+struct Plane {
+    std::array<SpaceId, 3> corner;
+};
+
+/// The exact geometry that a whole stack is decided on: input vertices, planes, and the lines and
+/// points that follow from them. Filling it is for one thread; reading it for any number.
+class PlanGeometry {
+public:
+    PlanGeometry() = default;
+    PlanGeometry(const PlanGeometry&) = delete;
+    PlanGeometry& operator=(const PlanGeometry&) = delete;
+
+    /// The vertex at (x, y), made where it is new. All vertices come before the first crossing.
+    VertexId add_vertex(double x, double y);
+    /// The space vertex at a plan vertex and a height, made where it is new.
+    SpaceId add_space_vertex(VertexId plan, double z);
+    /// A plane through three space vertices that turn counter-clockwise in plan.
+    PlaneId add_plane(const std::array<SpaceId, 3>& corner);
+    /// To be called once, when all vertices are there and before any other question is asked.
+    void freeze_vertices();
+
+    /// The line through two plan vertices, made where it is new, directed from `from` to `to`.
+    DirectedLine add_edge(VertexId from, VertexId to);
+    LineId add_line(const Line& line);
+    /// The crossing of two different lines that are not parallel, made where it is new.
+    PointId add_point(const Point& point);
+
+    VertexId vertex_count() const { return static_cast<VertexId>(vertex_count_); }
+    std::size_t plane_count() const { return planes_.size(); }
+    std::size_t line_count() const { return lines_.size(); }
+    std::size_t point_count() const { return points_.size(); }
+    const Line& line(LineId id) const { return lines_[static_cast<std::size_t>(id)]; }
+    const LineFilter& filter(LineId id) const { return filters_[static_cast<std::size_t>(id)]; }
+    const Point& point(PointId id) const { return points_[static_cast<std::size_t>(id)]; }
+    const Plane& plane(PlaneId id) const { return planes_[static_cast<std::size_t>(id)]; }
+    const PlaneFilter& plane_filter(PlaneId id) const {
+        return plane_filters_[static_cast<std::size_t>(id)];
+    }
+    const SpaceVertex& space(SpaceId id) const { return space_[static_cast<std::size_t>(id)]; }
+
+    /// The space vertex of a plane's triangle above a plan vertex, -1 where it has none there.
+    SpaceId corner_above(PlaneId plane, VertexId vertex) const;
+
+    LineFilter edge_filter(VertexId from, VertexId to) const;
+    LineFilter trace_filter(PlaneId first, PlaneId second) const;
+
+    /// Binary exponents that make every x and y, and every z, a whole number.
+    int plan_exponent() const { return plan_exponent_; }
+    int height_exponent() const { return height_exponent_; }
+
+    /// How many decisions floating point left to exact arithmetic so far.
+    std::uint64_t exact_decisions() const {
+        return exact_decisions_.load(std::memory_order_relaxed);
+    }
+    std::uint64_t all_decisions() const { return all_decisions_.load(std::memory_order_relaxed); }
+    void count_decisions(std::uint64_t all, std::uint64_t exact) const {
+        all_decisions_.fetch_add(all, std::memory_order_relaxed);
+        exact_decisions_.fetch_add(exact, std::memory_order_relaxed);
+    }
+
+private:
+    std::vector<Point> points_;
+    std::vector<SpaceVertex> space_;
+    std::vector<Plane> planes_;
+    std::vector<PlaneFilter> plane_filters_;
+    std::vector<Line> lines_;
+    std::vector<LineFilter> filters_;
+    KeyTable vertex_table_, space_table_, line_table_, point_table_;
+    std::size_t vertex_count_ = 0;
+    int plan_exponent_ = 0, height_exponent_ = 0;
+    mutable std::atomic<std::uint64_t> exact_decisions_{0}, all_decisions_{0};
+};
+
+/// One thread's view of the geometry: everything shared, and the lines and points that this thread
+/// found, under ids from kLocal on until they are handed over. All questions are asked here.
+class Scope {
+public:
+    explicit Scope(const PlanGeometry& geometry) : shared_(geometry) {}
+    ~Scope() { shared_.count_decisions(decisions_, exact_); }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+    const PlanGeometry& shared() const { return shared_; }
+    const Line& line(LineId id) const {
+        return id < kLocal ? shared_.line(id) : lines_[static_cast<std::size_t>(id - kLocal)];
+    }
+    const LineFilter& filter(LineId id) const {
+        return id < kLocal ? shared_.filter(id) : filters_[static_cast<std::size_t>(id - kLocal)];
+    }
+    const Point& point(PointId id) const {
+        return id < kLocal ? shared_.point(id) : points_[static_cast<std::size_t>(id - kLocal)];
+    }
+    bool is_vertex(PointId id) const { return id < shared_.vertex_count(); }
+
+    /// On which side of a directed line a point lies: 1 left, 0 on it, -1 right. The predicate that
+    /// every decision comes down to: the sign of a 3 x 3 determinant of plan lines.
+    int side(DirectedLine line, PointId point);
+    /// The sign of the height of plane `upper` less that of plane `lower` above a point.
+    int compare_heights(PlaneId upper, PlaneId lower, PointId point);
+    /// The same with the filter of their trace at hand; the trace itself need not exist.
+    int compare_heights(PlaneId upper, PlaneId lower, const LineFilter& trace, PointId point);
+    /// Whether two points are in the same place.
+    bool same_place(PointId a, PointId b);
+    /// Whether two lines run through the same places.
+    bool same_line(LineId a, LineId b);
+    /// Signs of the direction (x, y) in which a line runs.
+    std::array<int, 2> direction_signs(LineId line);
+    /// The sign of b - a in x (axis 0) or y (axis 1), exactly.
+    int compare(int axis, PointId a, PointId b);
+
+    /// The point where two lines cross, which must exist. Input vertices and edges that pierce a
+    /// plane are recognised by name.
+    PointId crossing(LineId a, LineId b);
+    /// Where two planes are equally high; positive where `upper` is above `lower`.
+    DirectedLine trace(PlaneId upper, PlaneId lower);
+
+    /// The doubles nearest to a point's true coordinates: the same for every way to name the place.
+    std::array<double, 2> rounded(PointId point);
+    /// The double nearest to the height of a plane above a point.
+    double rounded_height(PlaneId plane, PointId point);
+    /// Slope and offset of a line, rounded: equal for lines that run through the same places.
+    std::array<double, 3> line_key(LineId line);
+
+    /// How many decisions of this scope floating point left to exact arithmetic.
+    std::uint64_t exact_decisions() const { return exact_; }
+
+    /// Hands all local lines and points over to the geometry; afterwards `line_ids()[i]` and
+    /// `point_ids()[i]` are the shared ids of the local i-th.
+    void hand_over(PlanGeometry& geometry);
+    LineId shared_line(LineId id) const {
+        return id < kLocal ? id : line_ids_[static_cast<std::size_t>(id - kLocal)];
+    }
+    DirectedLine shared_directed(DirectedLine id) const {
+        return directed(shared_line(line_of(id)), is_reversed(id));
+    }
+    PointId shared_point(PointId id) const {
+        return id < kLocal ? id : point_ids_[static_cast<std::size_t>(id - kLocal)];
+    }
+
+private:
+    int filtered_side(const LineFilter& line, const Point& point) const;
+    int exact_side(const Line& line, PointId point);
+    bool on_trace_by_name(PlaneId a, PlaneId b, const Point& point) const;
+    void locate(Point& point);
+
+    const PlanGeometry& shared_;
+    std::vector<Line> lines_;
+    std::vector<LineFilter> filters_;
+    std::vector<Point> points_;
+    KeyTable line_table_, point_table_;
+    std::vector<LineId> line_ids_;
+    std::vector<PointId> point_ids_;
+    std::uint64_t decisions_ = 0, exact_ = 0;
+};
+
+}  // namespace realmodel::exact

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arithmetic.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace realmodel::exact {
+
+namespace {
+
+// A finite double as mantissa * 2^exponent with an odd mantissa (0 for zero).
+std::int64_t odd_mantissa(double value, int& exponent) {
+    const double fraction = std::frexp(value, &exponent);
+    auto mantissa = static_cast<std::int64_t>(std::ldexp(fraction, 53));
+    exponent -= 53;
+    if (mantissa == 0) return 0;
+    const int zeros = std::countr_zero(static_cast<std::uint64_t>(mantissa));
+    exponent += zeros;
+    return mantissa / (std::int64_t{1} << zeros);
+}
+
+}  // namespace
+
+int finest_exponent(double value, int exponent) {
+    int own = 0;
+    return odd_mantissa(value, own) == 0 ? exponent : std::min(own, exponent);
+}
+
+mpz_class whole_number(double value, int exponent) {
+    int own = 0;
+    const std::int64_t mantissa = odd_mantissa(value, own);
+    mpz_class result(static_cast<long>(mantissa));
+    if (mantissa != 0 && own > exponent) result <<= static_cast<unsigned>(own - exponent);
+    return result;
+}
+
+double nearest_double(mpz_class num, mpz_class den, int exponent) {
+    if (sgn(num) == 0) return 0.0;
+    const bool negative = (sgn(num) < 0) != (sgn(den) < 0);
+    num = abs(num);
+    den = abs(den);
+    const auto bits = [](const mpz_class& n) {
+        return static_cast<int>(mpz_sizeinbase(n.get_mpz_t(), 2));
+    };
+    // a quotient of at least 55 bits, with a last bit that says whether anything is left over
+    const int shift = 56 - (bits(num) - bits(den));
+    if (shift >= 0) {
+        num <<= static_cast<unsigned>(shift);
+    } else {
+        den <<= static_cast<unsigned>(-shift);
+    }
+    mpz_class quotient, rest;
+    mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), num.get_mpz_t(), den.get_mpz_t());
+    const int drop = bits(quotient) - 53;
+    auto whole = static_cast<std::uint64_t>(quotient.get_ui());  // at most 57 bits
+    const std::uint64_t lost = whole & ((std::uint64_t{1} << drop) - 1);
+    const std::uint64_t half = std::uint64_t{1} << (drop - 1);
+    whole >>= drop;
+    if (lost > half || (lost == half && (sgn(rest) != 0 || (whole & 1) != 0))) ++whole;
+    const double size = std::ldexp(static_cast<double>(whole), exponent + drop - shift);
+    return negative ? -size : size;
+}
+
+}  // namespace realmodel::exact

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <gmpxx.h>
+
+#include "realmodel/exact/ball.hpp"
+#include "realmodel/exact/plan_geometry.hpp"
+
+namespace realmodel::exact {
+
+/// A double as a whole multiple of 2^exponent, which it must be.
+mpz_class whole_number(double value, int exponent);
+
+/// num / den * 2^exponent as the nearest double, ties to even.
+double nearest_double(mpz_class num, mpz_class den, int exponent);
+
+/// The largest exponent (at most `exponent`) that makes a double a whole multiple of 2^exponent.
+int finest_exponent(double value, int exponent);
+
+/// Input differences as whole numbers: plan in units of 2^plan_exponent, heights likewise.
+struct IntegerArithmetic {
+    const PlanGeometry& g;
+    mpz_class dx(VertexId v, VertexId o) const {
+        return whole_number(g.point(v).x, g.plan_exponent()) -
+               whole_number(g.point(o).x, g.plan_exponent());
+    }
+    mpz_class dy(VertexId v, VertexId o) const {
+        return whole_number(g.point(v).y, g.plan_exponent()) -
+               whole_number(g.point(o).y, g.plan_exponent());
+    }
+    mpz_class dz(SpaceId s, SpaceId t) const {
+        return whole_number(g.space(s).z, g.height_exponent()) -
+               whole_number(g.space(t).z, g.height_exponent());
+    }
+};
+
+/// Input differences to twice the precision of doubles.
+struct BallArithmetic {
+    const PlanGeometry& g;
+    Ball dx(VertexId v, VertexId o) const { return Ball::difference(g.point(v).x, g.point(o).x); }
+    Ball dy(VertexId v, VertexId o) const { return Ball::difference(g.point(v).y, g.point(o).y); }
+    Ball dz(SpaceId s, SpaceId t) const { return Ball::difference(g.space(s).z, g.space(t).z); }
+};
+
+}  // namespace realmodel::exact

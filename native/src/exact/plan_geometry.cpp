@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/exact/plan_geometry.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "arithmetic.hpp"
+#include "point_key.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::exact {
+
+namespace {
+
+constexpr double kEpsilon = 0x1p-52;  // twice the unit roundoff, so that products of bounds fit in
+
+std::array<std::int32_t, 2> halves(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value);  // -0 is 0
+    return {static_cast<std::int32_t>(bits >> 32), static_cast<std::int32_t>(bits)};
+}
+
+void check_room(std::size_t count, const char* what) {
+    if (count >= static_cast<std::size_t>(kLocal)) {
+        throw InputError("too_large", std::string("the model needs more than 500 million ") + what +
+                                          "; build it in parts or with a coarser mesh");
+    }
+}
+
+}  // namespace
+
+VertexId PlanGeometry::add_vertex(double x, double y) {
+    const auto hx = halves(x), hy = halves(y);
+    const auto found = vertex_table_.insert({hx[0], hx[1], hy[0], hy[1]});
+    if (found.is_new) {
+        check_room(points_.size(), "positions");
+        Point vertex;
+        vertex.x = x == 0.0 ? 0.0 : x;
+        vertex.y = y == 0.0 ? 0.0 : y;
+        points_.push_back(vertex);
+    }
+    return found.number;
+}
+
+SpaceId PlanGeometry::add_space_vertex(VertexId plan, double z) {
+    const auto hz = halves(z);
+    const auto found = space_table_.insert({plan, hz[0], hz[1], 0});
+    if (found.is_new) space_.push_back({plan, z == 0.0 ? 0.0 : z});
+    return found.number;
+}
+
+PlaneId PlanGeometry::add_plane(const std::array<SpaceId, 3>& corner) {
+    const auto position = [&](int i) {
+        return points_[static_cast<std::size_t>(space(corner[i]).plan)];
+    };
+    const Point p0 = position(0), p1 = position(1), p2 = position(2);
+    const double z0 = space(corner[0]).z;
+    const double ux = p1.x - p0.x, uy = p1.y - p0.y, uz = space(corner[1]).z - z0;
+    const double vx = p2.x - p0.x, vy = p2.y - p0.y, vz = space(corner[2]).z - z0;
+    const double c = ux * vy - uy * vx;
+    const double error_c = 4 * kEpsilon * (std::abs(ux * vy) + std::abs(uy * vx)) + 1e-290;
+    const double least = std::abs(c) - error_c;
+    PlaneFilter filter;
+    filter.gx = -(uy * vz - uz * vy) / c;
+    filter.gy = -(uz * vx - ux * vz) / c;
+    const double error_a = 4 * kEpsilon * (std::abs(uy * vz) + std::abs(uz * vy)) + 1e-290;
+    const double error_b = 4 * kEpsilon * (std::abs(uz * vx) + std::abs(ux * vz)) + 1e-290;
+    const bool safe = least > 0.0;
+    filter.error_x = safe ? (error_a + std::abs(filter.gx) * error_c) / least * (1 + 0x1p-40) +
+                                kEpsilon * std::abs(filter.gx)
+                          : HUGE_VAL;
+    filter.error_y = safe ? (error_b + std::abs(filter.gy) * error_c) / least * (1 + 0x1p-40) +
+                                kEpsilon * std::abs(filter.gy)
+                          : HUGE_VAL;
+    planes_.push_back({corner});
+    plane_filters_.push_back(filter);
+    return static_cast<PlaneId>(planes_.size() - 1);
+}
+
+void PlanGeometry::freeze_vertices() {
+    vertex_count_ = points_.size();
+    constexpr int kNone = 100000;
+    plan_exponent_ = height_exponent_ = kNone;
+    for (const Point& p : points_) {
+        plan_exponent_ = finest_exponent(p.y, finest_exponent(p.x, plan_exponent_));
+    }
+    for (const SpaceVertex& s : space_)
+        height_exponent_ = finest_exponent(s.z, height_exponent_);
+    if (plan_exponent_ == kNone) plan_exponent_ = 0;
+    if (height_exponent_ == kNone) height_exponent_ = 0;
+}
+
+DirectedLine PlanGeometry::add_edge(VertexId from, VertexId to) {
+    const bool reversed = from > to;
+    const LineId id = add_line({Line::Kind::kEdge, reversed ? to : from, reversed ? from : to});
+    return directed(id, reversed);
+}
+
+LineId PlanGeometry::add_line(const Line& line) {
+    const auto found = line_table_.insert(line_key_of(line));
+    if (found.is_new) {
+        check_room(lines_.size(), "lines");
+        lines_.push_back(line);
+        filters_.push_back(line.kind == Line::Kind::kEdge ? edge_filter(line.first, line.second)
+                                                          : trace_filter(line.first, line.second));
+    }
+    return found.number;
+}
+
+PointId PlanGeometry::add_point(const Point& point) {
+    const auto found = point_table_.insert(point_key_of(point));
+    if (found.is_new) {
+        check_room(points_.size(), "points");
+        points_.push_back(point);
+    }
+    return found.number + static_cast<PointId>(vertex_count_);
+}
+
+SpaceId PlanGeometry::corner_above(PlaneId plane_id, VertexId vertex) const {
+    for (const SpaceId s : plane(plane_id).corner) {
+        if (space(s).plan == vertex) return s;
+    }
+    return -1;
+}
+
+LineFilter PlanGeometry::edge_filter(VertexId from, VertexId to) const {
+    const Point& p = point(from);
+    const Point& q = point(to);
+    LineFilter f;
+    f.a = p.y - q.y;
+    f.b = q.x - p.x;
+    f.error_a = kEpsilon * std::abs(f.a);
+    f.error_b = kEpsilon * std::abs(f.b);
+    f.x0 = p.x;
+    f.y0 = p.y;
+    return f;
+}
+
+LineFilter PlanGeometry::trace_filter(PlaneId first, PlaneId second) const {
+    const PlaneFilter& p = plane_filter(first);
+    const PlaneFilter& q = plane_filter(second);
+    const SpaceVertex& sp = space(plane(first).corner[0]);
+    const SpaceVertex& sq = space(plane(second).corner[0]);
+    const Point& vp = point(sp.plan);
+    const Point& vq = point(sq.plan);
+    LineFilter f;
+    f.a = p.gx - q.gx;
+    f.b = p.gy - q.gy;
+    f.error_a = p.error_x + q.error_x + kEpsilon * (std::abs(p.gx) + std::abs(q.gx));
+    f.error_b = p.error_y + q.error_y + kEpsilon * (std::abs(p.gy) + std::abs(q.gy));
+    f.x0 = vp.x;
+    f.y0 = vp.y;
+    const double dx = vp.x - vq.x, dy = vp.y - vq.y;
+    const double rise_x = q.gx * dx, rise_y = q.gy * dy;
+    f.c = (sp.z - sq.z) - (rise_x + rise_y);
+    f.error_c =
+        q.error_x * std::abs(dx) * (1 + 0x1p-40) + q.error_y * std::abs(dy) * (1 + 0x1p-40) +
+        4 * kEpsilon * (std::abs(sp.z) + std::abs(sq.z) + std::abs(rise_x) + std::abs(rise_y)) +
+        1e-290;
+    return f;
+}
+
+}  // namespace realmodel::exact

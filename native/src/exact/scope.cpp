@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "arithmetic.hpp"
+#include "formulas.hpp"
+#include "point_key.hpp"
+#include "realmodel/exact/plan_geometry.hpp"
+
+namespace realmodel::exact {
+
+namespace {
+
+constexpr double kEpsilon = 0x1p-52;
+
+int sign_of(double value) {
+    return value > 0.0 ? 1 : (value < 0.0 ? -1 : 0);
+}
+
+/// The place of a crossing relative to a plan vertex.
+template <class Number, class Arithmetic>
+Homogeneous<Number> place(const Arithmetic& in, const Scope& scope, PointId id, VertexId origin) {
+    if (scope.is_vertex(id)) return {in.dx(id, origin), in.dy(id, origin), Number(1)};
+    const Point& p = scope.point(id);
+    return cross(line_coefficients<Number>(in, scope.shared(), scope.line(p.first), origin),
+                 line_coefficients<Number>(in, scope.shared(), scope.line(p.second), origin));
+}
+
+VertexId origin_of(const Scope& scope, PointId id) {
+    return scope.is_vertex(id) ? id : anchor(scope.shared(), scope.line(scope.point(id).first));
+}
+
+}  // namespace
+
+// Not decided by floating point: returns 2.
+int Scope::filtered_side(const LineFilter& line, const Point& point) const {
+    const double dx = point.x - line.x0, dy = point.y - line.y0;
+    const double u = line.a * dx, v = line.b * dy;
+    const double value = u + v + line.c;
+    const double reach_x = point.error + kEpsilon * std::abs(dx);
+    const double reach_y = point.error + kEpsilon * std::abs(dy);
+    const double error = (std::abs(line.a) + line.error_a) * reach_x +
+                         (std::abs(line.b) + line.error_b) * reach_y + line.error_a * std::abs(dx) +
+                         line.error_b * std::abs(dy) + line.error_c +
+                         4 * kEpsilon * (std::abs(u) + std::abs(v) + std::abs(line.c)) + 1e-290;
+    if (value > error) return 1;
+    if (value < -error) return -1;
+    return 2;
+}
+
+int Scope::exact_side(const Line& line, PointId point) {
+    ++exact_;
+    const IntegerArithmetic in{shared_};
+    if (is_vertex(point)) {
+        return sgn(line_coefficients<mpz_class>(in, shared_, line, point).c);
+    }
+    const VertexId origin = anchor(shared_, line);
+    const auto l = line_coefficients<mpz_class>(in, shared_, line, origin);
+    const auto h = place<mpz_class>(in, *this, point, origin);
+    const mpz_class value = l.a * h.x + l.b * h.y + l.c * h.w;
+    return sgn(value) * sgn(h.w);
+}
+
+int Scope::side(DirectedLine directed_line, PointId id) {
+    const LineId line_id = line_of(directed_line);
+    const Line& l = line(line_id);
+    const Point& p = point(id);
+    int result = 2;
+    if (is_vertex(id)) {
+        if (l.kind == Line::Kind::kEdge) {
+            if (id == l.first || id == l.second) return 0;
+        } else {
+            const SpaceId s = shared_.corner_above(l.first, id);
+            const SpaceId t = s < 0 ? -1 : shared_.corner_above(l.second, id);
+            if (t >= 0) result = sign_of(shared_.space(s).z - shared_.space(t).z);
+        }
+    } else {
+        if (p.first == line_id || p.second == line_id) return 0;
+        if (l.kind == Line::Kind::kTrace && on_trace_by_name(l.first, l.second, p)) return 0;
+    }
+    ++decisions_;
+    if (result == 2) result = filtered_side(filter(line_id), p);
+    if (result == 2) result = exact_side(l, id);
+    return is_reversed(directed_line) ? -result : result;
+}
+
+// Both triangles stand on the input edge, or one on the edge and the other pierced by it.
+bool Scope::on_trace_by_name(PlaneId a, PlaneId b, const Point& p) const {
+    const auto has_edge = [&](PlaneId plane) {
+        const auto& c = shared_.plane(plane).corner;
+        return (c[0] == p.edge_from || c[1] == p.edge_from || c[2] == p.edge_from) &&
+               (c[0] == p.edge_to || c[1] == p.edge_to || c[2] == p.edge_to);
+    };
+    if (p.edge_from >= 0) {
+        const bool edge_a = a == p.pierced || has_edge(a), edge_b = b == p.pierced || has_edge(b);
+        if (edge_a && edge_b) return true;
+    }
+    for (const LineId id : {p.first, p.second}) {
+        const Line& l = line(id);
+        if (l.kind == Line::Kind::kTrace) {
+            if (l.first == std::min(a, b) && l.second == std::max(a, b)) return true;
+            continue;
+        }
+        const SpaceId from_a = shared_.corner_above(a, l.first);
+        if (from_a < 0 || from_a != shared_.corner_above(b, l.first)) continue;
+        const SpaceId to_a = shared_.corner_above(a, l.second);
+        if (to_a >= 0 && to_a == shared_.corner_above(b, l.second)) return true;
+    }
+    return false;
+}
+
+int Scope::compare_heights(PlaneId upper, PlaneId lower, PointId id) {
+    if (upper == lower) return 0;
+    return compare_heights(upper, lower, shared_.trace_filter(upper, lower), id);
+}
+
+int Scope::compare_heights(PlaneId upper, PlaneId lower, const LineFilter& trace, PointId id) {
+    if (upper == lower) return 0;
+    const Point& p = point(id);
+    ++decisions_;
+    if (is_vertex(id)) {
+        const SpaceId s = shared_.corner_above(upper, id);
+        const SpaceId t = s < 0 ? -1 : shared_.corner_above(lower, id);
+        if (t >= 0) return sign_of(shared_.space(s).z - shared_.space(t).z);
+    } else if (on_trace_by_name(upper, lower, p)) {
+        return 0;
+    }
+    const int result = filtered_side(trace, p);
+    return result != 2 ? result : exact_side({Line::Kind::kTrace, upper, lower}, id);
+}
+
+bool Scope::same_place(PointId a, PointId b) {
+    if (a == b) return true;
+    if (point(a).x != point(b).x || point(a).y != point(b).y) return false;
+    if (is_vertex(a) && is_vertex(b)) return false;
+    if (is_vertex(a)) std::swap(a, b);
+    const Point p = point(a);
+    return side(directed(p.first, false), b) == 0 && side(directed(p.second, false), b) == 0;
+}
+
+bool Scope::same_line(LineId a, LineId b) {
+    if (a == b) return true;
+    if (line(a).kind == Line::Kind::kTrace) std::swap(a, b);
+    const Line l = line(a), m = line(b);
+    if (l.kind == Line::Kind::kEdge) {
+        return side(directed(b, false), l.first) == 0 && side(directed(b, false), l.second) == 0;
+    }
+    ++exact_;
+    const IntegerArithmetic in{shared_};
+    const VertexId origin = anchor(shared_, l);
+    const auto p = line_coefficients<mpz_class>(in, shared_, l, origin);
+    const auto q = line_coefficients<mpz_class>(in, shared_, m, origin);
+    return p.a * q.b == p.b * q.a && p.a * q.c == p.c * q.a && p.b * q.c == p.c * q.b;
+}
+
+std::array<int, 2> Scope::direction_signs(LineId id) {
+    const Line& l = line(id);
+    if (l.kind == Line::Kind::kEdge) {
+        const Point& p = shared_.point(l.first);
+        const Point& q = shared_.point(l.second);
+        return {sign_of(q.x - p.x), sign_of(q.y - p.y)};
+    }
+    const VertexId origin = anchor(shared_, l);
+    const auto c = line_coefficients<Ball>(BallArithmetic{shared_}, shared_, l, origin);
+    const auto a = c.a.sign(), b = c.b.sign();
+    if (a && b) return {*b, -*a};
+    ++exact_;
+    const auto e = line_coefficients<mpz_class>(IntegerArithmetic{shared_}, shared_, l, origin);
+    return {sgn(e.b), -sgn(e.a)};
+}
+
+int Scope::compare(int axis, PointId a, PointId b) {
+    const auto rounded_one = [&](PointId id) { return axis == 0 ? point(id).x : point(id).y; };
+    if (rounded_one(a) != rounded_one(b)) return rounded_one(a) < rounded_one(b) ? 1 : -1;
+    if (a == b || (is_vertex(a) && is_vertex(b))) return 0;
+    ++exact_;
+    const VertexId origin = origin_of(*this, a);
+    const IntegerArithmetic in{shared_};
+    const auto p = place<mpz_class>(in, *this, a, origin);
+    const auto q = place<mpz_class>(in, *this, b, origin);
+    const mpz_class &from = axis == 0 ? p.x : p.y, &to = axis == 0 ? q.x : q.y;
+    return sgn(mpz_class(to * p.w - from * q.w)) * sgn(p.w) * sgn(q.w);
+}
+
+DirectedLine Scope::trace(PlaneId upper, PlaneId lower) {
+    const Line l{Line::Kind::kTrace, std::min(upper, lower), std::max(upper, lower)};
+    const auto found = line_table_.insert(line_key_of(l));
+    if (found.is_new) {
+        lines_.push_back(l);
+        filters_.push_back(shared_.trace_filter(l.first, l.second));
+    }
+    return directed(kLocal + found.number, upper > lower);
+}
+
+PointId Scope::crossing(LineId a, LineId b) {
+    const Line la = line(a), lb = line(b);
+    // Where an end of one edge lies on the other line, the crossing is that input vertex.
+    if (la.kind == Line::Kind::kEdge) {
+        for (const VertexId v : {la.first, la.second}) {
+            if (side(directed(b, false), v) == 0) return v;
+        }
+    }
+    if (lb.kind == Line::Kind::kEdge) {
+        for (const VertexId v : {lb.first, lb.second}) {
+            if (side(directed(a, false), v) == 0) return v;
+        }
+    }
+    Point p;
+    p.first = a;
+    p.second = b;
+    if ((la.kind == Line::Kind::kEdge) != (lb.kind == Line::Kind::kEdge)) {
+        const Line& edge = la.kind == Line::Kind::kEdge ? la : lb;
+        const Line& trace_line = la.kind == Line::Kind::kEdge ? lb : la;
+        for (const bool second : {false, true}) {
+            const PlaneId standing = second ? trace_line.second : trace_line.first;
+            const SpaceId s = shared_.corner_above(standing, edge.first);
+            const SpaceId t = s < 0 ? -1 : shared_.corner_above(standing, edge.second);
+            if (t < 0) continue;
+            p.edge_from = std::min(s, t);
+            p.edge_to = std::max(s, t);
+            p.pierced = second ? trace_line.first : trace_line.second;
+            break;
+        }
+    }
+    const auto found = point_table_.insert(point_key_of(p));
+    if (found.is_new) {
+        locate(p);
+        points_.push_back(p);
+    }
+    return kLocal + found.number;
+}
+
+void Scope::locate(Point& p) {
+    const Line& l = line(p.first);
+    const Line& m = line(p.second);
+    const VertexId origin = anchor(shared_, l);
+    const Point& o = shared_.point(origin);
+    const BallArithmetic in{shared_};
+    const auto h = cross(line_coefficients<Ball>(in, shared_, l, origin),
+                         line_coefficients<Ball>(in, shared_, m, origin));
+    const auto x = (h.x / h.w + Ball(o.x)).rounded();
+    const auto y = (h.y / h.w + Ball(o.y)).rounded();
+    if (x && y) {
+        p.x = *x;
+        p.y = *y;
+    } else {
+        ++exact_;
+        const IntegerArithmetic exact{shared_};
+        const auto e = cross(line_coefficients<mpz_class>(exact, shared_, l, origin),
+                             line_coefficients<mpz_class>(exact, shared_, m, origin));
+        const int unit = shared_.plan_exponent();
+        p.x = nearest_double(e.x + whole_number(o.x, unit) * e.w, e.w, unit);
+        p.y = nearest_double(e.y + whole_number(o.y, unit) * e.w, e.w, unit);
+    }
+    p.error = std::max(std::abs(p.x), std::abs(p.y)) * 0x1p-53 + 1e-300;
+}
+
+std::array<double, 2> Scope::rounded(PointId id) {
+    return {point(id).x, point(id).y};
+}
+
+double Scope::rounded_height(PlaneId plane_id, PointId id) {
+    const SpaceVertex& corner = shared_.space(shared_.plane(plane_id).corner[0]);
+    if (is_vertex(id)) {
+        const SpaceId s = shared_.corner_above(plane_id, id);
+        if (s >= 0) return shared_.space(s).z;
+    }
+    {
+        const BallArithmetic in{shared_};
+        const auto n = plane_normal<Ball>(in, shared_, plane_id);
+        const auto h = place<Ball>(in, *this, id, corner.plan);
+        const auto z = (Ball(corner.z) - (n.a * h.x + n.b * h.y) / (n.c * h.w)).rounded();
+        if (z) return *z;
+    }
+    ++exact_;
+    const IntegerArithmetic in{shared_};
+    const auto n = plane_normal<mpz_class>(in, shared_, plane_id);
+    const auto h = place<mpz_class>(in, *this, id, corner.plan);
+    const mpz_class w = n.c * h.w;
+    const int unit = shared_.height_exponent();
+    return nearest_double(whole_number(corner.z, unit) * w - n.a * h.x - n.b * h.y, w, unit);
+}
+
+std::array<double, 3> Scope::line_key(LineId id) {
+    const Line& l = line(id);
+    constexpr VertexId kOrigin = 0;  // any vertex does, as long as it is the same for all lines
+    {
+        const auto c = line_coefficients<Ball>(BallArithmetic{shared_}, shared_, l, kOrigin);
+        const auto a = c.a.sign(), b = c.b.sign();
+        if (a && b) {
+            const auto steep = ((*a < 0 ? -c.a : c.a) - (*b < 0 ? -c.b : c.b)).sign();
+            if (steep) {
+                const Ball& divisor = *steep > 0 ? c.a : c.b;
+                const auto slope = ((*steep > 0 ? c.b : c.a) / divisor).rounded();
+                const auto offset = (c.c / divisor).rounded();
+                if (slope && offset) return {*steep > 0 ? 1.0 : 0.0, *slope, *offset};
+            }
+        }
+    }
+    ++exact_;
+    const auto e = line_coefficients<mpz_class>(IntegerArithmetic{shared_}, shared_, l, kOrigin);
+    const bool steep = mpz_cmpabs(e.a.get_mpz_t(), e.b.get_mpz_t()) > 0;
+    const mpz_class& divisor = steep ? e.a : e.b;
+    // a and b are lengths over lengths; c is a length in units of 2^plan_exponent
+    return {steep ? 1.0 : 0.0, nearest_double(steep ? e.b : e.a, divisor, 0),
+            nearest_double(e.c, divisor, shared_.plan_exponent())};
+}
+
+void Scope::hand_over(PlanGeometry& geometry) {
+    line_ids_.clear();
+    point_ids_.clear();
+    for (const Line& l : lines_)
+        line_ids_.push_back(geometry.add_line(l));
+    for (Point p : points_) {
+        p.first = shared_line(p.first);
+        p.second = shared_line(p.second);
+        point_ids_.push_back(geometry.add_point(p));
+    }
+}
+
+}  // namespace realmodel::exact
