@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace realmodel {
+class Progress;
+}
+
+namespace realmodel::interpolation {
+
+struct InverseDistanceOptions {
+    double power = 2;     ///< positive
+    int neighbours = 16;  ///< nearest in plan that count; 0: all points
+    int threads = 0;      ///< 0: as many as there are
+};
+
+/// Means of the values of the nearest points weighted by distance^-power (Shepard 1968). A node on
+/// a point gets that point's value.
+///
+/// @param points  x, y, z
+/// @param nodes   x, y
+/// @return        z of each node; the same for any number of threads
+/// Throws InputError of kind "no_points", "not_finite", "contradicting_points", "option";
+/// Cancelled.
+std::vector<double> inverse_distance(std::span<const std::array<double, 3>> points,
+                                     std::span<const std::array<double, 2>> nodes,
+                                     const InverseDistanceOptions& options,
+                                     Progress* progress = nullptr);
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/base/progress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <limits>
+#include <string>
+#include <thread>
+
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel {
+namespace {
+
+TEST(Progress, StartsAtNothing) {
+    const Progress progress;
+    EXPECT_EQ(progress.fraction(), 0.0);
+    EXPECT_EQ(progress.text(), "");
+    EXPECT_FALSE(progress.cancelled());
+    EXPECT_NO_THROW(progress.check());
+}
+
+TEST(Progress, KeepsWhatWasReportedLast) {
+    Progress progress;
+    progress.report(0.25, "meshing");
+    progress.report(0.5, "kriging");
+    EXPECT_EQ(progress.fraction(), 0.5);
+    EXPECT_EQ(progress.text(), "kriging");
+}
+
+TEST(Progress, NullTextKeepsTheText) {
+    Progress progress;
+    progress.report(0.25, "meshing");
+    progress.report(0.75, nullptr);
+    EXPECT_EQ(progress.fraction(), 0.75);
+    EXPECT_EQ(progress.text(), "meshing");
+}
+
+TEST(Progress, FractionStaysWithinZeroAndOne) {
+    Progress progress;
+    progress.report(1.5, "a");
+    EXPECT_EQ(progress.fraction(), 1.0);
+    progress.report(-0.5, "a");
+    EXPECT_EQ(progress.fraction(), 0.0);
+    progress.report(0.5, "a");
+    progress.report(std::numeric_limits<double>::quiet_NaN(), "b");
+    EXPECT_EQ(progress.fraction(), 0.5);
+    EXPECT_EQ(progress.text(), "b");
+}
+
+TEST(Progress, LongTextIsCutBetweenCharacters) {
+    Progress progress;
+    // 126 bytes and then "é" of two bytes: the 127 bytes that there is room for would end in its
+    // middle.
+    progress.report(0.0, (std::string(126, 'a') + "\xC3\xA9" + "b").c_str());
+    EXPECT_EQ(progress.text(), std::string(126, 'a'));
+    progress.report(0.0, (std::string(125, 'a') + "\xC3\xA9" + "b").c_str());
+    EXPECT_EQ(progress.text(), std::string(125, 'a') + "\xC3\xA9");
+    progress.report(0.0, std::string(127, 'c').c_str());
+    EXPECT_EQ(progress.text(), std::string(127, 'c'));
+}
+
+TEST(Progress, CheckThrowsOnceCancelled) {
+    Progress progress;
+    progress.cancel();
+    EXPECT_TRUE(progress.cancelled());
+    EXPECT_THROW(progress.check(), Cancelled);
+    EXPECT_THROW(progress.check(), Cancelled);
+}
+
+TEST(Progress, MayBeWatchedWhileItIsReported) {
+    Progress progress;
+    std::atomic<bool> stopped{false};
+    std::thread worker([&] {
+        try {
+            for (int step = 0;; ++step) {
+                progress.report((step % 100) / 100.0, step % 2 == 0 ? "even" : "odd step");
+                progress.check();
+            }
+        } catch (const Cancelled&) {
+            stopped = true;
+        }
+    });
+    for (int look = 0; look < 1000; ++look) {
+        const std::string text = progress.text();
+        EXPECT_TRUE(text.empty() || text == "even" || text == "odd step") << text;
+        EXPECT_GE(progress.fraction(), 0.0);
+        EXPECT_LE(progress.fraction(), 1.0);
+    }
+    progress.cancel();
+    worker.join();
+    EXPECT_TRUE(stopped);
+}
+
+}  // namespace
+}  // namespace realmodel
