@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The CGAL triangulation behind meshing. Private: CGAL stays out of the public headers.
+#pragma once
+
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Delaunay_mesh_face_base_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_data_structure_2.h>
+#include <CGAL/Triangulation_vertex_base_2.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "realmodel/meshing/triangulation.hpp"
+
+namespace realmodel::meshing {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// A vertex that knows the number of its input point (-1: made by refinement). The time stamp makes
+/// CGAL order vertices by when they were made and not by address, so that runs repeat.
+template <class Traits, class Base = CGAL::Triangulation_vertex_base_2<Traits>>
+class NumberedVertex : public Base {
+public:
+    template <class Tds>
+    struct Rebind_TDS {
+        using Other = NumberedVertex<Traits, typename Base::template Rebind_TDS<Tds>::Other>;
+    };
+    using Base::Base;
+
+    using Has_timestamp = CGAL::Tag_true;
+    std::size_t time_stamp() const { return stamp_; }
+    void set_time_stamp(std::size_t value) { stamp_ = value; }
+
+    std::int32_t number = -1;
+
+private:
+    std::size_t stamp_ = 0;
+};
+
+// Faces of the mesher's kind are stamped too, and say whether they belong to the region.
+using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
+    Kernel,
+    CGAL::Triangulation_data_structure_2<NumberedVertex<Kernel>,
+                                         CGAL::Delaunay_mesh_face_base_2<Kernel>>,
+    CGAL::No_constraint_intersection_requiring_constructions_tag>;
+
+/// Called now and then (at least every few milliseconds) with the share of a step that is done;
+/// throws to stop it.
+using Check = std::function<void(double)>;
+
+/// Passes on every 16384th call to a check: for the innermost loops.
+class Ticker {
+public:
+    explicit Ticker(const Check& check) : check_(check) {}
+    void operator()(double share) {
+        if (++calls_ % 16384 == 0) check_(share);
+    }
+
+private:
+    const Check& check_;
+    std::size_t calls_ = 0;
+};
+
+/// A pair of point numbers.
+using Segment = std::array<std::int32_t, 2>;
+
+/// Inserts points in the order of a space-filling curve; returns the vertex of each.
+/// Throws InputError "repeated_point", "not_finite".
+std::vector<Cdt::Vertex_handle> insert_points(Cdt& cdt, std::span<const PlanPoint> points,
+                                              const Check& check);
+
+/// Inserts segments between points inserted before. Throws InputError "crossing", "bad_index".
+void insert_segments(Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
+                     std::span<const Segment> segments, const Check& check);
+
+/// The edges that each segment consists of once all are inserted, sorted by their ends (lower
+/// number first), then by segment: an edge that comes twice belongs to two segments.
+struct CoveredEdge {
+    std::int32_t from, to, segment;
+    auto operator<=>(const CoveredEdge&) const = default;
+};
+std::vector<CoveredEdge> covered_edges(const Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
+                                       std::span<const Segment> segments);
+
+/// The finite faces by number; each starts with its least vertex, in the order of their vertices.
+ConstrainedTriangulation numbered_triangles(const Cdt& cdt);
+
+}  // namespace realmodel::meshing

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "meshing/plan_predicates.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include <cstdio>
+
+namespace realmodel::meshing {
+
+namespace {
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+}
+
+int side_of_line(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
+    return static_cast<int>(CGAL::orientation(
+        Kernel::Point_2(a[0], a[1]), Kernel::Point_2(b[0], b[1]), Kernel::Point_2(p[0], p[1])));
+}
+
+bool cross_properly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
+                    const PlanPoint& d) {
+    return side_of_line(a, b, c) * side_of_line(a, b, d) < 0 &&
+           side_of_line(c, d, a) * side_of_line(c, d, b) < 0;
+}
+
+PlanPoint crossing_place(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
+                         const PlanPoint& d) {
+    const double ux = b[0] - a[0], uy = b[1] - a[1];
+    const double vx = d[0] - c[0], vy = d[1] - c[1];
+    const double across = ux * vy - uy * vx;
+    if (across == 0) return c;  // parallel up to rounding: any of the ends tells where
+    const double t = ((c[0] - a[0]) * vy - (c[1] - a[1]) * vx) / across;
+    return {a[0] + t * ux, a[1] + t * uy};
+}
+
+std::string text_of(const PlanPoint& place) {
+    std::array<char, 80> text{};
+    std::snprintf(text.data(), text.size(), "(%.12g, %.12g)", place[0], place[1]);
+    return text.data();
+}
+
+}  // namespace realmodel::meshing
