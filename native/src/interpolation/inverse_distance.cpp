@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/interpolation/inverse_distance.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "interpolation/data_points.hpp"
+#include "interpolation/node_chunks.hpp"
+#include "realmodel/base/errors.hpp"
+#include "realmodel/spatial/nearest_points.hpp"
+
+namespace realmodel::interpolation {
+
+namespace {
+
+/// A weighted mean that grows point by point.
+class Mean {
+public:
+    Mean(double nearest_squared_distance, double power)
+        : nearest_(nearest_squared_distance), half_power_(power / 2) {}
+
+    void add(double squared_distance, double value) {
+        // Relative to the nearest point, so that no power overflows.
+        const double closeness = nearest_ / squared_distance;
+        const double weight = half_power_ == 1 ? closeness : std::pow(closeness, half_power_);
+        sum_ += weight * value;
+        weights_ += weight;
+    }
+    double value() const { return sum_ / weights_; }
+
+private:
+    double nearest_, half_power_;
+    double sum_ = 0, weights_ = 0;
+};
+
+void check_options(const InverseDistanceOptions& options) {
+    if (!(options.power > 0) || !std::isfinite(options.power)) {
+        char text[80];
+        std::snprintf(text, sizeof text, "the power is %.6g; it must be positive", options.power);
+        throw InputError("option", text);
+    }
+    if (options.neighbours < 0) {
+        throw InputError("option", "the number of neighbours is negative; 0 means all points");
+    }
+}
+
+}  // namespace
+
+std::vector<double> inverse_distance(std::span<const std::array<double, 3>> points,
+                                     std::span<const std::array<double, 2>> nodes,
+                                     const InverseDistanceOptions& options, Progress* progress) {
+    check_options(options);
+    require_finite_nodes(nodes);
+    const DataPoints data = prepare_points(points);
+    const spatial::NearestPoints tree(data.local);
+    const bool all = options.neighbours == 0;
+    const std::size_t taken = all ? 1 : static_cast<std::size_t>(options.neighbours);
+    std::vector<double> z(nodes.size());
+
+    const auto make = [&](const StopSign& stop) {
+        return [&, near = std::vector<spatial::Neighbour>()](std::size_t begin,
+                                                             std::size_t end) mutable {
+            for (std::size_t i = begin; i < end && !stop(); ++i) {
+                const Place node = data.to_local(nodes[i]);
+                tree.find(node, taken, near);
+                const spatial::Neighbour nearest = near.front();
+                if (nearest.squared_distance == 0) {
+                    z[i] = data.values[nearest.point];
+                    continue;
+                }
+                // Values count from the nearest one: heights far from 0 lose no digits.
+                const double base = data.values[nearest.point];
+                Mean mean(nearest.squared_distance, options.power);
+                if (all) {
+                    for (std::size_t p = 0; p < data.local.size(); ++p) {
+                        const double dx = node[0] - data.local[p][0],
+                                     dy = node[1] - data.local[p][1];
+                        mean.add(dx * dx + dy * dy, data.values[p] - base);
+                    }
+                } else {
+                    for (const spatial::Neighbour& n : near) {
+                        mean.add(n.squared_distance, data.values[n.point] - base);
+                    }
+                }
+                z[i] = base + mean.value();
+            }
+        };
+    };
+    const std::size_t chunk = all ? 1 + 1'000'000 / data.local.size() : 256;
+    for_chunks(nodes.size(), chunk, options.threads, progress, 0, "inverse distance", make);
+    return z;
+}
+
+}  // namespace realmodel::interpolation

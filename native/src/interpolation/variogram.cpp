@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/interpolation/variogram.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::interpolation {
+
+namespace {
+
+struct NamedModel {
+    VariogramModel model;
+    std::string_view name;
+};
+constexpr NamedModel named_models[] = {
+    {VariogramModel::spherical, "spherical"}, {VariogramModel::exponential, "exponential"},
+    {VariogramModel::gaussian, "gaussian"},   {VariogramModel::cubic, "cubic"},
+    {VariogramModel::matern32, "matern32"},   {VariogramModel::matern52, "matern52"}};
+
+std::string number_text(double number) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.6g", number);
+    return text;
+}
+
+}  // namespace
+
+std::string_view name_of(VariogramModel model) {
+    for (const NamedModel& named : named_models) {
+        if (named.model == model) return named.name;
+    }
+    return {};
+}
+
+VariogramModel variogram_model(std::string_view name) {
+    std::string known;
+    for (const NamedModel& named : named_models) {
+        if (named.name == name) return named.model;
+        known += (known.empty() ? "" : ", ") + std::string(named.name);
+    }
+    throw InputError("variogram", "variogram model \"" + std::string(name) +
+                                      "\" is not known; there are " + known);
+}
+
+double structure(VariogramModel model, double t) {
+    // Solutions of f(1) = 0.95.
+    constexpr double a = 4.743864518390579, b = 5.918649346310188;
+    switch (model) {
+        case VariogramModel::spherical:
+            return t < 1 ? t * (1.5 - 0.5 * t * t) : 1;
+        case VariogramModel::exponential:
+            return -std::expm1(-3 * t);
+        case VariogramModel::gaussian:
+            return -std::expm1(-3 * t * t);
+        case VariogramModel::cubic:
+            return t < 1 ? t * t * (7 + t * (-8.75 + t * t * (3.5 - 0.75 * t * t))) : 1;
+        case VariogramModel::matern32:
+            return 1 - (1 + a * t) * std::exp(-a * t);
+        case VariogramModel::matern52:
+            return 1 - (1 + b * t + b * b * t * t / 3) * std::exp(-b * t);
+    }
+    return 1;
+}
+
+double Variogram::gamma(double distance) const {
+    if (distance == 0) return 0;
+    return nugget + (sill - nugget) * structure(model, distance / range);
+}
+
+void check_variogram(const Variogram& variogram) {
+    const auto refuse = [](const std::string& what) { throw InputError("variogram", what); };
+    if (!(variogram.range > 0) || !std::isfinite(variogram.range)) {
+        refuse("the variogram's range is " + number_text(variogram.range) +
+               "; it must be positive");
+    }
+    if (!(variogram.sill > 0) || !std::isfinite(variogram.sill)) {
+        refuse("the variogram's sill is " + number_text(variogram.sill) + "; it must be positive");
+    }
+    if (!(variogram.nugget >= 0) || !(variogram.nugget <= variogram.sill)) {
+        refuse("the variogram's nugget is " + number_text(variogram.nugget) +
+               "; it must lie between 0 and the sill, " + number_text(variogram.sill) +
+               ", which includes it");
+    }
+    check_anisotropy(variogram.anisotropy);
+}
+
+void check_anisotropy(const Anisotropy& anisotropy) {
+    if (!(anisotropy.ratio > 0) || !std::isfinite(anisotropy.ratio)) {
+        throw InputError("anisotropy", "the anisotropy's ratio is " +
+                                           number_text(anisotropy.ratio) + "; it must be positive");
+    }
+    if (!std::isfinite(anisotropy.azimuth)) {
+        throw InputError("anisotropy", "the anisotropy's azimuth is not a finite number");
+    }
+}
+
+AnisotropicLength::AnisotropicLength(const Anisotropy& anisotropy) {
+    const double azimuth = anisotropy.azimuth * std::numbers::pi / 180;
+    const double stretch = std::max(anisotropy.ratio, 1 / anisotropy.ratio);
+    along_x_ = std::sin(azimuth);
+    along_y_ = std::cos(azimuth);
+    across_x_ = stretch * along_y_;
+    across_y_ = -stretch * along_x_;
+}
+
+double AnisotropicLength::operator()(double dx, double dy) const {
+    const double along = along_x_ * dx + along_y_ * dy;
+    const double across = across_x_ * dx + across_y_ * dy;
+    return std::sqrt(along * along + across * across);
+}
+
+}  // namespace realmodel::interpolation

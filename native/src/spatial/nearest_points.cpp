@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/spatial/nearest_points.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <nanoflann.hpp>
+
+namespace realmodel::spatial {
+
+namespace {
+
+/// What nanoflann asks of a set of points.
+struct PlanPoints {
+    std::span<const std::array<double, 2>> points;
+
+    std::size_t kdtree_get_point_count() const { return points.size(); }
+    double kdtree_get_pt(std::size_t point, std::size_t axis) const { return points[point][axis]; }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+        return false;
+    }
+};
+
+/// Keeps the nearest so far, in order. nanoflann's own set keeps of equal distances whichever it
+/// met first, which depends on the shape of the tree.
+class NearestSoFar {
+public:
+    NearestSoFar(std::vector<Neighbour>& found, std::size_t count) : found_(found), count_(count) {
+        found_.clear();
+    }
+    std::size_t size() const { return found_.size(); }
+    bool empty() const { return found_.empty(); }
+    bool full() const { return found_.size() == count_; }
+    void sort() const {}
+
+    /// nanoflann drops points and branches that are not nearer than this: a little more than the
+    /// last one kept, so that ties, and branches bounded with rounding, are still looked at.
+    double worstDist() const {
+        if (!full()) return std::numeric_limits<double>::max();
+        const double last = found_.back().squared_distance;
+        return last + 1e-9 * last + std::numeric_limits<double>::min();
+    }
+
+    bool addPoint(double squared_distance, std::int32_t point) {
+        const Neighbour added{squared_distance, point};
+        if (full()) {
+            if (!(added < found_.back())) return true;
+            found_.pop_back();
+        }
+        found_.push_back(added);
+        for (std::size_t i = found_.size() - 1; i > 0 && found_[i] < found_[i - 1]; --i) {
+            std::swap(found_[i], found_[i - 1]);
+        }
+        return true;
+    }
+
+private:
+    std::vector<Neighbour>& found_;
+    std::size_t count_;
+};
+
+using KdTree = nanoflann::KDTreeSingleIndexAdaptor<
+    nanoflann::L2_Simple_Adaptor<double, PlanPoints, double, std::int32_t>, PlanPoints, 2,
+    std::int32_t>;
+
+#if NANOFLANN_VERSION >= 0x150
+using SearchParameters = nanoflann::SearchParameters;
+#else
+using SearchParameters = nanoflann::SearchParams;
+#endif
+
+}  // namespace
+
+struct NearestPoints::Tree {
+    explicit Tree(std::span<const std::array<double, 2>> of) : points{of}, index(2, points) {}
+    PlanPoints points;
+    KdTree index;
+};
+
+NearestPoints::NearestPoints(std::span<const std::array<double, 2>> points)
+    : tree_(std::make_unique<Tree>(points)) {}
+
+NearestPoints::~NearestPoints() = default;
+NearestPoints::NearestPoints(NearestPoints&&) noexcept = default;
+NearestPoints& NearestPoints::operator=(NearestPoints&&) noexcept = default;
+
+std::size_t NearestPoints::size() const {
+    return tree_->points.points.size();
+}
+
+void NearestPoints::find(const std::array<double, 2>& place, std::size_t count,
+                         std::vector<Neighbour>& found) const {
+    NearestSoFar nearest(found, std::min(count, size()));
+    if (count == 0 || size() == 0) return;
+    tree_->index.findNeighbors(nearest, place.data(), SearchParameters());
+}
+
+}  // namespace realmodel::spatial
