@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "layer.hpp"
+#include "polygon.hpp"
+
+namespace realmodel::strata {
+
+inline constexpr std::int32_t kOutsideCell = -1;
+
+/// Faces that are finished: convex plan polygons, each in the plane of a triangle, between two
+/// cells.
+struct FaceList {
+    PolygonPool polygons;
+    std::vector<PlaneId> plane;
+    std::vector<std::int32_t> layer;  ///< number of the surface that the face lies on, -1 the base
+    std::vector<std::int32_t> above;  ///< cell, or kOutsideCell
+    std::vector<std::int32_t> below;
+
+    std::size_t size() const { return plane.size(); }
+    void add(PolygonView polygon, PlaneId in_plane, std::int32_t in_layer, std::int32_t cell_above,
+             std::int32_t cell_below) {
+        polygons.add(polygon);
+        plane.push_back(in_plane);
+        layer.push_back(in_layer);
+        above.push_back(cell_above);
+        below.push_back(cell_below);
+    }
+};
+
+/// The lower envelope of the surfaces seen so far, youngest first: what survives of them, as convex
+/// facets that tile the frame. Each facet lies in one plane and carries the faces that cells above
+/// it already have there; they tile the facet.
+struct Envelope {
+    PolygonPool outlines;
+    std::vector<PlaneId> plane;         ///< kSky, kOutside, or the plane of a triangle
+    std::vector<std::int32_t> layer;    ///< surface of the facet, -1 for the sky
+    std::vector<std::int32_t> pending;  ///< the block beneath: last surface seen here, -1 the sky
+    std::vector<std::int64_t> face_offsets{0};
+    PolygonPool face_polygons;
+    std::vector<std::int32_t> face_above;  ///< cell above each face, or kOutsideCell
+
+    std::size_t size() const { return plane.size(); }
+    void add_facet(PolygonView outline, PlaneId in_plane, std::int32_t in_layer,
+                   std::int32_t block_beneath) {
+        outlines.add(outline);
+        plane.push_back(in_plane);
+        layer.push_back(in_layer);
+        pending.push_back(block_beneath);
+        face_offsets.push_back(face_offsets.back());
+    }
+    /// Adds a face to the facet added last.
+    void add_face(PolygonView polygon, std::int32_t cell_above) {
+        face_polygons.add(polygon);
+        face_above.push_back(cell_above);
+        ++face_offsets.back();
+    }
+};
+
+/// Cells and faces made so far.
+struct Construction {
+    FaceList faces;
+    std::vector<std::int32_t> cell_block;
+};
+
+/// The envelope before the first overlay: the youngest surface itself, or the region under the sky.
+Envelope initial_envelope(const Layer& layer, std::int32_t number);
+
+/// Lays surface `number` under the envelope: where it is lower, a cell is closed between the two
+/// and the surface becomes the envelope; elsewhere it was eroded away and the envelope stays.
+Envelope overlay(exact::PlanGeometry& geometry, const Envelope& envelope, const Layer& layer,
+                 std::int32_t number, Construction& construction, int threads,
+                 const Progress* progress);
+
+/// Closes what is left: block 0 down to a flat base where there is one, the outside elsewhere.
+void finish(const Envelope& envelope, std::optional<PlaneId> base, Construction& construction);
+
+}  // namespace realmodel::strata

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "plan_grid.hpp"
+#include "plan_snapping.hpp"
+#include "polygon.hpp"
+#include "realmodel/strata/stack.hpp"
+
+namespace realmodel::strata {
+
+/// Planes that are none: where a layer has no surface, what lies above all surfaces, and what lies
+/// outside the region.
+inline constexpr PlaneId kVoid = -1;
+inline constexpr PlaneId kSky = -2;
+inline constexpr PlaneId kOutside = -3;
+
+/// One surface as a set of convex plan polygons that tile the whole frame: its triangles, and void
+/// triangles where it has none. So every plan point lies in one polygon of every layer, and cutting
+/// away what a surface does not cover needs no operation of its own.
+struct Layer {
+    PolygonPool polygons;
+    std::vector<PlaneId> plane;  ///< of each polygon, kVoid where there is no surface
+    PlanGrid grid;
+
+    /// Makes the grid of the polygons as they are now.
+    void index(const exact::PlanGeometry& geometry, const Progress* progress);
+};
+
+/// A triangle of the input as it is used: its number there and its plan vertices.
+struct UsedTriangle {
+    std::int64_t number;
+    std::array<exact::SpaceId, 3> corner;  ///< counter-clockwise in plan
+};
+
+/// Checks a surface and enters its vertices; leaves out triangles without area (with a warning).
+/// @throws InputError kinds not_finite, bad_index, vertical_triangle
+std::vector<UsedTriangle> enter_surface(exact::PlanGeometry& geometry, const SurfaceView& surface,
+                                        int index, const PlanSnapping& snapping,
+                                        std::vector<Warning>& warnings, const Progress* progress);
+
+/// Four plan vertices, counter-clockwise, around everything.
+using Frame = std::array<exact::VertexId, 4>;
+
+/// The layer of a checked surface.
+/// @throws InputError kind double_valued, with the two triangles and a place in both
+Layer make_layer(exact::PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
+                 const Frame& frame, int index, int threads, const Progress* progress);
+
+/// The region as a layer: plane kSky inside and kOutside outside.
+Layer make_region(exact::PlanGeometry& geometry,
+                  const std::vector<std::array<exact::VertexId, 3>>& triangles, const Frame& frame,
+                  int threads, const Progress* progress);
+
+}  // namespace realmodel::strata

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "realmodel/strata/stack.hpp"
+
+namespace realmodel::strata {
+
+/// Values of one coordinate that stand for others: from -> to, ascending.
+class AxisSnapping {
+public:
+    AxisSnapping() = default;
+    explicit AxisSnapping(std::vector<std::pair<double, double>> changes)
+        : changes_(std::move(changes)) {}
+
+    double operator()(double value) const;
+    bool empty() const { return changes_.empty(); }
+    std::size_t size() const { return changes_.size(); }
+
+private:
+    std::vector<std::pair<double, double>> changes_;
+};
+
+/// Borders that two programs wrote differ in the last digits of their doubles, and would leave
+/// slivers of rounding size all along them. So x (and y) values of the input that differ by no more
+/// than a few units in the last place of the largest coordinate are taken as one: the value that
+/// most vertices have. Only where every triangle keeps the way it turns: a needle as thin as that
+/// stays a needle.
+struct PlanSnapping {
+    AxisSnapping x, y;
+    bool empty() const { return x.empty() && y.empty(); }
+};
+
+/// Whether all surfaces and regions have the same plan vertices: then no border lies beside
+/// another, and there is nothing to join.
+bool share_one_plan(std::span<const StackInput> rocks);
+
+PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads = 1,
+                           const Progress* progress = nullptr);
+
+}  // namespace realmodel::strata

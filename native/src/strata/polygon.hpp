@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "realmodel/exact/plan_geometry.hpp"
+
+namespace realmodel::strata {
+
+using exact::DirectedLine;
+using exact::LineId;
+using exact::PlaneId;
+using exact::PointId;
+using exact::Scope;
+
+/// A corner of a convex plan polygon and the line of the edge that leaves it; the polygon lies to
+/// the left of all its edges, and no two neighbouring edges lie on one line.
+struct Corner {
+    PointId point;
+    DirectedLine line;
+};
+
+using Polygon = std::vector<Corner>;
+using PolygonView = std::span<const Corner>;
+
+/// Many polygons in one array.
+struct PolygonPool {
+    std::vector<std::int64_t> offsets{0};
+    std::vector<Corner> corners;
+
+    std::size_t size() const { return offsets.size() - 1; }
+    PolygonView operator[](std::size_t i) const {
+        return {corners.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
+    }
+    void add(PolygonView polygon) {
+        corners.insert(corners.end(), polygon.begin(), polygon.end());
+        offsets.push_back(static_cast<std::int64_t>(corners.size()));
+    }
+};
+
+/// The part of a convex polygon to the left of a line; empty where it has no area.
+/// `sides` is scratch; `result` must not be `polygon`.
+void clip(Scope& scope, PolygonView polygon, DirectedLine line, std::vector<int>& sides,
+          Polygon& result);
+
+/// Clips by every edge of a convex polygon in turn.
+class Clipper {
+public:
+    explicit Clipper(Scope& scope) : scope_(scope) {}
+
+    /// The common part of two convex polygons, valid until the next call; empty without area.
+    PolygonView intersect(PolygonView subject, PolygonView window);
+    /// The part of a polygon to the left of a line, valid until the next call.
+    PolygonView cut(PolygonView subject, DirectedLine line);
+    /// Whether two convex polygons share an area; makes no points.
+    bool overlap(PolygonView a, PolygonView b);
+
+private:
+    bool separated(PolygonView a, PolygonView b);
+
+    Scope& scope_;
+    std::vector<int> sides_;
+    Polygon current_, next_;
+};
+
+}  // namespace realmodel::strata

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/strata/stack.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "border_joining.hpp"
+#include "conforming.hpp"
+#include "distinct_positions.hpp"
+#include "envelope.hpp"
+#include "layer.hpp"
+#include "parallel_chunks.hpp"
+#include "plan_snapping.hpp"
+#include "realmodel/base/errors.hpp"
+#include "realmodel/exact/turn.hpp"
+#include "rock_footprints.hpp"
+#include "rules.hpp"
+#include "volumes.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanGeometry;
+using exact::VertexId;
+
+namespace {
+
+/// Shares of the work, measured on stacks of ten surfaces.
+constexpr double kEnterShare = 0.05, kOverlayShare = 0.6, kConformShare = 0.35;
+
+void report(Progress* progress, double fraction, const char* text) {
+    if (progress == nullptr) return;
+    progress->check();
+    progress->report(fraction, text);
+}
+
+std::vector<std::array<VertexId, 3>> enter_region(PlanGeometry& geometry, const RegionView& region,
+                                                  const PlanSnapping& snapping) {
+    for (const double c : region.vertices) {
+        if (!std::isfinite(c))
+            throw InputError("not_finite", "the region has a corner that is not a number");
+    }
+    std::vector<std::array<VertexId, 3>> triangles;
+    for (std::size_t t = 0; t * 3 < region.triangles.size(); ++t) {
+        std::array<std::array<double, 2>, 3> p;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto row = static_cast<std::size_t>(region.triangles[t * 3 + i]) * 2;
+            if (region.triangles[t * 3 + i] < 0 || row + 1 >= region.vertices.size()) {
+                throw InputError("bad_index",
+                                 "a triangle of the region names a vertex that is not there", -1,
+                                 {static_cast<std::int64_t>(t)});
+            }
+            p[i] = {snapping.x(region.vertices[row]), snapping.y(region.vertices[row + 1])};
+        }
+        const int turn = exact::turn(p[0], p[1], p[2]);
+        if (turn == 0) continue;
+        if (turn < 0) std::swap(p[1], p[2]);
+        std::array<VertexId, 3> v;
+        for (std::size_t i = 0; i < 3; ++i)
+            v[i] = geometry.add_vertex(p[i][0], p[i][1]);
+        triangles.push_back(v);
+    }
+    return triangles;
+}
+
+/// Corners of a box that lies well outside of all input.
+Frame enter_frame(PlanGeometry& geometry) {
+    std::array<double, 2> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+    for (VertexId v = 0; v < static_cast<VertexId>(geometry.point_count()); ++v) {
+        const std::array<double, 2> p{geometry.point(v).x, geometry.point(v).y};
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            low[axis] = std::min(low[axis], p[axis]);
+            high[axis] = std::max(high[axis], p[axis]);
+        }
+    }
+    // A power of two keeps the exact numbers short where the input is a lattice.
+    const double extent = std::max({high[0] - low[0], high[1] - low[1], std::abs(high[0]) * 0x1p-30,
+                                    std::abs(high[1]) * 0x1p-30, std::abs(low[0]) * 0x1p-30,
+                                    std::abs(low[1]) * 0x1p-30, 1e-30});
+    const double step = std::exp2(std::ceil(std::log2(extent)));
+    const auto down = [&](double v) { return (std::floor(v / step) - 1.0) * step; };
+    const auto up = [&](double v) { return (std::ceil(v / step) + 1.0) * step; };
+    const double x0 = down(low[0]), y0 = down(low[1]), x1 = up(high[0]), y1 = up(high[1]);
+    return {geometry.add_vertex(x0, y0), geometry.add_vertex(x1, y0), geometry.add_vertex(x1, y1),
+            geometry.add_vertex(x0, y1)};
+}
+
+/// A rock mass whose vertices are entered.
+struct EnteredRock {
+    std::int32_t first_surface = 0;  ///< counted through all rock masses
+    std::vector<std::vector<UsedTriangle>> surfaces;
+    std::vector<Rule> rules;
+    std::optional<std::vector<std::array<VertexId, 3>>> region;
+    std::optional<double> base_elevation;
+    std::optional<PlaneId> base;
+};
+
+/// What all rock masses share while they are built.
+struct Site {
+    PlanGeometry geometry;
+    Frame frame{};
+    std::vector<std::int32_t> surface_of_plane;  ///< kBase for the flat bases
+    Construction construction;
+    int threads = 0;
+    Progress* progress = nullptr;
+};
+
+/// The layers e_k of a rock mass, handed out from the youngest to the oldest.
+class LayerSequence {
+public:
+    LayerSequence(Site& site, EnteredRock& rock) : site_(site), rock_(rock) {
+        const bool plain = std::all_of(rock.rules.begin(), rock.rules.end(),
+                                       [](Rule r) { return r == Rule::kErosional; });
+        if (plain) return;  // e_k is the surface itself, made when it is asked for
+        RuleReplay replay(site.geometry, rock.rules, site.threads, site.progress);
+        for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
+            if (site.progress != nullptr) site.progress->check();
+            replayed_.push_back(replay.add(surface(k)));
+        }
+    }
+
+    Layer take(std::int32_t k) {
+        if (replayed_.empty()) return surface(static_cast<std::size_t>(k));
+        Layer layer = std::move(replayed_.back());
+        replayed_.pop_back();
+        return layer;
+    }
+
+private:
+    Layer surface(std::size_t k) {
+        const auto number = rock_.first_surface + static_cast<std::int32_t>(k);
+        Layer layer = make_layer(site_.geometry, rock_.surfaces[k], site_.frame, number,
+                                 site_.threads, site_.progress);
+        rock_.surfaces[k] = {};
+        site_.surface_of_plane.resize(site_.geometry.plane_count(), number);
+        return layer;
+    }
+
+    Site& site_;
+    EnteredRock& rock_;
+    std::vector<Layer> replayed_;
+};
+
+void check_base(const PlanGeometry& geometry, const Envelope& envelope, double base,
+                std::int32_t oldest_surface) {
+    Scope scope(geometry);
+    std::array<double, 3> lowest{0, 0, HUGE_VAL};
+    for (std::size_t f = 0; f < envelope.size(); ++f) {
+        if (envelope.plane[f] < 0) continue;
+        for (const Corner& corner : envelope.outlines[f]) {
+            const double z = scope.rounded_height(envelope.plane[f], corner.point);
+            if (z < lowest[2]) {
+                const auto [x, y] = scope.rounded(corner.point);
+                lowest = {x, y, z};
+            }
+        }
+    }
+    if (lowest[2] <= base) {
+        throw InputError("base_not_below",
+                         "base_elevation " + std::to_string(base) +
+                             " is not below all of the rock mass: its lowest place is " +
+                             std::to_string(lowest[2]) + " at (" + std::to_string(lowest[0]) +
+                             ", " + std::to_string(lowest[1]) + "); give a lower base_elevation",
+                         oldest_surface, {}, lowest);
+    }
+}
+
+/// The complex (docs/geometry.md) from finished faces, conforming loops and walls.
+CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
+                     Loops loops, const Walls& walls, std::vector<std::int32_t> cell_block,
+                     const Progress* progress) {
+    CellComplex complex;
+    complex.vertices = std::move(loops.positions);
+    complex.cell_block = std::move(cell_block);
+    complex.face_offsets.push_back(0);
+    const auto add = [&](auto begin, auto end, std::int32_t owner, std::int32_t other,
+                         std::int32_t surface) {
+        complex.face_vertices.insert(complex.face_vertices.end(), begin, end);
+        complex.face_offsets.push_back(static_cast<std::int64_t>(complex.face_vertices.size()));
+        complex.face_cells.push_back({owner, other});
+        complex.face_surface.push_back(surface);
+    };
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        poll(progress, f);
+        const auto begin = loops.vertices.begin() + loops.face_offsets[f];
+        const auto end = loops.vertices.begin() + loops.face_offsets[f + 1];
+        const std::int32_t surface = surface_of_plane[static_cast<std::size_t>(faces.plane[f])];
+        if (faces.below[f] >= 0) {
+            add(begin, end, faces.below[f], faces.above[f], surface);
+        } else {
+            add(std::make_reverse_iterator(end), std::make_reverse_iterator(begin), faces.above[f],
+                kOutsideCell, surface);
+        }
+    }
+    for (std::size_t w = 0; w < walls.cells.size(); ++w) {
+        poll(progress, w);
+        const auto begin = walls.vertices.begin() + walls.offsets[w];
+        const auto end = walls.vertices.begin() + walls.offsets[w + 1];
+        const auto [left, right] = walls.cells[w];
+        if (left >= 0) {
+            add(begin, end, left, right, kWall);
+        } else {
+            add(std::make_reverse_iterator(end), std::make_reverse_iterator(begin), right,
+                kOutsideCell, kWall);
+        }
+    }
+    return complex;
+}
+
+CellComplex conform(PlanGeometry& geometry, Construction& construction,
+                    const std::vector<std::int32_t>& surface_of_plane, int threads,
+                    Progress* progress) {
+    std::vector<ExtraPoint> extra;
+    const FaceList& faces = construction.faces;
+    double done = kEnterShare + kOverlayShare;
+    for (int round = 0;; ++round) {
+        const auto next = [&](double share, const char* text) {
+            report(progress, done, text);
+            // a second round, where there is one, shares what is left
+            done += share * kConformShare * (round == 0 ? 0.5 : 0.25);
+        };
+        next(0.2, "joining points");
+        const Places places = find_places(geometry, faces, extra, threads, progress);
+        next(0.4, "joining edges");
+        const Tracks tracks = find_tracks(geometry, faces, places, extra, threads, progress);
+        next(0.3, "rounding");
+        Loops loops = find_loops(geometry, faces, places, tracks, threads, progress);
+        next(0.1, "building walls");
+        std::vector<ExtraPoint> missing;
+        const Walls walls = find_walls(geometry, faces, tracks, loops, missing, threads, progress);
+        if (!missing.empty()) {
+            extra.insert(extra.end(), missing.begin(), missing.end());
+            continue;
+        }
+        make_distinct(geometry, faces, places, loops, progress);
+        return assemble(faces, surface_of_plane, std::move(loops), walls,
+                        std::move(construction.cell_block), progress);
+    }
+}
+
+/// Enters the vertices of a rock mass.
+EnteredRock enter_rock(PlanGeometry& geometry, const StackInput& input, std::int32_t first_surface,
+                       const PlanSnapping& snapping, std::vector<Warning>& warnings,
+                       const Progress* progress) {
+    EnteredRock rock;
+    rock.first_surface = first_surface;
+    rock.rules = input.rules;
+    if (input.base_elevation && !std::isfinite(*input.base_elevation)) {
+        throw InputError("not_finite", "the base elevation is not a finite number", first_surface);
+    }
+    rock.base_elevation = input.base_elevation;
+    for (std::size_t k = 0; k < input.surfaces.size(); ++k) {
+        rock.surfaces.push_back(enter_surface(geometry, input.surfaces[k],
+                                              first_surface + static_cast<std::int32_t>(k),
+                                              snapping, warnings, progress));
+    }
+    if (input.region) rock.region = enter_region(geometry, *input.region, snapping);
+    return rock;
+}
+
+/// The base of a rock mass as a plane over the frame; its heights must be there before the vertices
+/// are frozen.
+void enter_base(Site& site, EnteredRock& rock) {
+    if (!rock.base_elevation) return;
+    std::array<exact::SpaceId, 3> corner;
+    for (std::size_t i = 0; i < 3; ++i) {
+        corner[i] = site.geometry.add_space_vertex(site.frame[i], *rock.base_elevation);
+    }
+    rock.base = site.geometry.add_plane(corner);
+    site.surface_of_plane.resize(site.geometry.plane_count(), kBase);
+}
+
+/// Adds the cells and faces of a rock mass, going down from its youngest surface.
+void build_rock(Site& site, EnteredRock& rock, double start, double share) {
+    const auto first_cell = site.construction.cell_block.size();
+    const auto count = static_cast<std::int32_t>(rock.surfaces.size());
+    Envelope envelope;
+    if (rock.region) {
+        envelope = initial_envelope(
+            make_region(site.geometry, *rock.region, site.frame, site.threads, site.progress), -1);
+    }
+    LayerSequence layers(site, rock);
+    for (std::int32_t k = count - 1; k >= 0; --k) {
+        report(site.progress, start + share * static_cast<double>(count - 1 - k) / count,
+               "intersecting the surfaces");
+        const Layer layer = layers.take(k);
+        envelope = envelope.size() == 0 ? initial_envelope(layer, k)
+                                        : overlay(site.geometry, envelope, layer, k,
+                                                  site.construction, site.threads, site.progress);
+    }
+    if (rock.base) check_base(site.geometry, envelope, *rock.base_elevation, rock.first_surface);
+    finish(envelope, rock.base, site.construction);
+    auto& block = site.construction.cell_block;
+    for (std::size_t c = first_cell; c < block.size(); ++c)
+        block[c] += rock.first_surface;
+}
+
+/// What was done to the input before it was built.
+Warning joined_by_rounding(const PlanSnapping& snapping, const JoinedBorders& borders) {
+    const std::size_t coordinates = snapping.x.size() + snapping.y.size();
+    std::string text;
+    if (coordinates > 0) {
+        text = "plan coordinates that differ by rounding only taken as one: " +
+               std::to_string(coordinates);
+    }
+    if (borders.divided > 0) {
+        text += (text.empty() ? "" : "; ") +
+                ("border edges divided at vertices within rounding of them: " +
+                 std::to_string(borders.divided));
+    }
+    return {"joined", -1, {}, text};
+}
+
+CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping& snapping,
+                          int threads, Progress* progress) {
+    report(progress, 0.0, "checking the surfaces");
+    Site site;
+    site.threads = threads;
+    site.progress = progress;
+    std::vector<Warning> warnings;
+    std::vector<EnteredRock> entered;
+    std::int32_t surfaces = 0;
+    for (const StackInput& rock : rocks) {
+        entered.push_back(enter_rock(site.geometry, rock, surfaces, snapping, warnings, progress));
+        surfaces += static_cast<std::int32_t>(rock.surfaces.size());
+    }
+    CellComplex result;
+    if (site.geometry.point_count() > 0) {
+        site.frame = enter_frame(site.geometry);
+        for (EnteredRock& rock : entered)
+            enter_base(site, rock);
+        site.geometry.freeze_vertices();
+        RockFootprints footprints;
+        double start = kEnterShare;
+        for (EnteredRock& rock : entered) {
+            const double share =
+                kOverlayShare * static_cast<double>(rock.surfaces.size()) / std::max(surfaces, 1);
+            const std::size_t first_face = site.construction.faces.size();
+            build_rock(site, rock, start, share);
+            start += share;
+            if (entered.size() > 1) {
+                footprints.add(site.geometry, site.construction.faces, first_face, progress);
+            }
+        }
+        result =
+            conform(site.geometry, site.construction, site.surface_of_plane, threads, progress);
+    } else {
+        result.face_offsets.push_back(0);
+    }
+    result.volumes = block_volumes(result, static_cast<std::size_t>(surfaces), progress);
+    result.warnings = std::move(warnings);
+    result.decisions = site.geometry.all_decisions();
+    result.exact_decisions = site.geometry.exact_decisions();
+    report(progress, 1.0, "done");
+    return result;
+}
+
+}  // namespace
+
+CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress) {
+    if (share_one_plan(rocks)) return build_snapped(rocks, {}, threads, progress);
+    const PlanSnapping snapping = find_snapping(rocks, threads, progress);
+    const JoinedBorders joined = join_borders(rocks, snapping, progress);
+    if (!snapping.empty() || joined.divided > 0) {
+        try {
+            CellComplex result = joined.divided > 0
+                                     ? build_snapped(joined.rocks, {}, threads, progress)
+                                     : build_snapped(rocks, snapping, threads, progress);
+            result.warnings.push_back(joined_by_rounding(snapping, joined));
+            return result;
+        } catch (const InputError&) {
+            // Whatever is wrong, what the user hears is about the input as given.
+        }
+    }
+    return build_snapped(rocks, {}, threads, progress);
+}
+
+CellComplex build_stack(const StackInput& input, int threads, Progress* progress) {
+    return build_rock_masses({&input, 1}, threads, progress);
+}
+
+}  // namespace realmodel::strata

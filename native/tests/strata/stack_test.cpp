@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/strata/stack.hpp"
+
+#include "complex_checks.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::strata {
+namespace {
+
+OwnedSurface flat(double z, bool other = false) {
+    return grid(
+        1, 1, 0, 0, 1, 1, [z](double, double) { return z; }, other);
+}
+
+TEST(Stack, OneSlabBetweenTwoSquares) {
+    const auto c = build({flat(0), flat(2)});
+    expect_valid(c);
+    EXPECT_EQ(cells_of_blocks(c), (std::vector<int>{0, 2}));  // a column a triangle
+    EXPECT_EQ(c.volumes, (std::vector<double>{0, 2}));
+    EXPECT_EQ(c.vertices.size(), 8u);
+    EXPECT_EQ(c.face_cells.size(), 2u + 2u + 4u + 1u);
+}
+
+TEST(Stack, TwoCrossingPlanesOnOneSquare) {
+    // z = x - 1/2 cuts the slab top z = 0 in the line x = 1/2; beneath the lower half the floor.
+    const auto c = build(
+        {flat(-1), flat(0), grid(1, 1, 0, 0, 1, 1, [](double x, double) { return x - 0.5; })});
+    expect_valid(c);
+    EXPECT_DOUBLE_EQ(c.volumes[1], 1.0 - 0.125);
+    EXPECT_DOUBLE_EQ(c.volumes[2], 0.125);
+    for (const auto& v : c.vertices) {
+        EXPECT_TRUE(v[0] == 0.0 || v[0] == 0.5 || v[0] == 1.0) << v[0];
+    }
+}
+
+TEST(Stack, ThreePlanesThroughOneLine) {
+    const auto plane = [](double slope, bool other) {
+        return grid(
+            1, 1, 0, 0, 1, 1, [slope](double x, double) { return slope * (x - 0.5); }, other);
+    };
+    const auto c = build({flat(-2), plane(1, false), plane(0, true), plane(-1, false)});
+    expect_valid(c);
+    // record lows: left of the line z = x - 1/2 is lowest (the oldest), right of it z = 1/2 - x
+    EXPECT_DOUBLE_EQ(c.volumes[1], 2.0 - 0.25);
+    EXPECT_DOUBLE_EQ(c.volumes[2], 0.125);
+    EXPECT_DOUBLE_EQ(c.volumes[3], 0.125);
+    std::set<double> on_line;
+    for (const auto& v : c.vertices) {
+        if (v[0] == 0.5 && v[2] > -1) on_line.insert(v[2]);
+    }
+    EXPECT_EQ(on_line, std::set<double>{0.0});
+}
+
+TEST(Stack, AConeWhoseTipTouches) {
+    // The tip of an upward cone touches the plane above in one vertex; nothing is pinched off.
+    OwnedSurface cone;
+    const auto tip = cone.vertex(0, 0, 0);
+    std::vector<std::int32_t> rim;
+    for (const auto& [x, y] :
+         {std::pair{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}) {
+        rim.push_back(cone.vertex(x, y, -1));
+    }
+    for (std::size_t i = 0; i < 8; ++i)
+        cone.triangle(tip, rim[i], rim[(i + 1) % 8]);
+    const auto lid = grid(1, 1, -1, -1, 1, 1, [](double, double) { return 0; });
+    const auto c = build({cone, lid});
+    expect_valid(c);
+    EXPECT_NEAR(c.volumes[1], 4.0 - 4.0 / 3.0, 1e-15);
+    const auto downward =
+        build({grid(1, 1, -1, -1, 1, 1, [](double, double) { return -1; }), cone});
+    expect_valid(downward);
+    EXPECT_NEAR(downward.volumes[1], 4.0 / 3.0, 1e-15);
+}
+
+TEST(Stack, SurfacesThatCoincideOverHalf) {
+    const auto lower = grid(2, 1, 0, 0, 2, 1, [](double, double) { return 0; });
+    const auto upper = grid(
+        2, 1, 0, 0, 2, 1, [](double x, double) { return std::max(0.0, x - 1); }, true);
+    const auto c = build({lower, upper}, -1.0);
+    expect_valid(c);
+    EXPECT_DOUBLE_EQ(c.volumes[0], 2.0);
+    EXPECT_DOUBLE_EQ(c.volumes[1], 0.5);
+    // no sliver where they coincide
+    for (const auto& v : c.vertices)
+        EXPECT_TRUE(v[0] >= 1 || v[2] <= 0);
+}
+
+TEST(Stack, ARepeatedSurfaceLeavesNoBlock) {
+    const auto s = grid(3, 3, 0, 0, 1, 1, [](double x, double y) { return x * y; });
+    const auto c = build({flat(-1), s, s, flat(2)});
+    expect_valid(c);
+    EXPECT_EQ(cells_of_blocks(c)[2], 0);
+    EXPECT_EQ(c.volumes[2], 0.0);
+}
+
+TEST(Stack, OneUnitInTheLastPlaceIsALayer) {
+    const double z = 0.1;
+    const auto c = build({flat(z), flat(std::nextafter(z, 1), true)});
+    expect_valid(c);
+    EXPECT_NEAR(c.volumes[1], std::nextafter(z, 1) - z, 1e-20);
+    EXPECT_GT(cells_of_blocks(c)[1], 0);
+}
+
+TEST(Stack, ErosionLeavesTwoBodies) {
+    const auto valley = grid(
+        4, 1, 0, 0, 4, 1, [](double x, double) { return std::abs(x - 2) - 0.5; }, true);
+    const auto floor = grid(1, 1, 0, 0, 4, 1, [](double, double) { return -1; });
+    const auto top = grid(1, 1, 0, 0, 4, 1, [](double, double) { return 0; });
+    const auto c = merge_columns(build({floor, top, valley}));
+    expect_valid(c, true);
+    EXPECT_EQ(cells_of_blocks(c), (std::vector<int>{0, 1, 2}));
+    EXPECT_DOUBLE_EQ(c.volumes[2], 2 * 1.5 * 1.5 / 2);
+}
+
+TEST(Stack, PartialCoverageStandsAsWalls) {
+    const auto patch = grid(2, 2, 0.25, 0.25, 0.75, 0.75, [](double, double) { return 1; });
+    const auto c = build({flat(0), patch, flat(2)});
+    expect_valid(c);
+    EXPECT_DOUBLE_EQ(c.volumes[1], 0.25);
+    EXPECT_DOUBLE_EQ(c.volumes[2], 2 - 0.25);
+}
+
+TEST(Stack, NothingOlderMeansNoBlock) {
+    const auto island = grid(1, 1, 5, 5, 6, 6, [](double, double) { return 1; });
+    const auto c = build({flat(0), island});
+    EXPECT_TRUE(c.cell_block.empty());
+    EXPECT_EQ(c.volumes, (std::vector<double>{0, 0}));
+}
+
+TEST(Stack, AJumpIsAWall) {
+    OwnedSurface step;
+    for (const auto& [x, z] : {std::pair{0.0, 1.0}, {0.5, 1.0}, {0.5, 2.0}, {1.0, 2.0}}) {
+        step.vertex(x, 0, z);
+        step.vertex(x, 1, z);
+    }
+    step.triangle(0, 2, 3);
+    step.triangle(0, 3, 1);
+    step.triangle(4, 6, 7);
+    step.triangle(4, 7, 5);
+    const auto c = build({flat(0), step, flat(3)});
+    expect_valid(c);
+    EXPECT_DOUBLE_EQ(c.volumes[1], 1.5);
+    EXPECT_DOUBLE_EQ(c.volumes[2], 1.5);
+}
+
+TEST(Stack, HeightsThatCrossInAWallGetAPointThere) {
+    // Left of x = 1 the interface falls along y, right of it it rises: in the wall they cross.
+    OwnedSurface scissors;
+    scissors.vertex(0, 0, 1), scissors.vertex(0, 1, 2), scissors.vertex(1, 0, 1),
+        scissors.vertex(1, 1, 2);
+    scissors.vertex(1, 0, 2), scissors.vertex(1, 1, 1), scissors.vertex(2, 0, 2),
+        scissors.vertex(2, 1, 1);
+    scissors.triangle(0, 2, 3);
+    scissors.triangle(0, 3, 1);
+    scissors.triangle(4, 6, 7);
+    scissors.triangle(4, 7, 5);
+    const auto box = [](double z) {
+        return grid(1, 1, 0, 0, 2, 1, [z](double, double) { return z; });
+    };
+    const auto c = build({box(0), scissors, box(3)});
+    expect_valid(c);
+    EXPECT_EQ(std::count(c.vertices.begin(), c.vertices.end(), std::array<double, 3>{1, 0.5, 1.5}),
+              1);
+    EXPECT_DOUBLE_EQ(c.volumes[1], 3.0);
+}
+
+TEST(Stack, TheRegionClips) {
+    const std::vector<double> corners{0.25, 0.25, 0.75, 0.25, 0.75, 0.75, 0.25, 0.75};
+    const std::vector<std::int32_t> triangles{0, 1, 2, 0, 2, 3};
+    StackInput input;
+    const auto lower = grid(3, 3, 0, 0, 1, 1, [](double x, double) { return x; });
+    const auto upper = grid(
+        4, 4, 0, 0, 1, 1, [](double, double y) { return 2 + y; }, true);
+    input.surfaces = {lower.view(), upper.view()};
+    input.region = RegionView{corners, triangles};
+    const auto c = build_stack(input, 1, nullptr);
+    expect_valid(c);
+    EXPECT_DOUBLE_EQ(c.volumes[1], 0.25 * 2.0);
+    for (const auto& v : c.vertices) {
+        EXPECT_GE(std::min(v[0], v[1]), 0.25);
+        EXPECT_LE(std::max(v[0], v[1]), 0.75);
+    }
+}
+
+TEST(Stack, TheBaseCarriesBlockZero) {
+    const auto c = build({flat(0), flat(1)}, -2.0);
+    expect_valid(c);
+    EXPECT_EQ(c.volumes, (std::vector<double>{2, 1}));
+    EXPECT_EQ(std::count(c.face_surface.begin(), c.face_surface.end(), kBase), 2);
+}
+
+TEST(Stack, ABaseThatIsNotBelowIsRefusedWithThePlace) {
+    try {
+        build({grid(1, 1, 0, 0, 1, 1, [](double x, double y) { return x + y; }), flat(5)}, 0.0);
+        FAIL();
+    } catch (const InputError& e) {
+        EXPECT_EQ(e.kind, "base_not_below");
+        EXPECT_EQ(e.place, (std::array<double, 3>{0, 0, 0}));
+    }
+}
+
+TEST(Stack, ABaseThatIsNoNumberIsRefused) {
+    for (const double base : {std::nan(""), -HUGE_VAL, HUGE_VAL}) {
+        EXPECT_THROW(build({flat(0), flat(1)}, base), InputError);
+    }
+}
+
+TEST(Stack, DoubleValuedSurfacesAreRefusedWithBothTriangles) {
+    OwnedSurface s = flat(0);
+    const auto a = s.vertex(0.5, 0.1, 1), b = s.vertex(0.9, 0.1, 1), c = s.vertex(0.9, 0.3, 1);
+    s.triangle(a, b, c);
+    try {
+        build({flat(-1), s});
+        FAIL();
+    } catch (const InputError& e) {
+        EXPECT_EQ(e.kind, "double_valued");
+        EXPECT_EQ(e.surface, 1);
+        EXPECT_EQ(e.items, (std::vector<std::int64_t>{0, 2}));
+        ASSERT_TRUE(e.place.has_value());
+        EXPECT_GT((*e.place)[0], 0.5);
+    }
+}
+
+TEST(Stack, UprightTrianglesAreRefusedAndFlatOnesLeftOut) {
+    OwnedSurface s = flat(0);
+    s.triangle(0, 0, 1);
+    const auto c = build({flat(-1), s});
+    ASSERT_EQ(c.warnings.size(), 1u);
+    EXPECT_EQ(c.warnings[0].items, (std::vector<std::int64_t>{2}));
+    EXPECT_DOUBLE_EQ(c.volumes[1], 1);
+    s.triangle(0, 1, s.vertex(0, 0.5, 3));
+    try {
+        build({flat(-1), s});
+        FAIL();
+    } catch (const InputError& e) {
+        EXPECT_EQ(e.kind, "vertical_triangle");
+        EXPECT_EQ(e.items, (std::vector<std::int64_t>{3}));
+    }
+}
+
+TEST(Stack, BadNumbersAndIndicesAreRefused) {
+    OwnedSurface s = flat(0);
+    s.vertices[4] = std::nan("");
+    EXPECT_THROW(build({s}), InputError);
+    OwnedSurface t = flat(0);
+    t.triangles[2] = 4;
+    EXPECT_THROW(build({t}), InputError);
+}
+
+TEST(Stack, AnyNumberOfThreadsGivesTheSame) {
+    std::vector<OwnedSurface> surfaces;
+    for (int k = 0; k < 5; ++k) {
+        surfaces.push_back(grid(
+            12 + k, 15 - k, 0, 0, 1, 1,
+            [k](double x, double y) {
+                return 0.1 * k + 0.2 * x * (k % 2 ? 1 : -1) + 0.1 * y * (k % 3 - 1);
+            },
+            k % 2 == 1));
+    }
+    const auto one = build(surfaces, -1.0, 1), four = build(surfaces, -1.0, 4);
+    expect_valid(one);
+    EXPECT_EQ(one.vertices, four.vertices);
+    EXPECT_EQ(one.face_vertices, four.face_vertices);
+    EXPECT_EQ(one.face_cells, four.face_cells);
+    EXPECT_EQ(one.cell_block, four.cell_block);
+    EXPECT_EQ(one.volumes, four.volumes);
+}
+
+TEST(Stack, ACancelledBuildThrows) {
+    Progress progress;
+    progress.cancel();
+    StackInput input;
+    const auto s = flat(0), t = flat(1);
+    input.surfaces = {s.view(), t.view()};
+    EXPECT_THROW(build_stack(input, 1, &progress), Cancelled);
+}
+
+TEST(Stack, MergedColumnsHaveTheSameVolumes) {
+    std::vector<OwnedSurface> surfaces;
+    for (int k = 0; k < 4; ++k) {
+        surfaces.push_back(grid(
+            6, 6, 0, 0, 6, 6,
+            [k](double x, double y) { return std::fmod(x * (k + 1) + y * (3 - k), 4.0); },
+            k % 2 == 1));
+    }
+    const auto columns = build(surfaces, -1.0);
+    expect_valid(columns);
+    const auto blocks = merge_columns(columns);
+    expect_valid(blocks, true);
+    for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_NEAR(blocks.volumes[k], columns.volumes[k], 1e-12);
+}
+
+}  // namespace
+}  // namespace realmodel::strata
