@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// VERSION, Control, InputError and Cancelled.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <exception>
+
+#include "realmodel/base/errors.hpp"
+#include "realmodel/base/progress.hpp"
+#include "realmodel/base/version.hpp"
+
+namespace py = pybind11;
+
+namespace realmodel::bindings {
+
+namespace {
+
+// The types live as long as the interpreter: they are never released, because at its end there may
+// be nothing left to release them with.
+py::handle input_error_type;
+py::handle cancelled_type;
+
+py::handle add_exception(py::module_& module, const char* name, PyObject* base, const char* doc) {
+    const std::string full_name = py::cast<std::string>(module.attr("__name__")) + "." + name;
+    py::object type = py::reinterpret_steal<py::object>(
+        PyErr_NewExceptionWithDoc(full_name.c_str(), doc, base, nullptr));
+    if (!type) throw py::error_already_set();
+    module.add_object(name, type);
+    return type.release();
+}
+
+void raise_input_error(const InputError& error) {
+    py::object raised = py::reinterpret_borrow<py::object>(input_error_type)(py::str(error.what()));
+    raised.attr("kind") = error.kind;
+    raised.attr("surface") = error.surface;
+    raised.attr("items") = error.items;
+    raised.attr("place") =
+        error.place
+            ? py::object(py::make_tuple((*error.place)[0], (*error.place)[1], (*error.place)[2]))
+            : py::object(py::none());
+    PyErr_SetObject(input_error_type.ptr(), raised.ptr());
+}
+
+void translate(std::exception_ptr thrown) {
+    try {
+        if (thrown) std::rethrow_exception(thrown);
+    } catch (const InputError& error) {
+        raise_input_error(error);
+    } catch (const Cancelled& error) {
+        PyErr_SetString(cancelled_type.ptr(), error.what());
+    }
+}
+
+}  // namespace
+
+void bind_base(py::module_& module) {
+    module.attr("VERSION") = version();
+
+    input_error_type = add_exception(
+        module, "InputError", PyExc_ValueError,
+        "The input cannot be used: kind (str), surface (int, -1: none), items (list of int), "
+        "place ((x, y, z) or None).");
+    cancelled_type = add_exception(module, "Cancelled", PyExc_Exception,
+                                   "The work was stopped by Control.cancel().");
+    py::register_exception_translator(&translate);
+
+    py::class_<Progress>(module, "Control",
+                         "Watches a long call from another thread, and stops it.")
+        .def(py::init<>())
+        .def_property_readonly("fraction", &Progress::fraction, "Share of the work done, 0 to 1.")
+        .def_property_readonly("text", &Progress::text, "What is being done.")
+        .def_property_readonly("cancelled", &Progress::cancelled, "True once cancel() was called.")
+        .def("cancel", &Progress::cancel, "Makes the call raise Cancelled soon.");
+}
+
+}  // namespace realmodel::bindings

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// build_stack.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "realmodel/base/progress.hpp"
+#include "realmodel/strata/stack.hpp"
+
+namespace py = pybind11;
+
+namespace realmodel::bindings {
+
+namespace {
+
+using SurfaceArrays = std::pair<Array<double>, Array<std::int32_t>>;
+
+template <class T>
+std::span<const T> view(const Array<T>& array) {
+    return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+py::dict to_dict(strata::CellComplex&& complex) {
+    py::dict result;
+    result["vertices"] = to_array(std::move(complex.vertices));
+    result["face_offsets"] = to_array(std::move(complex.face_offsets));
+    result["face_vertices"] = to_array(std::move(complex.face_vertices));
+    result["face_cells"] = to_array(std::move(complex.face_cells));
+    result["face_surface"] = to_array(std::move(complex.face_surface));
+    result["cell_block"] = to_array(std::move(complex.cell_block));
+    result["volumes"] = to_array(std::move(complex.volumes));
+    py::list warnings;
+    for (const strata::Warning& w : complex.warnings) {
+        warnings.append(py::make_tuple(w.kind, w.surface, w.items, w.text));
+    }
+    result["warnings"] = warnings;
+    result["decisions"] = complex.decisions;
+    result["exact_decisions"] = complex.exact_decisions;
+    return result;
+}
+
+strata::Rule rule_of(const std::string& name) {
+    if (name == "erosional") return strata::Rule::kErosional;
+    if (name == "conformable") return strata::Rule::kConformable;
+    if (name == "base") return strata::Rule::kBase;
+    if (name == "discontinuous") return strata::Rule::kDiscontinuous;
+    throw py::value_error(
+        "rules: \"erosional\", \"conformable\", \"base\" or \"discontinuous\", got \"" + name +
+        "\"");
+}
+
+using RockArrays = std::tuple<std::vector<SurfaceArrays>, std::optional<SurfaceArrays>,
+                              std::optional<double>, std::vector<std::string>>;
+
+strata::StackInput view_of(const RockArrays& rock) {
+    const auto& [surfaces, region, base_elevation, rules] = rock;
+    strata::StackInput input;
+    for (const auto& [vertices, triangles] : surfaces) {
+        require_columns(vertices, 3, "vertices of a surface");
+        require_columns(triangles, 3, "triangles of a surface");
+        input.surfaces.push_back({view(vertices), view(triangles)});
+    }
+    if (region) {
+        require_columns(region->first, 2, "vertices of the region");
+        require_columns(region->second, 3, "triangles of the region");
+        input.region = {view(region->first), view(region->second)};
+    }
+    input.base_elevation = base_elevation;
+    for (const std::string& rule : rules)
+        input.rules.push_back(rule_of(rule));
+    if (!rules.empty() && rules.size() != surfaces.size()) {
+        throw py::value_error("rules: one for each surface, or none at all");
+    }
+    return input;
+}
+
+py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::string& cells,
+                           int threads, Progress* control) {
+    if (cells != "columns" && cells != "blocks") {
+        throw py::value_error("cells: \"columns\" or \"blocks\", got \"" + cells + "\"");
+    }
+    std::vector<strata::StackInput> input;
+    for (const RockArrays& rock : rocks)
+        input.push_back(view_of(rock));
+    strata::CellComplex complex;
+    {
+        const py::gil_scoped_release release;
+        complex = strata::build_rock_masses(input, threads, control);
+        if (cells == "blocks") complex = strata::merge_columns(complex, control);
+    }
+    return to_dict(std::move(complex));
+}
+
+py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
+                     const std::optional<SurfaceArrays>& region,
+                     std::optional<double> base_elevation, const std::string& cells, int threads,
+                     Progress* control, const std::vector<std::string>& rules) {
+    return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, threads, control);
+}
+
+}  // namespace
+
+void bind_strata(py::module_& module) {
+    module.def("build_rock_masses", &build_rock_masses, py::arg("rocks"),
+               py::arg("cells") = "columns", py::arg("threads") = 0, py::arg("control") = nullptr,
+               R"(All blocks of rock masses, which may share borders but no area in plan.
+
+rocks: list of (surfaces, region, base_elevation, rules). surfaces: list of (vertices (V, 3)
+float64, triangles (T, 3) int32), oldest first; region: None or a triangulation (vertices (R, 2)
+float64, triangles (Q, 3) int32) whose border clips them; base_elevation: None or the height of a
+flat base; rules: one a surface, "erosional", "conformable", "base" or "discontinuous" (none: all
+erosional). cells: "columns" or "blocks" (each connected part of a block one cell); threads: 0 for
+all. Surfaces are counted through all rock masses. Returns a dict of arrays: vertices (V, 3)
+float64, face_offsets (F + 1,) int64, face_vertices int32, face_cells (F, 2) int32, face_surface
+(F,) int32 (-1 a wall, -2 a base), cell_block (C,) int32 (the surface that the cell's block lies
+beneath; the oldest of a rock mass: above its base), volumes (S,) float64; warnings: list of (kind,
+surface, items, text); decisions, exact_decisions: int. Raises InputError and Cancelled.)");
+    module.def("build_stack", &build_stack, py::arg("surfaces"), py::arg("region") = py::none(),
+               py::arg("base_elevation") = py::none(), py::arg("cells") = "columns",
+               py::arg("threads") = 0, py::arg("control") = nullptr,
+               py::arg("rules") = std::vector<std::string>(),
+               "build_rock_masses of a single rock mass.");
+}
+
+}  // namespace realmodel::bindings

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Flags of every target, kept in two interface targets:
+#   realmodel_settings   language, optimisation, floating point, sanitizers: for all our code
+#   realmodel_warnings   warnings as errors
+
+if(NOT CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    message(FATAL_ERROR "RealModel builds with g++ or clang++; this is ${CMAKE_CXX_COMPILER_ID}. "
+        "Pass -DCMAKE_CXX_COMPILER=g++.")
+endif()
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_SKIP_RPATH ON)
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g") # for the sanitizers: assertions stay
+
+find_program(REALMODEL_CCACHE ccache)
+if(REALMODEL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${REALMODEL_CCACHE}")
+endif()
+
+add_library(realmodel_settings INTERFACE)
+# No fused multiply-add: the same bytes on every machine. Rounding may change at run time, because
+# CGAL's interval arithmetic changes it: the compiler must not fold or move such operations.
+target_compile_options(realmodel_settings INTERFACE -ffp-contract=off -frounding-math)
+if(REALMODEL_SANITIZE)
+    target_compile_options(realmodel_settings INTERFACE
+        -fsanitize=${REALMODEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(realmodel_settings INTERFACE -fsanitize=${REALMODEL_SANITIZE})
+endif()
+
+add_library(realmodel_warnings INTERFACE)
+target_compile_options(realmodel_warnings INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Werror)
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    # A loop that clang does not vectorise (it is stricter about changing rounding) is no error.
+    target_compile_options(realmodel_warnings INTERFACE -Wno-pass-failed)
+endif()

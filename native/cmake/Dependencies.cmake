@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Libraries the native part stands on (docs/dependencies.md gives the reason of each).
+# What they bring is collected in the interface target realmodel_dependencies.
+
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp REQUIRED)
+
+# CGAL is used as headers only, without its CMake package, which would link GMP and MPFR into
+# everything. Its exact predicates need GMP; MPFR only comes in with its exact constructions
+# (kernel EPECK), which we do not use. GMP is shared: Debian's static one is not position independent.
+find_path(CGAL_INCLUDE_DIR CGAL/version.h REQUIRED)
+find_path(GMP_INCLUDE_DIR gmpxx.h REQUIRED)
+find_library(GMP_LIBRARY gmp REQUIRED)
+find_library(GMPXX_LIBRARY gmpxx REQUIRED)
+
+add_library(realmodel_dependencies INTERFACE)
+target_include_directories(realmodel_dependencies SYSTEM INTERFACE
+    ${NANOFLANN_INCLUDE_DIR} ${CGAL_INCLUDE_DIR} ${GMP_INCLUDE_DIR})
+target_compile_definitions(realmodel_dependencies INTERFACE
+    CGAL_USE_GMP=1 CGAL_USE_GMPXX=1 EIGEN_MPL2_ONLY)
+target_link_libraries(realmodel_dependencies INTERFACE
+    Eigen3::Eigen OpenMP::OpenMP_CXX ${GMPXX_LIBRARY} ${GMP_LIBRARY})
+target_link_options(realmodel_dependencies INTERFACE -Wl,--as-needed)
