@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""RealModel without Blender: from a project to a model of polyhedral cells, and out of it to files."""
+
+from .build import build
+from .build_warning import BuildWarning
+from .errors import BuildFailed, Cancelled, InputRefused, OutputFailed, RealModelError, UsageError
+from .interpolation import Interpolation, Variogram, interpolate
+from .library import Library, Property, load_library
+from .model import Block, BlockBoundary, Model
+from .planar_mesh import mesh_region
+from .project import Project, Rock, Surface
+from .project_file import load_project
+
+__all__ = [
+    "Block",
+    "BlockBoundary",
+    "BuildFailed",
+    "BuildWarning",
+    "Cancelled",
+    "InputRefused",
+    "Interpolation",
+    "Library",
+    "Model",
+    "OutputFailed",
+    "Project",
+    "Property",
+    "RealModelError",
+    "Rock",
+    "Surface",
+    "UsageError",
+    "Variogram",
+    "build",
+    "interpolate",
+    "load_library",
+    "load_project",
+    "mesh_region",
+]

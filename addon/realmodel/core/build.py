@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From a project to a model: read, mesh, interpolate, intersect."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from .build_warning import BuildWarning
+from .errors import UsageError
+from .methods import check_threads
+from .model import Block, Model, cell_components, count_blocks
+from .project import Project, check_project
+from .rock_input import RockInput, expected_costs, mesh_and_interpolate, read_rocks
+from .stack_refusals import refused_stack
+from .work import Cancel, Progress, Work, native_module, run
+
+CELL_KINDS = ("columns", "blocks")
+_READ_SHARE = 0.08
+_MERGE_SHARE = 0.04
+
+
+def build(
+    project: Project,
+    cells: str = "columns",
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    *,
+    stage: int | None = None,
+) -> Model:
+    """Builds the model of a project.
+
+    cells: "columns", each under one facet of the surface above it, or "blocks", one for each connected
+    part of a block. threads: 0 for all that there are; the result is the same for any number.
+    stage: build only up to this surface (from 0) of each rock mass.
+    progress(fraction, text) and cancel() are called from this thread every 40 ms while another works;
+    the fraction never falls. cancel() returning True ends it with Cancelled.
+
+    Raises InputRefused (what, where, what to do), BuildFailed, UsageError, Cancelled.
+    """
+    if cells not in CELL_KINDS:
+        raise UsageError(f"cells must be 'columns' or 'blocks', not {cells!r}")
+    threads = check_threads(threads)
+    check_project(project)
+    if stage is not None:
+        _check_stage(project, stage)
+    native_module()
+    return run(lambda work: _build(work, project, cells, threads, stage), progress, cancel)
+
+
+def build_stage(
+    model: Model, m: int, progress: Progress | None = None, cancel: Cancel | None = None
+) -> Model:
+    """Model.stage."""
+    _check_stage(model.project, m)
+    inputs = [entry.stage(m) for entry in model.rock_inputs]
+    if all(
+        len(entry.surfaces) == len(whole.surfaces)
+        for entry, whole in zip(inputs, model.rock_inputs, strict=True)
+    ):
+        return model
+    project = model.project.stage(m)
+
+    def task(work: Work) -> Model:
+        built = _intersect(work, inputs, model.cell_kind, model.threads, 0.0)
+        timings = {"intersect": time.perf_counter() - began}
+        return _assemble(work, project, inputs, built, model.cell_kind, model.threads, timings)
+
+    began = time.perf_counter()
+    return run(task, progress, cancel)
+
+
+def _check_stage(project: Project, stage) -> None:
+    youngest = max(len(rock.surfaces) for rock in project.rocks) - 1
+    if isinstance(stage, bool) or not hasattr(stage, "__index__") or not 0 <= int(stage) <= youngest:
+        raise UsageError(f"there is no stage {stage}: stages go from 0 to {youngest}, the youngest surface")
+
+
+def _build(work: Work, project: Project, cells: str, threads: int, stage: int | None) -> Model:
+    timings = {"read": 0.0, "mesh": 0.0, "interpolate": 0.0, "intersect": 0.0}
+    began = time.perf_counter()
+    with work.phase(0.0, _READ_SHARE, "reading"):
+        inputs = read_rocks(work, project)
+    timings["read"] = time.perf_counter() - began
+    costs = expected_costs(inputs)
+    if stage is not None:
+        inputs = [entry.stage(stage) for entry in inputs]
+    scale = (1.0 - _READ_SHARE - _MERGE_SHARE) / sum(cost.total for cost in costs)
+    at = _READ_SHARE
+    for entry, cost in zip(inputs, costs, strict=True):
+        at = mesh_and_interpolate(work, entry, cost, at, scale, threads, timings)
+    began = time.perf_counter()
+    built = _intersect(work, inputs, cells, threads, at)
+    timings["intersect"] = time.perf_counter() - began
+    given = Project(project.name, [entry.rock for entry in inputs], project.library, project.path)
+    return _assemble(work, given, inputs, built, cells, threads, timings)
+
+
+def _intersect(work: Work, inputs, cells: str, threads: int, start: float) -> dict:
+    """The native result of all rock masses."""
+    native = native_module()
+    rocks = [
+        (
+            entry.surfaces,
+            entry.region,
+            entry.rock.base_elevation,
+            [surface.rule for surface in entry.rock.surfaces],
+        )
+        for entry in inputs
+    ]
+    with work.phase(start, 1.0 - _MERGE_SHARE, "intersecting and cutting"):
+        try:
+            return work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)
+        except native.InputError as error:
+            raise refused_stack(error, inputs) from error
+
+
+def _assemble(work: Work, project, inputs: list[RockInput], built: dict, cells, threads, timings) -> Model:
+    """The model that the native arrays are of."""
+    began = time.perf_counter()
+    with work.phase(1.0 - _MERGE_SHARE, 1.0, "putting the model together"):
+        arrays = _arrays(inputs, built)
+        component = cell_components(arrays["face_cells"], arrays["cell_block"], work.check)
+        work.step(0.8)
+        blocks = _blocks(inputs, built["volumes"], arrays["cell_block"], component)
+        names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
+        model = Model(
+            **arrays,
+            cell_kind=cells,
+            blocks=blocks,
+            surface_names=names,
+            project=project,
+            rock_inputs=inputs,
+            warnings=_warnings(inputs, built, blocks),
+            timings=timings,
+            threads=threads,
+        )
+        model.cell_component = component
+    timings["merge"] = time.perf_counter() - began
+    return model
+
+
+def _arrays(inputs: list[RockInput], built: dict) -> dict[str, np.ndarray]:
+    """The arrays that docs/geometry.md names; blocks are numbered without those that cannot exist."""
+    exists = [
+        number > 0 or _first_block(entry) == 0 for entry in inputs for number in range(len(entry.surfaces))
+    ]
+    block_of_surface = np.cumsum(exists, dtype=np.int32) - 1
+    names = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface")
+    arrays = {name: built[name] for name in names}
+    arrays["cell_block"] = block_of_surface[built["cell_block"]].astype(np.int32, copy=False)
+    surfaces = [surface for entry in inputs for surface in entry.surfaces]
+    arrays["surface_vertices"] = np.concatenate([vertices for vertices, _ in surfaces])
+    arrays["surface_triangles"] = np.concatenate([triangles for _, triangles in surfaces])
+    for name, column in (("surface_vertex_offsets", 0), ("surface_triangle_offsets", 1)):
+        arrays[name] = np.cumsum([0, *(len(surface[column]) for surface in surfaces)], dtype=np.int64)
+    return arrays
+
+
+def _first_block(entry: RockInput) -> int:
+    """The number of a rock mass's first block: 0 lies on the base elevation."""
+    return 0 if entry.rock.base_elevation is not None else 1
+
+
+def _blocks(inputs, volumes: np.ndarray, cell_block: np.ndarray, component: np.ndarray) -> list[Block]:
+    total = sum(len(entry.surfaces) - _first_block(entry) for entry in inputs)
+    cells, components = count_blocks(cell_block, component, total)
+    blocks, first_surface = [], 0
+    for number, entry in enumerate(inputs):
+        for k in range(_first_block(entry), len(entry.surfaces)):
+            surface = entry.rock.surfaces[k]
+            at = len(blocks)
+            blocks.append(
+                Block(
+                    name=surface.block_name if k else surface.block or "base block",
+                    rock=number,
+                    surface=first_surface + k,
+                    property=int(surface.property),
+                    volume=float(volumes[first_surface + k]),
+                    cells=int(cells[at]),
+                    components=int(components[at]),
+                )
+            )
+        first_surface += len(entry.surfaces)
+    return blocks
+
+
+def _warnings(inputs, built: dict, blocks: list[Block]) -> list[BuildWarning]:
+    warnings = [warning for entry in inputs for warning in entry.warnings]
+    owners = [(entry.rock.name, surface.name) for entry in inputs for surface in entry.rock.surfaces]
+    for kind, surface, items, text in built["warnings"]:
+        rock, named = owners[surface] if 0 <= surface < len(owners) else (None, None)
+        warnings.append(BuildWarning(text, kind, rock, named, tuple(int(i) for i in items)))
+    for number, entry in enumerate(inputs):
+        if len(entry.surfaces) == 1 and entry.rock.base_elevation is None:
+            text = "one surface alone bounds no block"
+        elif not any(block.cells for block in blocks if block.rock == number):
+            text = "no block is left: its surfaces (and region) share no place, or all was cut away"
+        else:
+            continue
+        warnings.append(BuildWarning(text, "no_block", entry.rock.name))
+    return warnings

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What can go wrong, as types. Every message is one line: where, what is wrong, what to do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_LONGEST = 500
+
+
+def _one_line(text: object) -> str:
+    return " ".join(str(text).split())
+
+
+def _shortened(text: str) -> str:
+    """What damaged files hold may be long: its beginning and its end say enough."""
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 100]} ... {text[-95:]}"
+
+
+class RealModelError(Exception):
+    """Base of every error that RealModel raises on purpose."""
+
+
+class InputRefused(RealModelError):
+    """The input cannot be built from.
+
+    what: what is wrong. file, line: where it stands (line counts from 1). item: the thing meant, such
+    as "rock 'base', surface 'S1'". advice: what to do about it. triangles: numbers of the triangles
+    at fault, from 0 in the order of the input. place: (x, y, z) or (x, y) in model units.
+    """
+
+    def __init__(
+        self,
+        what: str,
+        *,
+        file: str | Path | None = None,
+        line: int | None = None,
+        item: str | None = None,
+        advice: str | None = None,
+        triangles: tuple[int, ...] = (),
+        place: tuple[float, ...] | None = None,
+    ):
+        self.what = _shortened(_one_line(what))
+        self.file = None if file is None else Path(file)
+        self.line = line
+        self.item = item
+        self.advice = advice
+        self.triangles = tuple(triangles)
+        self.place = place
+        super().__init__(self._sentence())
+
+    def _sentence(self) -> str:
+        parts = []
+        if self.file is not None:
+            parts.append(f"{self.file}:{self.line}" if self.line is not None else str(self.file))
+        if self.item:
+            parts.append(self.item)
+        text = ": ".join([*parts, self.what])
+        return _one_line(f"{text}; {self.advice}" if self.advice else text)
+
+    def within(self, item: str, *, file: str | Path | None = None, line: int | None = None) -> InputRefused:
+        """The same refusal, said of `item`; a file and line already known are kept."""
+        known = self.file is not None
+        return type(self)(
+            self.what,
+            file=self.file if known else file,
+            line=self.line if known else line,
+            item=item if self.item is None else f"{item}, {self.item}",
+            advice=self.advice,
+            triangles=self.triangles,
+            place=self.place,
+        )
+
+
+class OutputFailed(RealModelError):
+    """A result could not be written: no folder, no right to write, disk full."""
+
+
+class BuildFailed(RealModelError):
+    """The build itself failed: not enough memory, the native module missing, or a defect."""
+
+
+class Cancelled(RealModelError):
+    """The caller's cancel() said yes."""
+
+
+class UsageError(RealModelError):
+    """A function or the command line was called with something that it does not know."""
+
+
+def number_list(numbers, most: int = 6) -> str:
+    """'3', '3 and 5', '3, 5 and 8', or the first few and how many more."""
+    numbers = [str(n) for n in numbers]
+    if len(numbers) > most:
+        return f"{', '.join(numbers[:most])} and {len(numbers) - most} more"
+    if len(numbers) < 2:
+        return "".join(numbers)
+    return f"{', '.join(numbers[:-1])} and {numbers[-1]}"
+
+
+def place_text(place) -> str:
+    """A point in model units, with as many digits as it takes to find it."""
+    return "(" + ", ".join(f"{value:.9g}" for value in place) + ")"

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What was built, as JSON: for programs that read on, and for the reviewer of a model."""
+
+from __future__ import annotations
+
+import json
+import platform
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from ..rock_input import used_vertices
+from ..work import native_module
+
+SCHEMA = 1
+
+
+def model_report(model, stage: int | None = None) -> dict:
+    """The report's content. Volumes are in model units cubed, times in seconds, memory in bytes."""
+    total = model.volume
+    library = model.project.library
+    return {
+        "schema": SCHEMA,
+        "project": {
+            "name": model.project.name,
+            "file": str(model.project.path) if model.project.path else None,
+            "library": str(library.path) if library and library.path else None,
+            "stage": stage,
+        },
+        "counts": {
+            "rocks": len(model.project.rocks),
+            "surfaces": len(model.surface_names),
+            "surface_triangles": len(model.surface_triangles),
+            "blocks": len(model.blocks),
+            "blocks_present": sum(block.cells > 0 for block in model.blocks),
+            "vertices": len(model.vertices),
+            "faces": len(model.face_cells),
+            "cells": len(model.cell_block),
+        },
+        "cell_kind": model.cell_kind,
+        "volume": total,
+        "blocks": [_block(model, number, total) for number in range(len(model.blocks))],
+        "surfaces": _surfaces(model),
+        "warnings": [
+            {"kind": w.kind, "rock": w.rock, "surface": w.surface, "items": list(w.items), "text": w.text}
+            for w in model.warnings
+        ],
+        "timings": model.timings,
+        "threads": model.threads,
+        "peak_memory": _peak_memory(),
+        "versions": versions(),
+    }
+
+
+def _block(model, number: int, total: float) -> dict:
+    block = model.blocks[number]
+    entry = model.project.library.get(block.property) if model.project.library else None
+    return {
+        "name": block.name,
+        "rock": model.project.rocks[block.rock].name,
+        "surface": model.surface_names[block.surface],
+        "property": block.property,
+        "property_name": entry.name if entry else None,
+        "volume": block.volume,
+        "share": block.volume / total if total else 0.0,
+        "cells": block.cells,
+        "components": block.components,
+    }
+
+
+def _surfaces(model) -> list[dict]:
+    entries = []
+    for rock in model.project.rocks:
+        for surface in rock.surfaces:
+            number = len(entries)
+            vertices, triangles = model.surface(number)
+            heights = vertices[used_vertices(vertices, triangles), 2]
+            result = model.interpolations[number]
+            entries.append(
+                {
+                    "name": surface.name,
+                    "rock": rock.name,
+                    "rule": surface.rule,
+                    "triangles": len(triangles),
+                    "lowest": float(heights.min()),
+                    "highest": float(heights.max()),
+                    "points": len(surface.points) if surface.interpolated else None,
+                    "method": result.method if result else None,
+                    "variogram": result.variogram.settings() if result and result.variogram else None,
+                    "variogram_fitted": result.variogram.fitted if result and result.variogram else None,
+                }
+            )
+    return entries
+
+
+def versions() -> dict[str, str]:
+    """Of all that had a part in the result."""
+    found = {
+        "realmodel": native_module().VERSION,
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "system": platform.platform(),
+    }
+    if "bpy" in sys.modules:
+        found["blender"] = sys.modules["bpy"].app.version_string
+    return found
+
+
+def _peak_memory() -> int | None:
+    try:
+        import resource
+    except ImportError:  # not there on Windows
+        return None
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else 1024 * peak
+
+
+def write_report(model, path: str | Path, file, stage: int | None = None) -> None:
+    """Writes the report as UTF-8 JSON to an open binary file."""
+    text = json.dumps(model_report(model, stage), indent=2, ensure_ascii=False, allow_nan=False)
+    file.write(f"{text}\n".encode())

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""VTK unstructured grid (.vtu) of polyhedral cells, binary, for ParaView, PyVista and meshio.
+
+Format: "VTK File Formats", XML, type UnstructuredGrid; polyhedra as `faces` (for each cell: number of
+faces, then for each face its number of corners and the corners) and `faceoffsets` (end of each cell).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import BinaryIO
+
+import numpy as np
+
+_POLYHEDRON = 42
+_CELLS_AT_ONCE = 100_000
+
+
+def write_vtu(model, file: BinaryIO, step: Callable[[float], None]) -> None:
+    """Writes every cell as a polyhedron, with the cell arrays `block` (number in the model's list) and
+    `property` (library id, 0: none). Faces turn counter-clockwise seen from outside their cell."""
+    cells = CellFaces(model)
+    count = len(model.cell_block)
+    block_property = np.array([block.property for block in model.blocks], np.int32)
+    streams = cells.stream_length()
+    parts = [  # name, type, components, bytes; connectivity is last: its length is found on the way
+        ("Points", "Float64", 3, model.vertices.nbytes),
+        ("block", "Int32", 1, 4 * count),
+        ("property", "Int32", 1, 4 * count),
+        ("types", "UInt8", 1, count),
+        ("faceoffsets", "Int64", 1, 8 * count),
+        ("faces", "Int64", 1, 8 * int(streams.sum())),
+        ("offsets", "Int64", 1, 8 * count),
+        ("connectivity", "Int64", 1, None),
+    ]
+    file.write(_header(len(model.vertices), count, parts).encode("ascii"))
+    _array(file, np.ascontiguousarray(model.vertices, "<f8"))
+    _array(file, model.cell_block.astype("<i4"))
+    _array(file, block_property[model.cell_block].astype("<i4") if count else np.empty(0, "<i4"))
+    _array(file, np.full(count, _POLYHEDRON, np.uint8))
+    _array(file, np.cumsum(streams).astype("<i8"))
+    faces_at = file.tell()
+    offsets_at = faces_at + 8 + 8 * int(streams.sum())
+    corners_at = offsets_at + 8 + 8 * count
+    file.write(_length(8 * int(streams.sum())))
+    faces_at, next_corners_at = faces_at + 8, corners_at + 8
+    corners = np.zeros(count, np.int64)
+    for start in range(0, count, _CELLS_AT_ONCE):
+        end = min(count, start + _CELLS_AT_ONCE)
+        stream, vertices, corners[start:end] = cells.described(start, end)
+        file.seek(faces_at)
+        file.write(stream.astype("<i8", copy=False))
+        file.seek(next_corners_at)
+        file.write(vertices.astype("<i8", copy=False))
+        faces_at, next_corners_at = faces_at + stream.nbytes, next_corners_at + vertices.nbytes
+        step(end / count)
+    file.seek(offsets_at)
+    _array(file, np.cumsum(corners).astype("<i8"))
+    file.write(_length(8 * int(corners.sum())))
+    file.seek(next_corners_at)
+    file.write(b"\n</AppendedData>\n</VTKFile>\n")
+    step(1.0)
+
+
+def _length(size: int) -> bytes:
+    return np.array([size], "<u8").tobytes()
+
+
+def _array(file: BinaryIO, array: np.ndarray) -> None:
+    file.write(_length(array.nbytes))
+    file.write(np.ascontiguousarray(array))
+
+
+def _header(points: int, cells: int, parts) -> str:
+    tags, at = {}, 0
+    for name, kind, components, size in parts:
+        width = f' NumberOfComponents="{components}"' if components > 1 else ""
+        tags[name] = f'<DataArray type="{kind}" Name="{name}"{width} format="appended" offset="{at}"/>'
+        at += 8 + (size or 0)
+    in_cells = "\n".join(tags[name] for name in ("connectivity", "offsets", "types", "faces", "faceoffsets"))
+    return f"""<?xml version="1.0"?>
+<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+<UnstructuredGrid>
+<Piece NumberOfPoints="{points}" NumberOfCells="{cells}">
+<Points>
+{tags["Points"]}
+</Points>
+<Cells>
+{in_cells}
+</Cells>
+<CellData Scalars="block">
+{tags["block"]}
+{tags["property"]}
+</CellData>
+</Piece>
+</UnstructuredGrid>
+<AppendedData encoding="raw">
+_"""
+
+
+class CellFaces:
+    """The faces of each cell, from the two cells of each face."""
+
+    def __init__(self, model):
+        self.model = model
+        self.face_size = np.diff(model.face_offsets)
+        cell = np.concatenate([model.face_cells[:, 0], model.face_cells[:, 1]])
+        order = np.argsort(cell, kind="stable")
+        order = order[np.searchsorted(cell, 0, sorter=order) :]
+        count = len(model.face_cells)
+        self.face = order % max(count, 1)
+        self.turned = order >= count
+        self.begin = np.searchsorted(cell[order], np.arange(len(model.cell_block) + 1))
+
+    def stream_length(self) -> np.ndarray:
+        """(C,) how many numbers describe the faces of each cell."""
+        ends = np.concatenate([[0], np.cumsum(self.face_size[self.face] + 1)])
+        return ends[self.begin[1:]] - ends[self.begin[:-1]] + 1
+
+    def _sides(self, start: int, end: int):
+        """Of the cells start..end: their sides' cells (from 0), sizes, and corners side after side."""
+        side = slice(self.begin[start], self.begin[end])
+        face = self.face[side]
+        size = self.face_size[face]
+        cell = np.repeat(np.arange(end - start), np.diff(self.begin[start : end + 1]))
+        owner = np.repeat(np.arange(len(face)), size)
+        rank = np.arange(len(owner)) - np.repeat(np.cumsum(size) - size, size)
+        rank = np.where(self.turned[side][owner], size[owner] - 1 - rank, rank)
+        corners = self.model.face_vertices[self.model.face_offsets[face][owner] + rank]
+        return cell, size, owner, corners
+
+    def described(self, start: int, end: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of the cells start..end: int64 for each its number of faces, and each face's number of corners and
+        corners; the vertices of each, every one once and in order; and how many these are (a cell)."""
+        cell, size, owner, corners = self._sides(start, end)
+        width = len(self.model.vertices)
+        key = np.sort(cell[owner].astype(np.int64) * width + corners)
+        key = key[np.append(True, key[1:] != key[:-1])] if len(key) else key
+        return (
+            self._stream(start, end, cell, size, owner, corners),
+            key % width,
+            np.bincount(key // width, minlength=end - start),
+        )
+
+    def _stream(self, start: int, end: int, cell, size, owner, corners) -> np.ndarray:
+        faces = np.diff(self.begin[start : end + 1])
+        stream = np.empty(len(corners) + len(size) + len(faces), np.int64)
+        # every side is preceded by all corners and sizes before it, and by the counts of cells up to its own
+        at_side = np.cumsum(size) - size + np.arange(len(size)) + cell + 1
+        first = self.begin[start:end] - self.begin[start]
+        stream[at_side[first] - 1] = faces
+        stream[at_side] = size
+        stream[np.arange(len(corners)) + owner + cell[owner] + 2] = corners
+        return stream

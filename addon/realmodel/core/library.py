@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The library: what a block is made of."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+
+from .errors import InputRefused
+from .toml_table import Table, TomlDocument
+
+_COLOR = re.compile(r"#[0-9a-fA-F]{6}")
+
+
+@dataclass(frozen=True)
+class Property:
+    """One entry: `id` unique, `color` "#rrggbb" (sRGB), `density` in the user's units."""
+
+    id: int
+    name: str
+    rock: str | None = None
+    age: str | None = None
+    structure: str | None = None
+    color: str | None = None
+    density: float | None = None
+    description: str | None = None
+
+    @property
+    def rgb(self) -> tuple[float, float, float] | None:
+        """Red, green, blue from 0 to 1, sRGB encoded; None without a colour."""
+        if self.color is None:
+            return None
+        return tuple(int(self.color[i : i + 2], 16) / 255.0 for i in (1, 3, 5))
+
+
+@dataclass
+class Library:
+    """Properties by id. `path` is the file it was read from."""
+
+    properties: list[Property] = field(default_factory=list)
+    path: Path | None = None
+
+    def __post_init__(self):
+        self.properties = list(self.properties)
+        seen: set[int] = set()
+        for entry in self.properties:
+            _check_property(entry, seen)
+            seen.add(entry.id)
+
+    def __contains__(self, number: int) -> bool:
+        return any(entry.id == number for entry in self.properties)
+
+    def __iter__(self) -> Iterator[Property]:
+        return iter(self.properties)
+
+    def __len__(self) -> int:
+        return len(self.properties)
+
+    def get(self, number: int) -> Property | None:
+        """The property of this id, or None."""
+        return next((entry for entry in self.properties if entry.id == number), None)
+
+
+def _check_property(entry: Property, seen: set[int]) -> None:
+    item = f"property {entry.id!r}"
+    if isinstance(entry.id, bool) or not isinstance(entry.id, int) or not -(2**31) <= entry.id < 2**31:
+        raise InputRefused("an id must be a whole number of 32 bits", item=item)
+    if entry.id in seen:
+        raise InputRefused("the id is taken by another property", item=item, advice="give each its own id")
+    if not isinstance(entry.name, str) or not entry.name.strip():
+        raise InputRefused("it has no name", item=item)
+    if entry.color is not None and not _COLOR.fullmatch(entry.color):
+        raise InputRefused(
+            f"color '{entry.color}' is not a colour", item=item, advice='write it as "#rrggbb"'
+        )
+    if entry.density is not None and not entry.density > 0:
+        raise InputRefused(f"density must be above 0, not {entry.density:g}", item=item)
+
+
+def load_library(path: str | Path) -> Library:
+    """Reads a library file. Raises InputRefused with the line of what is wrong."""
+    document = TomlDocument(Path(path))
+    top = Table(document, document.content, (), "")
+    top.allow_only(("property",))
+    properties: list[Property] = []
+    seen: set[int] = set()
+    for table in top.tables("property", "property"):
+        entry = _read_property(table)
+        try:
+            _check_property(entry, seen)
+        except InputRefused as error:
+            key = "color" if "colour" in error.what else "density" if "density" in error.what else "id"
+            raise table.refuse(error.what, key, error.advice) from error
+        seen.add(entry.id)
+        properties.append(entry)
+    return Library(properties, Path(path))
+
+
+def _read_property(table: Table) -> Property:
+    table.allow_only([entry.name for entry in fields(Property)])
+    values = {"id": table.integer("id", required=True), "name": table.text("name", required=True)}
+    for key in ("rock", "age", "structure", "color", "description"):
+        if key in table:
+            values[key] = _loose_text(table, key)
+    if "density" in table:
+        values["density"] = table.number("density")
+    return Property(**values)
+
+
+def _loose_text(table: Table, key: str) -> str | None:
+    """Text that may be empty (no statement) or span lines, as descriptions do."""
+    value = table.content[key]
+    if isinstance(value, str) and key != "color":
+        return value or None
+    return table.text(key)

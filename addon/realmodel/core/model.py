@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The built model: blocks of polyhedral cells that share faces, as flat arrays (docs/geometry.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from .build_warning import BuildWarning
+from .components import connected_parts
+from .interpolation import Interpolation
+from .project import Project
+from .rock_input import RockInput
+from .work import Cancel, Progress
+
+
+@dataclass(frozen=True)
+class Block:
+    """One layer's block. `rock` is the index of its rock mass, `surface` the global index of the surface
+    that it was deposited beneath (block 0: of the oldest surface), `property` the library id (0: none).
+    volume is in model units cubed; cells counts its cells, components its connected parts."""
+
+    name: str
+    rock: int
+    surface: int
+    property: int
+    volume: float
+    cells: int
+    components: int
+
+
+@dataclass(frozen=True)
+class BlockBoundary:
+    """The closed boundary of a block: faces counter-clockwise seen from outside the block.
+
+    vertices (V, 3) float64, face_offsets (F+1,) int64, face_vertices int32 into `vertices`,
+    face_surface (F,) int32 as in the model, faces (F,) int64 the model's numbers of these faces.
+    """
+
+    vertices: np.ndarray
+    face_offsets: np.ndarray
+    face_vertices: np.ndarray
+    face_surface: np.ndarray
+    faces: np.ndarray
+
+
+@dataclass(eq=False)
+class Model:
+    """A built model. The arrays are those of docs/geometry.md, under the same names.
+
+    `cell_kind` is "columns" or "blocks". `surface_names` go with the global indices of the surfaces.
+    `project` holds the arrays that the model was built from, so that nothing is read again.
+    `rock_inputs` are what the stack builder took, by rock mass. `timings` are seconds by phase.
+    """
+
+    vertices: np.ndarray
+    face_offsets: np.ndarray
+    face_vertices: np.ndarray
+    face_cells: np.ndarray
+    face_surface: np.ndarray
+    cell_block: np.ndarray
+    cell_kind: str
+    blocks: list[Block]
+    surface_vertices: np.ndarray
+    surface_triangles: np.ndarray
+    surface_vertex_offsets: np.ndarray
+    surface_triangle_offsets: np.ndarray
+    surface_names: list[str]
+    project: Project
+    rock_inputs: list[RockInput] = field(default_factory=list, repr=False)
+    warnings: list[BuildWarning] = field(default_factory=list)
+    timings: dict[str, float] = field(default_factory=dict)
+    threads: int = 0
+
+    @property
+    def volume(self) -> float:
+        """The volume of all blocks, model units cubed."""
+        return float(sum(block.volume for block in self.blocks))
+
+    @property
+    def interpolations(self) -> list[Interpolation | None]:
+        """By global surface index what interpolating it gave; None for ready meshes."""
+        return [result for entry in self.rock_inputs for result in entry.interpolations]
+
+    def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
+        """Vertices (V, 3) and triangles (T, 3) of one input surface by its global index."""
+        v, t = self.surface_vertex_offsets, self.surface_triangle_offsets
+        return (
+            self.surface_vertices[v[number] : v[number + 1]],
+            self.surface_triangles[t[number] : t[number + 1]],
+        )
+
+    def save(self, path: str | Path) -> None:
+        """Writes the model to a file, by its ending (.npz, .vtu). It appears whole or not at all.
+
+        Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
+        """
+        from .exporters import save_model
+
+        save_model(self, path)
+
+    def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
+        """The model as it was just after surface m (from 0) of each rock mass. Raises UsageError where no
+        rock mass has a surface m. It is built anew from the surfaces up to m."""
+        from .build import build_stage
+
+        return build_stage(self, m, progress, cancel)
+
+    @cached_property
+    def face_blocks(self) -> np.ndarray:
+        """(F, 2) int32: the block on each side of a face; -1 outside."""
+        padded = np.append(self.cell_block, np.int32(-1))
+        return padded[self.face_cells]
+
+    def block_boundary(self, block: int) -> BlockBoundary:
+        """The closed boundary of one block, all its connected parts together."""
+        first, second = self.face_blocks[:, 0] == block, self.face_blocks[:, 1] == block
+        faces = np.flatnonzero(first != second)
+        turned = second[faces]
+        size = np.diff(self.face_offsets)[faces]
+        offsets = np.concatenate([[0], np.cumsum(size)]).astype(np.int64)
+        owner = np.repeat(np.arange(len(faces)), size)
+        rank = np.arange(len(owner)) - offsets[owner]
+        rank = np.where(turned[owner], size[owner] - 1 - rank, rank)
+        corners = self.face_vertices[self.face_offsets[faces][owner] + rank]
+        used = np.zeros(len(self.vertices), bool)
+        used[corners] = True
+        number = np.cumsum(used, dtype=np.int64) - 1
+        return BlockBoundary(
+            np.ascontiguousarray(self.vertices[used]),
+            offsets,
+            number[corners].astype(np.int32),
+            self.face_surface[faces],
+            faces,
+        )
+
+    @cached_property
+    def cell_component(self) -> np.ndarray:
+        """(C,) int64: the least cell of the connected part of a block that each cell belongs to."""
+        return cell_components(self.face_cells, self.cell_block)
+
+
+def cell_components(
+    face_cells: np.ndarray, cell_block: np.ndarray, check: Callable[[], None] | None = None
+) -> np.ndarray:
+    """(C,) int64: for each cell the least cell that it reaches through faces within its own block."""
+    inner = face_cells[face_cells[:, 1] >= 0]
+    same = cell_block[inner[:, 0]] == cell_block[inner[:, 1]]
+    return connected_parts(len(cell_block), inner[same], check)
+
+
+def count_blocks(cell_block: np.ndarray, component: np.ndarray, blocks: int) -> tuple[Sequence, Sequence]:
+    """Cells and connected parts of each block."""
+    cells = np.bincount(cell_block, minlength=blocks)
+    roots = component == np.arange(len(component))
+    return cells, np.bincount(cell_block[roots], minlength=blocks)

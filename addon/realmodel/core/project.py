@@ -1,0 +1,310 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A project: rock masses with their surfaces, oldest first, from files or from arrays, and its checks."""
+
+from __future__ import annotations
+
+import builtins
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from .errors import InputRefused
+from .finite import is_finite
+from .library import Library
+from .methods import DEFAULT_METHOD, OptionRefused, check_method, checked_options
+from .toml_table import TomlDocument
+
+RULES = ("erosional", "conformable", "base", "discontinuous")
+MESHERS = ("delaunay", "frontal")
+MESHERS_HERE = ("delaunay",)
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where in a project file a rock mass or a surface is written."""
+
+    document: TomlDocument
+    path: tuple
+
+    def line(self, key: str | None = None) -> int | None:
+        """The line of one key ("variogram.range" for a part of one), or of the whole table."""
+        return self.document.line(self.path if key is None else (*self.path, *key.split(".")))
+
+
+@dataclass
+class Surface:
+    """One bounding surface of the layers.
+
+    Its shape is a ready triangulation - `vertices` (V, 3) float64 in model units with `triangles`
+    (T, 3) of vertex numbers, or the file `mesh` - or scattered `points`, (P, 3) or a file, which are
+    interpolated on the planar mesh of the rock's region by `method` with its `options`.
+    `property` is the library id of the block deposited beneath it (0: none), `block` that block's name.
+    `shape_file` is the file that the arrays were read from, if any: messages name it.
+    """
+
+    name: str
+    vertices: np.ndarray | None = None
+    triangles: np.ndarray | None = None
+    points: np.ndarray | str | Path | None = None
+    method: str | None = None
+    options: dict = field(default_factory=dict)
+    rule: str = "erosional"
+    property: int = 0
+    block: str | None = None
+    mesh: str | Path | None = None
+    shape_file: Path | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False)
+
+    @builtins.property  # a field of this class is called property
+    def interpolated(self) -> bool:
+        return self.points is not None
+
+    @builtins.property  # a field of this class is called property
+    def block_name(self) -> str:
+        return self.block or f"{self.name} block"
+
+    @builtins.property  # a field of this class is called property
+    def input_file(self) -> Path | None:
+        """The file that gives this surface its shape; None where arrays do."""
+        shape = self.points if self.interpolated else self.mesh
+        return Path(shape) if isinstance(shape, (str, Path)) else None
+
+    def shape_source(self) -> tuple[Path | None, int | None]:
+        """Where the shape comes from, for messages: its file, or its line in the project file."""
+        if self.shape_file is not None:
+            return self.shape_file, None
+        if self.source is not None:
+            return self.source.document.file, self.source.line()
+        return None, None
+
+    def method_options(self) -> tuple[str, dict]:
+        """The method and its complete options. Raises OptionRefused."""
+        method = self.method or DEFAULT_METHOD
+        return method, checked_options(method, self.options)
+
+
+@dataclass
+class Rock:
+    """A rock mass: a region in plan, and surfaces oldest first.
+
+    `region` is an outline (N, 2) or a GeoJSON file, `holes` are outlines inside it; the rings count
+    even-odd. `edge_length` (model units) is that of the planar mesh on which points are interpolated.
+    With `base_elevation` there is a block between this height and the oldest surface.
+    `shape_file` is the file that the rings were read from, if any: messages name it.
+    """
+
+    name: str
+    surfaces: list[Surface]
+    region: np.ndarray | str | Path | None = None
+    holes: Sequence = ()
+    edge_length: float | None = None
+    mesher: str = "delaunay"
+    base_elevation: float | None = None
+    shape_file: Path | None = field(default=None, repr=False, compare=False)
+    source: Source | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def region_file(self) -> Path | None:
+        return Path(self.region) if isinstance(self.region, (str, Path)) else None
+
+    def region_source(self) -> tuple[Path | None, int | None]:
+        """Where the region comes from, for messages: its file, or its line in the project file."""
+        if self.shape_file is not None:
+            return self.shape_file, None
+        if self.source is not None:
+            return self.source.document.file, self.source.line("region")
+        return None, None
+
+    def edge_length_source(self) -> tuple[Path | None, int | None]:
+        """Where the edge length is written, for messages."""
+        if self.source is not None:
+            return self.source.document.file, self.source.line("edge_length")
+        return None, None
+
+    @property
+    def interpolates(self) -> bool:
+        return any(surface.interpolated for surface in self.surfaces)
+
+
+@dataclass
+class Project:
+    """Rock masses that make one model, and the library of their properties."""
+
+    name: str
+    rocks: list[Rock]
+    library: Library | None = None
+    path: Path | None = None
+
+    def input_files(self) -> list[Path]:
+        """Every file that this project reads, itself included."""
+        files = [self.path, self.library.path if self.library else None]
+        for rock in self.rocks:
+            files += [rock.region_file, *(surface.input_file for surface in rock.surfaces)]
+        return [Path(file) for file in files if file is not None]
+
+    def stage(self, m: int) -> Project:
+        """This project as it was just after surface m of each rock mass: only the surfaces up to it."""
+        rocks = [Rock(**{**vars(rock), "surfaces": rock.surfaces[: m + 1]}) for rock in self.rocks]
+        return Project(self.name, rocks, self.library, self.path)
+
+
+def rock_item(rock: Rock) -> str:
+    return f"rock '{rock.name}'"
+
+
+def surface_item(rock: Rock, surface: Surface) -> str:
+    return f"rock '{rock.name}', surface '{surface.name}'"
+
+
+def is_file(path: Path) -> bool:
+    """Whether a path leads to a file; no for one that cannot be a path at all."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def check_project(project: Project) -> None:
+    """Refuses a project that cannot be built, before anything is read. Raises InputRefused."""
+    if not _is_name(project.name):
+        raise InputRefused("a project needs a name", file=project.path)
+    if not project.rocks:
+        raise InputRefused("there is no rock mass", file=project.path, item=f"project '{project.name}'")
+    seen: set[str] = set()
+    for rock in project.rocks:
+        if not _is_name(rock.name):
+            raise _refuse(rock.source, "a rock mass", "it has no name", "name")
+        if rock.name in seen:
+            advice = "give each rock mass its own name"
+            raise _refuse(
+                rock.source, rock_item(rock), "the name is taken by another rock mass", "name", advice
+            )
+        seen.add(rock.name)
+        _check_rock(project, rock)
+
+
+def _is_name(name) -> bool:
+    return isinstance(name, str) and bool(name.strip()) and not any(ord(c) < 32 for c in name)
+
+
+def _refuse(
+    source: Source | None, item: str, what: str, key: str | None = None, advice: str | None = None
+) -> InputRefused:
+    file = source.document.file if source else None
+    return InputRefused(what, file=file, line=source.line(key) if source else None, item=item, advice=advice)
+
+
+def _check_rock(project: Project, rock: Rock) -> None:
+    def refuse(what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
+        return _refuse(rock.source, rock_item(rock), what, key, advice)
+
+    if not rock.surfaces:
+        raise refuse("it has no surface", advice="a block needs two surfaces, or one and a base_elevation")
+    if rock.mesher not in MESHERS_HERE:
+        later = rock.mesher in MESHERS
+        what = (
+            f"mesher '{rock.mesher}' comes with a later version"
+            if later
+            else f"unknown mesher '{rock.mesher}'"
+        )
+        raise refuse(what, "mesher", "use 'delaunay'")
+    if rock.edge_length is not None and not (_is_number(rock.edge_length) and rock.edge_length > 0):
+        raise refuse(f"edge_length must be a number above 0, not {rock.edge_length!r}", "edge_length")
+    if rock.base_elevation is not None and not _is_number(rock.base_elevation):
+        raise refuse(f"base_elevation must be a finite number, not {rock.base_elevation!r}", "base_elevation")
+    if rock.region is None and len(rock.holes):
+        raise refuse("it has holes but no region", "holes", "add the outline as region")
+    if rock.region_file is not None and len(rock.holes):
+        raise refuse(
+            "holes go with an outline of coordinates", "holes", "put the holes into the region's file"
+        )
+    if rock.region_file is not None and not is_file(rock.region_file):
+        raise refuse(f"there is no file {rock.region_file}", "region", "check the path")
+    names: set[str] = set()
+    for surface in rock.surfaces:
+        _check_surface(project, rock, surface)
+        if surface.name in names:
+            raise _refuse(
+                surface.source,
+                surface_item(rock, surface),
+                "the name is taken by another surface",
+                "name",
+                "give each surface of a rock mass its own name",
+            )
+        names.add(surface.name)
+
+
+def _is_number(value) -> bool:
+    if isinstance(value, bool):
+        return False
+    return isinstance(value, (int, float, np.integer, np.floating)) and is_finite(value)
+
+
+def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
+    if not _is_name(surface.name):
+        raise _refuse(surface.source, rock_item(rock), "a surface has no name", "name")
+    item = surface_item(rock, surface)
+
+    def refuse(what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
+        return _refuse(surface.source, item, what, key, advice)
+
+    _check_shape(rock, surface, refuse)
+    if surface.rule not in RULES:
+        raise refuse(f"unknown rule {surface.rule!r}", "rule", f"use one of {', '.join(RULES)}")
+    if surface.block is not None and not _is_name(surface.block):
+        raise refuse("'block' must be a name", "block")
+    _check_property(project.library, surface, refuse)
+
+
+def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
+    arrays = surface.vertices is not None or surface.triangles is not None
+    shapes = [
+        name
+        for name, given in (
+            ("points", surface.points is not None),
+            ("mesh", surface.mesh is not None),
+            ("vertices", arrays),
+        )
+        if given
+    ]
+    if not shapes:
+        raise refuse("it has neither points nor a mesh", advice="add points = ... or mesh = ...")
+    if len(shapes) > 1:
+        raise refuse(f"it has both {shapes[0]} and {shapes[1]}", shapes[1], "keep one of them")
+    if arrays and (surface.vertices is None or surface.triangles is None):
+        raise refuse("it needs vertices and triangles together")
+    file = surface.input_file
+    if file is not None and not is_file(file):
+        raise refuse(f"there is no file {file}", shapes[0], "check the path")
+    if not surface.interpolated:
+        given = [*(["method"] if surface.method is not None else []), *surface.options]
+        if given:
+            raise refuse(f"a ready mesh is not interpolated, so '{given[0]}' has no meaning here", given[0])
+        return
+    try:
+        check_method(surface.method or DEFAULT_METHOD)
+        surface.method_options()
+    except OptionRefused as error:
+        raise refuse(error.what, error.option, error.advice) from error
+    for key, value in (("region", rock.region), ("edge_length", rock.edge_length)):
+        if value is None:
+            raise refuse(
+                f"its points cannot be interpolated: {rock_item(rock)} has no {key}",
+                "points",
+                f"give the rock mass {'an' if key == 'edge_length' else 'a'} {key}",
+            )
+
+
+def _check_property(library: Library | None, surface: Surface, refuse) -> None:
+    number = surface.property
+    if (
+        isinstance(number, bool)
+        or not isinstance(number, (int, np.integer))
+        or not -(2**31) <= number < 2**31
+    ):
+        raise refuse(f"'property' must be a whole number, not {number!r}", "property")
+    if number and library is not None and number not in library:
+        known = ", ".join(str(entry.id) for entry in library.properties)
+        raise refuse(f"the library has no property {number}", "property", f"it has {known}")

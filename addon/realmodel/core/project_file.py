@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The project file (TOML, format 1): read strictly, paths relative to the file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from .finite import is_finite
+from .library import load_library
+from .methods import ALL_OPTIONS
+from .project import Project, Rock, Source, Surface, check_project, is_file
+from .toml_table import Table, TomlDocument
+
+FORMAT = 1
+_PROJECT_KEYS = ("format", "name", "library", "rock")
+_ROCK_KEYS = ("name", "region", "holes", "edge_length", "mesher", "base_elevation", "surface")
+_SURFACE_KEYS = ("name", "points", "mesh", "method", *ALL_OPTIONS, "rule", "property", "block")
+
+
+def load_project(path: str | Path) -> Project:
+    """The project of a file. Raises InputRefused, naming the line, for anything that is not as it must be.
+
+    The files that it names have to exist; they are read when the model is built.
+    """
+    path = Path(path)
+    document = TomlDocument(path)
+    top = Table(document, document.content, (), "")
+    version = top.integer("format", required=True)
+    if version != FORMAT:
+        raise top.refuse(f"format {version} is not known", "format", f"this version reads format {FORMAT}")
+    top.allow_only(_PROJECT_KEYS)
+    name = top.text("name", required=True)
+    library = None
+    if (library_file := top.text("library")) is not None:
+        library_path = path.parent / library_file
+        if not is_file(library_path):
+            raise top.refuse(f"there is no file {library_path}", "library", "check the path")
+        library = load_library(library_path)
+    rocks = [_read_rock(table, path.parent) for table in top.tables("rock", "rock")]
+    project = Project(name, rocks, library, path)
+    check_project(project)
+    return project
+
+
+def _read_rock(table: Table, folder: Path) -> Rock:
+    name = table.text("name", required=True)
+    table.item = f"rock '{name}'"
+    table.allow_only(_ROCK_KEYS)
+    region, holes = _read_region(table, folder)
+    return Rock(
+        name=name,
+        surfaces=[_read_surface(entry, folder) for entry in table.tables("surface", "surface")],
+        region=region,
+        holes=holes,
+        edge_length=table.number("edge_length"),
+        mesher=table.text("mesher") or "delaunay",
+        base_elevation=table.number("base_elevation"),
+        source=Source(table.document, table.path),
+    )
+
+
+def _read_region(table: Table, folder: Path):
+    region = table.content.get("region")
+    if region is not None and not isinstance(region, list):
+        region = folder / table.text("region")
+    elif region is not None:
+        region = _read_ring(table, region, ("region",))
+    holes = table.content.get("holes", [])
+    if not isinstance(holes, list):
+        raise table.refuse("'holes' must be a list of outlines", "holes", "write [[[x, y], ...], ...]")
+    return region, [_read_ring(table, ring, ("holes", number)) for number, ring in enumerate(holes)]
+
+
+def _read_ring(table: Table, ring, path: tuple) -> np.ndarray:
+    """One outline of coordinates, refused with the line of the corner that is not two numbers."""
+
+    def refuse(what: str, *corner: int):
+        where = Table(table.document, {}, (*table.path, *path, *corner), table.item)
+        return where.refuse(what, advice="write an outline as [[x, y], [x, y], [x, y], ...]")
+
+    if not isinstance(ring, list):
+        raise refuse(f"{path[0]}: an outline must be a list of corners")
+    for number, corner in enumerate(ring):
+        is_pair = isinstance(corner, list) and len(corner) == 2
+        if not is_pair or not all(_is_coordinate(c) for c in corner):
+            raise refuse(f"{path[0]}: a corner must be two finite numbers, not {corner!r}", number)
+    return np.array(ring, np.float64).reshape(-1, 2)
+
+
+def _is_coordinate(value) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and is_finite(value)
+
+
+def _read_surface(table: Table, folder: Path) -> Surface:
+    name = table.text("name", required=True)
+    table.item = f"{table.item.rpartition(', ')[0]}, surface '{name}'"
+    table.allow_only(_SURFACE_KEYS)
+    files = {key: folder / table.text(key) for key in ("points", "mesh") if key in table}
+    property_id = table.integer("property")
+    options = {key: table.content[key] for key in ALL_OPTIONS if key in table}
+    return Surface(
+        name=name,
+        method=table.text("method"),
+        options=options,
+        rule=table.text("rule") or "erosional",
+        property=0 if property_id is None else property_id,
+        block=table.text("block"),
+        source=Source(table.document, table.path),
+        **files,
+    )

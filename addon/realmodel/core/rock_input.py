@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From a rock mass as the user gives it to what the stack builder takes: triangulations, and the region."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from .build_warning import BuildWarning
+from .errors import InputRefused, place_text
+from .interpolation import Interpolation, checked_points, heights
+from .planar_mesh import mesh_rings, triangulate_rings
+from .project import Project, Rock, Surface, rock_item, surface_item
+from .readers import read_off, read_points, read_region
+from .region_rings import checked_ring
+from .work import Work
+
+Triangulation = tuple[np.ndarray, np.ndarray]
+_EDGE_LENGTH_KINDS = ("edge_length", "too_large", "too_close")  # what native meshing lays to the edge length
+
+
+@dataclass
+class RockInput:
+    """A rock mass with all that was read and interpolated.
+
+    rock: as given, but with arrays in the place of files. surfaces: (vertices (V, 3) float64, triangles
+    (T, 3) int32), oldest first. region: its triangulation ((V, 2) float64, (T, 3) int32) or None.
+    interpolations: what interpolating each surface gave, None for ready meshes. file_faces: for each
+    surface None, or the face of its file that each triangle is of. warnings: what reading and interpolating
+    had to tell.
+    """
+
+    rock: Rock
+    surfaces: list[Triangulation]
+    region: Triangulation | None = None
+    interpolations: list[Interpolation | None] = field(default_factory=list)
+    file_faces: list[np.ndarray | None] = field(default_factory=list)
+    warnings: list[BuildWarning] = field(default_factory=list)
+
+    def stage(self, m: int) -> RockInput:
+        """The same with the surfaces up to m only; the region stays what it was."""
+        gone = {surface.name for surface in self.rock.surfaces[m + 1 :]}
+        return RockInput(
+            replace(self.rock, surfaces=self.rock.surfaces[: m + 1]),
+            self.surfaces[: m + 1],
+            self.region,
+            self.interpolations[: m + 1],
+            self.file_faces[: m + 1],
+            [warning for warning in self.warnings if warning.surface not in gone],
+        )
+
+
+def used_vertices(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(V,) bool: the vertices that triangles name."""
+    used = np.zeros(len(vertices), bool)
+    used[triangles] = True
+    return used
+
+
+def read_rocks(work: Work, project: Project) -> list[RockInput]:
+    """Reads every file of a project. The surfaces that have points are not interpolated yet: their entry
+    in `surfaces` is None."""
+    total = sum(1 + len(rock.surfaces) for rock in project.rocks)
+    done = 0
+    inputs = []
+    for rock in project.rocks:
+        rock, warnings = _read_region(rock)
+        done += 1
+        surfaces, shapes, faces = [], [], []
+        for surface in rock.surfaces:
+            first = done
+
+            def step(share: float, first=first) -> None:
+                work.step((first + share) / total)
+
+            step(0.0)
+            surface, shape, face = _read_surface(rock, surface, step)
+            surfaces.append(surface)
+            shapes.append(shape)
+            faces.append(face)
+            done += 1
+        rock = replace(rock, surfaces=surfaces)
+        inputs.append(RockInput(rock, shapes, None, [None] * len(shapes), faces, warnings))
+    return inputs
+
+
+def _read_region(rock: Rock) -> tuple[Rock, list[BuildWarning]]:
+    if rock.region is None:
+        return rock, []
+    file, line, left_out = None, None, []
+    try:
+        if rock.region_file is not None:
+            file = rock.region_file
+            rings, left_out = read_region(file)
+            rings = [checked_ring(ring, f"outline {number}") for number, ring in enumerate(rings, 1)]
+        else:
+            if rock.source is not None:
+                file, line = rock.source.document.file, rock.source.line("region")
+            rings = [checked_ring(rock.region, "region")]
+            rings += [checked_ring(hole, f"hole {number}") for number, hole in enumerate(rock.holes, 1)]
+    except InputRefused as error:
+        raise error.within(rock_item(rock), file=file, line=line) from error
+    rock = replace(rock, region=rings[0], holes=rings[1:], shape_file=rock.region_file or rock.shape_file)
+    return rock, [BuildWarning(text, "left_out", rock.name) for text in left_out]
+
+
+def _read_surface(
+    rock: Rock, surface: Surface, step
+) -> tuple[Surface, Triangulation | None, np.ndarray | None]:
+    """The surface with arrays in it, its triangulation if it is a ready mesh, and the faces of its file."""
+    faces = None
+    try:
+        if surface.interpolated:
+            points = surface.points if surface.input_file is None else read_points(surface.input_file, step)
+            return (
+                replace(
+                    surface,
+                    points=checked_points(points),
+                    shape_file=surface.input_file or surface.shape_file,
+                ),
+                None,
+                None,
+            )
+        if surface.mesh is not None:
+            mesh = read_off(surface.input_file, step)
+            vertices, triangles, faces = mesh.vertices, mesh.triangles, mesh.face_of_triangle
+        else:
+            vertices, triangles = checked_triangulation(surface.vertices, surface.triangles)
+    except InputRefused as error:
+        raise error.within(surface_item(rock, surface)) from error
+    surface = replace(
+        surface,
+        vertices=vertices,
+        triangles=triangles,
+        mesh=None,
+        shape_file=surface.input_file or surface.shape_file,
+    )
+    return surface, (vertices, triangles), faces
+
+
+def checked_triangulation(vertices, triangles) -> Triangulation:
+    """Vertices (V, 3) float64 and triangles (T, 3) int32, contiguous. Raises InputRefused."""
+    try:
+        vertices = np.ascontiguousarray(vertices, np.float64)
+        triangles = np.asarray(triangles)
+    except (TypeError, ValueError) as error:
+        raise InputRefused("vertices or triangles are not an array of numbers") from error
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        raise InputRefused(f"vertices must be an array (V, 3), not {vertices.shape}")
+    if triangles.size == 0 or triangles.ndim != 2 or triangles.shape[1] != 3:
+        raise InputRefused(f"triangles must be an array (T, 3) with T > 0, not {triangles.shape}")
+    if not np.issubdtype(triangles.dtype, np.integer):
+        raise InputRefused(f"triangles must be whole numbers, not {triangles.dtype}")
+    if triangles.min() < 0 or triangles.max() >= len(vertices):
+        bad = int(np.flatnonzero(((triangles < 0) | (triangles >= len(vertices))).any(axis=1))[0])
+        raise InputRefused(
+            f"triangle {bad} names vertices {triangles[bad].tolist()}",
+            triangles=(bad,),
+            advice=f"they are numbered from 0 to {len(vertices) - 1}",
+        )
+    if not np.isfinite(vertices).all():
+        bad = int(np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0])
+        raise InputRefused(f"vertex {bad} is {place_text(vertices[bad])}, not finite")
+    return vertices, np.ascontiguousarray(triangles, np.int32)
+
+
+@dataclass
+class Costs:
+    """Rough seconds of what comes after reading, from sizes: what the progress is divided by."""
+
+    mesh: float = 0.0
+    interpolate: float = 0.0
+    intersect: float = 0.0
+
+    @property
+    def total(self) -> float:
+        return self.mesh + self.interpolate + self.intersect
+
+
+def expected_costs(inputs: Sequence[RockInput]) -> list[Costs]:
+    """For each rock mass what the steps after reading will cost, measured on one core."""
+    costs = []
+    for entry in inputs:
+        rock = entry.rock
+        triangles = sum(len(shape[1]) for shape in entry.surfaces if shape is not None)
+        cost = Costs(intersect=0.01)
+        if rock.interpolates:
+            extent = np.ptp(np.concatenate([rock.region, *rock.holes]), axis=0)
+            per_surface = min(float(extent[0] * extent[1]) / (0.433 * rock.edge_length**2), 1e9)
+            interpolated = sum(surface.interpolated for surface in rock.surfaces)
+            cost.mesh = 1e-2 + 5e-6 * per_surface
+            cost.interpolate = interpolated * (1e-2 + 2e-6 * per_surface)
+            triangles += interpolated * per_surface
+        cost.intersect += 1e-5 * triangles
+        costs.append(cost)
+    return costs
+
+
+def mesh_and_interpolate(
+    work: Work, entry: RockInput, cost: Costs, start: float, scale: float, threads: int, timings: dict
+) -> float:
+    """Meshes the region of a rock mass once and gives heights to each surface that has points.
+
+    Progress goes from `start`, `scale` for each second expected; where it ended is returned.
+    """
+    rock = entry.rock
+    if rock.region is None:
+        return start
+    began = time.perf_counter()
+    try:
+        if not rock.interpolates:
+            entry.region = triangulate_rings([rock.region, *rock.holes])
+        else:
+            with work.phase(start, start + scale * cost.mesh, f"meshing the region of {rock.name}"):
+                entry.region = mesh_rings(
+                    work, [rock.region, *rock.holes], float(rock.edge_length), rock.mesher
+                )
+    except InputRefused as error:
+        about_edges = getattr(error.__cause__, "kind", "") in _EDGE_LENGTH_KINDS
+        file, line = rock.edge_length_source() if about_edges else rock.region_source()
+        raise error.within(rock_item(rock), file=file, line=line) from error
+    timings["mesh"] += time.perf_counter() - began
+    start += scale * cost.mesh
+    began = time.perf_counter()
+    waiting = [number for number, surface in enumerate(rock.surfaces) if surface.interpolated]
+    for number in waiting:
+        share = scale * cost.interpolate / len(waiting)
+        with work.phase(start, start + share, f"interpolating {rock.surfaces[number].name}"):
+            _give_heights(work, entry, number, threads)
+        start += share
+    timings["interpolate"] += time.perf_counter() - began
+    return start
+
+
+def _give_heights(work: Work, entry: RockInput, number: int, threads: int) -> None:
+    surface = entry.rock.surfaces[number]
+    nodes, triangles = entry.region
+    method, settings = surface.method_options()
+    try:
+        result = heights(work, surface.points, nodes, method, settings, threads)
+    except InputRefused as error:
+        file, line = surface.shape_source()
+        raise error.within(surface_item(entry.rock, surface), file=file, line=line) from error
+    entry.surfaces[number] = (np.column_stack([nodes, result.z]), triangles)
+    entry.interpolations[number] = result
+    entry.warnings += [
+        BuildWarning(text, "points", entry.rock.name, surface.name) for text in result.warnings
+    ]

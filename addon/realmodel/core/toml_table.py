@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""TOML tables that are read strictly: every key is known, every value of its kind, or a line is named."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import tomllib
+from collections.abc import Sequence
+from functools import cached_property
+from pathlib import Path
+
+from .errors import InputRefused
+from .finite import is_finite
+from .toml_lines import key_lines
+
+
+class TomlDocument:
+    """A TOML file: its parsed content and, when something has to be refused, the lines of its keys."""
+
+    def __init__(self, file: Path):
+        self.file = Path(file)
+        self.text = _text_of(self.file)
+        try:
+            self.content = tomllib.loads(self.text)
+        except tomllib.TOMLDecodeError as error:
+            raise _syntax_refused(self.file, self.text, error) from error
+        except (RecursionError, ValueError) as error:
+            what = (
+                "lists nested too deep"
+                if isinstance(error, RecursionError)
+                else "a number of too many digits"
+            )
+            raise InputRefused(f"not a file to be read: {what}", file=self.file) from error
+
+    @cached_property
+    def _lines(self) -> dict:
+        return key_lines(self.text.replace("\r\n", "\n"))
+
+    def line(self, path: Sequence) -> int | None:
+        """The line on which `path` stands, or else the nearest table around it."""
+        path = tuple(path)
+        while path:
+            if path in self._lines:
+                return self._lines[path]
+            path = path[:-1]
+        return None
+
+
+def _text_of(file: Path) -> str:
+    try:
+        raw = file.read_bytes()
+    except OSError as error:
+        raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise InputRefused("not UTF-8 text", file=file, line=line, advice="save it as UTF-8") from error
+
+
+def _syntax_refused(file: Path, text: str, error: tomllib.TOMLDecodeError) -> InputRefused:
+    said = str(error)
+    place = re.search(r" \(at line (\d+), column \d+\)$", said)
+    line = int(place.group(1)) if place else text.rstrip().count("\n") + 1
+    what = (
+        said[: place.start()] if place else said.replace(" (at end of document)", " at the end of the file")
+    )
+    return InputRefused(f"not valid TOML: {what[:1].lower()}{what[1:]}", file=file, line=line)
+
+
+class Table:
+    """One table of a document, read key by key. `item` says in messages what it is."""
+
+    def __init__(self, document: TomlDocument, content: dict, path: tuple, item: str):
+        self.document = document
+        self.content = content
+        self.path = path
+        self.item = item
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.content
+
+    def refuse(self, what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
+        """The refusal of this table, or of one of its keys; the caller raises it."""
+        path = self.path if key is None else (*self.path, key)
+        line = self.document.line(path)
+        return InputRefused(what, file=self.document.file, line=line, item=self.item, advice=advice)
+
+    def allow_only(self, known: Sequence[str]) -> None:
+        for key in self.content:
+            if key not in known:
+                near = difflib.get_close_matches(key, known, n=1)
+                advice = f"did you mean '{near[0]}'?" if near else f"known here are {', '.join(known)}"
+                raise self.refuse(f"unknown key '{key}'", key, advice)
+
+    def _value(self, key: str, required: bool):
+        if key in self.content:
+            return self.content[key]
+        if required:
+            raise self.refuse(f"key '{key}' is missing", advice=f"add {key} = ...")
+        return None
+
+    def text(self, key: str, required: bool = False) -> str | None:
+        value = self._value(key, required)
+        if value is None:
+            return None
+        if not isinstance(value, str):
+            raise self.refuse(f"'{key}' must be text in quotes, not {_kind(value)}", key)
+        if not value.strip():
+            raise self.refuse(f"'{key}' is empty", key)
+        if any(ord(c) < 32 for c in value):
+            raise self.refuse(f"'{key}' holds a line break or another control character", key)
+        return value
+
+    def integer(self, key: str, required: bool = False) -> int | None:
+        value = self._value(key, required)
+        if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
+            raise self.refuse(f"'{key}' must be a whole number, not {_kind(value)}", key)
+        return value
+
+    def number(self, key: str, required: bool = False) -> float | None:
+        value = self._value(key, required)
+        if value is None:
+            return None
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise self.refuse(f"'{key}' must be a number, not {_kind(value)}", key)
+        if not is_finite(value):
+            raise self.refuse(f"'{key}' must be a finite number, not {value}", key)
+        return float(value)
+
+    def tables(self, key: str, item: str) -> list[Table]:
+        """The tables of `[[key]]`; at least one is needed. `item` names each by its number from 1."""
+        value = self._value(key, False)
+        if not value:
+            raise self.refuse(
+                f"there is no [[{'.'.join([*(p for p in self.path if isinstance(p, str)), key])}]]"
+            )
+        if not isinstance(value, list) or not all(isinstance(entry, dict) for entry in value):
+            raise self.refuse(f"'{key}' must be tables [[{key}]], not {_kind(value)}", key)
+        outer = f"{self.item}, " if self.item else ""
+        return [
+            Table(self.document, entry, (*self.path, key, number), f"{outer}{item} {number + 1}")
+            for number, entry in enumerate(value)
+        ]
+
+
+def _kind(value) -> str:
+    names = {bool: "true or false", int: "a whole number", float: "a number", str: "text", list: "a list"}
+    names[dict] = "a table"
+    return names.get(type(value), "a date or time")

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Long work in a thread of its own, while the caller's thread shows progress and listens.
+
+Only the caller's thread calls progress() and cancel(): in Blender these touch the window, and Ctrl-C
+reaches the main thread alone.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from contextlib import contextmanager
+from typing import TypeVar
+
+from .errors import BuildFailed, Cancelled
+
+Progress = Callable[[float, str], None]
+Cancel = Callable[[], bool]
+Result = TypeVar("Result")
+
+POLL_SECONDS = 0.04
+
+
+class Work:
+    """What the working thread tells of itself, and how it learns that it should stop."""
+
+    def __init__(self):
+        self._lock = threading.Lock()
+        self._control = None
+        self._start, self._end = 0.0, 1.0
+        self._share = 0.0
+        self._told = 0.0
+        self._text = ""
+        self._cancelled = False
+
+    # -- in the working thread
+
+    @contextmanager
+    def phase(self, start: float, end: float, text: str):
+        """Work that takes the progress from `start` to `end`, both between 0 and 1."""
+        self.check()
+        with self._lock:
+            self._start, self._end, self._share, self._text = start, end, 0.0, text
+        yield
+        self.step(1.0)
+
+    def step(self, share: float) -> None:
+        """Tells the share done of the present phase. Raises Cancelled where the caller asked to stop."""
+        self.check()
+        with self._lock:
+            self._share = min(max(share, self._share), 1.0)
+
+    def check(self) -> None:
+        if self._cancelled:
+            raise Cancelled("cancelled")
+
+    def native(self, function: Callable[..., Result], *arguments, **options) -> Result:
+        """Calls a native function that takes a `control`, as the present phase."""
+        native = native_module()
+        control = native.Control()
+        with self._lock:
+            self._control = control
+        try:
+            self.check()
+            return function(*arguments, control=control, **options)
+        except native.Cancelled as error:
+            raise Cancelled("cancelled") from error
+        except MemoryError as error:
+            raise BuildFailed(
+                "not enough memory for this model; use fewer triangles or a longer edge length"
+            ) from error
+        finally:
+            with self._lock:
+                self._control = None
+
+    # -- in the caller's thread
+
+    def state(self) -> tuple[float, str]:
+        """(fraction of the whole, never falling; what is being done)."""
+        with self._lock:
+            share = self._share
+            if self._control is not None:
+                share = max(share, min(max(self._control.fraction, 0.0), 1.0))
+            self._told = max(self._told, self._start + (self._end - self._start) * share)
+            return self._told, self._text
+
+    def cancel(self) -> None:
+        with self._lock:
+            self._cancelled = True
+            if self._control is not None:
+                self._control.cancel()
+
+
+def run(
+    task: Callable[[Work], Result], progress: Progress | None = None, cancel: Cancel | None = None
+) -> Result:
+    """Runs task(work) in a thread of its own and returns what it returns.
+
+    progress(fraction, text) and cancel() are called from this thread every 40 ms. Whatever they raise,
+    KeyboardInterrupt included, stops the work, waits for its end and passes on.
+    Raises Cancelled where cancel() returned True before the work was done.
+    """
+    work = Work()
+    done = threading.Event()
+    outcome: list = [None, None]
+
+    def target() -> None:
+        try:
+            outcome[0] = task(work)
+        except BaseException as error:  # handed to the caller's thread, which raises it
+            outcome[1] = error
+        finally:
+            done.set()
+
+    thread = threading.Thread(target=target, name="realmodel work", daemon=True)
+    thread.start()
+    try:
+        while not done.wait(POLL_SECONDS):
+            if progress is not None:
+                progress(*work.state())
+            if cancel is not None and cancel():
+                work.cancel()
+    except BaseException:
+        work.cancel()
+        _join(thread)
+        raise
+    _join(thread)
+    if outcome[1] is not None:
+        raise outcome[1]
+    if progress is not None:
+        progress(*work.state())
+    return outcome[0]
+
+
+def _join(thread: threading.Thread) -> None:
+    """Waits for the end of a thread that was told to stop, however often Ctrl-C is pressed meanwhile."""
+    while thread.is_alive():
+        try:
+            thread.join()
+        except KeyboardInterrupt:
+            continue
+
+
+def native_module():
+    """The compiled part. Raises BuildFailed with the way to get it where it is missing."""
+    try:
+        from realmodel import _native
+    except ImportError as error:
+        import sys
+
+        version = f"{sys.version_info.major}.{sys.version_info.minor}"
+        raise BuildFailed(
+            f"the native module for Python {version} cannot be loaded ({error}); build it with "
+            f"scripts/build.sh {sys.executable if 'bpy' not in sys.modules else f'python{version}'}"
+        ) from error
+    return _native
