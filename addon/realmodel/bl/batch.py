@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What build_model.py does inside Blender without a window: scene, .blend file, picture."""
+
+import contextlib
+import os
+import sys
+from pathlib import Path
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from ..core import OutputFailed
+from . import picture, scene
+
+
+def write_scene(model):
+    """Put a model into the current scene, in place of an earlier one there.
+
+    model: realmodel.core.Model. Where no .blend file was opened, what Blender's startup file brings
+    along (its cube, light and camera) is taken out first; in an opened file other objects are left
+    alone. The 3D viewports are turned to show the model.
+    """
+    current = bpy.context.scene
+    project = scene.write_model(current, model)
+    if not bpy.data.filepath:
+        _remove_startup_objects(current, project)
+    _frame_viewports(current)
+
+
+def save_blend(path):
+    """Write the current state to a .blend file, compressed. Raises OutputFailed."""
+    try:
+        with _without_chatter():
+            bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True, check_existing=False)
+    except RuntimeError as error:
+        raise _failed(path, error) from error
+
+
+def render(path, size=(1600, 1000), samples=picture.SAMPLES, time_limit=picture.TIME_LIMIT):
+    """Render the model of the current scene to a PNG file.
+
+    path: the file, whatever its ending. size: (width, height) in pixels. samples: rays per pixel.
+    time_limit: seconds after which no more of them are begun, 0 for no limit.
+    Returns a picture.Picture; the scene and the file's other data stay as they are.
+    Raises OutputFailed where there is nothing to see or the picture cannot be written.
+    """
+    if not Path(path).parent.is_dir():  # newer versions of Blender would make the folder
+        raise OutputFailed(f"{path}: there is no folder {Path(path).parent}")
+    blocks = scene.model_objects(bpy.context.scene, "block")
+    try:
+        with _without_chatter():
+            return picture.render_picture(blocks, path, size, samples, time_limit)
+    except RuntimeError as error:
+        raise _failed(path, error) from error
+
+
+@contextlib.contextmanager
+def _without_chatter():
+    """Keep what Blender itself prints (a line per sample of a render) out of our output.
+
+    What it has to say of a failure comes as RuntimeError too.
+    """
+    sys.stdout.flush()
+    kept = os.dup(1)
+    try:
+        with open(os.devnull, "wb") as sink:
+            os.dup2(sink.fileno(), 1)
+            yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+
+
+def _failed(path, error):
+    """OutputFailed in one line: Blender's own messages bring a prefix and line breaks along."""
+    reason = " ".join(str(error).removeprefix("Error:").split())
+    return OutputFailed(f"{path}: {reason}")
+
+
+def _remove_startup_objects(current, project):
+    """Remove every object and collection of the scene that is not the model's."""
+    keep = {item.name for item in project.all_objects}
+    for item in list(bpy.data.objects):
+        if item.name not in keep:
+            bpy.data.objects.remove(item)
+    for collection in list(current.collection.children):
+        if collection != project:
+            bpy.data.collections.remove(collection)
+    for store in (bpy.data.meshes, bpy.data.lights, bpy.data.cameras, bpy.data.materials):
+        for datablock in [datablock for datablock in store if not datablock.users]:
+            store.remove(datablock)
+
+
+def _frame_viewports(current):
+    """Turn the 3D viewports of the file to the model, and let them see that far."""
+    corners = [
+        item.matrix_world @ Vector(corner)
+        for item in scene.model_objects(current)
+        for corner in item.bound_box
+    ]
+    if not corners:
+        return
+    corners = np.array(corners)
+    middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+    diagonal = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            for space in area.spaces:
+                if space.type == "VIEW_3D":
+                    space.clip_start, space.clip_end = diagonal / 1e4, diagonal * 10.0
+                    space.region_3d.view_location = middle
+                    space.region_3d.view_distance = diagonal
+                    space.region_3d.view_rotation = picture.view_rotation().to_quaternion()

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Materials: one for each property of the library, shared by all blocks that have it."""
+
+import bpy
+
+from . import versions
+
+KEY = "realmodel_property"
+NO_PROPERTY = 0
+NEUTRAL_GREY = "#b3b3b3"
+
+
+def linear_colour(colour):
+    """Scene-linear (red, green, blue) of an sRGB colour "#rrggbb" (IEC 61966-2-1).
+
+    Both the Principled base colour and the viewport colour (`diffuse_color`, subtype COLOR) are
+    scene-linear, so both take this value.
+    """
+    channels = []
+    for start in (1, 3, 5):
+        value = int(colour[start : start + 2], 16) / 255.0
+        channels.append(value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4)
+    return tuple(channels)
+
+
+def name_and_colour(library, property_id):
+    """What the library says of a property: its name and "#rrggbb".
+
+    Property 0 means that none was given; it, and an ID without a colour, is a neutral grey.
+    """
+    entry = None if library is None else library.get(property_id)
+    if entry is None:
+        return ("no property" if property_id == NO_PROPERTY else f"property {property_id}"), NEUTRAL_GREY
+    return entry.name, entry.color or NEUTRAL_GREY
+
+
+def new_material(name, property_id, colour):
+    """A new material datablock: matt rock of one colour ("#rrggbb")."""
+    material = bpy.data.materials.new(name)
+    try:
+        material[KEY] = property_id
+        material.use_nodes = True
+        principled = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+        versions.make_matt(principled)
+        material.roughness = 1.0
+        set_colour(material, colour)
+    except BaseException:
+        bpy.data.materials.remove(material)
+        raise
+    return material
+
+
+def set_colour(material, colour):
+    """Set the colour "#rrggbb" of a material in its Principled shader and for the viewport."""
+    rgba = (*linear_colour(colour), 1.0)
+    material.diffuse_color = rgba
+    if material.node_tree:
+        for node in material.node_tree.nodes:
+            if node.type == "BSDF_PRINCIPLED" and not node.inputs["Base Color"].is_linked:
+                node.inputs["Base Color"].default_value = rgba

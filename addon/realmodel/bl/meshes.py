@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Arrays to Blender meshes and back."""
+
+import bpy
+import numpy as np
+
+from . import versions
+
+# Face attribute: global index of the surface a face lies on; -1 a vertical wall, -2 the flat base
+FACE_SURFACE = "realmodel_surface"
+
+
+def new_mesh(name, coordinates, offsets, corners, face_surface=None):
+    """A new mesh datablock.
+
+    coordinates: (V, 3) float32, offsets from the model origin.
+    offsets, corners: (F+1,) and (sum,) integers, polygons as in the cell complex.
+    face_surface: (F,) int32 or None, stored as the face attribute `realmodel_surface`.
+
+    Returns bpy.types.Mesh. float32 and int32 go to Blender without conversion, a million quads
+    in about 0.4 s, of which the edges are half.
+    """
+    mesh = bpy.data.meshes.new(name)
+    try:
+        versions.fill_mesh(
+            mesh,
+            np.ascontiguousarray(coordinates, np.float32),
+            np.ascontiguousarray(offsets, np.int32),
+            np.ascontiguousarray(corners, np.int32),
+        )
+        if face_surface is not None:
+            attribute = mesh.attributes.new(FACE_SURFACE, "INT", "FACE")
+            attribute.data.foreach_set("value", np.ascontiguousarray(face_surface, np.int32))
+    except BaseException:
+        bpy.data.meshes.remove(mesh)
+        raise
+    return mesh
+
+
+def triangle_mesh(name, coordinates, triangles):
+    """A new mesh datablock of triangles; (V, 3) float32, (T, 3) integers.
+
+    Triangles that repeat a corner are left out: they have no area, the model leaves them out too,
+    and Blender's edge tables take harm from them.
+    """
+    triangles = np.asarray(triangles, np.int32).reshape(-1, 3)
+    repeated = (
+        (triangles[:, 0] == triangles[:, 1])
+        | (triangles[:, 1] == triangles[:, 2])
+        | (triangles[:, 2] == triangles[:, 0])
+    )
+    triangles = triangles[~repeated]
+    return new_mesh(name, coordinates, np.arange(0, 3 * len(triangles) + 1, 3), triangles.ravel())
+
+
+def mesh_coordinates(mesh):
+    """(V, 3) float32 vertex coordinates of a mesh."""
+    coordinates = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", coordinates)
+    return coordinates.reshape(-1, 3)

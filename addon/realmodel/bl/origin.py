@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The model origin: what is taken off model coordinates before Blender rounds them to float32.
+
+At 5,400,000 m north float32 knows steps of 0.5 m only. Objects therefore hold offsets from an
+origin near the model, and the scene's custom property `realmodel_origin` keeps the origin in
+doubles: object coordinates + origin = model coordinates.
+"""
+
+import math
+
+import numpy as np
+
+KEY = "realmodel_origin"
+
+# An axis on which no coordinate is farther from 0 than this many extents of the model keeps its
+# own zero: float32 then loses three bits at most, and people see the coordinates they know.
+FAR = 8.0
+
+
+def choose_origin(vertices):
+    """Origin for a model with these vertices.
+
+    vertices: (V, 3) float64, model units. Returns (3,) float64: on each axis 0, or a round number
+    (a power of ten near a tenth of the extent is its step) next to the middle of the model.
+    """
+    vertices = np.asarray(vertices, np.float64)
+    if not len(vertices):
+        return np.zeros(3)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    extent = float((high - low).max())
+    origin = np.zeros(3)
+    if extent > 0.0:
+        step = 10.0 ** math.floor(math.log10(extent / 5.0))
+        far = np.maximum(np.abs(low), np.abs(high)) > FAR * extent
+        origin[far] = np.rint((0.5 * (low + high))[far] / step) * step
+    return origin
+
+
+def offsets_from(origin, vertices):
+    """(V, 3) float32 offsets of the vertices from the origin; subtracted in doubles."""
+    return np.ascontiguousarray(np.asarray(vertices, np.float64) - origin, dtype=np.float32)

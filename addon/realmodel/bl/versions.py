@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every difference between the Blender versions RealModel runs in (3.4 to 5.2), in one place.
+
+The rest of the add-on asks this module and never looks at `bpy.app.version` itself.
+"""
+
+import bpy
+import numpy as np
+
+OLDEST = (3, 4, 0)
+
+
+def fill_mesh(mesh, coordinates, offsets, corners):
+    """Give an empty mesh its vertices and polygons.
+
+    mesh: bpy.types.Mesh. coordinates: (V, 3) float32. offsets: (F+1,) int32, where each polygon's
+    corners begin in `corners`. corners: (sum,) int32, vertex indices, counter-clockwise seen from
+    outside.
+
+    Polygons are flat shaded: strata break along their edges, and smooth shading, which is the
+    default from 4.1 on, would round them off.
+    """
+    count = len(offsets) - 1
+    mesh.vertices.add(len(coordinates))
+    mesh.loops.add(len(corners))
+    mesh.polygons.add(count)
+    if bpy.app.version < (3, 6, 0):
+        mesh.vertices.foreach_set("co", coordinates.ravel())
+        mesh.loops.foreach_set("vertex_index", corners)
+        mesh.polygons.foreach_set("loop_total", np.diff(offsets))  # read-only later: it follows
+    else:  # as attributes the arrays are copied in one piece, three times as fast
+        mesh.attributes["position"].data.foreach_set("vector", coordinates.ravel())
+        mesh.attributes[".corner_vert"].data.foreach_set("value", corners)
+    mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(offsets[:-1]))
+    if bpy.app.version < (4, 1, 0):
+        mesh.polygons.foreach_set("use_smooth", np.zeros(count, bool))
+    else:
+        mesh.attributes.new("sharp_face", "BOOLEAN", "FACE").data.foreach_set("value", np.ones(count, bool))
+    mesh.update(calc_edges=True)
+
+
+def make_matt(principled):
+    """Take the shine off a Principled shader; its socket was renamed in 4.0."""
+    principled.inputs["Roughness"].default_value = 1.0
+    principled.inputs["Specular" if bpy.app.version < (4, 0, 0) else "Specular IOR Level"].default_value = 0.0
+
+
+def leave_sky_to_bounces(world):
+    """Have Cycles not sample the sky as a lamp of its own."""
+    if hasattr(world, "cycles"):
+        world.cycles.sampling_method = "NONE"
+
+
+def cycles_available(scene):
+    """Whether the Cycles renderer can be chosen; some builds of Blender come without it."""
+    engine = scene.render.engine
+    try:
+        scene.render.engine = "CYCLES"
+    except TypeError:
+        return False
+    scene.render.engine = engine
+    return True
+
+
+def denoise(scene):
+    """Have Cycles remove the noise of its picture where this build can (Debian's 3.4 cannot)."""
+    try:
+        scene.cycles.denoiser = "OPENIMAGEDENOISE"
+    except TypeError:  # the build has no denoiser
+        scene.cycles.use_denoising = False
+        return False
+    scene.cycles.use_denoising = True
+    return True
+
+
+def plain_colours(scene):
+    """Show colours as they are: the film-like transforms would shift the library's colours."""
+    scene.display_settings.display_device = "sRGB"
+    scene.view_settings.view_transform = "Standard"
+    scene.view_settings.look = "None"
+    scene.view_settings.exposure = 0.0
+    scene.view_settings.gamma = 1.0
