@@ -1,0 +1,269 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Builds a model from a project file, without a window.
+
+    blender -b --factory-startup --python-exit-code 1 -P build_model.py -- PROJECT [options]
+    python3 build_model.py PROJECT [options]            (then without --blend and --render)
+
+Exit status: 0 done, 1 the input was refused or the build failed (one line on standard error),
+2 wrong usage, 130 interrupted. Files appear whole or not at all.
+"""
+
+import argparse
+import contextlib
+import os
+import signal
+import sys
+import threading
+import traceback
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent / "addon"))
+
+IN_BLENDER = "bpy" in sys.modules
+DONE, REFUSED, USAGE, TERMINATED, INTERRUPTED = 0, 1, 2, 143, 130
+_BLENDER_USAGE = "blender -b --factory-startup --python-exit-code 1 -P build_model.py -- PROJECT [options]"
+_SECONDS_TO_UNWIND = 1.0
+
+
+def main(arguments: list[str]) -> int:
+    """Runs the command line and returns the exit status."""
+    signal.signal(signal.SIGTERM, _terminate)
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # a terminal that lacks a letter of a name stops no build
+    if hasattr(signal, "SIGXFSZ"):
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing too much becomes an error that is told
+    try:
+        options = _parse(arguments)
+    except SystemExit as leaving:
+        return leaving.code or DONE
+    try:
+        from realmodel.core import RealModelError, UsageError
+    except ImportError as error:
+        return _say(_not_importable(error), REFUSED)
+    try:
+        _run(options)
+    except UsageError as error:
+        return _say(str(error), USAGE)
+    except RealModelError as error:
+        return _say(str(error), REFUSED)
+    except BrokenPipeError:
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115 - nobody listens any more
+        return _say("nobody reads the standard output any more: nothing was written; use --quiet", REFUSED)
+    except MemoryError:
+        return _say("not enough memory for this model; use fewer triangles or a longer edge length", REFUSED)
+    return DONE
+
+
+def _not_importable(error: ImportError) -> str:
+    version = f"Python {sys.version_info.major}.{sys.version_info.minor}"
+    if IN_BLENDER:
+        return (
+            f"Blender's {version} cannot run this: {error}; it looks for modules under {sys.prefix}, of the "
+            "python3 that comes first on PATH: install NumPy there, or start Blender with another PATH"
+        )
+    return f"{version} cannot run this: {error}; it takes Python 3.11 or newer with NumPy"
+
+
+def _say(line: str, status: int) -> int:
+    print(f"build_model.py: {line}", file=sys.stderr, flush=True)
+    return status
+
+
+def _terminate(_number, _frame) -> None:
+    raise SystemExit(TERMINATED)
+
+
+def _parse(arguments: list[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="build_model.py",
+        usage=(
+            f"{_BLENDER_USAGE}\n       python3 build_model.py PROJECT [options without --blend and --render]"
+        ),
+        description="Builds a model of sedimentary rock from a project file.",
+    )
+    parser.add_argument("project", metavar="PROJECT", type=Path, help="project file (.toml)")
+    parser.add_argument("--blend", metavar="F", type=Path, help="write the scene to F.blend (in Blender)")
+    parser.add_argument(
+        "--export",
+        metavar="F",
+        type=Path,
+        action="append",
+        default=[],
+        help="write the model to F.npz or F.vtu; may be given several times",
+    )
+    parser.add_argument("--report", metavar="F", type=Path, help="write a report to F.json")
+    parser.add_argument("--render", metavar="F", type=Path, help="render a picture to F.png (in Blender)")
+    parser.add_argument("--stage", metavar="M", type=_whole, help="only up to surface M, counted from 0")
+    parser.add_argument(
+        "--cells",
+        choices=("columns", "blocks"),
+        default="columns",
+        help="columns under facets (default), or one cell for each connected part of a block",
+    )
+    parser.add_argument(
+        "--threads", metavar="N", type=_whole, default=0, help="0 (default): all that there are"
+    )
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    options = parser.parse_args(arguments)
+    for name, ending in (("blend", ".blend"), ("report", ".json"), ("render", ".png")):
+        path = getattr(options, name)
+        if path is not None and path.suffix.lower() != ending:
+            parser.error(f"--{name} writes {ending} files, not {path}")
+    for name in ("blend", "render"):
+        if getattr(options, name) is not None and not IN_BLENDER:
+            parser.error(f"--{name} needs Blender; run it as: {_BLENDER_USAGE}")
+    return options
+
+
+def _whole(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from 0")
+    return int(text)
+
+
+def _run(options: argparse.Namespace) -> None:
+    from realmodel.core import build, load_project
+    from realmodel.core.atomic import Outputs
+    from realmodel.core.table import volume_table
+    from realmodel.core.terminal import TerminalProgress
+
+    targets = _checked_targets(options)
+    project = load_project(options.project)
+    _refuse_overwriting(project, targets)
+    progress = TerminalProgress(sys.stdout, options.quiet)
+    with Outputs() as outputs, _Interruptible(outputs):
+        try:
+            model = build(
+                project, cells=options.cells, threads=options.threads, progress=progress, stage=options.stage
+            )
+            _write(options, model, outputs, progress)
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, signal.SIG_IGN)  # in a moment all is there: too late to stop
+        finally:
+            progress.close()
+    if not options.quiet:
+        with contextlib.suppress(BrokenPipeError):  # the outputs are there
+            for warning in model.warnings:
+                print(f"warning: {warning}")
+            print(volume_table(model), flush=True)
+
+
+def _checked_targets(options: argparse.Namespace) -> list[Path]:
+    """Where the outputs will stand; refused before anything is built rather than after."""
+    from realmodel.core import UsageError
+    from realmodel.core.atomic import writable_target
+    from realmodel.core.exporters import writer_for
+
+    for path in options.export:
+        writer_for(path)
+    paths = [*options.export, *(p for p in (options.report, options.blend, options.render) if p is not None)]
+    targets = [writable_target(path) for path in paths]
+    for path, target in zip(paths, targets, strict=True):
+        if targets.count(target) > 1:
+            raise UsageError(f"{path}: two outputs have this name")
+    return targets
+
+
+def _refuse_overwriting(project, targets: list[Path]) -> None:
+    from realmodel.core import UsageError
+
+    inputs = {Path(os.path.realpath(file)) for file in project.input_files()}
+    for target in targets:
+        if target in inputs:
+            raise UsageError(f"{target}: this is a file that the project reads; choose another name")
+
+
+def _write(options: argparse.Namespace, model, outputs, progress) -> None:
+    from realmodel.core.exporters import write_model
+    from realmodel.core.exporters.report import write_report
+
+    for path in options.export:
+        with outputs.file(path) as file:
+            write_model(model, path, file, lambda share, path=path: progress(1.0, f"writing {path.name}"))
+    if options.blend is not None or options.render is not None:
+        _write_with_blender(options, model, outputs, progress)
+    if options.report is not None:
+        with outputs.file(options.report) as file:
+            write_report(model, options.report, file, options.stage)
+
+
+def _write_with_blender(options: argparse.Namespace, model, outputs, progress) -> None:
+    from realmodel.bl import batch
+
+    progress(1.0, "making the scene")
+    batch.write_scene(model)
+    if options.blend is not None:
+        with outputs.path(options.blend) as path, _named(path, options.blend):
+            progress(1.0, f"writing {options.blend.name}")
+            batch.save_blend(path)
+    if options.render is not None:
+        with outputs.path(options.render) as path, _named(path, options.render):
+            progress(1.0, f"rendering {options.render.name}")
+            batch.render(path)
+
+
+@contextlib.contextmanager
+def _named(path, target: Path):
+    """What could not be written is named as the user did, not by the place where it is kept meanwhile."""
+    from realmodel.core import OutputFailed
+
+    try:
+        yield
+    except OutputFailed as error:
+        raise OutputFailed(str(error).replace(str(path), str(target))) from error
+
+
+class _Interruptible:
+    """Ctrl-C while Blender renders or saves, when no line of Python runs that could notice it.
+
+    A thread of its own hears the signal. Where the main thread has not gone by then on its own, it drops
+    the outputs and ends the process.
+    """
+
+    def __init__(self, outputs):
+        self.outputs = outputs
+        self.left = threading.Event()
+
+    def __enter__(self):
+        if IN_BLENDER:
+            self._hear, self._told = os.pipe()
+            os.set_blocking(self._told, False)
+            signal.set_wakeup_fd(self._told)
+            threading.Thread(target=self._watch, daemon=True).start()
+        return self
+
+    def __exit__(self, *_error) -> None:
+        self.left.set()
+        if IN_BLENDER:
+            signal.set_wakeup_fd(-1)
+            os.close(self._told)
+
+    def _watch(self) -> None:
+        while heard := os.read(self._hear, 1):
+            status = {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED}.get(heard[0])
+            if status is not None and not self.left.wait(_SECONDS_TO_UNWIND):
+                self.outputs.drop()
+                os._exit(_say("interrupted: nothing was written", status))
+        os.close(self._hear)
+
+
+def _arguments() -> list[str]:
+    if IN_BLENDER:
+        return sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
+    return sys.argv[2:] if sys.argv[1:2] == ["--"] else sys.argv[1:]
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        exit_status = main(_arguments())
+    except KeyboardInterrupt:
+        exit_status = _say("interrupted: nothing was written", INTERRUPTED)
+    except Exception:  # a defect: told in full, and with a status that Blender too hands on
+        traceback.print_exc()
+        exit_status = REFUSED
+    with contextlib.suppress(BrokenPipeError):
+        sys.stdout.flush()
+    sys.exit(exit_status)
