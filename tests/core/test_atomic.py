@@ -1,0 +1,295 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Outputs appear whole or not at all, whatever happens to the process or the disk."""
+
+import multiprocessing
+import os
+import random
+import resource
+import signal
+import subprocess
+import tempfile
+import time
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+from realmodel.core import OutputFailed
+from realmodel.core import atomic as atomic_module
+from realmodel.core.atomic import Outputs, atomic_file, atomic_path
+
+FORK = multiprocessing.get_context("fork")
+SIZE = 300_000
+
+
+def names(folder):
+    return sorted(entry.name for entry in folder.iterdir())
+
+
+@pytest.fixture(params=["nameless files", "hidden names"])
+def either_way(request, monkeypatch):
+    """With the nameless files of Linux, and on file systems that have none."""
+    if request.param == "hidden names":
+        monkeypatch.setattr(atomic_module, "_nameless", lambda folder: None)
+    return request.param
+
+
+@pytest.fixture
+def scratch(tmp_path, monkeypatch):
+    """The system's temporary folder, for this test alone."""
+    folder = tmp_path / "system-temporary"
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    return folder
+
+
+@pytest.fixture
+def out(tmp_path):
+    folder = tmp_path / "out"
+    folder.mkdir()
+    return folder
+
+
+def test_files_appear_together_at_the_end(out, scratch, either_way):
+    (out / "b").write_text("old")
+    with Outputs() as outputs:
+        with outputs.file(out / "a") as file:
+            file.write(b"new a")
+        with outputs.file(out / "b") as file:
+            file.write(b"-" * 5)
+            file.seek(0)
+            file.write(b"new b")
+        with outputs.path(out / "c.png") as path:
+            assert path.suffix == ".png"
+            assert path.parent != out
+            path.write_text("new c")
+        assert not (out / "a").exists()
+        assert (out / "b").read_text() == "old"
+        assert not (out / "c.png").exists()
+    assert {name: (out / name).read_text() for name in names(out)} == {
+        "a": "new a",
+        "b": "new b",
+        "c.png": "new c",
+    }
+    assert names(scratch) == []
+    assert os.stat(out / "a").st_mode & 0o777 == 0o666 & ~_umask()
+
+
+def _umask():
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, SystemExit])
+def test_nothing_stays_of_a_run_that_fails(out, scratch, either_way, error):
+    (out / "b").write_text("old")
+    with pytest.raises(error), Outputs() as outputs:
+        with outputs.file(out / "a") as file:
+            file.write(b"a")
+        with outputs.path(out / "b") as path:
+            path.write_text("b")
+        raise error
+    assert names(out) == ["b"]
+    assert (out / "b").read_text() == "old"
+    assert names(scratch) == []
+
+
+def test_what_was_published_is_taken_back_when_the_next_fails(out, scratch, either_way):
+    with pytest.raises(OutputFailed, match="b: cannot be written"), Outputs() as outputs:
+        for name in "ab":
+            with outputs.file(out / name) as file:
+                file.write(b"x")
+        (out / "b").mkdir()  # someone takes the name meanwhile
+    assert names(out) == ["b"]
+    assert names(scratch) == []
+
+
+def test_another_file_system_is_reached_by_copying(out, scratch, either_way, monkeypatch):
+    move = os.replace
+
+    def replace(source, target):
+        if Path(source).parent != Path(target).parent:
+            raise OSError(18, "Invalid cross-device link")
+        move(source, target)
+
+    monkeypatch.setattr(os, "replace", replace)
+    for text in ("first", "second"):
+        with atomic_path(out / "a.blend") as path:
+            path.write_text(text)
+        with atomic_file(out / "b") as file:
+            file.write(text.encode())
+        assert [(out / name).read_text() for name in ("a.blend", "b")] == [text, text]
+    assert names(out) == ["a.blend", "b"]
+    assert names(scratch) == []
+
+
+def test_links_are_followed(out):
+    (out / "real").write_text("old")
+    (out / "link").symlink_to("real")
+    with atomic_file(out / "link") as file:
+        file.write(b"new")
+    assert (out / "link").is_symlink()
+    assert (out / "real").read_text() == "new"
+
+
+def test_places_that_cannot_be_written_to_are_named(out):
+    with pytest.raises(OutputFailed, match="this is a folder"), atomic_file(out):
+        pass
+    with pytest.raises(OutputFailed, match="there is no folder"), atomic_file(out / "none" / "a"):
+        pass
+    with pytest.raises(OutputFailed, match="not an ordinary file"), atomic_file("/dev/null"):
+        pass
+    with pytest.raises(OutputFailed, match="nothing was written"), atomic_path(out / "a.png"):
+        pass
+    assert names(out) == []
+
+
+def test_left_overs_of_killed_runs_are_removed(out, scratch, monkeypatch):
+    monkeypatch.setattr(atomic_module, "_nameless", lambda folder: None)
+    child = subprocess.Popen(["true"])
+    child.wait()
+    dead = child.pid
+    prefix = atomic_module._prefix(out / "a")
+    (out / f"{prefix}{dead}-0123").write_text("left over")
+    (out / f"{prefix}{os.getpid()}-0123").write_text("of a living run")
+    (out / ".other").write_text("of the user")
+    (scratch / f"realmodel-{os.getuid()}-{dead}-xyz").mkdir()
+    (scratch / f"realmodel-{os.getuid()}-{os.getpid()}-xyz").mkdir()
+    with atomic_file(out / "a") as file:
+        file.write(b"a")
+    with atomic_path(out / "b") as path:
+        path.write_text("b")
+    assert names(out) == sorted(["a", "b", ".other", f"{prefix}{os.getpid()}-0123"])
+    assert names(scratch) == [f"realmodel-{os.getuid()}-{os.getpid()}-xyz"]
+
+
+def _write_once(out, number):
+    """Three outputs, each filled with one character that tells the round."""
+    text = bytes([65 + number % 26]) * SIZE
+    with Outputs() as outputs:
+        with outputs.file(out / f"new{number % 50}") as file:
+            file.write(text)
+        with outputs.file(out / "same") as file:
+            for start in range(0, SIZE, SIZE // 10):
+                file.write(text[start : start + SIZE // 10])
+        with outputs.path(out / "byname.png") as path:
+            path.write_bytes(text)
+
+
+def _write_for_ever(out, number, ready):
+    ready.set()
+    while True:
+        number += 1
+        _write_once(out, number)
+
+
+def seconds_of_a_round(out):
+    began = time.perf_counter()
+    for number in range(3):
+        _write_once(out, number)
+    return (time.perf_counter() - began) / 3
+
+
+def test_killed_at_any_moment_nothing_partial_and_nothing_stray(out, scratch):
+    """SIGKILL at 150 random moments."""
+    chance = random.Random(1)
+    a_round = seconds_of_a_round(out)
+    for trial in range(150):
+        ready = FORK.Event()
+        child = FORK.Process(target=_write_for_ever, args=(out, 7 * trial, ready))
+        child.start()
+        ready.wait()
+        time.sleep(chance.uniform(0.0, 2.0) * a_round)
+        os.kill(child.pid, signal.SIGKILL)
+        child.join()
+        for entry in out.iterdir():
+            assert entry.name in ("same", "byname.png") or entry.name.startswith("new"), entry.name
+            content = entry.read_bytes()
+            assert len(content) == SIZE
+            assert content == content[:1] * SIZE
+    with atomic_path(out / "last") as path:
+        path.write_text("x")
+    assert names(scratch) == [], "what killed runs left in the temporary folder is removed by the next"
+
+
+def _interrupted(out, ready):
+    # a run started in the background ignores the signal, and children inherit that
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    with suppress(KeyboardInterrupt):
+        _write_for_ever(out, 0, ready)
+    os._exit(7)
+
+
+def test_ctrl_c_at_any_moment_leaves_nothing(out, scratch, either_way):
+    chance = random.Random(2)
+    a_round = seconds_of_a_round(out)
+    for _ in range(40):
+        ready = FORK.Event()
+        child = FORK.Process(target=_interrupted, args=(out, ready))
+        child.start()
+        ready.wait()
+        time.sleep(chance.uniform(0.0, 2.0) * a_round)
+        os.kill(child.pid, signal.SIGINT)
+        child.join()
+        assert child.exitcode == 7
+        assert [name for name in names(out) if name.startswith(".")] == []
+        assert names(scratch) == []
+
+
+def _fill(out, outcome):
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    _write_too_much(out, outcome)
+
+
+def _write_too_much(out, outcome):
+    for kind in ("file", "path"):
+        try:
+            with Outputs() as outputs:
+                with outputs.file(out / "small") as file:
+                    file.write(b"x" * 1000)
+                if kind == "file":
+                    with outputs.file(out / "large") as file:
+                        for _ in range(1000):
+                            file.write(b"x" * 1000)
+                else:
+                    with outputs.path(out / "large") as path:
+                        path.write_bytes(b"x" * 1_000_000)
+            outcome.put("written")
+        except OutputFailed as error:
+            outcome.put(str(error))
+
+
+def outcomes_of(target, *arguments):
+    outcome = FORK.Queue()
+    child = FORK.Process(target=target, args=(*arguments, outcome))
+    child.start()
+    found = [outcome.get(timeout=20), outcome.get(timeout=20)]
+    child.join()
+    return found
+
+
+def test_a_size_limit_is_told_in_one_line_and_leaves_nothing(out, scratch, either_way):
+    for message in outcomes_of(_fill, out):
+        assert "large: cannot be written: File too large; make room" in message
+        assert "\n" not in message
+    assert names(out) == []
+    assert names(scratch) == []
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    command = ["mount", "-t", "tmpfs", "-o", "size=256k", "realmodel-test", str(folder)]
+    if os.geteuid() != 0 or subprocess.run(command, capture_output=True, check=False).returncode != 0:
+        pytest.skip("a small tmpfs can be mounted by root only")
+    yield folder
+    subprocess.run(["umount", str(folder)], check=True)
+
+
+def test_a_full_disk_is_told_in_one_line_and_leaves_nothing(small_disk, scratch, either_way):
+    for message in outcomes_of(_write_too_much, small_disk):
+        assert "large: cannot be written: No space left on device; make room" in message
+    assert names(small_disk) == []
+    assert names(scratch) == []

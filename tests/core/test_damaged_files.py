@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files damaged at random are either read or refused in one line; nothing else ever comes out."""
+
+import os
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from realmodel.core import InputRefused, load_library, load_project
+from realmodel.core.readers import read_off, read_points, read_region
+
+PROJECT = b"""format = 1
+name = "x"
+library = "library.toml"
+[[rock]]
+name = "r"
+region = [[0, 0], [1, 0], [1, 1]]
+holes = [[[0.5, 0.2], [0.6, 0.2], [0.6, 0.3]]]
+edge_length = 0.5
+base_elevation = -1.0
+[[rock.surface]]
+name = "S0"
+points = "p.csv"
+method = "kriging"
+neighbours = 4
+variogram = {model = "spherical", range = 60, sill = 4, nugget = 0}
+anisotropy = {ratio = 2, azimuth = 30}
+[[rock.surface]]
+name = "S1"
+mesh = "m.off"
+rule = "erosional"
+property = 3
+"""
+LIBRARY = b'[[property]]\nid = 3\nname = "Clay"\ncolor = "#102030"\ndensity = 2.0\n'
+POINTS = b'x,y,z,"note"\n0,0,1,a\n1,0,2\n0.5,1e3,-3,"b, c"\n# end\n'
+OFF = b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 .5\n0 1 1e-3\n3 0 1 2\n4 0 1 2 3\n"
+REGION = b'{"type":"Feature","geometry":{"type":"Polygon","coordinates":[[[0,0],[1,0],[1,1],[0,0]]]}}'
+PIECES = [b"9" * 400, b"9" * 5000, b"[" * 5000, b"\x00", b"\xff", b"\xef\xbb\xbf", b"\r\n"]
+PIECES += rb"""nan -1 1e999 [ ] { " ''' # = [[rock]] true , ; . null 0x1 1_0 rock.x inf \u0041""".split()
+
+
+READERS = {
+    "p.toml": (PROJECT, load_project),
+    "library.toml": (LIBRARY, load_library),
+    "p.csv": (POINTS, read_points),
+    "m.off": (OFF, read_off),
+    "r.geojson": (REGION, read_region),
+}
+
+MILD = [b" ", b"0", b"1", b"2", b"5"]
+
+pieces = st.one_of(st.sampled_from(MILD), st.sampled_from(PIECES), st.binary(max_size=4))
+edits = st.lists(st.tuples(st.floats(0, 1), st.integers(0, 2), pieces), min_size=1, max_size=3)
+
+
+def damaged(text, changes):
+    for where, length, piece in changes:
+        at = int(where * len(text))
+        text = text[:at] + piece + text[at + length :]
+    return text
+
+
+@pytest.fixture
+def folder(write, tmp_path):
+    for name, (text, _) in READERS.items():
+        write(name, text)
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_read_or_refused(folder, name):
+    text, read = READERS[name]
+    outcomes = {"read": 0, "refused": 0}
+
+    @settings(
+        max_examples=400,
+        deadline=None,
+        derandomize=True,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(edits)
+    def try_it(changes):
+        path = folder / f"damaged-{os.getpid()}-{name}"
+        path.write_bytes(damaged(text, changes))
+        try:
+            result = read(path)
+        except InputRefused as error:
+            outcomes["refused"] += 1
+            assert len(str(error).splitlines()) == 1
+            assert len(str(error)) < 1000
+            assert error.file is not None
+        else:
+            outcomes["read"] += 1
+            if read is read_points:
+                assert np.isfinite(result).all()
+                assert result.shape[1] == 3
+            if read is read_off:
+                assert np.isfinite(result.vertices).all()
+                assert result.triangles.min() >= 0
+                assert result.triangles.max() < len(result.vertices)
+
+    try_it()
+    assert outcomes["read"] >= 5, outcomes
+    assert outcomes["refused"] >= 100, outcomes

@@ -1,0 +1,310 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""interpolate and mesh_region as users call them, and surfaces interpolated in projects."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from realmodel.core import (
+    InputRefused,
+    Project,
+    Rock,
+    Surface,
+    UsageError,
+    Variogram,
+    build,
+    interpolate,
+    load_project,
+    mesh_region,
+)
+from stacks import places
+
+RNG = np.random.default_rng(5)
+PLAN = RNG.random((60, 2)) * 100
+POINTS = np.column_stack([PLAN, 5 * np.sin(PLAN[:, 0] / 20) + 0.1 * PLAN[:, 1]])
+NODES = RNG.random((40, 2)) * 100
+SETTINGS = {"model": "spherical", "range": 60.0, "sill": 9.0, "nugget": 0.5}
+
+
+def semivariance(h, model, range, sill, nugget):
+    t = h / range
+    shape = {
+        "spherical": np.where(t < 1, 1.5 * t - 0.5 * t**3, 1.0),
+        "exponential": 1 - np.exp(-3 * t),
+        "gaussian": 1 - np.exp(-3 * t**2),
+    }[model]
+    return np.where(h > 0, nugget + (sill - nugget) * shape, 0.0)
+
+
+def distances(a, b, ratio=1.0, azimuth=0.0):
+    """Distances in plan, those across the long axis (azimuth clockwise from north) stretched by the ratio."""
+    d = a[:, None, :2] - b[None, :, :2]
+    angle = np.radians(azimuth)
+    along = d[..., 0] * np.sin(angle) + d[..., 1] * np.cos(angle)
+    across = d[..., 0] * np.cos(angle) - d[..., 1] * np.sin(angle)
+    return np.hypot(along, ratio * across)
+
+
+def dense_kriging(points, nodes, settings, **anisotropy):
+    """Ordinary kriging with all points, solved as it is written in the textbook."""
+    n = len(points)
+    system = np.ones((n + 1, n + 1))
+    system[:n, :n] = semivariance(distances(points, points, **anisotropy), **settings)
+    system[n, n] = 0.0
+    right = np.ones((n + 1, len(nodes)))
+    right[:n] = semivariance(distances(points, nodes, **anisotropy), **settings)
+    weights = np.linalg.solve(system, right)
+    return weights[:n].T @ points[:, 2], (weights * right).sum(axis=0)
+
+
+@pytest.mark.parametrize("model", ["spherical", "exponential", "gaussian"])
+@pytest.mark.parametrize("anisotropy", [{}, {"ratio": 2.5, "azimuth": 30.0}])
+def test_kriging_as_in_the_textbook(model, anisotropy):
+    settings = {**SETTINGS, "model": model}
+    z, variance = dense_kriging(POINTS, NODES, settings, **anisotropy)
+    result = interpolate(POINTS, NODES, neighbours=0, variogram=settings, anisotropy=anisotropy or None)
+    assert result.z == pytest.approx(z, abs=1e-8)
+    assert result.variance == pytest.approx(variance, abs=1e-8)
+    assert (result.method, result.variogram) == ("kriging", Variogram(**settings))
+    assert not result.variogram.fitted
+
+
+def test_kriging_honours_the_points_and_uses_neighbours():
+    result = interpolate(POINTS, POINTS[:, :2], variogram={**SETTINGS, "nugget": 0.0}, neighbours=8)
+    assert result.z == pytest.approx(POINTS[:, 2])
+    assert result.variance == pytest.approx(np.zeros(len(POINTS)), abs=1e-9)
+    near = np.argsort(distances(POINTS, NODES), axis=0)[:8, 0]
+    z, _ = dense_kriging(POINTS[near], NODES[:1], SETTINGS)
+    assert interpolate(POINTS, NODES, variogram=SETTINGS, neighbours=8).z[0] == pytest.approx(z[0])
+
+
+def test_a_fitted_variogram_comes_with_what_it_was_fitted_to():
+    result = interpolate(POINTS, NODES)
+    variogram = result.variogram
+    assert variogram.fitted
+    assert len(variogram.lags) == len(variogram.gamma) == len(variogram.pairs) > 3
+    assert variogram.range > 0
+    assert 0 <= variogram.nugget <= variogram.sill
+    again = interpolate(POINTS, NODES, variogram=variogram)
+    assert np.array_equal(again.z, result.z)
+    assert again.variogram == variogram
+
+
+def test_idw_by_its_formula():
+    d = distances(POINTS, NODES)
+    weights = d**-3.0
+    expected = (weights * POINTS[:, 2:]).sum(axis=0) / weights.sum(axis=0)
+    result = interpolate(POINTS, NODES, method="idw", neighbours=0, power=3)
+    assert result.z == pytest.approx(expected)
+    assert (result.variance, result.method, result.variogram) == (None, "idw", None)
+
+
+def test_the_number_of_threads_changes_no_bit():
+    one, two = (interpolate(POINTS, NODES, threads=threads) for threads in (1, 2))
+    assert np.array_equal(one.z, two.z)
+    assert np.array_equal(one.variance, two.variance)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"method": "dsi"}, "later version"),
+        ({"method": "magic"}, "unknown method"),
+        ({"power": 2}, "'power' belongs to idw, not to kriging"),
+        ({"method": "idw", "variogram": SETTINGS}, "'variogram' belongs to kriging"),
+        ({"raduis": 2}, "'raduis' is not an option of any method"),
+        ({"neighbours": -1}, "'neighbours' must be a whole number from 0"),
+        ({"neighbours": 2.5}, "'neighbours' must be a whole number from 0"),
+        ({"method": "idw", "power": 0}, "'power' must be more than 0"),
+        ({"variogram": {**SETTINGS, "sill": "4"}}, "'sill' must be a finite number"),
+        ({"variogram": {**SETTINGS, "sill": 0.1}}, "more than the sill"),
+        ({"anisotropy": {"ratio": 2}}, "lacks 'azimuth'"),
+        ({"points": np.zeros((0, 3))}, "there are no points"),
+        ({"points": np.zeros((3, 2))}, "must be an array (N, 3)"),
+        ({"points": [[0, 0, np.nan]]}, "point 0 is (0, 0, nan), not finite"),
+        ({"points": [[0, 0, 1], [0, 0, 2]]}, "points 0 and 1"),
+        ({"points": "many"}, "not an array of numbers"),
+        ({"nodes": [[0, np.inf]]}, "node 0 is not finite"),
+        ({"nodes": [0, 1]}, "must be an array (N, 2)"),
+    ],
+)
+def test_refused(arguments, words):
+    with pytest.raises(InputRefused) as raised:
+        interpolate(**{"points": POINTS, "nodes": NODES, **arguments})
+    assert words in str(raised.value)
+
+
+def test_wrong_calls():
+    with pytest.raises(UsageError, match="threads"):
+        interpolate(POINTS, NODES, threads=-1)
+    with pytest.raises(UsageError, match="triangles"):
+        interpolate(POINTS, NODES, triangles=[0, 1, 2])
+    with pytest.raises(UsageError, match="mesher"):
+        mesh_region([[0, 0], [1, 0], [0, 1]], edge_length=1, mesher="grid")
+    with pytest.raises(InputRefused, match="edge_length"):
+        mesh_region([[0, 0], [1, 0], [0, 1]])
+
+
+OUTLINE = [[0, 0], [10, 0], [10, 8], [6, 8], [6, 4], [0, 4]]
+HOLE = [[7, 1], [8, 1], [8, 2], [7, 2]]
+
+
+def plan_areas(vertices, triangles):
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    return ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2
+
+
+def test_mesh_region():
+    steps = []
+    vertices, triangles = mesh_region(
+        OUTLINE, holes=[HOLE], edge_length=0.25, progress=lambda fraction, text: steps.append(fraction)
+    )
+    assert (vertices.dtype, triangles.dtype) == (np.float64, np.int32)
+    areas = plan_areas(vertices, triangles)
+    assert (areas > 0).all()
+    assert areas.sum() == pytest.approx(10 * 8 - 6 * 4 - 1)
+    edges = np.concatenate([vertices[triangles] - vertices[np.roll(triangles, 1, axis=1)]]).reshape(-1, 2)
+    assert np.hypot(*edges.T).mean() == pytest.approx(0.25, rel=0.3)
+    assert steps[-1] == 1.0
+    closed, turned = mesh_region([*OUTLINE, OUTLINE[0]][::-1], holes=[HOLE], edge_length=0.25)
+    assert plan_areas(closed, turned).sum() == pytest.approx(areas.sum())
+
+
+@pytest.mark.parametrize(
+    ("outline", "options", "words"),
+    [
+        ([[0, 0], [1, 1], [1, 0], [0, 1]], {}, "crosses"),
+        ([[0, 0], [1, 0], [2, 0]], {}, "one line"),
+        ([[0, 0], [1, 0], [1, 1]], {"edge_length": 1e-9}, "would need"),
+        ([[0, 0], [1, 0], [1, 1]], {"edge_length": 0}, "above 0"),
+        ([[0, 0], [1, 0], [1, 1]], {"edge_length": "2"}, "above 0"),
+        ([[0, 0], [1, 0], [1, 1]], {"holes": [[[0.5, 0.2], [3, 0.2], [3, 0.3]]]}, "crosses"),
+        ([[0, 0], [1, 0], [1, np.nan]], {}, "corner 2"),
+    ],
+)
+def test_regions_refused(outline, options, words):
+    with pytest.raises(InputRefused) as raised:
+        mesh_region(outline, **{"edge_length": 0.1, **options})
+    assert words in str(raised.value)
+
+
+@pytest.fixture
+def basin(write):
+    """A project with two interpolated surfaces, a ready mesh between them, and a region with a hole."""
+
+    def put(edge_length=1.0, region='"region.geojson"'):
+        x, y = (g.ravel() for g in np.meshgrid(np.linspace(-1, 11, 13), np.linspace(-1, 9, 11)))
+        for name, z in (("floor", 0.02 * (x - 5) ** 2), ("top", 3 + 0.1 * np.sin(y))):
+            write(
+                f"{name}.csv", "x,y,z\n" + "\n".join(f"{a},{b},{c}" for a, b, c in zip(x, y, z, strict=True))
+            )
+        write("middle.off", "OFF\n4 1 0\n-5 -5 1\n20 -5 1\n20 20 1.5\n-5 20 1.5\n4 0 1 2 3\n")
+        rings = [[*OUTLINE, OUTLINE[0]], [*HOLE, HOLE[0]]]
+        write("region.geojson", f'{{"type": "Polygon", "coordinates": {rings}}}')
+        return write(
+            "basin.toml",
+            f"""format = 1
+name = "basin"
+[[rock]]
+name = "basin"
+region = {region}
+edge_length = {edge_length}
+base_elevation = -2.0
+[[rock.surface]]
+name = "floor"
+points = "floor.csv"
+method = "idw"
+power = 3
+[[rock.surface]]
+name = "middle"
+mesh = "middle.off"
+[[rock.surface]]
+name = "top"
+points = "top.csv"
+variogram = {{model = "gaussian", range = 8, sill = 0.5}}
+""",
+        )
+
+    return put
+
+
+def test_surfaces_interpolated_on_one_mesh(basin, tmp_path):
+    path = basin()
+    model = build(load_project(path))
+    floor, top = model.surface(0), model.surface(2)
+    assert np.array_equal(floor[1], top[1])
+    assert np.array_equal(floor[0][:, :2], top[0][:, :2])
+    assert model.surface(1)[0].shape == (4, 3)
+    methods = [result.method if result else None for result in model.interpolations]
+    assert methods == ["idw", None, "kriging"]
+    assert model.interpolations[2].variogram == Variogram("gaussian", 8.0, 0.5)
+    # the region is 55 in area; the ready mesh is clipped by it
+    thickness = model.volume / 55.0
+    assert 4.9 < thickness < 5.2
+    assert [block.name for block in model.blocks] == ["base block", "middle block", "top block"]
+    if places.CHECK.is_dir():
+        model.save(tmp_path / "m.npz")
+        check = subprocess.run(
+            [sys.executable, places.CHECK / "check_model.py", path, tmp_path / "m.npz"],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert check.returncode == 0, check.stdout
+    staged = model.stage(1)
+    assert staged.volume < model.volume
+    assert np.array_equal(staged.surface(0)[0], floor[0])
+    assert np.array_equal(build(load_project(path), stage=1).vertices, staged.vertices)
+
+
+def test_a_ready_mesh_is_clipped_by_a_region_without_a_mesh():
+    triangles = np.array([[0, 1, 2], [0, 2, 3]])
+    plan = np.array([[-5, -5], [20, -5], [20, 20], [-5, 20.0]])
+    surfaces = [Surface(f"S{k}", np.column_stack([plan, np.full(4, float(k))]), triangles) for k in range(2)]
+    model = build(Project("x", [Rock("r", surfaces, region=OUTLINE, holes=[HOLE])]))
+    assert model.volume == pytest.approx(55.0)
+
+
+def test_huge_meshes_are_refused_at_the_line_of_the_edge_length(basin):
+    path = basin(edge_length=1e-7)
+    with pytest.raises(InputRefused) as raised:
+        build(load_project(path))
+    message = str(raised.value)
+    assert (raised.value.file, raised.value.line) == (path, 6)
+    assert "edge length 1e-07 would need" in message
+    assert "use an edge length of at least" in message
+
+
+def test_outlines_that_cross_are_refused_at_their_place(basin):
+    path = basin(region="[[0, 0], [9, 9], [9, 0], [0, 9]]")
+    with pytest.raises(InputRefused) as raised:
+        build(load_project(path))
+    assert (raised.value.file, raised.value.line) == (path, 5)
+    assert raised.value.place == (4.5, 4.5)
+    assert "crosses" in str(raised.value)
+
+
+def test_mis_ties_are_averaged_and_told(basin, write):
+    path = basin()
+    build(load_project(path))
+    write("top.csv", "0,0,1\n10,8,3\n0,0,1.06\n5,5,2\n5,5,2\n")
+    model = build(load_project(path))
+    # The diagonal of middle.off runs through nodes of the mesh, up to rounding: that is told as well.
+    (warning,) = (w for w in model.warnings if w.kind != "joined")
+    assert (warning.kind, warning.rock, warning.surface) == ("points", "basin", "top")
+    assert "1 place has several heights, up to 0.06 apart (at (0, 0)): the mean is taken" in str(warning)
+    vertices, _ = model.surface(2)
+    corner = (vertices[:, :2] == 0).all(axis=1)
+    assert vertices[corner, 2] == pytest.approx([1.03])
+    assert len(model.project.rocks[0].surfaces[2].points) == 5, "the project keeps what was given"
+    assert model.stage(2) is model
+    assert [w for w in model.stage(1).warnings if w.kind != "joined"] == []
+
+
+def test_contradicting_points_are_named(basin, write):
+    path = basin()
+    write("top.csv", "0,0,1\n5,5,2\n0,0,3\n")
+    with pytest.raises(InputRefused) as raised:
+        build(load_project(path))
+    assert "top.csv: rock 'basin', surface 'top', points: points 0 and 2" in str(raised.value)

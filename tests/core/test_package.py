@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The package as a whole: one version everywhere, and nothing of Blender until it is asked for."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import realmodel
+from realmodel import _native
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def test_one_version_everywhere():
+    version = (ROOT / "VERSION").read_text(encoding="utf-8").strip()
+    assert version == _native.VERSION
+    assert version == ".".join(map(str, realmodel.bl_info["version"]))
+
+
+def test_bl_info_is_read_without_running_the_add_on():
+    """Blender evaluates the literal in the source: names or calls in it would hide the add-on."""
+    tree = ast.parse(Path(realmodel.__file__).read_text(encoding="utf-8"))
+    (value,) = (
+        node.value for node in tree.body if isinstance(node, ast.Assign) and node.targets[0].id == "bl_info"
+    )
+    assert ast.literal_eval(value) == realmodel.bl_info
+
+
+def test_import_needs_neither_blender_nor_numpy():
+    program = "import sys, realmodel; sys.exit(any(name in sys.modules for name in ('bpy', 'numpy')))"
+    addon = str(Path(realmodel.__file__).resolve().parents[1])
+    finished = subprocess.run([sys.executable, "-c", program], env={"PYTHONPATH": addon}, check=False)
+    assert finished.returncode == 0

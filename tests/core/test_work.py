@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Long work in a thread: progress often enough, cancelling soon enough, nothing left running."""
+
+import _thread
+import threading
+import time
+from itertools import pairwise
+
+import pytest
+from realmodel.core import Cancelled, InputRefused
+from realmodel.core.work import run
+
+
+def in_steps(work, seconds=1.0, steps=200):
+    with work.phase(0.0, 0.5, "first half"):
+        for step in range(steps // 2):
+            time.sleep(seconds / steps)
+            work.step(step / (steps // 2))
+    with work.phase(0.5, 1.0, "second half"):
+        for step in range(steps // 2):
+            time.sleep(seconds / steps)
+            work.step(step / (steps // 2))
+    return "done"
+
+
+def working_threads():
+    return [thread for thread in threading.enumerate() if thread.name == "realmodel work"]
+
+
+def test_progress_ten_times_a_second_and_never_falling():
+    calls = []
+    caller = threading.get_ident()
+
+    def progress(fraction, text):
+        assert threading.get_ident() == caller
+        calls.append((time.perf_counter(), fraction, text))
+
+    assert run(in_steps, progress) == "done"
+    times = [time for time, _, _ in calls]
+    assert len(calls) > 10 * (times[-1] - times[0])
+    assert max(b - a for a, b in pairwise(times)) < 0.25, "evenly, on a busy machine too"
+    fractions = [fraction for _, fraction, _ in calls]
+    assert fractions == sorted(fractions)
+    assert 0.0 <= fractions[0] < 0.2
+    assert fractions[-1] == 1.0
+    assert [text for _, _, text in calls] == sorted(text for _, _, text in calls)
+
+
+def test_cancel_stops_soon_and_leaves_no_thread():
+    asked = []
+
+    def cancel():
+        asked.append(time.perf_counter())
+        return len(asked) > 3
+
+    with pytest.raises(Cancelled):
+        run(lambda work: in_steps(work, 60.0, 6000), cancel=cancel)
+    assert time.perf_counter() - asked[3] < 0.2
+    assert not working_threads()
+
+
+def test_what_progress_raises_stops_the_work():
+    def progress(_fraction, _text):
+        raise RuntimeError("the window is gone")
+
+    with pytest.raises(RuntimeError, match="window"):
+        run(lambda work: in_steps(work, 60.0, 6000), progress)
+    assert not working_threads()
+
+
+def test_ctrl_c_stops_the_work_and_passes_on():
+    threading.Timer(0.2, _thread.interrupt_main).start()
+    began = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        run(lambda work: in_steps(work, 60.0, 6000))
+    assert time.perf_counter() - began < 0.5
+    assert not working_threads()
+
+
+def test_errors_of_the_work_reach_the_caller():
+    def task(_work):
+        raise InputRefused("so", file="f", line=3, item="here", advice="do that")
+
+    with pytest.raises(InputRefused, match=r"^f:3: here: so; do that$"):
+        run(task)
+
+
+def test_the_last_call_tells_the_end():
+    calls = []
+
+    def task(work):
+        with work.phase(0.0, 1.0, "quick"):
+            pass
+
+    run(task, lambda fraction, text: calls.append((fraction, text)))
+    assert calls == [(1.0, "quick")]
