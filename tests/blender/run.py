@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs the tests of this folder inside Blender or with the module bpy.
+
+    blender -b --factory-startup --python-exit-code 1 -P tests/blender/run.py [-- NAME ...]
+    python tests/blender/run.py [NAME ...]
+
+NAME: only tests whose name contains one of these words. The exit status is 1 where a test failed or
+none ran.
+"""
+
+import sys
+import unittest
+from pathlib import Path
+
+import bpy
+
+FOLDER = Path(__file__).resolve().parent
+sys.path[:0] = [str(FOLDER.parents[1] / "addon"), str(FOLDER)]
+
+
+def _words():
+    if "--" in sys.argv:
+        return sys.argv[sys.argv.index("--") + 1 :]
+    in_blender = Path(sys.argv[0]).resolve() != Path(__file__).resolve()
+    return [] if in_blender else sys.argv[1:]
+
+
+def _flat(suite):
+    for test in suite:
+        if isinstance(test, unittest.TestSuite):
+            yield from _flat(test)
+        else:
+            yield test
+
+
+def main():
+    found = _flat(unittest.defaultTestLoader.discover(str(FOLDER), "test_*.py"))
+    words = _words()
+    chosen = unittest.TestSuite(t for t in found if not words or any(w in t.id() for w in words))
+    result = unittest.TextTestRunner(stream=sys.stdout, verbosity=2).run(chosen)
+    failed = len(result.failures) + len(result.errors) + len(result.unexpectedSuccesses)
+    passed = result.testsRun - failed - len(result.skipped)
+    print(
+        f"Blender {bpy.app.version_string}: {passed} passed, {failed} failed, {len(result.skipped)} skipped",
+        flush=True,
+    )
+    return 1 if failed or not result.testsRun else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""build_model.py run by Blender: exit status, output, and nothing left behind."""
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import bpy
+from blender_state import empty_file, open_edges, pixels
+from realmodel.bl import scene
+
+ROOT = Path(__file__).resolve().parents[2]
+SAMPLE = ROOT / "blend_samples" / "two_layers" / "project.toml"
+# The module bpy has no program of its own: the script is run as Blender would, by this interpreter.
+AS_MODULE = (
+    "import bpy, runpy, sys; sys.argv = ['build_model.py', '--', *sys.argv[1:]]; "
+    f"runpy.run_path({str(ROOT / 'build_model.py')!r}, run_name='__main__')"
+)
+
+
+def build_model(*arguments):
+    """Runs build_model.py in a new process of the Blender that these tests run in."""
+    if Path(bpy.app.binary_path).name.startswith("blender"):
+        start = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1"]
+        start += ["-P", str(ROOT / "build_model.py"), "--"]
+    else:
+        start = [sys.executable, "-c", AS_MODULE]
+    command = [*start, *(str(argument) for argument in arguments)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+
+
+class BuildModel(unittest.TestCase):
+    def setUp(self):
+        self.place = tempfile.TemporaryDirectory()
+        self.addCleanup(self.place.cleanup)
+        self.folder = Path(self.place.name)
+
+    def left(self):
+        return sorted(path.name for path in self.folder.rglob("*"))
+
+    def test_done(self):
+        blend, picture = self.folder / "m.blend", self.folder / "m.png"
+        done = build_model(SAMPLE, "--blend", blend, "--render", picture)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr, "")
+        self.assertIn("Sand", done.stdout)
+        self.assertNotIn("Fra:", done.stdout, "Blender's chatter")
+        self.assertEqual(self.left(), ["m.blend", "m.png"])
+        self.assertEqual(pixels(picture).shape, (1000, 1600, 3))
+        empty_file()
+        bpy.ops.wm.open_mainfile(filepath=str(blend))
+        blocks = scene.model_objects(bpy.context.scene, "block")
+        self.assertEqual([block.name for block in blocks][-1], "Sand")
+        self.assertEqual([open_edges(block.data) for block in blocks], [0, 0])
+
+    def test_refused(self):
+        project = self.folder / "p.toml"
+        project.write_text('format = 1\nname = "x"\ncolour = "red"\n')
+        done = build_model(project, "--blend", self.folder / "m.blend")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"\A[^\n]*p\.toml:3[^\n]*colour[^\n]*\n\Z")
+        self.assertEqual(self.left(), ["p.toml"])
+
+    def test_wrong_usage(self):
+        for arguments in ((), (SAMPLE, "--colour"), (SAMPLE, "--blend", self.folder / "m.txt")):
+            done = build_model(*arguments)
+            self.assertEqual(done.returncode, 2, arguments)
+            self.assertTrue(done.stderr.strip())
+        self.assertEqual(self.left(), [])
+
+    def test_failure_keeps_earlier_files(self):
+        blend = self.folder / "m.blend"
+        blend.write_bytes(b"earlier")
+        done = build_model(SAMPLE, "--blend", blend, "--render", self.folder / "missing" / "m.png")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertEqual(blend.read_bytes(), b"earlier")
+        self.assertEqual(self.left(), ["m.blend"])
