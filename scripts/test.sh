@@ -1,0 +1,170 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs what the tests need, builds, and runs every test. The last line is
+#   N passed, N failed, N skipped
+# (a check that is no test, such as the format, counts as one failed where it fails); the exit status is
+# 1 if anything failed. What each step printed is kept in build/test.
+#
+#   scripts/test.sh [--quick] [--only STEP]...
+#     --quick       without the sanitizer build
+#     --only STEP   only this step, and the build it needs:
+#                   format ruff shellcheck native core blender bpy asan;
+#                   and two that are not run unless asked for: tidy tsan
+#
+# shellcheck disable=SC2317  # the functions are called by name, through step
+set -uo pipefail # and not -e: one step that fails does not keep the others from running
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root" || exit 1
+
+all_steps=(format ruff shellcheck native core blender bpy asan)
+steps=("${all_steps[@]}")
+only=()
+while (($# > 0)); do
+    case $1 in
+        --quick) steps=("${all_steps[@]/asan/}") ;;
+        --only)
+            case ${2-} in
+                format | ruff | shellcheck | native | core | blender | bpy | asan | tidy | tsan) only+=("$2") ;;
+                *)
+                    echo "test.sh: --only needs a step: ${all_steps[*]} tidy tsan" >&2
+                    exit 2
+                    ;;
+            esac
+            shift
+            ;;
+        *)
+            echo "usage: test.sh [--quick] [--only STEP]..." >&2
+            exit 2
+            ;;
+    esac
+    shift
+done
+((${#only[@]} > 0)) && steps=("${only[@]}")
+wants() { # STEP...
+    local step
+    for step in "$@"; do [[ " ${steps[*]} " == *" $step "* ]] && return 0; done
+    return 1
+}
+
+logs=$root/build/test
+mkdir -p "$logs"
+# The interpreter inside Debian's Blender; the tests of the core run on the same version.
+python=/usr/bin/python3
+[[ -x $python ]] || python=$(command -v python3)
+venv=$root/build/venv
+venv_bpy=$root/build/venv-bpy
+
+passed=0 failed=0 skipped=0 not_run=()
+
+count() { # REPORT: adds its tests to the sums
+    local counts p f s
+    if ! counts=$("$python" scripts/count_tests.py "$1"); then
+        return 1
+    fi
+    read -r p f s <<<"$counts"
+    ((passed += p, failed += f, skipped += s))
+    echo "     $p passed, $f failed, $s skipped"
+}
+
+step() { # NAME COMMAND...: runs it, shows how long it took, counts it as failed if no test of its did
+    local name=$1 start=$SECONDS status=0 failed_before=$failed log
+    shift
+    log=$logs/$name.log
+    echo "==== $name"
+    [[ -z ${counted[$name]-} ]] || rm -f "${counted[$name]}"
+    "$@" </dev/null > >(tee "$log") 2>&1 || status=$?
+    wait "$!" # until tee has written all of it
+    if [[ -n ${counted[$name]-} ]]; then
+        count "${counted[$name]}" || status=1
+    fi
+    if ((status != 0 && failed == failed_before)); then
+        ((failed += 1))
+    fi
+    if ((status == 0)); then
+        echo "---- $name: $((SECONDS - start)) s"
+    else
+        echo "---- $name: FAILED, exit status $status, $((SECONDS - start)) s; its output is in $log"
+    fi
+    return "$status"
+}
+declare -A counted=(
+    [native]=$logs/release.xml [asan]=$logs/asan.xml [tsan]=$logs/tsan.xml [core]=$logs/core.xml
+    [blender]=$logs/blender.log [bpy]=$logs/bpy.log)
+
+skip() { # NAME WHY
+    echo "==== $1"
+    echo "SKIPPED $2"
+    not_run+=("$1")
+}
+
+finish() {
+    echo
+    ((${#not_run[@]} == 0)) || echo "Not run: ${not_run[*]}"
+    echo "All steps: $SECONDS s"
+    local summary="$passed passed, $failed failed"
+    ((skipped == 0)) || summary+=", $skipped skipped"
+    echo "$summary"
+    exit $((failed > 0))
+}
+
+install() {
+    local groups=(build)
+    wants format shellcheck && groups+=(test)
+    wants blender && groups+=(blender)
+    wants bpy && groups+=(bpy)
+    wants tidy && groups+=(tidy)
+    wants tsan && groups+=(tsan)
+    scripts/install_dependencies.sh "${groups[@]}" &&
+        scripts/python_environment.sh "$venv" scripts/requirements/test.txt "$python"
+}
+
+cpp_files() { git ls-files -z --cached --others --exclude-standard '*.cpp' '*.hpp'; }
+
+check_format() { cpp_files | xargs -0 clang-format --dry-run -Werror; }
+
+check_ruff() { "$venv/bin/ruff" check . && "$venv/bin/ruff" format --check .; }
+
+check_shell() { shellcheck scripts/*.sh .ci/run; }
+
+test_native() { # PRESET: it is configured
+    cmake --build "build/$1" -j 2 &&
+        ctest --preset "$1" -j 2 --output-junit "$logs/$1.xml" | grep -Ev '^ +Start +[0-9]+:'
+}
+
+test_sanitized() { cmake --preset "$1" --log-level=WARNING && test_native "$1"; }
+
+check_tidy() {
+    cmake --preset dev --log-level=WARNING &&
+        git ls-files -z 'native/src/*.cpp' | xargs -0 -n 1 -P 2 clang-tidy --quiet -p build/dev --warnings-as-errors='*'
+}
+
+# A shell that starts this script in the background has it ignore Ctrl-C, which some tests send.
+in_time() { timeout --kill-after=10 "$1" env --default-signal=INT "${@:2}"; } # LIMIT COMMAND...
+
+test_core() { in_time 30m "$venv/bin/python" -m pytest tests/core --junitxml="$logs/core.xml"; }
+
+test_blender() { in_time 15m blender -b --factory-startup --python-exit-code 1 -P tests/blender/run.py; }
+
+test_bpy() { in_time 15m "$venv_bpy/bin/python" tests/blender/run.py; }
+
+step install install || finish
+wants format && step format check_format
+wants ruff && step ruff check_ruff
+wants shellcheck && step shellcheck check_shell
+if wants native core blender bpy; then
+    step build scripts/build.sh "$python" || finish
+fi
+wants native && step native test_native release
+wants core && step core test_core
+wants blender && step blender test_blender
+if wants bpy; then
+    if ! "$python" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))'; then
+        skip bpy "bpy 4.5 exists for Python 3.11 only; $python is $("$python" --version)"
+    elif step bpy-install scripts/python_environment.sh "$venv_bpy" scripts/requirements/bpy.txt "$python"; then
+        step bpy test_bpy
+    fi
+fi
+wants asan && step asan test_sanitized asan
+wants tidy && step tidy check_tidy
+wants tsan && step tsan test_sanitized tsan
+finish
