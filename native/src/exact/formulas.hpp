@@ -66,6 +66,15 @@ Homogeneous<Number> cross(const LineCoefficients<Number>& l, const LineCoefficie
             Number(l.a * m.b - m.a * l.b)};
 }
 
+/// A point of a scope relative to a plan vertex.
+template <class Number, class Arithmetic>
+Homogeneous<Number> place(const Arithmetic& in, const Scope& scope, PointId id, VertexId origin) {
+    if (scope.is_vertex(id)) return {in.dx(id, origin), in.dy(id, origin), Number(1)};
+    const Point& p = scope.point(id);
+    return cross(line_coefficients<Number>(in, scope.shared(), scope.line(p.first), origin),
+                 line_coefficients<Number>(in, scope.shared(), scope.line(p.second), origin));
+}
+
 /// A plan vertex that a line starts from.
 inline VertexId anchor(const PlanGeometry& g, const Line& line) {
     return line.kind == Line::Kind::kEdge ? line.first

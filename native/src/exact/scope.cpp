@@ -17,15 +17,6 @@ int sign_of(double value) {
     return value > 0.0 ? 1 : (value < 0.0 ? -1 : 0);
 }
 
-/// The place of a crossing relative to a plan vertex.
-template <class Number, class Arithmetic>
-Homogeneous<Number> place(const Arithmetic& in, const Scope& scope, PointId id, VertexId origin) {
-    if (scope.is_vertex(id)) return {in.dx(id, origin), in.dy(id, origin), Number(1)};
-    const Point& p = scope.point(id);
-    return cross(line_coefficients<Number>(in, scope.shared(), scope.line(p.first), origin),
-                 line_coefficients<Number>(in, scope.shared(), scope.line(p.second), origin));
-}
-
 VertexId origin_of(const Scope& scope, PointId id) {
     return scope.is_vertex(id) ? id : anchor(scope.shared(), scope.line(scope.point(id).first));
 }
@@ -228,82 +219,6 @@ PointId Scope::crossing(LineId a, LineId b) {
         points_.push_back(p);
     }
     return kLocal + found.number;
-}
-
-void Scope::locate(Point& p) {
-    const Line& l = line(p.first);
-    const Line& m = line(p.second);
-    const VertexId origin = anchor(shared_, l);
-    const Point& o = shared_.point(origin);
-    const BallArithmetic in{shared_};
-    const auto h = cross(line_coefficients<Ball>(in, shared_, l, origin),
-                         line_coefficients<Ball>(in, shared_, m, origin));
-    const auto x = (h.x / h.w + Ball(o.x)).rounded();
-    const auto y = (h.y / h.w + Ball(o.y)).rounded();
-    if (x && y) {
-        p.x = *x;
-        p.y = *y;
-    } else {
-        ++exact_;
-        const IntegerArithmetic exact{shared_};
-        const auto e = cross(line_coefficients<mpz_class>(exact, shared_, l, origin),
-                             line_coefficients<mpz_class>(exact, shared_, m, origin));
-        const int unit = shared_.plan_exponent();
-        p.x = nearest_double(e.x + whole_number(o.x, unit) * e.w, e.w, unit);
-        p.y = nearest_double(e.y + whole_number(o.y, unit) * e.w, e.w, unit);
-    }
-    p.error = std::max(std::abs(p.x), std::abs(p.y)) * 0x1p-53 + 1e-300;
-}
-
-std::array<double, 2> Scope::rounded(PointId id) {
-    return {point(id).x, point(id).y};
-}
-
-double Scope::rounded_height(PlaneId plane_id, PointId id) {
-    const SpaceVertex& corner = shared_.space(shared_.plane(plane_id).corner[0]);
-    if (is_vertex(id)) {
-        const SpaceId s = shared_.corner_above(plane_id, id);
-        if (s >= 0) return shared_.space(s).z;
-    }
-    {
-        const BallArithmetic in{shared_};
-        const auto n = plane_normal<Ball>(in, shared_, plane_id);
-        const auto h = place<Ball>(in, *this, id, corner.plan);
-        const auto z = (Ball(corner.z) - (n.a * h.x + n.b * h.y) / (n.c * h.w)).rounded();
-        if (z) return *z;
-    }
-    ++exact_;
-    const IntegerArithmetic in{shared_};
-    const auto n = plane_normal<mpz_class>(in, shared_, plane_id);
-    const auto h = place<mpz_class>(in, *this, id, corner.plan);
-    const mpz_class w = n.c * h.w;
-    const int unit = shared_.height_exponent();
-    return nearest_double(whole_number(corner.z, unit) * w - n.a * h.x - n.b * h.y, w, unit);
-}
-
-std::array<double, 3> Scope::line_key(LineId id) {
-    const Line& l = line(id);
-    constexpr VertexId kOrigin = 0;  // any vertex does, as long as it is the same for all lines
-    {
-        const auto c = line_coefficients<Ball>(BallArithmetic{shared_}, shared_, l, kOrigin);
-        const auto a = c.a.sign(), b = c.b.sign();
-        if (a && b) {
-            const auto steep = ((*a < 0 ? -c.a : c.a) - (*b < 0 ? -c.b : c.b)).sign();
-            if (steep) {
-                const Ball& divisor = *steep > 0 ? c.a : c.b;
-                const auto slope = ((*steep > 0 ? c.b : c.a) / divisor).rounded();
-                const auto offset = (c.c / divisor).rounded();
-                if (slope && offset) return {*steep > 0 ? 1.0 : 0.0, *slope, *offset};
-            }
-        }
-    }
-    ++exact_;
-    const auto e = line_coefficients<mpz_class>(IntegerArithmetic{shared_}, shared_, l, kOrigin);
-    const bool steep = mpz_cmpabs(e.a.get_mpz_t(), e.b.get_mpz_t()) > 0;
-    const mpz_class& divisor = steep ? e.a : e.b;
-    // a and b are lengths over lengths; c is a length in units of 2^plan_exponent
-    return {steep ? 1.0 : 0.0, nearest_double(steep ? e.b : e.a, divisor, 0),
-            nearest_double(e.c, divisor, shared_.plan_exponent())};
 }
 
 void Scope::hand_over(PlanGeometry& geometry) {
