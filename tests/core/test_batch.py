@@ -273,19 +273,22 @@ def time_of_a_run(project, out):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_interrupted_at_any_moment(large, out, number):
     """Exit status 130 (143) and nothing left; too late only when all is there."""
-    taken = time_of_a_run(large, out)
+    latest = 0.9 * time_of_a_run(large, out)
     chance = random.Random(3)
-    interrupted = 0
-    for _ in range(8):
+    interrupted = trials = 0
+    while trials < 8 or interrupted < 3:
+        trials += 1
+        assert trials < 30, "it cannot be interrupted"
         process = started(large, out)
         process.stdout.readline()  # its handlers stand
-        time.sleep(chance.uniform(0.0, 0.9 * taken))
+        time.sleep(chance.uniform(0.0, latest))
         process.send_signal(number)
         _, errors = process.communicate()
         if process.returncode == 0:
             assert names(out) == ["m.npz", "m.vtu", "r.json"]
             for path in out.iterdir():
                 path.unlink()
+            latest *= 0.8  # the machine was busier while the run was timed
             continue
         interrupted += 1
         assert process.returncode == (130 if number == signal.SIGINT else 143), errors
@@ -293,7 +296,6 @@ def test_interrupted_at_any_moment(large, out, number):
             "build_model.py: interrupted: nothing was written\n" if number == signal.SIGINT else ""
         )
         assert names(out) == []
-    assert interrupted >= 2
 
 
 def test_killed_at_any_moment(large, out):

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from conftest import grid_surface
+from conftest import grid_surface, least_of, unevenness
 from realmodel.core import (
     Cancelled,
     InputRefused,
@@ -312,25 +312,33 @@ def test_one_surface_alone_warns():
 
 @pytest.fixture(scope="module")
 def long_build():
-    """A project that takes a second or so."""
+    """A project that takes a second or so, whatever the machine."""
 
     def height(k):
         return lambda x, y: 0.1 * k + 0.4 * np.sin(7 * x + k) * np.cos(6 * y - k)
 
-    return rock(*(Surface(f"S{k}", *grid_surface(60 + k, height(k))) for k in range(10)))
+    cells, taken = 40, 0.0
+    while taken < 0.7:
+        cells = int(cells * 1.5)
+        project = rock(*(Surface(f"S{k}", *grid_surface(cells + k, height(k))) for k in range(10)))
+        began = time.perf_counter()
+        build(project)
+        taken = time.perf_counter() - began
+    return project
 
 
 def test_progress_of_a_build(long_build):
-    calls = []
-    build(long_build, progress=lambda fraction, text: calls.append((time.perf_counter(), fraction, text)))
-    times, fractions, texts = zip(*calls, strict=True)
-    assert len(calls) > 5, "the model is too small to see progress"
-    assert len(calls) > 10 * (times[-1] - times[0]), "ten times a second"
-    assert max(b - a for a, b in pairwise(times)) < 0.25, "and evenly, on a busy machine too"
-    assert list(fractions) == sorted(fractions)
-    assert 0.0 <= fractions[0] < 0.5
-    assert fractions[-1] == 1.0
-    assert any("intersecting" in text for text in texts)
+    def watched():
+        calls = []
+        build(long_build, progress=lambda fraction, text: calls.append((time.perf_counter(), fraction, text)))
+        times, fractions, texts = zip(*calls, strict=True)
+        assert list(fractions) == sorted(fractions)
+        assert fractions[-1] == 1.0
+        assert any("intersecting" in text for text in texts)
+        assert fractions[0] >= 0.0
+        return max(unevenness(times), fractions[0] / 0.5)
+
+    assert least_of(watched, 1.0) < 1.0
 
 
 def seconds_to_cancel(project, share):
@@ -350,5 +358,4 @@ def seconds_to_cancel(project, share):
 
 @pytest.mark.parametrize("share", [0.0, 0.2, 0.4, 0.6])
 def test_a_build_is_cancelled_within_a_fifth_of_a_second(long_build, share):
-    """The quickest of three, because the machine may be busy with other work."""
-    assert min(seconds_to_cancel(long_build, share) for _ in range(3)) < 0.2
+    assert least_of(lambda: seconds_to_cancel(long_build, share), 0.2) < 0.2

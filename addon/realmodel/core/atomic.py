@@ -173,6 +173,7 @@ class Outputs:
     def drop(self) -> None:
         """Gives up all that has no name yet."""
         _drop(self._staged, self._scratch)
+        self._net.detach()  # Python would drop a Ctrl-C that comes while it ends the object
 
 
 def _drop(staged: list[_Staged], scratch: list[Path]) -> None:
