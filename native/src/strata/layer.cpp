@@ -2,13 +2,12 @@
 #include "layer.hpp"
 
 #include <algorithm>
-#include <compare>
+#include <optional>
+#include <stdexcept>
 #include <string>
 
-#include "parallel_sort.hpp"
+#include "parallel_chunks.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/meshing/triangulation.hpp"
-#include "single_elements.hpp"
 
 namespace realmodel::strata {
 
@@ -17,15 +16,6 @@ using exact::VertexId;
 
 namespace {
 
-struct PlanEdge {
-    VertexId low, high;  // plan vertices, low < high
-    friend auto operator<=>(const PlanEdge&, const PlanEdge&) = default;
-};
-
-VertexId next_vertex(PolygonView polygon, std::size_t i) {
-    return polygon[i + 1 < polygon.size() ? i + 1 : 0].point;
-}
-
 void add_triangle(PlanGeometry& geometry, PolygonPool& pool, const std::array<VertexId, 3>& v) {
     const Corner corners[] = {{v[0], geometry.add_edge(v[0], v[1])},
                               {v[1], geometry.add_edge(v[1], v[2])},
@@ -33,94 +23,33 @@ void add_triangle(PlanGeometry& geometry, PolygonPool& pool, const std::array<Ve
     pool.add(corners);
 }
 
-/// The edges that only one polygon has, ascending.
-std::vector<PlanEdge> border_edges(const PolygonPool& polygons, int threads,
-                                   const Progress* progress) {
-    std::vector<PlanEdge> edges;
-    edges.reserve(polygons.corners.size());
-    for (std::size_t t = 0; t < polygons.size(); ++t) {
-        for (std::size_t i = 0; i < polygons[t].size(); ++i) {
-            const VertexId from = polygons[t][i].point, to = next_vertex(polygons[t], i);
-            edges.push_back({std::min(from, to), std::max(from, to)});
-        }
-    }
-    parallel_sort(edges, std::less<>(), threads, progress);
-    keep_single(edges);
-    return edges;
-}
-
-/// Covers what the polygons leave of the frame with void triangles (plane `empty`): a constrained
-/// Delaunay triangulation of their border edges, of which only whole components can be covered. The
-/// grid of the polygons must be there; it does not know the void triangles.
-void fill_frame(PlanGeometry& geometry, Layer& layer, const std::vector<PlanEdge>& border,
-                const Frame& frame, PlaneId empty) {
-    std::vector<VertexId> used(frame.begin(), frame.end());
-    for (const PlanEdge& edge : border) {
-        used.push_back(edge.low);
-        used.push_back(edge.high);
-    }
-    std::sort(used.begin(), used.end());
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-    const auto local = [&](VertexId v) {
-        return static_cast<std::int32_t>(std::lower_bound(used.begin(), used.end(), v) -
-                                         used.begin());
-    };
-    std::vector<meshing::PlanPoint> points;
-    points.reserve(used.size());
-    for (const VertexId v : used)
-        points.push_back({geometry.point(v).x, geometry.point(v).y});
-    std::vector<std::array<std::int32_t, 2>> segments;
-    segments.reserve(border.size());
-    for (const PlanEdge& edge : border)
-        segments.push_back({local(edge.low), local(edge.high)});
-    const auto fill = meshing::constrained_delaunay(points, segments);
-
-    const auto vertices_of = [&](std::size_t t) {
-        std::array<VertexId, 3> v;
-        for (std::size_t i = 0; i < 3; ++i) {
-            v[i] = used[static_cast<std::size_t>(fill.triangles[t][i])];
-        }
-        return v;
-    };
-
-    std::vector<std::int8_t> state(fill.triangles.size(), -1);  // 1 void, 0 covered, -1 unknown
-    std::vector<std::size_t> pending;
-    std::vector<std::int32_t> candidates;
-    for (std::size_t seed = 0; seed < state.size(); ++seed) {
-        if (state[seed] >= 0) continue;
-        PolygonPool one;
-        add_triangle(geometry, one, vertices_of(seed));
-        Scope scope(geometry);
-        Clipper clipper(scope);
-        layer.grid.candidates(scope, one[0], candidates);
-        const bool covered = std::any_of(candidates.begin(), candidates.end(), [&](std::int32_t c) {
-            return clipper.overlap(one[0], layer.polygons[static_cast<std::size_t>(c)]);
-        });
-        const std::int8_t mark = covered ? 0 : 1;
-        pending.assign(1, seed);
-        state[seed] = mark;
-        while (!pending.empty()) {
-            const std::size_t t = pending.back();
-            pending.pop_back();
-            for (std::size_t i = 0; i < 3; ++i) {
-                const std::int32_t n = fill.neighbours[t][i];
-                if (n < 0 || fill.constrained[t][i] || state[static_cast<std::size_t>(n)] >= 0)
-                    continue;
-                state[static_cast<std::size_t>(n)] = mark;
-                pending.push_back(static_cast<std::size_t>(n));
-            }
-        }
-    }
-    for (std::size_t t = 0; t < state.size(); ++t) {
-        if (state[t] != 1) continue;
-        add_triangle(geometry, layer.polygons, vertices_of(t));
+/// Void triangles (plane `empty`) where nothing is covered.
+void add_empty(PlanGeometry& geometry, Layer& layer, const FrameTriangles& filling, PlaneId empty) {
+    for (std::size_t t = 0; t < filling.triangles.size(); ++t) {
+        if (filling.covered[t] != 0) continue;
+        add_triangle(geometry, layer.polygons, filling.triangles[t]);
         layer.plane.push_back(empty);
     }
 }
 
-[[noreturn]] void refuse_overlap(Scope& scope, const Layer& layer,
-                                 const std::vector<UsedTriangle>& triangles, std::size_t one,
-                                 std::size_t other, int index) {
+/// The frame and what a surface covers of it; nothing where the surface covers a place twice.
+std::optional<FrameTriangles> cover_frame(const PlanGeometry& geometry,
+                                          const std::vector<BorderEdge>& border,
+                                          const Frame& frame) {
+    try {
+        FrameTriangles filling = fill_frame(geometry, border, frame);
+        const auto [least, most] =
+            std::minmax_element(filling.covered.begin(), filling.covered.end());
+        if (*least < 0 || *most > 1) return std::nullopt;
+        return filling;
+    } catch (const InputError&) {
+        return std::nullopt;  // the border crosses itself
+    }
+}
+
+[[noreturn]] void refuse_pair(Scope& scope, const Layer& layer,
+                              const std::vector<UsedTriangle>& triangles, std::size_t one,
+                              std::size_t other, int index) {
     Clipper clipper(scope);
     const PolygonView common = clipper.intersect(layer.polygons[one], layer.polygons[other]);
     std::array<double, 3> place{0, 0, 0};
@@ -138,9 +67,10 @@ void fill_frame(PlanGeometry& geometry, Layer& layer, const std::vector<PlanEdge
                      index, {triangles[one].number, triangles[other].number}, place);
 }
 
-void check_single_valued(const PlanGeometry& geometry, const Layer& layer,
-                         const std::vector<UsedTriangle>& triangles, int index, int threads,
-                         const Progress* progress) {
+/// Names the first two triangles that overlap; to be called where there are some.
+[[noreturn]] void refuse_overlap(const PlanGeometry& geometry, const Layer& layer,
+                                 const std::vector<UsedTriangle>& triangles, int index, int threads,
+                                 const Progress* progress) {
     constexpr std::size_t kChunk = 1024;
     parallel_chunks(
         (triangles.size() + kChunk - 1) / kChunk, threads, progress, [&](std::size_t chunk) {
@@ -153,11 +83,12 @@ void check_single_valued(const PlanGeometry& geometry, const Layer& layer,
                 for (const std::int32_t c : candidates) {
                     const auto other = static_cast<std::size_t>(c);
                     if (other > t && clipper.overlap(layer.polygons[t], layer.polygons[other])) {
-                        refuse_overlap(scope, layer, triangles, t, other, index);
+                        refuse_pair(scope, layer, triangles, t, other, index);
                     }
                 }
             }
         });
+    throw std::logic_error("a surface covers a place twice, yet no two of its triangles overlap");
 }
 
 }  // namespace
@@ -170,30 +101,38 @@ void Layer::index(const PlanGeometry& geometry, const Progress* progress) {
 Layer make_layer(PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
                  const Frame& frame, int index, int threads, const Progress* progress) {
     Layer layer;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        poll(progress, t);
-        std::array<VertexId, 3> v;
+    const auto corners = [&](std::size_t t) {
+        PlanTriangle v;
         for (std::size_t i = 0; i < 3; ++i)
             v[i] = geometry.space(triangles[t].corner[i]).plan;
-        add_triangle(geometry, layer.polygons, v);
+        return v;
+    };
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        poll(progress, t);
+        add_triangle(geometry, layer.polygons, corners(t));
         layer.plane.push_back(geometry.add_plane(triangles[t].corner));
     }
-    layer.index(geometry, progress);
-    check_single_valued(geometry, layer, triangles, index, threads, progress);
-    fill_frame(geometry, layer, border_edges(layer.polygons, threads, progress), frame, kVoid);
+    const auto filling =
+        cover_frame(geometry, link_triangles(triangles.size(), corners, progress).border, frame);
+    if (!filling) {
+        layer.index(geometry, progress);
+        refuse_overlap(geometry, layer, triangles, index, threads, progress);
+    }
+    add_empty(geometry, layer, *filling, kVoid);
     layer.index(geometry, progress);
     return layer;
 }
 
-Layer make_region(PlanGeometry& geometry, const std::vector<std::array<VertexId, 3>>& triangles,
-                  const Frame& frame, int threads, const Progress* progress) {
+Layer make_region(PlanGeometry& geometry, const std::vector<PlanTriangle>& triangles,
+                  const Frame& frame, const Progress* progress) {
     Layer layer;
-    for (const auto& triangle : triangles) {
+    for (const PlanTriangle& triangle : triangles) {
         add_triangle(geometry, layer.polygons, triangle);
         layer.plane.push_back(kSky);
     }
-    layer.index(geometry, progress);
-    fill_frame(geometry, layer, border_edges(layer.polygons, threads, progress), frame, kOutside);
+    const auto corners = [&](std::size_t t) { return triangles[t]; };
+    const PlanLinks links = link_triangles(triangles.size(), corners, progress);
+    add_empty(geometry, layer, fill_frame(geometry, links.border, frame), kOutside);
     return layer;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "plan_grid.hpp"
+#include "plan_links.hpp"
 #include "plan_snapping.hpp"
 #include "polygon.hpp"
 #include "realmodel/strata/stack.hpp"
@@ -41,17 +42,13 @@ std::vector<UsedTriangle> enter_surface(exact::PlanGeometry& geometry, const Sur
                                         int index, const PlanSnapping& snapping,
                                         std::vector<Warning>& warnings, const Progress* progress);
 
-/// Four plan vertices, counter-clockwise, around everything.
-using Frame = std::array<exact::VertexId, 4>;
-
 /// The layer of a checked surface.
 /// @throws InputError kind double_valued, with the two triangles and a place in both
 Layer make_layer(exact::PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
                  const Frame& frame, int index, int threads, const Progress* progress);
 
 /// The region as a layer: plane kSky inside and kOutside outside.
-Layer make_region(exact::PlanGeometry& geometry,
-                  const std::vector<std::array<exact::VertexId, 3>>& triangles, const Frame& frame,
-                  int threads, const Progress* progress);
+Layer make_region(exact::PlanGeometry& geometry, const std::vector<PlanTriangle>& triangles,
+                  const Frame& frame, const Progress* progress);
 
 }  // namespace realmodel::strata

@@ -277,7 +277,7 @@ void build_rock(Site& site, EnteredRock& rock, double start, double share) {
     Envelope envelope;
     if (rock.region) {
         envelope = initial_envelope(
-            make_region(site.geometry, *rock.region, site.frame, site.threads, site.progress), -1);
+            make_region(site.geometry, *rock.region, site.frame, site.progress), -1);
     }
     LayerSequence layers(site, rock);
     for (std::int32_t k = count - 1; k >= 0; --k) {

@@ -16,6 +16,8 @@ namespace {
 // Beyond these the products behind floating-point filters overflow or vanish.
 constexpr double kLargest = 1e50;
 
+constexpr exact::SpaceId kNotEntered = -1;
+
 std::array<double, 3> vertex_of(const SurfaceView& surface, std::int64_t v) {
     const auto i = static_cast<std::size_t>(v) * 3;
     return {surface.vertices[i], surface.vertices[i + 1], surface.vertices[i + 2]};
@@ -59,13 +61,25 @@ std::vector<UsedTriangle> enter_surface(PlanGeometry& geometry, const SurfaceVie
                                         int index, const PlanSnapping& snapping,
                                         std::vector<Warning>& warnings, const Progress* progress) {
     check_numbers(surface, index);
+    std::vector<exact::SpaceId> entered(surface.vertices.size() / 3, kNotEntered);
+    const auto enter = [&](std::int32_t v) {
+        exact::SpaceId& id = entered[static_cast<std::size_t>(v)];
+        if (id == kNotEntered) {
+            const auto [x, y, z] = vertex_of(surface, v);
+            id = geometry.add_space_vertex(geometry.add_vertex(snapping.x(x), snapping.y(y)), z);
+        }
+        return id;
+    };
     std::vector<UsedTriangle> used;
+    used.reserve(surface.triangles.size() / 3);
     Warning flat{"no_area", index, {}, {}};
     for (std::size_t t = 0; t * 3 < surface.triangles.size(); ++t) {
         poll(progress, t);
+        std::array<std::int32_t, 3> v;
         std::array<std::array<double, 3>, 3> p;
         for (std::size_t i = 0; i < 3; ++i) {
-            p[i] = vertex_of(surface, surface.triangles[t * 3 + i]);
+            v[i] = surface.triangles[t * 3 + i];
+            p[i] = vertex_of(surface, v[i]);
             p[i][0] = snapping.x(p[i][0]);
             p[i][1] = snapping.y(p[i][1]);
         }
@@ -81,13 +95,8 @@ std::vector<UsedTriangle> enter_surface(PlanGeometry& geometry, const SurfaceVie
             flat.items.push_back(number);
             continue;
         }
-        if (turn < 0) std::swap(p[1], p[2]);
-        UsedTriangle triangle{number, {}};
-        for (std::size_t i = 0; i < 3; ++i) {
-            triangle.corner[i] =
-                geometry.add_space_vertex(geometry.add_vertex(p[i][0], p[i][1]), p[i][2]);
-        }
-        used.push_back(triangle);
+        if (turn < 0) std::swap(v[1], v[2]);
+        used.push_back({number, {enter(v[0]), enter(v[1]), enter(v[2])}});
     }
     if (!flat.items.empty()) {
         const char* what = flat.items.size() == 1 ? " triangle" : " triangles";
