@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// krige, fit_variogram, idw.
+// krige, krige_left_out, fit_variogram, idw, idw_left_out.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
-#include <array>
-#include <span>
 #include <string>
+#include <tuple>
+#include <vector>
 
-#include "arrays.hpp"
+#include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/interpolation/inverse_distance.hpp"
 #include "realmodel/interpolation/kriging.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
+#include "rows.hpp"
 
 namespace py = pybind11;
 
@@ -19,49 +21,99 @@ namespace realmodel::bindings {
 
 namespace {
 
-/// The rows of an array as they lie in NumPy's memory.
-template <std::size_t N>
-std::span<const std::array<double, N>> rows(const Array<double>& array, const char* argument) {
-    require_columns(array, N, argument);
-    static_assert(sizeof(std::array<double, N>) == N * sizeof(double));
-    return {reinterpret_cast<const std::array<double, N>*>(array.data()),
-            static_cast<std::size_t>(array.shape(0))};
+/// model, range, sill, anisotropy ratio and azimuth.
+using NestedTuple = std::tuple<std::string, double, double, double, double>;
+
+interpolation::Variogram variogram_of(const std::string& model, double range, double sill,
+                                      double nugget, double ratio, double azimuth,
+                                      const std::vector<NestedTuple>& further) {
+    interpolation::Variogram variogram{
+        interpolation::variogram_model(model), range, sill, nugget, {ratio, azimuth}, {}};
+    for (const auto& [name, reach, part, its_ratio, its_azimuth] : further) {
+        variogram.further.push_back(
+            {interpolation::variogram_model(name), reach, part, {its_ratio, its_azimuth}});
+    }
+    return variogram;
+}
+
+interpolation::Drift drift_of(const std::string& name) {
+    if (name == "constant") return interpolation::Drift::constant;
+    if (name == "linear") return interpolation::Drift::linear;
+    if (name == "quadratic") return interpolation::Drift::quadratic;
+    throw InputError("option", "drift \"" + name + "\" is not known");
+}
+
+py::tuple kriged_tuple(interpolation::Kriged&& kriged) {
+    return py::make_tuple(to_array(std::move(kriged.z)), to_array(std::move(kriged.variance)),
+                          kriged.alone);
 }
 
 py::tuple krige(const Array<double>& points, const Array<double>& nodes, const std::string& model,
-                double range, double sill, double nugget, int neighbours, double ratio,
-                double azimuth, int threads, Progress* control) {
+                double range, double sill, double nugget, double ratio, double azimuth,
+                const std::vector<NestedTuple>& further, int neighbours, int octants, double radius,
+                const std::string& drift, int threads, Progress* control) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
-    const interpolation::Variogram variogram{
-        interpolation::variogram_model(model), range, sill, nugget, {ratio, azimuth}};
+    const auto variogram = variogram_of(model, range, sill, nugget, ratio, azimuth, further);
+    const interpolation::KrigingOptions options{neighbours, threads, drift_of(drift), octants,
+                                                radius};
     interpolation::Kriged kriged;
     {
         const py::gil_scoped_release unlocked;
-        kriged = interpolation::krige(from, to, variogram, {neighbours, threads}, control);
+        kriged = interpolation::krige(from, to, variogram, options, control);
     }
-    return py::make_tuple(to_array(std::move(kriged.z)), to_array(std::move(kriged.variance)));
+    return kriged_tuple(std::move(kriged));
+}
+
+py::tuple krige_left_out(const Array<double>& points, const std::string& model, double range,
+                         double sill, double nugget, double ratio, double azimuth,
+                         const std::vector<NestedTuple>& further, int neighbours, int octants,
+                         double radius, const std::string& drift, int threads, Progress* control) {
+    const auto from = rows<3>(points, "points");
+    const auto variogram = variogram_of(model, range, sill, nugget, ratio, azimuth, further);
+    const interpolation::KrigingOptions options{neighbours, threads, drift_of(drift), octants,
+                                                radius};
+    interpolation::Kriged kriged;
+    {
+        const py::gil_scoped_release unlocked;
+        kriged = interpolation::krige_left_out(from, variogram, options, control);
+    }
+    return kriged_tuple(std::move(kriged));
 }
 
 Array<double> idw(const Array<double>& points, const Array<double>& nodes, double power,
-                  int neighbours, int threads, Progress* control) {
+                  int neighbours, int octants, double radius, int threads, Progress* control) {
     const auto from = rows<3>(points, "points");
     const auto to = rows<2>(nodes, "nodes");
     std::vector<double> z;
     {
         const py::gil_scoped_release unlocked;
-        z = interpolation::inverse_distance(from, to, {power, neighbours, threads}, control);
+        z = interpolation::inverse_distance(from, to, {power, neighbours, threads, octants, radius},
+                                            control);
+    }
+    return to_array(std::move(z));
+}
+
+Array<double> idw_left_out(const Array<double>& points, double power, int neighbours, int octants,
+                           double radius, int threads, Progress* control) {
+    const auto from = rows<3>(points, "points");
+    std::vector<double> z;
+    {
+        const py::gil_scoped_release unlocked;
+        z = interpolation::inverse_distance_left_out(
+            from, {power, neighbours, threads, octants, radius}, control);
     }
     return to_array(std::move(z));
 }
 
 py::dict fit_variogram(const Array<double>& points, double ratio, double azimuth,
-                       Progress* control) {
+                       const std::string& drift, Progress* control) {
     const auto from = rows<3>(points, "points");
+    const interpolation::Drift trend = drift_of(drift);
     interpolation::FittedVariogram fitted;
     {
         const py::gil_scoped_release unlocked;
-        fitted = interpolation::fit_variogram(from, {ratio, azimuth}, control);
+        fitted = interpolation::fit_variogram(from, {ratio, azimuth}, control, trend);
     }
     py::dict out;
     out["model"] = py::str(std::string(name_of(fitted.variogram.model)));
@@ -78,37 +130,59 @@ py::dict fit_variogram(const Array<double>& points, double ratio, double azimuth
 
 void bind_interpolation(py::module_& module) {
     using py::arg;
+    const std::vector<NestedTuple> none;
     module.def("krige", &krige, arg("points"), arg("nodes"), arg("model"), arg("range"),
-               arg("sill"), arg("nugget"), arg("neighbours") = 16, arg("anisotropy_ratio") = 1.0,
-               arg("anisotropy_azimuth") = 0.0, arg("threads") = 0, arg("control") = py::none(),
-               R"(Ordinary kriging.
+               arg("sill"), arg("nugget"), arg("anisotropy_ratio") = 1.0,
+               arg("anisotropy_azimuth") = 0.0, arg("further") = none, arg("neighbours") = 16,
+               arg("octants") = 0, arg("radius") = 0.0, arg("drift") = "constant",
+               arg("threads") = 0, arg("control") = py::none(),
+               R"(Kriging: ordinary, or with a drift universal.
 
 points              (P, 3) float64: x, y, z; points that repeat another count once
 nodes               (N, 2) float64: x, y
 model               spherical, exponential, gaussian, cubic, matern32 or matern52
 range, sill, nugget of the variogram; the sill includes the nugget, the range is the practical one
-neighbours          the nearest in plan that make a node's system; 0: all points, factored once
 anisotropy_ratio    longest to shortest range (2 and 0.5 mean the same); `range` is the longest
 anisotropy_azimuth  of the longest range, degrees, clockwise from north (+y)
+further             structures of a nested variogram: (model, range, sill, ratio, azimuth) each;
+                    `sill` includes theirs
+neighbours          the nearest in plan that make a node's system; 0: all points, factored once
+octants             at most so many points from each eighth of the directions; 0: any
+radius              points farther away do not count; 0: all do
+drift               constant, linear or quadratic
 threads             0: as many as there are; the result does not depend on it
 control             Control to watch and stop it, or None
 
-Returns (z (N,), variance of its error (N,)) float64. A node on a point gets the point's value.
+Returns (z (N,), variance of its error (N,) float64, number of nodes without a point within the
+radius: there the nearest alone counts). A node on a point gets the point's value.
 Raises InputError: kind "no_points", "not_finite", "contradicting_points" (items, place),
 "variogram", "anisotropy", "option", "too_large"; Cancelled.)");
+    module.def(
+        "krige_left_out", &krige_left_out, arg("points"), arg("model"), arg("range"), arg("sill"),
+        arg("nugget"), arg("anisotropy_ratio") = 1.0, arg("anisotropy_azimuth") = 0.0,
+        arg("further") = none, arg("neighbours") = 16, arg("octants") = 0, arg("radius") = 0.0,
+        arg("drift") = "constant", arg("threads") = 0, arg("control") = py::none(),
+        R"(krige at each of the points, from all the others. Returns and raises as krige does.)");
     module.def("idw", &idw, arg("points"), arg("nodes"), arg("power") = 2.0, arg("neighbours") = 16,
-               arg("threads") = 0, arg("control") = py::none(),
+               arg("octants") = 0, arg("radius") = 0.0, arg("threads") = 0,
+               arg("control") = py::none(),
                R"(Inverse distance: means of the nearest points weighted by distance ** -power.
 
 points      (P, 3) float64: x, y, z
 nodes       (N, 2) float64: x, y
 neighbours  the nearest in plan that count; 0: all points
+octants, radius  as krige
 
 Returns z (N,) float64; a node on a point gets the point's value.
 Raises InputError as krige does; Cancelled.)");
+    module.def("idw_left_out", &idw_left_out, arg("points"), arg("power") = 2.0,
+               arg("neighbours") = 16, arg("octants") = 0, arg("radius") = 0.0, arg("threads") = 0,
+               arg("control") = py::none(),
+               R"(idw at each of the points, from all the others. Returns z (P,).)");
     module.def("fit_variogram", &fit_variogram, arg("points"), arg("anisotropy_ratio") = 1.0,
-               arg("anisotropy_azimuth") = 0.0, arg("control") = py::none(),
-               R"(Fits a variogram to points (P, 3) float64.
+               arg("anisotropy_azimuth") = 0.0, arg("drift") = "constant",
+               arg("control") = py::none(),
+               R"(Fits a variogram to points (P, 3) float64, or to what a drift leaves of them.
 
 Returns a dict: model, range, sill, nugget as krige takes them, and the experimental values
 lags (L,), gamma (L,) float64 and pairs (L,) int64.

@@ -6,6 +6,7 @@ import sys
 
 import numpy as np
 import pytest
+from dense_kriging import dense_kriging, distances
 from realmodel.core import (
     InputRefused,
     Project,
@@ -27,42 +28,11 @@ NODES = RNG.random((40, 2)) * 100
 SETTINGS = {"model": "spherical", "range": 60.0, "sill": 9.0, "nugget": 0.5}
 
 
-def semivariance(h, model, range, sill, nugget):
-    t = h / range
-    shape = {
-        "spherical": np.where(t < 1, 1.5 * t - 0.5 * t**3, 1.0),
-        "exponential": 1 - np.exp(-3 * t),
-        "gaussian": 1 - np.exp(-3 * t**2),
-    }[model]
-    return np.where(h > 0, nugget + (sill - nugget) * shape, 0.0)
-
-
-def distances(a, b, ratio=1.0, azimuth=0.0):
-    """Distances in plan, those across the long axis (azimuth clockwise from north) stretched by the ratio."""
-    d = a[:, None, :2] - b[None, :, :2]
-    angle = np.radians(azimuth)
-    along = d[..., 0] * np.sin(angle) + d[..., 1] * np.cos(angle)
-    across = d[..., 0] * np.cos(angle) - d[..., 1] * np.sin(angle)
-    return np.hypot(along, ratio * across)
-
-
-def dense_kriging(points, nodes, settings, **anisotropy):
-    """Ordinary kriging with all points, solved as it is written in the textbook."""
-    n = len(points)
-    system = np.ones((n + 1, n + 1))
-    system[:n, :n] = semivariance(distances(points, points, **anisotropy), **settings)
-    system[n, n] = 0.0
-    right = np.ones((n + 1, len(nodes)))
-    right[:n] = semivariance(distances(points, nodes, **anisotropy), **settings)
-    weights = np.linalg.solve(system, right)
-    return weights[:n].T @ points[:, 2], (weights * right).sum(axis=0)
-
-
 @pytest.mark.parametrize("model", ["spherical", "exponential", "gaussian"])
 @pytest.mark.parametrize("anisotropy", [{}, {"ratio": 2.5, "azimuth": 30.0}])
 def test_kriging_as_in_the_textbook(model, anisotropy):
     settings = {**SETTINGS, "model": model}
-    z, variance = dense_kriging(POINTS, NODES, settings, **anisotropy)
+    z, variance = dense_kriging(POINTS, NODES, settings, anisotropy=anisotropy)
     result = interpolate(POINTS, NODES, neighbours=0, variogram=settings, anisotropy=anisotropy or None)
     assert result.z == pytest.approx(z, abs=1e-8)
     assert result.variance == pytest.approx(variance, abs=1e-8)
@@ -308,3 +278,25 @@ def test_contradicting_points_are_named(basin, write):
     with pytest.raises(InputRefused) as raised:
         build(load_project(path))
     assert "top.csv: rock 'basin', surface 'top', points: points 0 and 2" in str(raised.value)
+
+
+def test_a_surface_ends_with_its_points_where_no_extrapolation_is_wanted(basin, write):
+    path = basin()
+    write("top.csv", "2,1,3\n8,1,3\n8,5,3.5\n2,3,3.5\n")
+    path.write_text(path.read_text() + 'extrapolate = "none"\n')
+    model = build(load_project(path))
+    whole, part = model.surface(0), model.surface(2)
+    assert 0 < len(part[1]) < len(whole[1])
+    assert np.isfinite(part[0]).all()
+    x, y = part[0][:, :2].T
+    assert (y >= 1).all()
+    assert (x >= 2).all()
+    assert (x <= 8).all()
+    share = model.interpolations[2].extrapolated
+    nodes = whole[0][:, :2]
+    inside = (nodes[:, 1] >= 1) & (nodes[:, 0] >= 2) & (nodes[:, 0] <= 8)
+    inside &= nodes[:, 1] <= 3 + (nodes[:, 0] - 2) / 3 + 1e-12
+    assert share == pytest.approx(1 - inside.mean())
+    write("top.csv", "20,20,3\n28,20,3\n24,25,3.5\n")
+    with pytest.raises(InputRefused, match="no triangle of the region's mesh lies within the hull"):
+        build(load_project(path))

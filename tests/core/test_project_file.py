@@ -85,7 +85,8 @@ mesh = "s0.off"
     assert options["variogram"] == {"model": "spherical", "range": 60.0, "sill": 4.0, "nugget": 0.0}
     assert options["neighbours"] == 8
     assert options["anisotropy"] == {"ratio": 2.0, "azimuth": 30.0}
-    assert base.surfaces[1].method_options() == ("idw", {"neighbours": 16, "power": 3.0})
+    method, options = base.surfaces[1].method_options()
+    assert (method, options["neighbours"], options["power"]) == ("idw", 16, 3.0)
     assert base.surfaces[2].mesh == tmp_path / "s1.off"
     assert (base.surfaces[2].property, base.surfaces[2].block_name) == (3, "Couches intermédiaires")
     assert (base.surfaces[1].property, base.surfaces[1].block_name) == (0, "S1 block")
@@ -162,6 +163,16 @@ CASES = {
         10,
         "more than the sill",
     ),
+    "nested variogram": (
+        POINTS + 'variogram = {nugget = 1, structures = [\n{model = "cubic", range = 1, sill = 0}]}\n',
+        10,
+        "'sill' must be more than 0",
+    ),
+    "drift of ordinary kriging": (POINTS + 'drift = "linear"\n', 10, "belongs to universal_kriging"),
+    "unknown drift": (POINTS + 'method = "universal_kriging"\ndrift = 2\n', 11, "'drift' cannot be 2"),
+    "radius 0": (POINTS + "radius = 0\n", 10, "more than 0"),
+    "octants with decimals": (POINTS + "octants = 1.5\n", 10, "whole number"),
+    "unknown extrapolation": (POINTS + 'extrapolate = "maybe"\n', 10, "cannot be 'maybe'"),
     "anisotropy ratio 0": (POINTS + "anisotropy = {ratio = 0, azimuth = 0}\n", 10, "more than 0"),
     "edge_length 0": (ROCK + "edge_length = 0\n" + SURFACES, 5, "above 0"),
     "edge_length infinite": (ROCK + "edge_length = inf\n" + SURFACES, 5, "finite"),

@@ -3,13 +3,16 @@
 
 from .build import build
 from .build_warning import BuildWarning
+from .cross_validation import CrossValidation, cross_validate
 from .errors import BuildFailed, Cancelled, InputRefused, OutputFailed, RealModelError, UsageError
-from .interpolation import Interpolation, Variogram, interpolate
+from .heights import Interpolation
+from .interpolation import interpolate
 from .library import Library, Property, load_library
 from .model import Block, BlockBoundary, Model
 from .planar_mesh import mesh_region
 from .project import Project, Rock, Surface
 from .project_file import load_project
+from .variogram import Structure, Variogram
 
 __all__ = [
     "Block",
@@ -17,6 +20,7 @@ __all__ = [
     "BuildFailed",
     "BuildWarning",
     "Cancelled",
+    "CrossValidation",
     "InputRefused",
     "Interpolation",
     "Library",
@@ -26,10 +30,12 @@ __all__ = [
     "Property",
     "RealModelError",
     "Rock",
+    "Structure",
     "Surface",
     "UsageError",
     "Variogram",
     "build",
+    "cross_validate",
     "interpolate",
     "load_library",
     "load_project",

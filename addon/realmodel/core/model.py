@@ -12,7 +12,7 @@ import numpy as np
 
 from .build_warning import BuildWarning
 from .components import connected_parts
-from .interpolation import Interpolation
+from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
 from .work import Cancel, Progress

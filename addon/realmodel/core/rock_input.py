@@ -11,7 +11,8 @@ import numpy as np
 
 from .build_warning import BuildWarning
 from .errors import InputRefused, place_text
-from .interpolation import Interpolation, checked_points, heights
+from .heights import Interpolation, heights
+from .interpolation import checked_points
 from .planar_mesh import mesh_rings, triangulate_rings
 from .project import Project, Rock, Surface, rock_item, surface_item
 from .readers import read_off, read_points, read_region
@@ -240,12 +241,28 @@ def _give_heights(work: Work, entry: RockInput, number: int, threads: int) -> No
     nodes, triangles = entry.region
     method, settings = surface.method_options()
     try:
-        result = heights(work, surface.points, nodes, method, settings, threads)
+        result = heights(work, surface.points, nodes, method, settings, threads, triangles)
+        entry.surfaces[number] = where_known(nodes, triangles, result.z)
     except InputRefused as error:
         file, line = surface.shape_source()
         raise error.within(surface_item(entry.rock, surface), file=file, line=line) from error
-    entry.surfaces[number] = (np.column_stack([nodes, result.z]), triangles)
     entry.interpolations[number] = result
     entry.warnings += [
         BuildWarning(text, "points", entry.rock.name, surface.name) for text in result.warnings
     ]
+
+
+def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Triangulation:
+    """The triangles all of whose nodes have a height: all of them, unless extrapolation was not wanted."""
+    known = np.isfinite(z)
+    if known.all():
+        return np.column_stack([nodes, z]), triangles
+    kept = triangles[known[triangles].all(axis=1)]
+    if not len(kept):
+        raise InputRefused(
+            "no triangle of the region's mesh lies within the hull of its points",
+            advice='extrapolate = "method" or "nearest" gives heights beyond it',
+        )
+    used = used_vertices(nodes, kept)
+    number = np.cumsum(used, dtype=np.int32) - 1
+    return np.column_stack([nodes[used], z[used]]), number[kept]

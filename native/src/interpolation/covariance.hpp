@@ -2,6 +2,8 @@
 // Covariances of a variogram, in units of its sill. Private.
 #pragma once
 
+#include <vector>
+
 #include "interpolation/data_points.hpp"
 #include "realmodel/interpolation/variogram.hpp"
 
@@ -12,22 +14,36 @@ namespace realmodel::interpolation {
 class Covariance {
 public:
     explicit Covariance(const Variogram& variogram)
-        : model_(variogram.model),
-          length_(variogram.anisotropy),
-          range_(variogram.range),
-          continuous_(1 - variogram.nugget / variogram.sill) {}
+        : first_(variogram.model, variogram.range, variogram.first_sill() / variogram.sill,
+                 variogram.anisotropy) {
+        for (const NestedStructure& nested : variogram.further) {
+            further_.emplace_back(nested.model, nested.range, nested.sill / variogram.sill,
+                                  nested.anisotropy);
+        }
+    }
 
     /// Between two different places. (At one place it is 1, whatever the nugget.)
     double operator()(const Place& a, const Place& b) const {
-        const double t = length_(a[0] - b[0], a[1] - b[1]) / range_;
-        return continuous_ * (1 - structure(model_, t));
+        const double dx = a[0] - b[0], dy = a[1] - b[1];
+        double sum = first_(dx, dy);
+        for (const Part& part : further_)
+            sum += part(dx, dy);
+        return sum;
     }
 
 private:
-    VariogramModel model_;
-    AnisotropicLength length_;
-    double range_;
-    double continuous_;
+    struct Part {
+        Part(VariogramModel of, double range, double sill_share, const Anisotropy& anisotropy)
+            : model(of), length(anisotropy), reach(range), share(sill_share) {}
+        double operator()(double dx, double dy) const {
+            return share * (1 - structure(model, length(dx, dy) / reach));
+        }
+        VariogramModel model;
+        AnisotropicLength length;
+        double reach, share;
+    };
+    Part first_;
+    std::vector<Part> further_;
 };
 
 /// What kriging says of a place.

@@ -48,21 +48,27 @@ DataPoints prepare_points(std::span<const std::array<double, 3>> points) {
         }
         return a < b;
     });
-    std::vector<bool> repeats(points.size(), false);
+    std::vector<std::int32_t> first_at(points.size());  // of each point, the first at its place
     std::int32_t first = order[0];
+    first_at[first] = first;
     for (std::size_t i = 1; i < order.size(); ++i) {
         const auto &a = points[first], &b = points[order[i]];
         if (a[0] != b[0] || a[1] != b[1]) {
             first = order[i];
-            continue;
+        } else if (a[2] != b[2]) {
+            refuse_contradiction(points, first, order[i]);
         }
-        if (a[2] != b[2]) refuse_contradiction(points, first, order[i]);
-        repeats[order[i]] = true;
+        first_at[order[i]] = first;
     }
     DataPoints data;
     data.origin = {points[0][0], points[0][1]};
+    data.place_of.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (repeats[i]) continue;
+        if (first_at[i] != static_cast<std::int32_t>(i)) {
+            data.place_of[i] = data.place_of[first_at[i]];
+            continue;
+        }
+        data.place_of[i] = static_cast<std::int32_t>(data.places.size());
         data.places.push_back({points[i][0], points[i][1]});
         data.local.push_back(data.to_local(data.places.back()));
         data.values.push_back(points[i][2]);

@@ -18,6 +18,7 @@ struct DataPoints {
     std::vector<Place> places;  ///< in order of appearance
     std::vector<Place> local;   ///< places minus origin
     std::vector<double> values;
+    std::vector<std::int32_t> place_of;  ///< for each point that was given, its place
     Place origin{};
 
     Place to_local(const Place& place) const {

@@ -32,6 +32,7 @@ public:
                   Progress* progress, double end_share);
 
     Eigen::Index order() const { return order_; }
+    bool left_out(Eigen::Index row) const { return left_out_[static_cast<std::size_t>(row)]; }
 
     /// Overwrites the columns of `right` with L^-1 right. `stop()` is asked between tiles; the
     /// result means nothing once it has said yes.

@@ -66,9 +66,19 @@ double structure(VariogramModel model, double t) {
     return 1;
 }
 
+double Variogram::first_sill() const {
+    double left = sill - nugget;
+    for (const NestedStructure& nested : further)
+        left -= nested.sill;
+    return left;
+}
+
 double Variogram::gamma(double distance) const {
     if (distance == 0) return 0;
-    return nugget + (sill - nugget) * structure(model, distance / range);
+    double sum = nugget + first_sill() * structure(model, distance / range);
+    for (const NestedStructure& nested : further)
+        sum += nested.sill * structure(nested.model, distance / nested.range);
+    return sum;
 }
 
 void check_variogram(const Variogram& variogram) {
@@ -86,6 +96,18 @@ void check_variogram(const Variogram& variogram) {
                ", which includes it");
     }
     check_anisotropy(variogram.anisotropy);
+    for (const NestedStructure& nested : variogram.further) {
+        if (!(nested.range > 0) || !std::isfinite(nested.range) || !(nested.sill > 0) ||
+            !std::isfinite(nested.sill)) {
+            refuse("a structure of the variogram has range " + number_text(nested.range) +
+                   " and sill " + number_text(nested.sill) + "; both must be positive");
+        }
+        check_anisotropy(nested.anisotropy);
+    }
+    if (!(variogram.first_sill() >= -1e-12 * variogram.sill)) {
+        refuse("nugget and structures of the variogram have more than its sill, " +
+               number_text(variogram.sill) + ", together");
+    }
 }
 
 void check_anisotropy(const Anisotropy& anisotropy) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "interpolation/drift_kriging.hpp"
 #include "interpolation/experimental_variogram.hpp"
 #include "interpolation/local_kriging.hpp"
 #include "realmodel/base/progress.hpp"
@@ -88,7 +89,7 @@ Fit fit_model(const ExperimentalVariogram& e, VariogramModel model, bool with_nu
 /// Points left out one by one and told by kriging from the others.
 class LeaveOneOut {
 public:
-    explicit LeaveOneOut(const DataPoints& data) : data_(data) {
+    LeaveOneOut(const DataPoints& data, Drift drift) : data_(data), drift_(drift) {
         const std::size_t count = data.local.size();
         const spatial::NearestPoints tree(data.local);
         const std::size_t taken = std::min(count, points_left_out);
@@ -110,13 +111,21 @@ public:
         double square, surprise;
     };
     Score score(const Variogram& variogram) const {
-        LocalKriging kriging(data_, Covariance(variogram));
+        const Covariance covariance(variogram);
+        return drift_ == Drift::constant
+                   ? score_of(LocalKriging(data_, covariance), variogram.sill)
+                   : score_of(DriftKriging(data_, covariance, drift_), variogram.sill);
+    }
+
+private:
+    template <class LocalSystem>
+    Score score_of(LocalSystem kriging, double sill) const {
         Score sum{0, 0};
         for (const auto& [point, others] : left_out_) {
             const Estimate estimate = kriging.at(data_.local[point], others, [] { return false; });
             const double square = std::pow(estimate.value - data_.values[point], 2);
             // Where neighbours nearly coincide the variance is rounding: it must not decide.
-            const double variance = variogram.sill * std::max(estimate.variance, 1e-9);
+            const double variance = sill * std::max(estimate.variance, 1e-9);
             sum.square += square;
             sum.surprise += std::log(variance) + square / variance;
         }
@@ -124,20 +133,20 @@ public:
         return {sum.square / count, sum.surprise / count};
     }
 
-private:
     struct LeftOut {
         std::size_t point;
         std::vector<spatial::Neighbour> others;
     };
     const DataPoints& data_;
+    Drift drift_;
     std::vector<LeftOut> left_out_;
 };
 
 /// What is said of points that show no variation, or are too few to show any.
-Variogram plain_variogram(const DataPoints& data, const ExperimentalVariogram& e,
-                          const Anisotropy& anisotropy) {
+Variogram plain_variogram(const DataPoints& data, std::span<const double> given,
+                          const ExperimentalVariogram& e, const Anisotropy& anisotropy) {
     double largest = 1;
-    for (const double z : data.values)
+    for (const double z : given)
         largest = std::max(largest, std::abs(z));
     const double length = diagonal(isotropic_places(data, anisotropy));
     Variogram variogram;
@@ -151,18 +160,21 @@ Variogram plain_variogram(const DataPoints& data, const ExperimentalVariogram& e
 }  // namespace
 
 FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
-                              const Anisotropy& anisotropy, Progress* progress) {
+                              const Anisotropy& anisotropy, Progress* progress, Drift drift) {
     check_anisotropy(anisotropy);
-    const DataPoints data = prepare_points(points);
+    DataPoints data = prepare_points(points);
+    const std::vector<double> given = data.values;
+    // Kriging with the drift says the same of what is left of the values without one.
+    if (drift != Drift::constant) data.values = without_drift(data, drift);
     FittedVariogram out;
     out.experimental = experimental_variogram(data, anisotropy);
     const ExperimentalVariogram& e = out.experimental;
-    out.variogram = plain_variogram(data, e, anisotropy);
+    out.variogram = plain_variogram(data, given, e, anisotropy);
     const bool varies = !e.gamma.empty() && *std::max_element(e.gamma.begin(), e.gamma.end()) >
                                                 1e-12 * out.variogram.sill;
     if (data.local.size() < 3 || e.lags.size() < 2 || !varies) return out;
 
-    const LeaveOneOut leave_one_out(data);
+    const LeaveOneOut leave_one_out(data, drift);
     struct Candidate {
         Variogram variogram;
         LeaveOneOut::Score score;
@@ -177,8 +189,8 @@ FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
                 progress->check();
             }
             const Fit fit = fit_model(e, model, with_nugget);
-            const Variogram variogram{model, fit.range, fit.nugget + fit.partial_sill, fit.nugget,
-                                      anisotropy};
+            const Variogram variogram{model,      fit.range,  fit.nugget + fit.partial_sill,
+                                      fit.nugget, anisotropy, {}};
             if (!(variogram.sill > 0) || !std::isfinite(variogram.sill)) continue;
             candidates.push_back({variogram, leave_one_out.score(variogram)});
             least_square = std::min(least_square, candidates.back().score.square);

@@ -87,6 +87,8 @@ def _surfaces(model) -> list[dict]:
                     "highest": float(heights.max()),
                     "points": len(surface.points) if surface.interpolated else None,
                     "method": result.method if result else None,
+                    "method_reason": (result.reason or None) if result else None,
+                    "extrapolated": result.extrapolated if result else None,
                     "variogram": result.variogram.settings() if result and result.variogram else None,
                     "variogram_fitted": result.variogram.fitted if result and result.variogram else None,
                 }

@@ -15,6 +15,8 @@ struct InverseDistanceOptions {
     double power = 2;     ///< positive
     int neighbours = 16;  ///< nearest in plan that count; 0: all points
     int threads = 0;      ///< 0: as many as there are
+    int octants = 0;      ///< at most so many points from each eighth of the directions; 0: any
+    double radius = 0;    ///< points farther away do not count, but the nearest; 0: all do
 };
 
 /// Means of the values of the nearest points weighted by distance^-power (Shepard 1968). A node on
@@ -29,5 +31,10 @@ std::vector<double> inverse_distance(std::span<const std::array<double, 3>> poin
                                      std::span<const std::array<double, 2>> nodes,
                                      const InverseDistanceOptions& options,
                                      Progress* progress = nullptr);
+
+/// The same at each of the points, from all the others; a single point gives its own value.
+std::vector<double> inverse_distance_left_out(std::span<const std::array<double, 3>> points,
+                                              const InverseDistanceOptions& options,
+                                              Progress* progress = nullptr);
 
 }  // namespace realmodel::interpolation

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "realmodel/interpolation/drift.hpp"
 #include "realmodel/interpolation/variogram.hpp"
 
 namespace realmodel {
@@ -17,17 +19,25 @@ struct KrigingOptions {
     int neighbours =
         16;           ///< nearest in plan that make a node's system; 0: all points, factored once
     int threads = 0;  ///< 0: as many as there are
+    Drift drift = Drift::constant;
+    int octants = 0;    ///< at most so many points from each eighth of the directions; 0: any
+    double radius = 0;  ///< points farther away do not count; 0: all do
 };
 
 struct Kriged {
     std::vector<double> z;         ///< of each node
     std::vector<double> variance;  ///< of its error, squared units of z, not negative
+    std::int64_t alone = 0;  ///< nodes with no point within the radius: the nearest alone counted
 };
 
-/// Ordinary kriging (Matheron 1963; Chiles and Delfiner 2012, section 3.4).
+/// Ordinary kriging (Matheron 1963; Chiles and Delfiner 2012, section 3.4), or with a drift
+/// universal kriging (section 3.4 there; Matheron 1969).
 ///
 /// A node on a point gets that point's value, with variance 0. Points that the nearer ones already
-/// tell (variance below 1e-10 of the sill) are left out of a system, so none is singular.
+/// tell (variance below 1e-10 of the sill) are left out of a system, so none is singular. So is a
+/// term of the drift that the points do not tell from the terms before it: points in one line have
+/// no slope across it, two points have a line, one point a constant.
+/// With octants the points are looked for among the nearest 64 times as many.
 /// @param points  x, y, z; repeated points count once
 /// @param nodes   x, y
 /// @return        the same bytes for any number of threads
@@ -37,5 +47,12 @@ struct Kriged {
 Kriged krige(std::span<const std::array<double, 3>> points,
              std::span<const std::array<double, 2>> nodes, const Variogram& variogram,
              const KrigingOptions& options, Progress* progress = nullptr);
+
+/// The same at each of the points, from all the others: what cross-validation compares with the
+/// points' values. With all points as neighbours by the identities of Dubrule (1983,
+/// "Cross validation of kriging in a unique neighborhood"), from one factor. A single point is told
+/// by nothing: its variance is infinite.
+Kriged krige_left_out(std::span<const std::array<double, 3>> points, const Variogram& variogram,
+                      const KrigingOptions& options, Progress* progress = nullptr);
 
 }  // namespace realmodel::interpolation

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace realmodel::interpolation {
 
@@ -37,21 +38,38 @@ struct Anisotropy {
     double azimuth = 0.0;
 };
 
+/// A further structure of a nested variogram: adds sill * f(h / range).
+struct NestedStructure {
+    VariogramModel model = VariogramModel::spherical;
+    double range = 1.0;
+    double sill = 1.0;
+    Anisotropy anisotropy{};
+};
+
 /// Semivariogram gamma(h) = nugget + (sill - nugget) f(h / range) for h > 0, and 0 at h = 0
 /// (Chiles and Delfiner 2012, "Geostatistics", section 2.5). The sill includes the nugget; the
 /// range is the one along the anisotropy's azimuth.
+///
+/// A nested variogram (section 2.4.3 there) is a sum of several structures. `sill` is then that of
+/// all together: the first structure has what the nugget and the further ones leave of it.
 struct Variogram {
     VariogramModel model = VariogramModel::spherical;
     double range = 1.0;
     double sill = 1.0;
     double nugget = 0.0;
     Anisotropy anisotropy{};
+    std::vector<NestedStructure> further{};
 
+    /// Sill of the first structure alone.
+    double first_sill() const;
+
+    /// Along the azimuth of each structure.
     double gamma(double distance) const;
 };
 
-/// Throws InputError of kind "variogram" or "anisotropy" for numbers that mean nothing: range and
-/// sill positive, 0 <= nugget <= sill, ratio positive, all finite.
+/// Throws InputError of kind "variogram" or "anisotropy" for numbers that mean nothing: ranges and
+/// sills positive, 0 <= nugget <= sill, further sills and nugget no more than the sill, ratios
+/// positive, all finite.
 void check_variogram(const Variogram& variogram);
 void check_anisotropy(const Anisotropy& anisotropy);
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "realmodel/interpolation/drift.hpp"
 #include "realmodel/interpolation/variogram.hpp"
 
 namespace realmodel {
@@ -41,9 +42,13 @@ struct FittedVariogram {
 /// mean square error, the one whose variances agree best with the errors. Constant values, or fewer
 /// than three points, give a spherical model whose sill is tiny or what the points show.
 ///
+/// With a drift all this is done with what is left of the values by the polynomial that fits them
+/// best, and by universal kriging.
+///
 /// Throws InputError of kind "no_points", "not_finite", "contradicting_points", "anisotropy";
 /// Cancelled.
 FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
-                              const Anisotropy& anisotropy, Progress* progress = nullptr);
+                              const Anisotropy& anisotropy, Progress* progress = nullptr,
+                              Drift drift = Drift::constant);
 
 }  // namespace realmodel::interpolation

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What goes into a method, and what comes out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..variogram import Variogram
+from ..work import Work
+
+
+@dataclass(frozen=True)
+class Interpolation:
+    """z (N,) heights, NaN where none was wanted; variance (N,) of the error, None where there is none; the
+    method used; the variogram, None where the method has none; warnings, sentences about the points.
+
+    extrapolated: share of the nodes that lie outside the convex hull of the points. reason: why a method was
+    chosen, where "auto" chose it.
+    """
+
+    z: np.ndarray
+    variance: np.ndarray | None
+    method: str
+    variogram: Variogram | None
+    warnings: tuple[str, ...] = ()
+    extrapolated: float = 0.0
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a method works on: points (P, 3) of which no two contradict, nodes (N, 2), the complete settings
+    of the method, and the triangles (T, 3) of the nodes' mesh or None. left_out: each point is to be told by
+    the others, and there are no nodes."""
+
+    work: Work
+    points: np.ndarray
+    nodes: np.ndarray
+    settings: dict
+    threads: int
+    triangles: np.ndarray | None = None
+    left_out: bool = False
+
+    def run(self, function, *arguments, **options):
+        """A native function, with this task's threads."""
+        return self.work.native(function, *arguments, **options, threads=self.threads)
+
+
+@dataclass
+class Result:
+    """z, variance and variogram as in Interpolation."""
+
+    z: np.ndarray
+    variance: np.ndarray | None = None
+    variogram: Variogram | None = None
+    warnings: list[str] = field(default_factory=list)

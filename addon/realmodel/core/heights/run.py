@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A method on one set of points, and what all methods have in common: mis-ties, extrapolation, warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ..errors import InputRefused
+from ..mis_ties import without_mis_ties
+from ..work import Work, native_module
+from . import from_neighbours
+from .extrapolation import outside_hull, replace_extrapolated
+from .interpolation import Interpolation, Result, Task
+
+RUNS: dict[str, Callable[[Task], Result]] = {
+    "kriging": from_neighbours.krige,
+    "universal_kriging": from_neighbours.krige,
+    "idw": from_neighbours.inverse_distance,
+}
+# These can tell each point from the others at once; the rest are run again without some of the points.
+LEAVE_ONE_OUT = ("kriging", "universal_kriging", "idw")
+
+
+def heights(
+    work: Work, points, nodes, method: str, settings: dict, threads: int, triangles=None
+) -> Interpolation:
+    """interpolate within a work that is already running, from checked arrays and complete settings."""
+    native = native_module()
+    points, mis_ties = without_mis_ties(points)
+    task = Task(work, points, nodes, settings, threads, triangles)
+    try:
+        result = RUNS[method](task)
+        outside = outside_hull(task)
+        result = replace_extrapolated(task, result, outside)
+    except native.InputError as error:
+        raise InputRefused(str(error), item="points", place=error.place) from error
+    warnings = [*([mis_ties] if mis_ties else []), *few_points(points), *result.warnings]
+    share = float(outside.mean()) if len(outside) else 0.0
+    return Interpolation(result.z, result.variance, method, result.variogram, tuple(warnings), share)
+
+
+def few_points(points: np.ndarray) -> list[str]:
+    """What to tell where points are too few for a surface."""
+    places = np.unique(points[:, :2], axis=0)
+    if len(places) == 1:
+        return ["there is one point only: the surface is its height everywhere"]
+    if len(places) == 2:
+        return ["there are two points only: the surface is known along their line at best"]
+    return []
+
+
+def left_out_heights(work: Work, points, method: str, settings: dict, threads: int) -> Result:
+    """Each point as the others tell it, by a method of LEAVE_ONE_OUT."""
+    native = native_module()
+    task = Task(work, points, np.empty((0, 2)), settings, threads)
+    try:
+        return RUNS[method](replace(task, left_out=True))
+    except native.InputError as error:
+        raise InputRefused(str(error), item="points", place=error.place) from error

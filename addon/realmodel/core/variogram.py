@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Semivariograms: how heights differ with distance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+# f(t) of each model, t = h / range. The factors of the last two make f(1) = 0.95.
+_A, _B = 4.743864518390579, 5.918649346310188
+_SHAPES = {
+    "spherical": lambda t: np.where(t < 1, 1.5 * t - 0.5 * t**3, 1.0),
+    "exponential": lambda t: -np.expm1(-3 * t),
+    "gaussian": lambda t: -np.expm1(-3 * t**2),
+    "cubic": lambda t: np.where(t < 1, t**2 * (7 - 8.75 * t + 3.5 * t**3 - 0.75 * t**5), 1.0),
+    "matern32": lambda t: 1 - (1 + _A * t) * np.exp(-_A * t),
+    "matern52": lambda t: 1 - (1 + _B * t + (_B * t) ** 2 / 3) * np.exp(-_B * t),
+}
+VARIOGRAM_MODELS = tuple(_SHAPES)
+
+# A fit means nothing where neighbouring points differ as much as any, or the range is beyond what they show.
+_PURE_NUGGET = 0.75
+_FEW_PAIRS = 30
+
+
+@dataclass(frozen=True)
+class Structure:
+    """One part of a nested variogram: sill * f(h / range). anisotropy: {ratio, azimuth}, or None for that of
+    the interpolation."""
+
+    model: str
+    range: float
+    sill: float
+    anisotropy: dict | None = None
+
+    def settings(self) -> dict:
+        settings = {"model": self.model, "range": self.range, "sill": self.sill}
+        return settings if self.anisotropy is None else {**settings, "anisotropy": self.anisotropy}
+
+
+@dataclass(frozen=True)
+class Variogram:
+    """gamma(h) = nugget + (sill - nugget) f(h / range), 0 at h = 0; the sill includes the nugget.
+
+    `model` is spherical, exponential, gaussian, cubic, matern32 or matern52; `range` is the practical range
+    in model units, `sill` and `nugget` are in units of height squared. A nested variogram has `structures`,
+    whose parts are added to the nugget; then `model` is "nested", `range` the longest range and `sill` the
+    whole. Where it was fitted to points, `lags` (L,), `gamma` (L,) and `pairs` (L,) are the experimental
+    semivariogram; else they are None.
+    """
+
+    model: str
+    range: float
+    sill: float
+    nugget: float = 0.0
+    structures: tuple[Structure, ...] = ()
+    lags: np.ndarray | None = field(default=None, compare=False, repr=False)
+    gamma: np.ndarray | None = field(default=None, compare=False, repr=False)
+    pairs: np.ndarray | None = field(default=None, compare=False, repr=False)
+
+    @classmethod
+    def from_settings(cls, settings: dict) -> Variogram:
+        """Of what `settings` gives."""
+        if "structures" not in settings:
+            return cls(**settings)
+        structures = tuple(Structure(**part) for part in settings["structures"])
+        nugget = settings["nugget"]
+        sill = nugget + sum(part.sill for part in structures)
+        return cls("nested", max(part.range for part in structures), sill, nugget, structures)
+
+    @property
+    def fitted(self) -> bool:
+        return self.lags is not None
+
+    def semivariance(self, distance) -> np.ndarray:
+        """gamma at distances, in the direction of the longest range; to draw it beside `lags` and `gamma`."""
+        distance = np.asarray(distance, np.float64)
+        gamma = np.full(distance.shape, self.nugget)
+        for part in self.structures or (Structure(self.model, self.range, self.sill - self.nugget),):
+            gamma = gamma + part.sill * _SHAPES[part.model](distance / part.range)
+        return np.where(distance > 0, gamma, 0.0)
+
+    def settings(self) -> dict:
+        """As a project file writes it."""
+        if self.structures:
+            return {"nugget": self.nugget, "structures": [part.settings() for part in self.structures]}
+        return {"model": self.model, "range": self.range, "sill": self.sill, "nugget": self.nugget}
+
+    def native(self, anisotropy: dict) -> dict:
+        """The arguments of the native kriging functions."""
+        first, *further = self.structures or (Structure(self.model, self.range, self.sill),)
+        own = first.anisotropy or anisotropy
+        return {
+            "model": first.model,
+            "range": first.range,
+            "sill": self.sill,
+            "nugget": self.nugget,
+            "anisotropy_ratio": own["ratio"],
+            "anisotropy_azimuth": own["azimuth"],
+            "further": [
+                (
+                    part.model,
+                    part.range,
+                    part.sill,
+                    (part.anisotropy or anisotropy)["ratio"],
+                    (part.anisotropy or anisotropy)["azimuth"],
+                )
+                for part in further
+            ],
+        }
+
+
+def fit_warnings(variogram: Variogram, points: np.ndarray) -> list[str]:
+    """What to tell where a fitted variogram means little, as sentences."""
+    warnings = []
+    pairs = int(variogram.pairs.sum())
+    if pairs < _FEW_PAIRS:
+        number = "no pair" if pairs == 0 else "1 pair" if pairs == 1 else f"{pairs} pairs"
+        warnings.append(
+            f"the variogram is fitted to {number} of points and little more than a guess; give one, or use "
+            f'method = "plane" or "tin"'
+        )
+    elif variogram.semivariance(variogram.lags[0]) > _PURE_NUGGET * variogram.sill:
+        warnings.append(
+            "the fitted variogram is nearly pure nugget: neighbouring points differ almost as much as "
+            "distant ones, and kriging gives little more than local means; look for errors in the points"
+        )
+    extent = float(np.hypot(*np.ptp(points[:, :2], axis=0)))
+    if variogram.range > extent > 0 and pairs >= _FEW_PAIRS:
+        warnings.append(
+            f"the fitted variogram has its range, {variogram.range:.4g}, beyond the extent of the points, "
+            f"{extent:.4g}: its sill, and variances far from points, are extrapolated; the heights may "
+            f'follow a trend, as method = "universal_kriging" has it'
+        )
+    return warnings

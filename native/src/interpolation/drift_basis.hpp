@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The polynomial drift of universal kriging. Private.
+#pragma once
+
+#ifndef EIGEN_DONT_PARALLELIZE
+#define EIGEN_DONT_PARALLELIZE
+#endif
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "interpolation/data_points.hpp"
+#include "realmodel/interpolation/drift.hpp"
+
+namespace realmodel::interpolation {
+
+inline constexpr Eigen::Index most_drift_terms = 6;
+
+/// 1, 3 or 6.
+Eigen::Index drift_terms(Drift drift);
+
+/// Coordinates in which a polynomial is well-conditioned: from the mean of some places, along the
+/// axis of their greatest spread and across it, in units of that spread. Terms across come after
+/// those along, so that places in one line keep the terms along it.
+class DriftFrame {
+public:
+    using Terms = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, most_drift_terms>;
+
+    DriftFrame(std::span<const Place> places, Drift drift);
+    Terms terms(const Place& place) const;
+
+private:
+    Drift drift_;
+    Place centre_{};
+    double along_x_ = 1, along_y_ = 0, scale_ = 1;
+};
+
+/// An orthonormal basis of the whitened drift L^-1 F, where C = L L^T is the covariance of the data
+/// and F has the drift's terms at them; without the terms that the data do not tell from those
+/// before them.
+class DriftBasis {
+public:
+    using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_drift_terms, 1>;
+
+    /// @param plain     F, rows that elimination left out set to 0: what can be told is decided on
+    /// it
+    /// @param whitened  L^-1 F, the same rows 0
+    void make(const Eigen::Ref<const Eigen::MatrixXd>& plain,
+              const Eigen::Ref<const Eigen::MatrixXd>& whitened);
+
+    Eigen::Index size() const { return kept_; }
+
+    /// Q^T v.
+    Coefficients project(const Eigen::Ref<const Eigen::VectorXd>& v) const {
+        return basis_.leftCols(kept_).transpose() * v;
+    }
+
+    /// Q a.
+    Eigen::VectorXd expand(const Coefficients& a) const { return basis_.leftCols(kept_) * a; }
+
+    /// R^-T f, for the terms f at a place.
+    Coefficients solve(const DriftFrame::Terms& terms) const;
+
+private:
+    Eigen::MatrixXd basis_;  // Q, its first kept_ columns
+    std::array<Eigen::Index, most_drift_terms> term_{};
+    Eigen::Matrix<double, most_drift_terms, most_drift_terms> upper_;  // R, of the kept terms
+    Eigen::Index kept_ = 0;
+    Eigen::MatrixXd plain_basis_;
+};
+
+/// Values less the polynomial that fits them best (least squares).
+std::vector<double> without_drift(const DataPoints& data, Drift drift);
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""cross_validate against the same points left out by hand."""
+
+import numpy as np
+import pytest
+from dense_kriging import dense_kriging
+from realmodel.core import Cancelled, InputRefused, UsageError, cross_validate, interpolate
+
+RNG = np.random.default_rng(3)
+PLAN = RNG.random((70, 2)) * 100
+POINTS = np.column_stack([PLAN, 5 * np.sin(PLAN[:, 0] / 20) + 0.1 * PLAN[:, 1]])
+SPHERICAL = {"model": "spherical", "range": 60.0, "sill": 9.0, "nugget": 0.1}
+
+
+@pytest.mark.parametrize("neighbours", [0, 10])
+@pytest.mark.parametrize("drift", ["constant", "linear"])
+def test_kriging_leaves_one_out(neighbours, drift):
+    method, options = ("universal_kriging", {"drift": drift}) if drift != "constant" else ("kriging", {})
+    result = cross_validate(POINTS, method, neighbours=neighbours, variogram=SPHERICAL, **options)
+    for i in range(0, len(POINTS), 9):
+        others = np.delete(POINTS, i, axis=0)
+        h = np.hypot(*(others[:, :2] - POINTS[i, :2]).T)
+        near = others[np.argsort(h)[: neighbours or None]]
+        z, variance = dense_kriging(near, POINTS[i : i + 1], SPHERICAL, drift)
+        assert result.z[i] == pytest.approx(z[0])
+        assert result.errors[i] == pytest.approx(z[0] - POINTS[i, 2])
+        assert result.standardised[i] == pytest.approx((z[0] - POINTS[i, 2]) / np.sqrt(variance[0]))
+    assert result.rmse == pytest.approx(np.sqrt((result.errors**2).mean()))
+    assert result.within_two_deviations == (abs(result.standardised) <= 2).mean()
+    assert (result.method, result.variogram.sill) == (method, 9.0)
+
+
+def test_inverse_distance_leaves_one_out():
+    result = cross_validate(POINTS, "idw", neighbours=8, power=3)
+    for i in (0, 33, 69):
+        others = np.delete(POINTS, i, axis=0)
+        z = interpolate(others, POINTS[i : i + 1, :2], "idw", neighbours=8, power=3).z
+        assert result.z[i] == pytest.approx(z[0])
+    assert result.standardised is None
+    assert result.within_two_deviations is None
+    everything = cross_validate(POINTS, "idw", neighbours=0)
+    others = POINTS[1:]
+    assert everything.z[0] == pytest.approx(interpolate(others, POINTS[:1, :2], "idw", neighbours=0).z[0])
+
+
+def test_points_at_one_place_leave_together():
+    twice = np.vstack([POINTS, POINTS[:5]])
+    result = cross_validate(twice, variogram=SPHERICAL)
+    assert np.array_equal(result.points, POINTS)
+    assert np.array_equal(result.errors, cross_validate(POINTS, variogram=SPHERICAL).errors)
+
+
+def test_a_fitted_variogram_has_honest_variances():
+    """Errors of a field drawn with a known variogram are as large as their deviations say."""
+    plan = RNG.random((400, 2)) * 300
+    h = np.hypot(*(plan[:, None] - plan[None]).transpose(2, 0, 1))
+    covariance = 4 * np.exp(-3 * h / 80) + 1e-9 * np.eye(400)
+    z = np.linalg.cholesky(covariance) @ RNG.normal(size=400)
+    result = cross_validate(np.column_stack([plan, z]))
+    assert 0.8 <= result.within_two_deviations <= 0.99
+    assert 0.7 < result.standardised.std() < 1.3
+
+
+def test_refused_and_cancelled():
+    with pytest.raises(InputRefused, match="one point alone"):
+        cross_validate([[0, 0, 1], [0, 0, 1]])
+    with pytest.raises(UsageError, match="folds"):
+        cross_validate(POINTS, folds=1)
+    with pytest.raises(InputRefused, match="belongs to"):
+        cross_validate(POINTS, "idw", drift="linear")
+    many = np.column_stack([RNG.random((3000, 2)), RNG.random(3000)])
+    with pytest.raises(Cancelled):
+        cross_validate(many, neighbours=0, variogram=SPHERICAL, cancel=lambda: True)
