@@ -64,6 +64,31 @@ def test_cancel_stops_soon_and_leaves_no_thread():
     assert least_of(seconds_to_stop, 0.2) < 0.2
 
 
+def test_cancel_answers_before_all_is_torn_down():
+    """Freeing what a large model has taken needs longer than a person waits; the next work waits for it."""
+    gone = threading.Event()
+
+    def slow_to_leave(work):
+        try:
+            in_steps(work, 60.0, 6000)
+        finally:
+            time.sleep(1.0)
+            gone.set()
+
+    asked = []
+
+    def cancel():
+        asked.append(time.perf_counter())
+        return True
+
+    with pytest.raises(Cancelled):
+        run(slow_to_leave, cancel=cancel)
+    assert time.perf_counter() - asked[0] < 0.5
+    assert not gone.is_set()
+    assert run(lambda _work: gone.is_set()), "stopped work is gone before the next begins"
+    assert not working_threads()
+
+
 def test_what_progress_raises_stops_the_work():
     def progress(_fraction, _text):
         raise RuntimeError("the window is gone")

@@ -8,8 +8,9 @@ reaches the main thread alone.
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TypeVar
 
 from .errors import BuildFailed, Cancelled
@@ -19,6 +20,7 @@ Cancel = Callable[[], bool]
 Result = TypeVar("Result")
 
 POLL_SECONDS = 0.04
+_SECONDS_TO_LEAVE = 0.1  # with one poll before it, an answer to cancel() stays within 0.2 s
 
 
 class Work:
@@ -29,6 +31,7 @@ class Work:
         self._control = None
         self._start, self._end = 0.0, 1.0
         self._share = 0.0
+        self._pace: Callable[[float], float] | None = None
         self._told = 0.0
         self._text = ""
         self._cancelled = False
@@ -43,6 +46,15 @@ class Work:
             self._start, self._end, self._share, self._text = start, end, 0.0, text
         yield
         self.step(1.0)
+
+    @contextmanager
+    def paced(self, pace: Callable[[float], float]):
+        """Native calls within whose counted fraction goes to the share of their time by `pace`."""
+        with self._lock:
+            self._pace = pace
+        yield
+        with self._lock:
+            self._pace = None
 
     def step(self, share: float) -> None:
         """Tells the share done of the present phase. Raises Cancelled where the caller asked to stop."""
@@ -80,7 +92,8 @@ class Work:
         with self._lock:
             share = self._share
             if self._control is not None:
-                share = max(share, min(max(self._control.fraction, 0.0), 1.0))
+                counted = self._control.fraction
+                share = max(share, counted if self._pace is None else self._pace(counted))
             self._told = max(self._told, self._start + (self._end - self._start) * share)
             return self._told, self._text
 
@@ -97,8 +110,9 @@ def run(
     """Runs task(work) in a thread of its own and returns what it returns.
 
     progress(fraction, text) and cancel() are called from this thread every 40 ms. Whatever they raise,
-    KeyboardInterrupt included, stops the work, waits for its end and passes on.
-    Raises Cancelled where cancel() returned True before the work was done.
+    KeyboardInterrupt included, stops the work and passes on. Raises Cancelled where cancel() returned True
+    before the work was done. Work that was stopped is waited for, but not for long: freeing what a large
+    model has taken so far may need seconds, and goes on in its own thread, which later work waits for.
     """
     work = Work()
     done = threading.Event()
@@ -106,13 +120,15 @@ def run(
 
     def target() -> None:
         try:
+            _join_leaving()
             outcome[0] = task(work)
         except BaseException as error:  # handed to the caller's thread, which raises it
             outcome[1] = error
         finally:
             done.set()
 
-    thread = threading.Thread(target=target, name="realmodel work", daemon=True)
+    # not a daemon: at its end Python must not tear native work out of its thread
+    thread = threading.Thread(target=target, name="realmodel work")
     thread.start()
     try:
         while not done.wait(POLL_SECONDS):
@@ -120,11 +136,15 @@ def run(
                 progress(*work.state())
             if cancel is not None and cancel():
                 work.cancel()
+                _wait(thread)
+                break
     except BaseException:
         work.cancel()
-        _join(thread)
+        _wait(thread)
         raise
-    _join(thread)
+    if not done.is_set():
+        raise Cancelled("cancelled")
+    thread.join()
     if outcome[1] is not None:
         raise outcome[1]
     if progress is not None:
@@ -132,13 +152,25 @@ def run(
     return outcome[0]
 
 
-def _join(thread: threading.Thread) -> None:
-    """Waits for the end of a thread that was told to stop, however often Ctrl-C is pressed meanwhile."""
-    while thread.is_alive():
-        try:
-            thread.join()
-        except KeyboardInterrupt:
-            continue
+_leaving: list[threading.Thread] = []  # told to stop, but not gone yet
+
+
+def _join_leaving() -> None:
+    """Waits for stopped work to end, so that two never hold memory at once."""
+    for thread in list(_leaving):
+        thread.join()
+        with suppress(ValueError):  # other work, which waited as well, has taken it away
+            _leaving.remove(thread)
+
+
+def _wait(thread: threading.Thread) -> None:
+    """Waits a moment for a thread that was told to stop, however often Ctrl-C is pressed meanwhile."""
+    until = time.monotonic() + _SECONDS_TO_LEAVE
+    while thread.is_alive() and time.monotonic() < until:
+        with suppress(KeyboardInterrupt):
+            thread.join(max(0.0, until - time.monotonic()))
+    if thread.is_alive():
+        _leaving.append(thread)
 
 
 def native_module():

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/base/memory.hpp"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -94,6 +95,12 @@ std::uint64_t left_by_address_space() {
 
 std::uint64_t available_memory() {
     return std::min({left_by_machine(), left_by_groups(), left_by_address_space()});
+}
+
+void give_back_memory() noexcept {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
 }
 
 }  // namespace realmodel

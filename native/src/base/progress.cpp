@@ -35,6 +35,32 @@ void Progress::report(double fraction, const char* text) noexcept {
     text_[length] = '\0';
 }
 
+void Progress::begin(double start, double end, const char* text) noexcept {
+    part_end_.store(std::clamp(end, 0.0, 1.0));
+    report(start, text);
+}
+
+void Progress::advance(double fraction) const noexcept {
+    double before = fraction_.load(std::memory_order_relaxed);
+    while (before < fraction &&
+           !fraction_.compare_exchange_weak(before, fraction, std::memory_order_relaxed)) {
+    }
+}
+
+CountedLoop::CountedLoop(const Progress* progress, std::size_t rounds, double share) noexcept
+    : progress_(progress) {
+    if (progress == nullptr || rounds == 0) return;
+    from_ = progress->fraction();
+    const double left = std::max(0.0, progress->part_end_.load() - from_);
+    step_ = left * std::clamp(share, 0.0, 1.0) / static_cast<double>(rounds);
+}
+
+void CountedLoop::count() noexcept {
+    if (progress_ == nullptr) return;
+    const std::size_t done = done_.fetch_add(1, std::memory_order_relaxed) + 1;
+    progress_->advance(from_ + step_ * static_cast<double>(done));
+}
+
 void Progress::cancel() noexcept {
     cancelled_.store(true);
 }

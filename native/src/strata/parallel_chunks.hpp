@@ -23,9 +23,12 @@ inline void poll(const Progress* progress, std::size_t round) {
 
 /// Calls work(chunk) for every chunk from 0 to count - 1 on several threads, or until the caller
 /// cancels. Where chunks throw, the others still run and the exception of the lowest of them leaves
-/// here, so that the same input always gives the same error.
+/// here, so that the same input always gives the same error. Chunks are counted into the progress:
+/// `share` is how much of what is left of its present part this loop is expected to take.
 template <class Work>
-void parallel_chunks(std::size_t count, int threads, const Progress* progress, const Work& work) {
+void parallel_chunks(std::size_t count, int threads, const Progress* progress, const Work& work,
+                     double share = 0.5) {
+    CountedLoop counted(progress, count, share);
     std::atomic<bool> stop{false};
     std::exception_ptr failure;
     std::int64_t failed_chunk = INT64_MAX;
@@ -38,6 +41,7 @@ void parallel_chunks(std::size_t count, int threads, const Progress* progress, c
         }
         try {
             work(static_cast<std::size_t>(chunk));
+            counted.count();
         } catch (...) {
 #pragma omp critical(realmodel_parallel_chunks_failure)
             if (chunk < failed_chunk) {

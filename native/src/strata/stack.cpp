@@ -28,10 +28,11 @@ namespace {
 /// Shares of the work, measured on stacks of ten surfaces.
 constexpr double kEnterShare = 0.05, kOverlayShare = 0.6, kConformShare = 0.35;
 
-void report(Progress* progress, double fraction, const char* text) {
+/// Begins a part of the work, counted as `share` of it.
+void begin(Progress* progress, double start, double share, const char* text) {
     if (progress == nullptr) return;
     progress->check();
-    progress->report(fraction, text);
+    progress->begin(start, start + share, text);
 }
 
 std::vector<std::array<VertexId, 3>> enter_region(PlanGeometry& geometry, const RegionView& region,
@@ -214,10 +215,11 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
     const FaceList& faces = construction.faces;
     double done = kEnterShare + kOverlayShare;
     for (int round = 0;; ++round) {
-        const auto next = [&](double share, const char* text) {
-            report(progress, done, text);
+        const auto next = [&](double of_round, const char* text) {
             // a second round, where there is one, shares what is left
-            done += share * kConformShare * (round == 0 ? 0.5 : 0.25);
+            const double share = of_round * kConformShare * (round == 0 ? 0.5 : 0.25);
+            begin(progress, done, share, text);
+            done += share;
         };
         next(0.2, "joining points");
         const Places places = find_places(geometry, faces, extra, threads, progress);
@@ -232,6 +234,7 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
             extra.insert(extra.end(), missing.begin(), missing.end());
             continue;
         }
+        begin(progress, done, 1.0 - done, "putting the cells together");
         make_distinct(geometry, faces, places, loops, progress);
         return assemble(faces, surface_of_plane, std::move(loops), walls,
                         std::move(construction.cell_block), progress);
@@ -281,8 +284,8 @@ void build_rock(Site& site, EnteredRock& rock, double start, double share) {
     }
     LayerSequence layers(site, rock);
     for (std::int32_t k = count - 1; k >= 0; --k) {
-        report(site.progress, start + share * static_cast<double>(count - 1 - k) / count,
-               "intersecting the surfaces");
+        begin(site.progress, start + share * static_cast<double>(count - 1 - k) / count,
+              share / count, "intersecting the surfaces");
         const Layer layer = layers.take(k);
         envelope = envelope.size() == 0 ? initial_envelope(layer, k)
                                         : overlay(site.geometry, envelope, layer, k,
@@ -313,7 +316,7 @@ Warning joined_by_rounding(const PlanSnapping& snapping, const JoinedBorders& bo
 
 CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping& snapping,
                           int threads, Progress* progress) {
-    report(progress, 0.0, "checking the surfaces");
+    begin(progress, 0.0, kEnterShare, "checking the surfaces");
     Site site;
     site.threads = threads;
     site.progress = progress;
@@ -351,7 +354,7 @@ CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping&
     result.warnings = std::move(warnings);
     result.decisions = site.geometry.all_decisions();
     result.exact_decisions = site.geometry.exact_decisions();
-    report(progress, 1.0, "done");
+    begin(progress, 1.0, 0.0, "done");
     return result;
 }
 

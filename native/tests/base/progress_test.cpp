@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "realmodel/base/errors.hpp"
 
@@ -91,6 +92,63 @@ TEST(Progress, MayBeWatchedWhileItIsReported) {
     progress.cancel();
     worker.join();
     EXPECT_TRUE(stopped);
+}
+
+TEST(CountedLoop, LoopsShareAPartWithoutEverLeavingIt) {
+    Progress progress;
+    progress.begin(0.2, 0.6, "a part");
+    EXPECT_EQ(progress.text(), "a part");
+    double before = progress.fraction();
+    EXPECT_EQ(before, 0.2);
+    for (int loop = 0; loop < 20; ++loop) {
+        CountedLoop counted(&progress, 8);
+        for (int round = 0; round < 8; ++round) {
+            counted.count();
+            EXPECT_GT(progress.fraction(), before);
+            before = progress.fraction();
+        }
+    }
+    EXPECT_LT(before, 0.6);
+    EXPECT_NEAR(before, 0.6, 1e-6);
+    progress.begin(0.6, 1.0, "the rest");
+    EXPECT_EQ(progress.fraction(), 0.6);
+}
+
+TEST(CountedLoop, TakesTheShareThatItIsGiven) {
+    Progress progress;
+    progress.begin(0.0, 1.0, "all");
+    CountedLoop counted(&progress, 4, 0.8);
+    for (const double expected : {0.2, 0.4, 0.6, 0.8}) {
+        counted.count();
+        EXPECT_DOUBLE_EQ(progress.fraction(), expected);
+    }
+}
+
+TEST(CountedLoop, OutsideOfPartsAndWithoutProgressCountsNothing) {
+    const Progress progress;
+    CountedLoop outside(&progress, 3);
+    outside.count();
+    EXPECT_EQ(progress.fraction(), 0.0);
+    CountedLoop nobody(nullptr, 3);
+    nobody.count();
+    CountedLoop none(&progress, 0);
+    EXPECT_EQ(progress.fraction(), 0.0);
+}
+
+TEST(CountedLoop, CountsFromAnyThread) {
+    Progress progress;
+    progress.begin(0.0, 1.0, "all");
+    CountedLoop counted(&progress, 4000, 1.0);
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t) {
+        threads.emplace_back([&] {
+            for (int round = 0; round < 1000; ++round)
+                counted.count();
+        });
+    }
+    for (std::thread& thread : threads)
+        thread.join();
+    EXPECT_NEAR(progress.fraction(), 1.0, 1e-12);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <mutex>
 #include <string>
 
@@ -20,6 +21,12 @@ public:
     ///                  null keeps the text that was there
     void report(double fraction, const char* text) noexcept;
 
+    /// Begins a part of the work, which takes the fraction from `start` to `end`. Loops that count
+    /// their rounds (CountedLoop) move it on in between, whoever runs them.
+    /// @param start, end  kept within 0 .. 1
+    /// @param text        as for report()
+    void begin(double start, double end, const char* text) noexcept;
+
     /// Asks the computation to stop; it does so at its next check().
     void cancel() noexcept;
     bool cancelled() const noexcept;
@@ -32,10 +39,34 @@ public:
     std::string text() const;
 
 private:
-    std::atomic<double> fraction_{0.0};
+    friend class CountedLoop;
+    void advance(double fraction) const noexcept;
+
+    // Counting is no more than telling: who may only check() may count as well.
+    mutable std::atomic<double> fraction_{0.0};
+    std::atomic<double> part_end_{0.0};
     std::atomic<bool> cancelled_{false};
     mutable std::mutex text_mutex_;
     std::array<char, 128> text_{};  // fixed, so that report() cannot fail for want of memory
+};
+
+/// Counts the rounds of a loop into the part of the work that was begun last. How many loops make a
+/// part, and what each costs, need not be known: a loop takes a share of what is left of the part,
+/// so that the fraction never falls and never passes the end of the part. What a fraction means in
+/// time is measured (scripts/benchmark.sh) and applied by the caller.
+class CountedLoop {
+public:
+    /// @param progress  null: nothing is counted
+    /// @param rounds    how many there will be
+    /// @param share     of what is left of the part, 0 .. 1
+    CountedLoop(const Progress* progress, std::size_t rounds, double share = 0.5) noexcept;
+    /// One round more is done. From any thread.
+    void count() noexcept;
+
+private:
+    const Progress* progress_;
+    double from_ = 0.0, step_ = 0.0;
+    std::atomic<std::size_t> done_{0};
 };
 
 }  // namespace realmodel
