@@ -7,16 +7,68 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "realmodel/base/errors.hpp"
 
 namespace realmodel::bindings {
 
 /// C-contiguous array of T; other dtypes and layouts are converted (then, and only then, copied).
 template <class T>
 using Array = pybind11::array_t<T, pybind11::array::c_style | pybind11::array::forcecast>;
+
+/// C-contiguous array of int32 made from whole numbers of any width, none of which may be lost:
+/// what NumPy's own conversion would wrap around is refused (see the caster below).
+class Indices : public Array<std::int32_t> {
+public:
+    using Array<std::int32_t>::Array;
+    Indices() = default;
+    explicit Indices(Array<std::int32_t> whole) : Array<std::int32_t>(std::move(whole)) {}
+
+    /// @throws InputError kind too_large (items: the row) where a number does not fit into 32 bits
+    /// @throws TypeError where the array does not hold whole numbers
+    static Indices from(const pybind11::array& given);
+
+private:
+    template <class Wide>
+    static void require_fit(const pybind11::array& given);
+};
+
+template <class Wide>
+void Indices::require_fit(const pybind11::array& given) {
+    const Array<Wide> wide(given);
+    const auto columns = wide.ndim() > 1 ? wide.shape(wide.ndim() - 1) : 1;
+    const Wide* const values = wide.data();
+    for (pybind11::ssize_t i = 0; i < wide.size(); ++i) {
+        if (std::in_range<std::int32_t>(values[i])) continue;
+        const auto row = static_cast<std::int64_t>(i / columns);
+        throw InputError("too_large",
+                         "row " + std::to_string(row) + " holds " + std::to_string(values[i]) +
+                             ": indices go up to " +
+                             std::to_string(std::numeric_limits<std::int32_t>::max()),
+                         -1, {row});
+    }
+}
+
+inline Indices Indices::from(const pybind11::array& given) {
+    const char kind = given.dtype().kind();
+    if (kind != 'i' && kind != 'u') {
+        throw pybind11::type_error("indices: an array of whole numbers is needed, not of dtype " +
+                                   pybind11::str(given.dtype()).cast<std::string>());
+    }
+    const auto width = given.dtype().itemsize();
+    if (kind == 'u' && width >= 4) {
+        require_fit<std::uint64_t>(given);
+    } else if (width > 4) {
+        require_fit<std::int64_t>(given);
+    }
+    return Indices(Array<std::int32_t>(given));
+}
 
 /// Hands a vector's memory to NumPy: an array of shape (values.size() / columns, columns), or
 /// one-dimensional where columns is 0. The array owns the memory; nothing is copied.
@@ -63,3 +115,25 @@ void require_columns(const Array<T>& array, std::size_t columns, const char* arg
 }
 
 }  // namespace realmodel::bindings
+
+namespace pybind11::detail {
+
+/// Arguments of type Indices. Empty lists and the like come as float64 and hold nothing to lose.
+template <>
+struct type_caster<realmodel::bindings::Indices> {
+    PYBIND11_TYPE_CASTER(realmodel::bindings::Indices, const_name("numpy.ndarray[numpy.int32]"));
+
+    bool load(handle source, bool) {
+        const array given = array::ensure(source);
+        if (!given) return false;
+        value = given.size() == 0
+                    ? realmodel::bindings::Indices(realmodel::bindings::Array<std::int32_t>(given))
+                    : realmodel::bindings::Indices::from(given);
+        return true;
+    }
+    static handle cast(const realmodel::bindings::Indices& source, return_value_policy, handle) {
+        return source.inc_ref();
+    }
+};
+
+}  // namespace pybind11::detail

@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "realmodel/base/errors.hpp"
+#include "realmodel/base/memory.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/base/version.hpp"
 
@@ -55,6 +56,9 @@ void translate(std::exception_ptr thrown) {
 
 void bind_base(py::module_& module) {
     module.attr("VERSION") = version();
+    module.def("available_memory", &available_memory,
+               "Bytes that this process may still take: the least of what the machine has free and "
+               "what its control groups and its own limit leave.");
 
     input_error_type = add_exception(
         module, "InputError", PyExc_ValueError,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// build_stack.
+// build_rock_masses, build_stack, cell_components.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "realmodel/base/memory.hpp"
 #include "realmodel/base/progress.hpp"
+#include "realmodel/strata/cell_components.hpp"
 #include "realmodel/strata/stack.hpp"
 
 namespace py = pybind11;
@@ -19,7 +21,7 @@ namespace realmodel::bindings {
 
 namespace {
 
-using SurfaceArrays = std::pair<Array<double>, Array<std::int32_t>>;
+using SurfaceArrays = std::pair<Array<double>, Indices>;
 
 template <class T>
 std::span<const T> view(const Array<T>& array) {
@@ -80,6 +82,14 @@ strata::StackInput view_of(const RockArrays& rock) {
     return input;
 }
 
+/// When the work is done, refused or cancelled, what it had is the system's again.
+struct MemoryGivenBack {
+    MemoryGivenBack() = default;
+    MemoryGivenBack(const MemoryGivenBack&) = delete;
+    MemoryGivenBack& operator=(const MemoryGivenBack&) = delete;
+    ~MemoryGivenBack() { give_back_memory(); }
+};
+
 py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::string& cells,
                            int threads, Progress* control) {
     if (cells != "columns" && cells != "blocks") {
@@ -91,6 +101,7 @@ py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::stri
     strata::CellComplex complex;
     {
         const py::gil_scoped_release release;
+        const MemoryGivenBack at_the_end;
         complex = strata::build_rock_masses(input, threads, control);
         if (cells == "blocks") complex = strata::merge_columns(complex, control);
     }
@@ -102,6 +113,21 @@ py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
                      std::optional<double> base_elevation, const std::string& cells, int threads,
                      Progress* control, const std::vector<std::string>& rules) {
     return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, threads, control);
+}
+
+Array<std::int32_t> cell_components(const Indices& face_cells, const Indices& cell_block,
+                                    const Progress* control) {
+    require_columns(face_cells, 2, "face_cells");
+    static_assert(sizeof(std::array<std::int32_t, 2>) == 2 * sizeof(std::int32_t));
+    const std::span<const std::array<std::int32_t, 2>> faces(
+        reinterpret_cast<const std::array<std::int32_t, 2>*>(face_cells.data()),
+        static_cast<std::size_t>(face_cells.shape(0)));
+    std::vector<std::int32_t> component;
+    {
+        const py::gil_scoped_release release;
+        component = strata::cell_components(faces, view(cell_block), control);
+    }
+    return to_array(std::move(component));
 }
 
 }  // namespace
@@ -126,6 +152,13 @@ surface, items, text); decisions, exact_decisions: int. Raises InputError and Ca
                py::arg("threads") = 0, py::arg("control") = nullptr,
                py::arg("rules") = std::vector<std::string>(),
                "build_rock_masses of a single rock mass.");
+    module.def("cell_components", &cell_components, py::arg("face_cells"), py::arg("cell_block"),
+               py::arg("control") = nullptr,
+               R"(Connected parts of blocks.
+
+face_cells: (F, 2) int32, the cells on both sides of each face, -1 outside; cell_block: (C,) int32.
+Returns (C,) int32: for each cell the least cell that it reaches through faces between cells of its
+own block. Raises InputError kind "bad_index" (items: the face); Cancelled.)");
 }
 
 }  // namespace realmodel::bindings

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Connected parts, against a plain search from node to node."""
+"""Connected parts of blocks, against a plain search from cell to cell."""
 
 import time
 
@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from realmodel.core.components import connected_parts
+from realmodel import _native
+
+
+def connected_parts(count, edges):
+    """Cells of one block that share faces."""
+    return _native.cell_components(edges, np.zeros(count, np.int32))
 
 
 def by_search(count, edges):
@@ -38,6 +43,25 @@ def test_as_a_search_finds_them(graph):
     count, edges = graph
     found = connected_parts(count, np.array(edges, np.int32).reshape(-1, 2))
     assert found.tolist() == by_search(count, edges)
+
+
+def test_faces_between_blocks_and_to_the_outside_join_nothing():
+    faces = np.array([[0, 1], [1, 2], [2, -1], [3, 2]], np.int32)
+    assert _native.cell_components(faces, np.array([0, 0, 1, 1], np.int32)).tolist() == [0, 0, 2, 2]
+
+
+@pytest.mark.parametrize("bad", [4, -2])
+def test_a_face_of_a_cell_that_is_not_there_is_refused(bad):
+    with pytest.raises(_native.InputError, match="face 1") as refused:
+        connected_parts(4, np.array([[0, 1], [2, bad]], np.int32))
+    assert (refused.value.kind, refused.value.items) == ("bad_index", [1])
+
+
+def test_cancelled():
+    control = _native.Control()
+    control.cancel()
+    with pytest.raises(_native.Cancelled):
+        _native.cell_components(np.array([[0, 1]], np.int32), np.zeros(2, np.int32), control=control)
 
 
 @pytest.mark.parametrize("order", ["along", "shuffled", "star"])

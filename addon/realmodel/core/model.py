@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -11,11 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from .build_warning import BuildWarning
-from .components import connected_parts
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
-from .work import Cancel, Progress
+from .work import Cancel, Progress, native_module
 
 
 @dataclass(frozen=True)
@@ -140,17 +139,8 @@ class Model:
 
     @cached_property
     def cell_component(self) -> np.ndarray:
-        """(C,) int64: the least cell of the connected part of a block that each cell belongs to."""
-        return cell_components(self.face_cells, self.cell_block)
-
-
-def cell_components(
-    face_cells: np.ndarray, cell_block: np.ndarray, check: Callable[[], None] | None = None
-) -> np.ndarray:
-    """(C,) int64: for each cell the least cell that it reaches through faces within its own block."""
-    inner = face_cells[face_cells[:, 1] >= 0]
-    same = cell_block[inner[:, 0]] == cell_block[inner[:, 1]]
-    return connected_parts(len(cell_block), inner[same], check)
+        """(C,) int32: the least cell of the connected part of a block that each cell belongs to."""
+        return native_module().cell_components(self.face_cells, self.cell_block)
 
 
 def count_blocks(cell_block: np.ndarray, component: np.ndarray, blocks: int) -> tuple[Sequence, Sequence]:

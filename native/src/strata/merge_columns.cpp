@@ -1,39 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <numeric>
-
+#include "disjoint_parts.hpp"
 #include "parallel_chunks.hpp"
 #include "realmodel/strata/stack.hpp"
 #include "volumes.hpp"
 
 namespace realmodel::strata {
-
-namespace {
-
-/// Disjoint sets; the least member stands for each.
-class Parts {
-public:
-    explicit Parts(std::size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), 0);
-    }
-    std::int32_t find(std::int32_t i) {
-        while (at(i) != i) {
-            at(i) = at(at(i));
-            i = at(i);
-        }
-        return i;
-    }
-    void join(std::int32_t a, std::int32_t b) {
-        a = find(a);
-        b = find(b);
-        at(std::max(a, b)) = std::min(a, b);
-    }
-
-private:
-    std::int32_t& at(std::int32_t i) { return parent_[static_cast<std::size_t>(i)]; }
-    std::vector<std::int32_t> parent_;
-};
-
-}  // namespace
 
 CellComplex merge_columns(const CellComplex& columns, const Progress* progress) {
     const auto block = [&](std::int32_t cell) {
@@ -42,13 +13,16 @@ CellComplex merge_columns(const CellComplex& columns, const Progress* progress) 
     const auto within_block = [&](const std::array<std::int32_t, 2>& cells) {
         return cells[1] >= 0 && block(cells[0]) == block(cells[1]);
     };
-    Parts parts(columns.cell_block.size());
-    for (const auto& cells : columns.face_cells) {
+    DisjointParts parts(columns.cell_block.size());
+    for (std::size_t f = 0; f < columns.face_cells.size(); ++f) {
+        poll(progress, f);
+        const auto& cells = columns.face_cells[f];
         if (within_block(cells)) parts.join(cells[0], cells[1]);
     }
     CellComplex merged;
     std::vector<std::int32_t> part_of(columns.cell_block.size(), -1);
     for (std::size_t c = 0; c < part_of.size(); ++c) {
+        poll(progress, c);
         const auto root = static_cast<std::size_t>(parts.find(static_cast<std::int32_t>(c)));
         if (part_of[root] < 0) {
             part_of[root] = static_cast<std::int32_t>(merged.cell_block.size());
