@@ -105,6 +105,17 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--threads", metavar="N", type=_whole, default=0, help="0 (default): all that there are"
     )
+    parser.add_argument(
+        "--memory",
+        metavar="GB",
+        type=_gigabytes,
+        help="what building may take (default: what is free); what would take more is refused at once",
+    )
+    parser.add_argument(
+        "--estimate",
+        action="store_true",
+        help="tell cells, memory and time that it would take, and build nothing",
+    )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     options = parser.parse_args(arguments)
     for name, ending in (("blend", ".blend"), ("report", ".json"), ("render", ".png")):
@@ -114,7 +125,20 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
     for name in ("blend", "render"):
         if getattr(options, name) is not None and not IN_BLENDER:
             parser.error(f"--{name} needs Blender; run it as: {_BLENDER_USAGE}")
+    outputs = ("--blend", "--export", "--report", "--render")
+    if options.estimate and any(getattr(options, name[2:]) for name in outputs):
+        parser.error(f"--estimate builds nothing: it goes without {', '.join(outputs)}")
     return options
+
+
+def _gigabytes(text: str) -> int:
+    try:
+        size = float(text) * 1e9
+    except ValueError:
+        size = 0.0
+    if not 1.0 <= size < 1e18:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number of gigabytes above 0")
+    return int(size)
 
 
 def _whole(text: str) -> int:
@@ -133,10 +157,18 @@ def _run(options: argparse.Namespace) -> None:
     project = load_project(options.project)
     _refuse_overwriting(project, targets)
     progress = TerminalProgress(sys.stdout, options.quiet)
+    if options.estimate:
+        _estimate(options, project, progress)
+        return
     with Outputs() as outputs, _Interruptible(outputs):
         try:
             model = build(
-                project, cells=options.cells, threads=options.threads, progress=progress, stage=options.stage
+                project,
+                cells=options.cells,
+                threads=options.threads,
+                progress=progress,
+                stage=options.stage,
+                memory=options.memory,
             )
             _write(options, model, outputs, progress)
             for number in (signal.SIGINT, signal.SIGTERM):
@@ -148,6 +180,21 @@ def _run(options: argparse.Namespace) -> None:
             for warning in model.warnings:
                 print(f"warning: {warning}")
             print(volume_table(model), flush=True)
+
+
+def _estimate(options: argparse.Namespace, project, progress) -> None:
+    from realmodel.core import estimate
+
+    try:
+        found = estimate(
+            project, cells=options.cells, threads=options.threads, progress=progress, stage=options.stage
+        )
+    finally:
+        progress.close()
+    print(found.table(), flush=True)
+    limit = found.available if options.memory is None else options.memory
+    if found.memory > limit:
+        print("this would be refused: it takes more memory than there is (see --cells, --memory)", flush=True)
 
 
 def _checked_targets(options: argparse.Namespace) -> list[Path]:

@@ -388,3 +388,36 @@ def test_without_the_native_module(layers, tmp_path):
 def test_it_is_found_from_anywhere():
     assert Path(SCRIPT).read_text().startswith("#!/usr/bin/env python3\n")
     assert os.access(SCRIPT, os.X_OK)
+
+
+def test_an_estimate_builds_nothing(layers, out):
+    project = layers([0, 1, 3])
+    done = run(project, "--estimate", cwd=out)
+    assert done.returncode == 0, done.stderr
+    assert "triangles of all surfaces  6" in done.stdout
+    assert "cells (columns)" in done.stdout
+    assert "refused" not in done.stdout
+    assert not names(out)
+    done = run(project, "--estimate", "--cells", "blocks", "--memory", "1e-6")
+    assert done.returncode == 0
+    assert "cells (blocks)             about 2" in done.stdout
+    assert "would be refused" in done.stdout
+
+
+def test_an_estimate_goes_without_outputs(layers, out):
+    done = run(layers([0, 1]), "--estimate", "--export", out / "m.npz")
+    assert done.returncode == 2
+    assert "--estimate builds nothing" in done.stderr
+
+
+def test_what_would_not_fit_the_memory_is_refused(layers, out):
+    line = refused(run(layers([0, 1, 3]), "--memory", "1e-6", "--export", out / "m.npz"))
+    assert "are allowed" in line
+    assert not names(out)
+
+
+@pytest.mark.parametrize("size", ["0", "-1", "much", "nan"])
+def test_memory_is_a_number_of_gigabytes(layers, size):
+    done = run(layers([0, 1]), "--memory", size)
+    assert done.returncode == 2
+    assert "gigabytes" in done.stderr

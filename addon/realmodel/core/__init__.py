@@ -4,7 +4,16 @@
 from .build import build
 from .build_warning import BuildWarning
 from .cross_validation import CrossValidation, cross_validate
-from .errors import BuildFailed, Cancelled, InputRefused, OutputFailed, RealModelError, UsageError
+from .errors import (
+    BuildFailed,
+    Cancelled,
+    InputRefused,
+    NotEnoughMemory,
+    OutputFailed,
+    RealModelError,
+    UsageError,
+)
+from .estimate import Estimate, estimate
 from .heights import Interpolation
 from .interpolation import interpolate
 from .library import Library, Property, load_library
@@ -21,10 +30,12 @@ __all__ = [
     "BuildWarning",
     "Cancelled",
     "CrossValidation",
+    "Estimate",
     "InputRefused",
     "Interpolation",
     "Library",
     "Model",
+    "NotEnoughMemory",
     "OutputFailed",
     "Project",
     "Property",
@@ -36,6 +47,7 @@ __all__ = [
     "Variogram",
     "build",
     "cross_validate",
+    "estimate",
     "interpolate",
     "load_library",
     "load_project",

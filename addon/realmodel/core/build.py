@@ -4,21 +4,24 @@
 from __future__ import annotations
 
 import time
+from contextlib import contextmanager
 
 import numpy as np
 
+from .build_options import CELL_KINDS, check_cells, check_memory, check_stage
 from .build_warning import BuildWarning
-from .errors import UsageError
+from .estimate import require_memory
+from .expected_costs import expected_costs, expected_shares, stack_pace
 from .methods import check_threads
-from .model import Block, Model, cell_components, count_blocks
+from .model import Block, Model, count_blocks
 from .project import Project, check_project
-from .rock_input import RockInput, expected_costs, mesh_and_interpolate, read_rocks
+from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
 from .stack_refusals import refused_stack
 from .work import Cancel, Progress, Work, native_module, run
 
-CELL_KINDS = ("columns", "blocks")
-_READ_SHARE = 0.08
-_MERGE_SHARE = 0.04
+_STAGE_INTERSECTED = 0.99  # of the time of a stage: nothing is read again
+
+__all__ = ["CELL_KINDS", "build", "build_stage"]
 
 
 def build(
@@ -29,32 +32,35 @@ def build(
     cancel: Cancel | None = None,
     *,
     stage: int | None = None,
+    memory: int | None = None,
 ) -> Model:
     """Builds the model of a project.
 
     cells: "columns", each under one facet of the surface above it, or "blocks", one for each connected
     part of a block. threads: 0 for all that there are; the result is the same for any number.
     stage: build only up to this surface (from 0) of each rock mass.
+    memory: bytes that building may take; None: what is free. What is expected to take more (estimate) is
+    refused before it begins.
     progress(fraction, text) and cancel() are called from this thread every 40 ms while another works;
     the fraction never falls. cancel() returning True ends it with Cancelled.
 
-    Raises InputRefused (what, where, what to do), BuildFailed, UsageError, Cancelled.
+    Raises InputRefused (what, where, what to do), NotEnoughMemory, BuildFailed, UsageError, Cancelled.
     """
-    if cells not in CELL_KINDS:
-        raise UsageError(f"cells must be 'columns' or 'blocks', not {cells!r}")
+    check_cells(cells)
+    check_memory(memory)
     threads = check_threads(threads)
     check_project(project)
     if stage is not None:
-        _check_stage(project, stage)
+        check_stage(project, stage)
     native_module()
-    return run(lambda work: _build(work, project, cells, threads, stage), progress, cancel)
+    return run(lambda work: _build(work, project, cells, threads, stage, memory), progress, cancel)
 
 
 def build_stage(
     model: Model, m: int, progress: Progress | None = None, cancel: Cancel | None = None
 ) -> Model:
     """Model.stage."""
-    _check_stage(model.project, m)
+    check_stage(model.project, m)
     inputs = [entry.stage(m) for entry in model.rock_inputs]
     if all(
         len(entry.surfaces) == len(whole.surfaces)
@@ -64,41 +70,55 @@ def build_stage(
     project = model.project.stage(m)
 
     def task(work: Work) -> Model:
-        built = _intersect(work, inputs, model.cell_kind, model.threads, 0.0)
+        built = _intersect(work, inputs, model.cell_kind, model.threads, 0.0, _STAGE_INTERSECTED)
         timings = {"intersect": time.perf_counter() - began}
-        return _assemble(work, project, inputs, built, model.cell_kind, model.threads, timings)
+        return _assemble(
+            work, project, inputs, built, model.cell_kind, model.threads, timings, _STAGE_INTERSECTED
+        )
 
     began = time.perf_counter()
     return run(task, progress, cancel)
 
 
-def _check_stage(project: Project, stage) -> None:
-    youngest = max(len(rock.surfaces) for rock in project.rocks) - 1
-    if isinstance(stage, bool) or not hasattr(stage, "__index__") or not 0 <= int(stage) <= youngest:
-        raise UsageError(f"there is no stage {stage}: stages go from 0 to {youngest}, the youngest surface")
-
-
-def _build(work: Work, project: Project, cells: str, threads: int, stage: int | None) -> Model:
+def _build(
+    work: Work, project: Project, cells: str, threads: int, stage: int | None, memory: int | None
+) -> Model:
     timings = {"read": 0.0, "mesh": 0.0, "interpolate": 0.0, "intersect": 0.0}
-    began = time.perf_counter()
-    with work.phase(0.0, _READ_SHARE, "reading"):
+    shares = expected_shares(project, cells)
+
+    @contextmanager
+    def timed(name: str):
+        began = time.perf_counter()
+        yield
+        timings[name] += time.perf_counter() - began
+
+    with timed("read"), work.phase(0.0, shares.read, "reading"):
         inputs = read_rocks(work, project)
-    timings["read"] = time.perf_counter() - began
-    costs = expected_costs(inputs)
     if stage is not None:
         inputs = [entry.stage(stage) for entry in inputs]
-    scale = (1.0 - _READ_SHARE - _MERGE_SHARE) / sum(cost.total for cost in costs)
-    at = _READ_SHARE
+    costs = expected_costs(inputs, cells)
+    scale = (shares.intersect - shares.read) / sum(cost.total for cost in costs)
+    at = shares.read
     for entry, cost in zip(inputs, costs, strict=True):
-        at = mesh_and_interpolate(work, entry, cost, at, scale, threads, timings)
-    began = time.perf_counter()
-    built = _intersect(work, inputs, cells, threads, at)
-    timings["intersect"] = time.perf_counter() - began
+        with (
+            timed("mesh"),
+            work.phase(at, at + scale * cost.mesh, f"meshing the region of {entry.rock.name}"),
+        ):
+            mesh_rock(work, entry)
+        at += scale * cost.mesh
+    with work.phase(at, at, "looking whether it fits the memory"):
+        require_memory(work, inputs, cells, threads, memory)
+    for entry, cost in zip(inputs, costs, strict=True):
+        with timed("interpolate"):
+            interpolate_rock(work, entry, at, at + scale * cost.interpolate, threads)
+        at += scale * cost.interpolate
+    with timed("intersect"):
+        built = _intersect(work, inputs, cells, threads, at, shares.intersect)
     given = Project(project.name, [entry.rock for entry in inputs], project.library, project.path)
-    return _assemble(work, given, inputs, built, cells, threads, timings)
+    return _assemble(work, given, inputs, built, cells, threads, timings, shares.intersect)
 
 
-def _intersect(work: Work, inputs, cells: str, threads: int, start: float) -> dict:
+def _intersect(work: Work, inputs, cells: str, threads: int, start: float, end: float) -> dict:
     """The native result of all rock masses."""
     native = native_module()
     rocks = [
@@ -110,19 +130,21 @@ def _intersect(work: Work, inputs, cells: str, threads: int, start: float) -> di
         )
         for entry in inputs
     ]
-    with work.phase(start, 1.0 - _MERGE_SHARE, "intersecting and cutting"):
+    with work.phase(start, end, "intersecting and cutting"), work.paced(stack_pace(inputs, cells)):
         try:
             return work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)
         except native.InputError as error:
             raise refused_stack(error, inputs) from error
 
 
-def _assemble(work: Work, project, inputs: list[RockInput], built: dict, cells, threads, timings) -> Model:
+def _assemble(
+    work: Work, project, inputs: list[RockInput], built: dict, cells, threads, timings, start: float
+) -> Model:
     """The model that the native arrays are of."""
     began = time.perf_counter()
-    with work.phase(1.0 - _MERGE_SHARE, 1.0, "putting the model together"):
+    with work.phase(start, 1.0, "putting the model together"):
         arrays = _arrays(inputs, built)
-        component = cell_components(arrays["face_cells"], arrays["cell_block"], work.check)
+        component = work.native(native_module().cell_components, arrays["face_cells"], arrays["cell_block"])
         work.step(0.8)
         blocks = _blocks(inputs, built["volumes"], arrays["cell_block"], component)
         names = [surface.name for entry in inputs for surface in entry.rock.surfaces]

@@ -80,6 +80,19 @@ class BuildFailed(RealModelError):
     """The build itself failed: not enough memory, the native module missing, or a defect."""
 
 
+class NotEnoughMemory(BuildFailed):
+    """The build would not fit the memory, and was not begun.
+
+    needed: bytes that it would take; available: bytes that there are, or that were allowed.
+    """
+
+    def __init__(self, what: str, *, needed: int, available: int, advice: str):
+        self.needed = needed
+        self.available = available
+        self.advice = advice
+        super().__init__(f"{what}; {advice}")
+
+
 class Cancelled(RealModelError):
     """The caller's cancel() said yes."""
 

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -168,72 +166,29 @@ def checked_triangulation(vertices, triangles) -> Triangulation:
     return vertices, np.ascontiguousarray(triangles, np.int32)
 
 
-@dataclass
-class Costs:
-    """Rough seconds of what comes after reading, from sizes: what the progress is divided by."""
-
-    mesh: float = 0.0
-    interpolate: float = 0.0
-    intersect: float = 0.0
-
-    @property
-    def total(self) -> float:
-        return self.mesh + self.interpolate + self.intersect
-
-
-def expected_costs(inputs: Sequence[RockInput]) -> list[Costs]:
-    """For each rock mass what the steps after reading will cost, measured on one core."""
-    costs = []
-    for entry in inputs:
-        rock = entry.rock
-        triangles = sum(len(shape[1]) for shape in entry.surfaces if shape is not None)
-        cost = Costs(intersect=0.01)
-        if rock.interpolates:
-            extent = np.ptp(np.concatenate([rock.region, *rock.holes]), axis=0)
-            per_surface = min(float(extent[0] * extent[1]) / (0.433 * rock.edge_length**2), 1e9)
-            interpolated = sum(surface.interpolated for surface in rock.surfaces)
-            cost.mesh = 1e-2 + 5e-6 * per_surface
-            cost.interpolate = interpolated * (1e-2 + 2e-6 * per_surface)
-            triangles += interpolated * per_surface
-        cost.intersect += 1e-5 * triangles
-        costs.append(cost)
-    return costs
-
-
-def mesh_and_interpolate(
-    work: Work, entry: RockInput, cost: Costs, start: float, scale: float, threads: int, timings: dict
-) -> float:
-    """Meshes the region of a rock mass once and gives heights to each surface that has points.
-
-    Progress goes from `start`, `scale` for each second expected; where it ended is returned.
-    """
+def mesh_rock(work: Work, entry: RockInput) -> None:
+    """Meshes the region of a rock mass, if it has one, as the present phase of the work."""
     rock = entry.rock
     if rock.region is None:
-        return start
-    began = time.perf_counter()
+        return
     try:
-        if not rock.interpolates:
-            entry.region = triangulate_rings([rock.region, *rock.holes])
+        if rock.interpolates:
+            entry.region = mesh_rings(work, [rock.region, *rock.holes], float(rock.edge_length), rock.mesher)
         else:
-            with work.phase(start, start + scale * cost.mesh, f"meshing the region of {rock.name}"):
-                entry.region = mesh_rings(
-                    work, [rock.region, *rock.holes], float(rock.edge_length), rock.mesher
-                )
+            entry.region = triangulate_rings([rock.region, *rock.holes])
     except InputRefused as error:
         about_edges = getattr(error.__cause__, "kind", "") in _EDGE_LENGTH_KINDS
         file, line = rock.edge_length_source() if about_edges else rock.region_source()
         raise error.within(rock_item(rock), file=file, line=line) from error
-    timings["mesh"] += time.perf_counter() - began
-    start += scale * cost.mesh
-    began = time.perf_counter()
-    waiting = [number for number, surface in enumerate(rock.surfaces) if surface.interpolated]
-    for number in waiting:
-        share = scale * cost.interpolate / len(waiting)
-        with work.phase(start, start + share, f"interpolating {rock.surfaces[number].name}"):
+
+
+def interpolate_rock(work: Work, entry: RockInput, start: float, end: float, threads: int) -> None:
+    """Gives heights to each surface of a rock mass that has points; progress goes from `start` to `end`."""
+    waiting = [number for number, surface in enumerate(entry.rock.surfaces) if surface.interpolated]
+    for at, number in enumerate(waiting):
+        begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
+        with work.phase(begin, finish, f"interpolating {entry.rock.surfaces[number].name}"):
             _give_heights(work, entry, number, threads)
-        start += share
-    timings["interpolate"] += time.perf_counter() - began
-    return start
 
 
 def _give_heights(work: Work, entry: RockInput, number: int, threads: int) -> None:

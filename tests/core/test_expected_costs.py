@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How the progress of a build is divided, and that it tells the share of the work done."""
+
+import time
+
+import numpy as np
+import pytest
+from conftest import grid_surface
+from realmodel.core import Project, Rock, Surface, build
+from realmodel.core.expected_costs import expected_shares, stack_pace
+from realmodel.core.measured_costs import COSTS
+from realmodel.core.rock_input import RockInput
+
+
+def waves(count, n, own):
+    random = np.random.default_rng(2)
+    surfaces = []
+    for number in range(count):
+        vertices, triangles = grid_surface(n, lambda x, y: 0 * x)
+        if own:
+            inside = ((vertices[:, :2] > 0) & (vertices[:, :2] < 1)).all(axis=1)
+            vertices[inside, :2] += random.uniform(-0.2 / n, 0.2 / n, (inside.sum(), 2))
+        p, q = random.uniform(0, 6, 2)
+        vertices[:, 2] = 0.05 * number + 0.1 * np.sin(3 * vertices[:, 0] + p) * np.cos(4 * vertices[:, 1] + q)
+        surfaces.append(Surface(f"S{number}", vertices, triangles))
+    return Project("waves", [Rock("rock", surfaces)])
+
+
+def inputs(project):
+    return [
+        RockInput(rock, [(surface.vertices, surface.triangles) for surface in rock.surfaces])
+        for rock in project.rocks
+    ]
+
+
+@pytest.mark.parametrize("cells", ["columns", "blocks"])
+@pytest.mark.parametrize("own", [True, False])
+def test_the_pace_rises_from_nothing_to_all(cells, own):
+    pace = stack_pace(inputs(waves(2, 3, own)), cells)
+    told = [pace(fraction) for fraction in np.linspace(0, 1, 1001)]
+    assert told[0] == 0.0
+    assert told[-1] == 1.0
+    assert told == sorted(told)
+    knots = COSTS[cells]["pace_own" if own else "pace_shared"]
+    assert [pace(fraction) for fraction, _ in knots] == pytest.approx([share for _, share in knots])
+
+
+def test_shares_of_arrays_leave_nothing_to_read():
+    shares = expected_shares(waves(3, 40, True), "columns")
+    assert shares.read < 0.05
+    assert 0.95 < shares.intersect < 1.0
+
+
+@pytest.mark.parametrize("cells", ["columns", "blocks"])
+@pytest.mark.parametrize("own", [True, False])
+def test_progress_tells_the_share_of_the_work(cells, own):
+    """Against the processor time of this process, which does not count how busy the machine is."""
+    told = []
+    began = time.process_time()
+    build(waves(8, 60, own), cells, 1, progress=lambda share, _: told.append((time.process_time(), share)))
+    spent = np.array([at for at, _ in told]) - began
+    shares = np.array([share for _, share in told])
+    assert (np.diff(shares) >= 0).all()
+    assert shares[-1] == 1.0
+    # twice what is promised of wall time: a small stack's parts cost differently
+    assert np.abs(shares - spent / spent[-1]).max() < 0.3
