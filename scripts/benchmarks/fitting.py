@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fits the constants behind estimate() and behind the progress: addon/realmodel/core/measured_costs.py.
+
+    scripts/benchmark.sh --fit [--quick]
+
+Every case is built once, in a process of its own, for both kinds of cells, and sampled once as estimate()
+does, in another. Memory is fitted to what was counted, time to what the sample took, and the fraction that
+the stack builder counts to the time that had passed.
+"""
+
+from __future__ import annotations
+
+import itertools
+import time
+
+import numpy as np
+
+from .made_stacks import StackSpec
+from .process import ROOT, Skipped, alone, resident
+
+TARGET = ROOT / "addon" / "realmodel" / "core" / "measured_costs.py"
+CELLS = ("columns", "blocks")
+FEATURES = ("triangles", "vertices", "faces", "corners")
+CASES = [
+    StackSpec(10, 100),
+    StackSpec(10, 190),
+    StackSpec(10, 300),
+    StackSpec(40, 100),
+    StackSpec(10, 100, "shared"),
+    StackSpec(10, 300, "shared"),
+    StackSpec(10, 700, "shared"),
+    StackSpec(10, 150, "lattice", "steps"),
+    StackSpec(10, 300, "lattice", "steps"),
+    StackSpec(2, 400, "shared", "half"),
+    StackSpec(10, 700),
+]
+_KNOTS = 25
+_STEEPEST = 1.1
+_BOUND = 1.5  # how far memory by triangles alone lies above the dearest case
+
+
+def build_measured(spec: dict, cells: str, threads: int) -> dict:
+    """One build: seconds, bytes taken, what came out, and what the native part counted when."""
+    import resource
+
+    from realmodel.core import build
+    from realmodel.core.expected_costs import expected_shares
+
+    from .watching import counting_plainly, project
+
+    given = project(StackSpec(**spec))
+    shares = expected_shares(given, cells)
+    before = resident()
+    told = []
+    began = time.perf_counter()
+    with counting_plainly():
+        model = build(
+            given,
+            cells,
+            threads,
+            progress=lambda share, _text: told.append([time.perf_counter() - began, share]),
+            memory=1 << 62,
+        )
+    seconds = time.perf_counter() - began
+    return {
+        "seconds": seconds,
+        "bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before,
+        "triangles": len(model.surface_triangles),
+        "vertices": len(model.vertices),
+        "faces": len(model.face_cells),
+        "corners": len(model.face_vertices),
+        "cells": len(model.cell_block),
+        "told": [
+            [at / seconds, (share - shares.read) / (shares.intersect - shares.read)] for at, share in told
+        ],
+    }
+
+
+def sample_measured(spec: dict, cells: str, threads: int) -> dict:
+    """One sample: seconds of its stacks, corners that they made and corners that the whole will have."""
+    from realmodel.core.estimate import sampled
+    from realmodel.core.rock_input import read_rocks
+    from realmodel.core.work import Work
+
+    from .watching import project
+
+    work = Work()
+    (entry,) = read_rocks(work, project(StackSpec(**spec)))
+    began = time.perf_counter()
+    sample = sampled(work, entry, cells, threads, scaled=False)
+    return {
+        "seconds": sample.seconds,
+        "built": sample.built,
+        "corners": sample.counts.corners,
+        "whole": sample.built >= sample.counts.corners,
+        "took": time.perf_counter() - began,
+    }
+
+
+def least_squares(rows: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Coefficients >= 0 that make rows @ coefficients / wanted closest to 1: the best of all subsets."""
+    best, error = np.zeros(rows.shape[1]), np.inf
+    scaled = rows / wanted[:, None]
+    for count in range(1, rows.shape[1] + 1):
+        for chosen in itertools.combinations(range(rows.shape[1]), count):
+            found, *_ = np.linalg.lstsq(scaled[:, chosen], np.ones(len(rows)), rcond=None)
+            if (found < 0).any():
+                continue
+            missed = float(np.square(scaled[:, chosen] @ found - 1.0).sum())
+            if missed < error * (1 - 1e-9):
+                best, error = np.zeros(rows.shape[1]), missed
+                best[list(chosen)] = found
+    return best
+
+
+def pace(cases: list[dict]) -> list[list[float]]:
+    """Knots [fraction counted, share of the time], the mean of some builds; both rise from 0 to 1."""
+    fractions = np.linspace(0.0, 1.0, _KNOTS)
+    shares = []
+    for case in cases:
+        at, counted = np.array(case["told"]).T
+        # where counting stands still, the middle of the time is the least wrong
+        first = np.interp(fractions, counted + 1e-9 * np.arange(len(counted)), at)
+        last = np.interp(fractions, counted - 1e-9 * np.arange(len(counted))[::-1], at)
+        shares.append((first + last) / 2)
+    mean = np.maximum.accumulate(np.mean(shares, axis=0))
+    mean[0], mean[-1] = 0.0, 1.0
+    return [[round(float(a), 4), round(float(b), 4)] for a, b in zip(fractions, mean, strict=True)]
+
+
+def constants(cells: str, cases: list[dict]) -> dict:
+    """The part of COSTS of one kind of cells, from measured cases."""
+    rows = np.array([[case[name] for name in FEATURES] for case in cases], float)
+    taken = np.array([case["bytes"] for case in cases], float)
+    sampled = [case for case in cases if not case["sample"]["whole"]]
+    work = np.log([case["corners"] / case["sample"]["built"] for case in sampled])
+    slower = np.log([case["seconds"] / case["sample"]["seconds"] for case in sampled])
+    # a busy machine makes the slope of few cases a matter of luck: it is near 1, and never below
+    growth = float(np.clip(np.polyfit(work, slower, 1)[0], 1.0, _STEEPEST)) if len(sampled) > 2 else 1.0
+    start = float(np.median(slower - growth * work))
+    own = [case for case in cases if case["spec"]["plan"] == "own"]
+    shared = [case for case in cases if case["spec"]["plan"] != "own"]
+    return {
+        "bytes": dict(zip(FEATURES, least_squares(rows, taken).round(1).tolist(), strict=True)),
+        "most_bytes_per_triangle": round(float(_BOUND * (taken / rows[:, 0]).max())),
+        "seconds_per_triangle": float(f"{np.median([c['seconds'] / c['triangles'] for c in cases]):.3g}"),
+        "pace": float(f"{np.exp(start):.4g}"),
+        "growth": float(f"{growth:.4g}"),
+        "pace_own": pace(own),
+        "pace_shared": pace(shared),
+    }
+
+
+def steps_before() -> dict:
+    """Seconds a byte read, a triangle meshed and a node interpolated."""
+    import tempfile
+    from pathlib import Path
+
+    from realmodel.core import interpolate, mesh_region
+    from realmodel.core.readers import read_off
+
+    vertices, triangles = StackSpec(1, 200).make()[0]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "surface.off"
+        lines = [f"OFF\n{len(vertices)} {len(triangles)} 0"]
+        lines += [" ".join(map(repr, vertex)) for vertex in vertices.tolist()]
+        lines += [f"3 {a} {b} {c}" for a, b, c in triangles.tolist()]
+        path.write_text("\n".join(lines) + "\n", encoding="ascii")
+        began = time.perf_counter()
+        read_off(path)
+        read = (time.perf_counter() - began) / path.stat().st_size
+    began = time.perf_counter()
+    nodes, made = mesh_region([[0, 0], [1, 0], [1, 1], [0, 1]], edge_length=0.004)
+    mesh = (time.perf_counter() - began) / len(made)
+    began = time.perf_counter()
+    interpolate(vertices[::20], nodes, variogram={"model": "spherical", "range": 0.5, "sill": 1.0})
+    nodes_second = (time.perf_counter() - began) / len(made)
+    return {"read": read, "mesh": mesh, "interpolate": nodes_second}
+
+
+def fit(quick: bool, memory: float, threads: int = 0) -> list[dict]:
+    """Measures all cases that the memory allows, writes the constants, and returns the cases."""
+    costs = {
+        name: float(f"{value:.3g}") for name, value in alone("fitting.steps_before").items() if name != "peak"
+    }
+    measured = []
+    for cells in CELLS:
+        cases = []
+        for spec in CASES:
+            if quick and spec.triangles * spec.surfaces > 1_000_000:
+                continue
+            try:
+                case = alone("fitting.build_measured", vars(spec), cells, threads, memory=memory)
+                case["sample"] = alone("fitting.sample_measured", vars(spec), cells, threads)
+            except Skipped as skipped:
+                print(f"fit: {spec} {cells}: left out, {skipped}", flush=True)
+                continue
+            case["spec"], case["cells_are"] = vars(spec), cells
+            print(f"fit: {spec} {cells}: {case['seconds']:.2f} s, {case['bytes'] / 1e6:.0f} MB", flush=True)
+            cases.append(case)
+        costs[cells] = constants(cells, cases)
+        measured += cases
+    head = TARGET.read_text(encoding="utf-8").partition("COSTS = ")[0]
+    TARGET.write_text(f"{head}COSTS = {literal(costs)}\n", encoding="utf-8")
+    return measured
+
+
+def literal(value, indent: str = "") -> str:
+    """Nested dictionaries and lists of pairs as Python, in the form that ruff leaves as it is."""
+    inner = indent + "    "
+    if isinstance(value, dict):
+        lines = [f'{inner}"{name}": {literal(entry, inner)},' for name, entry in value.items()]
+        return "\n".join(["{", *lines, indent + "}"])
+    if isinstance(value, list) and value and isinstance(value[0], list):
+        return "\n".join(["[", *(f"{inner}{pair}," for pair in value), indent + "]"])
+    return repr(value)

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether progress is true, how soon cancelling answers, and whether memory is given back."""
+
+from __future__ import annotations
+
+import copy
+import gc
+import time
+from contextlib import contextmanager
+
+import numpy as np
+from realmodel.core import Cancelled, Project, Rock, Surface, build
+from realmodel.core.measured_costs import COSTS
+
+from .made_stacks import StackSpec
+from .process import resident
+
+
+def project(spec: StackSpec) -> Project:
+    surfaces = [
+        Surface(f"S{k}", vertices=vertices, triangles=triangles)
+        for k, (vertices, triangles) in enumerate(spec.make())
+    ]
+    return Project("benchmark", [Rock("rock", surfaces)])
+
+
+@contextmanager
+def counting_plainly():
+    """Builds within tell what the native part counted, not what was made of it."""
+    whole = [[0.0, 0.0], [1.0, 1.0]]
+    kept = copy.deepcopy(COSTS)
+    for cells in ("columns", "blocks"):
+        COSTS[cells].update(pace_own=whole, pace_shared=whole)
+    yield
+    COSTS.update(kept)
+
+
+def _grown(before: int) -> int:
+    gc.collect()
+    return resident() - before
+
+
+def progress(spec: dict, cells: str, threads: int) -> dict:
+    """Builds once and compares each fraction that was told with the share of the time that had passed.
+
+    Returns `seconds`, `deviation` (the greatest difference, 0 .. 1), `halfway` (the fraction told at half of
+    the time), `gap` (the longest time without a call), `calls`, `told` [[share of the time, fraction], ...].
+    """
+    given = project(StackSpec(**spec))
+    told = []
+
+    def tell(share: float, text: str) -> None:
+        told.append((time.perf_counter() - began, share, text))
+
+    began = time.perf_counter()
+    model = build(given, cells, threads, progress=tell)
+    seconds = time.perf_counter() - began
+    times = np.array([at for at, _, _ in told])
+    shares = np.array([share for _, share, _ in told])
+    passed = times / seconds
+    return {
+        "seconds": seconds,
+        "cells": len(model.cell_block),
+        "timings": model.timings,
+        "deviation": float(np.abs(shares - passed).max()),
+        "halfway": float(np.interp(0.5, passed, shares)),
+        "gap": float(np.diff(times, prepend=0.0, append=seconds).max()),
+        "calls": len(told),
+        "told": [[round(at / seconds, 4), round(share, 4), text] for at, share, text in told],
+    }
+
+
+def cancelling(spec: dict, cells: str, threads: int, moments: int, seconds: float) -> dict:
+    """Cancels a build at random moments of its `seconds`.
+
+    Returns `latency` [seconds from cancel() saying so to Cancelled, ...] with `at` [share of the time], and
+    `kept`, bytes that the process holds more than before the first build, after each.
+    """
+    given = project(StackSpec(**spec))
+    random = np.random.default_rng(moments)
+    before = resident()
+    at, latency, kept = [], [], []
+    for moment in random.uniform(0.0, 1.0, moments):
+        began = time.perf_counter()
+        said = []
+
+        def cancel(until=began + moment * seconds, said=said) -> bool:
+            if time.perf_counter() < until:
+                return False
+            said.append(time.perf_counter())
+            return True
+
+        try:
+            build(given, cells, threads, cancel=cancel)
+        except Cancelled:
+            latency.append(time.perf_counter() - said[0])
+            at.append(float(moment))
+        kept.append(_grown(before))
+    return {"at": at, "latency": latency, "kept": kept}
