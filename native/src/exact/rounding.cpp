@@ -1,37 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where constructed points and heights become doubles, always the nearest ones: equal however they
-// are computed and whichever way a place, a height or a line is named.
+// are computed and whichever way a place, a height or a line is named. So the quickest way that is
+// sure of its answer may give it: extended precision, then twice that of doubles, then GMP.
 #include <algorithm>
 #include <cmath>
 
 #include "arithmetic.hpp"
 #include "formulas.hpp"
+#include "near.hpp"
 #include "realmodel/exact/plan_geometry.hpp"
 
 namespace realmodel::exact {
 
 void Scope::locate(Point& p) {
-    const Line& l = line(p.first);
-    const Line& m = line(p.second);
-    const VertexId origin = anchor(shared_, l);
-    const Point& o = shared_.point(origin);
-    const BallArithmetic in{shared_};
-    const auto h = cross(line_coefficients<Ball>(in, shared_, l, origin),
-                         line_coefficients<Ball>(in, shared_, m, origin));
-    const auto x = (h.x / h.w + Ball(o.x)).rounded();
-    const auto y = (h.y / h.w + Ball(o.y)).rounded();
-    if (x && y) {
-        p.x = *x;
-        p.y = *y;
-    } else {
-        ++exact_;
-        const IntegerArithmetic exact{shared_};
-        const auto e = cross(line_coefficients<mpz_class>(exact, shared_, l, origin),
-                             line_coefficients<mpz_class>(exact, shared_, m, origin));
-        const int unit = shared_.plan_exponent();
-        p.x = nearest_double(e.x + whole_number(o.x, unit) * e.w, e.w, unit);
-        p.y = nearest_double(e.y + whole_number(o.y, unit) * e.w, e.w, unit);
+    const NearPoint close = near(p);
+    const Point& from = shared_.point(close.origin);
+    auto x = nearest_sum(from.x, close.x, close.error_x);
+    auto y = nearest_sum(from.y, close.y, close.error_y);
+    if (!x || !y) {
+        const Line& l = line(p.first);
+        const Line& m = line(p.second);
+        const VertexId origin = anchor(shared_, l);
+        const Point& o = shared_.point(origin);
+        const BallArithmetic in{shared_};
+        const auto h = cross(line_coefficients<Ball>(in, shared_, l, origin),
+                             line_coefficients<Ball>(in, shared_, m, origin));
+        x = (h.x / h.w + Ball(o.x)).rounded();
+        y = (h.y / h.w + Ball(o.y)).rounded();
+        if (!x || !y) {
+            ++exact_;
+            const IntegerArithmetic exact{shared_};
+            const auto e = cross(line_coefficients<mpz_class>(exact, shared_, l, origin),
+                                 line_coefficients<mpz_class>(exact, shared_, m, origin));
+            const int unit = shared_.plan_exponent();
+            x = nearest_double(e.x + whole_number(o.x, unit) * e.w, e.w, unit);
+            y = nearest_double(e.y + whole_number(o.y, unit) * e.w, e.w, unit);
+        }
     }
+    p.x = *x;
+    p.y = *y;
     p.error = std::max(std::abs(p.x), std::abs(p.y)) * 0x1p-53 + 1e-300;
 }
 
@@ -39,12 +46,17 @@ std::array<double, 2> Scope::rounded(PointId id) {
     return {point(id).x, point(id).y};
 }
 
-double Scope::rounded_height(PlaneId plane_id, PointId id) {
+double Scope::rounded_height(PlaneId plane, PointId id) {
+    return rounded_height(plane, id, near(id));
+}
+
+double Scope::rounded_height(PlaneId plane_id, PointId id, const NearPoint& close) {
     const SpaceVertex& corner = shared_.space(shared_.plane(plane_id).corner[0]);
     if (is_vertex(id)) {
         const SpaceId s = shared_.corner_above(plane_id, id);
         if (s >= 0) return shared_.space(s).z;
     }
+    if (const auto z = near_height(shared_, plane_id, close)) return *z;
     {
         const BallArithmetic in{shared_};
         const auto n = plane_normal<Ball>(in, shared_, plane_id);
@@ -64,6 +76,7 @@ double Scope::rounded_height(PlaneId plane_id, PointId id) {
 std::array<double, 3> Scope::line_key(LineId id) {
     const Line& l = line(id);
     constexpr VertexId kOrigin = 0;  // any vertex does, as long as it is the same for all lines
+    if (const auto key = near_line_key(near_line(shared_, l, kOrigin))) return *key;
     {
         const auto c = line_coefficients<Ball>(BallArithmetic{shared_}, shared_, l, kOrigin);
         const auto a = c.a.sign(), b = c.b.sign();

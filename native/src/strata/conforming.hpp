@@ -6,11 +6,15 @@
 #include <vector>
 
 #include "envelope.hpp"
+#include "flat_array.hpp"
+#include "realmodel/strata/stack.hpp"
 
 namespace realmodel::strata {
 
 /// Index of a place: one position in plan, however many points are named there.
 using PlaceId = std::int32_t;
+
+using PlanPosition = std::array<double, 2>;
 
 /// A point that a line must pass, though no edge ends there: where heights of the columns on its
 /// two sides cross.
@@ -19,26 +23,40 @@ struct ExtraPoint {
     PointId point;
 };
 
-/// The points in use, those in the same position taken together.
+/// The points in use, those in the same position taken together, in order of rounded x, then y.
 struct Places {
-    std::vector<PlaceId> of_point;        ///< -1 for points that no face uses
-    std::vector<PointId> representative;  ///< an input vertex where one is there
+    FlatArray<PlaceId> of_point;        ///< -1 for points that no face uses
+    FlatArray<PointId> representative;  ///< an input vertex where one is there
+    FlatArray<PlanPosition> position;   ///< rounded
+    std::vector<PlaceId> crowded;  ///< those that round to the position of the place before them
+
+    std::size_t size() const { return representative.size(); }
 };
 Places find_places(const exact::PlanGeometry& geometry, const FaceList& faces,
                    const std::vector<ExtraPoint>& extra, int threads, const Progress* progress);
 
-/// The lines in use, those that run through the same places taken together, and their face edges.
-/// Face edge e is the one that leaves corner e of the faces' corners.
+/// A face edge on its track.
+struct TrackEdge {
+    std::int32_t from, to;  ///< its ends, counted along the track
+    std::uint32_t corner;   ///< of all faces, that it leaves
+    std::int32_t face;
+};
+
+/// The places that a face edge passes: `steps` of them, its far end left out, from `first` on, or
+/// backwards from there where `steps` is negative.
+struct PassedPlaces {
+    std::uint32_t first;
+    std::int32_t steps;
+};
+
+/// The lines in use, those that run through the same places taken together, each with the face
+/// edges on it. A track runs to rising x, or to rising y where x does not change.
 struct Tracks {
-    std::vector<std::int32_t> of_line;   ///< track of each line, -1 where unused
-    std::vector<LineId> representative;  ///< a line of each track
-    std::vector<std::uint8_t> against;   ///< for each line: 1 if it runs to falling x (or y)
-    std::vector<std::int64_t> place_offsets;
-    std::vector<PlaceId> places;  ///< of each track, in order along it
-    std::vector<std::int64_t> edge_offsets;
-    std::vector<std::int64_t> edges;      ///< of each track
-    std::vector<std::int32_t> low, high;  ///< for each face edge: its ends, counted along its track
-    std::vector<std::uint8_t> forward;    ///< for each face edge: 1 if it runs along its track
+    FlatArray<LineId> representative;  ///< the lowest line of each track; tracks are in its order
+    FlatArray<std::uint32_t> edge_offsets;
+    FlatArray<TrackEdge> edges;
+    FlatArray<PlaceId> places;       ///< of each track, in order along it, with gaps between
+    FlatArray<PassedPlaces> passed;  ///< for each corner: by the edge that leaves it
 
     std::size_t size() const { return representative.size(); }
 };
@@ -48,25 +66,34 @@ Tracks find_tracks(const exact::PlanGeometry& geometry, const FaceList& faces, c
 /// The faces with every vertex that lies on their edges put in, and all vertices: on each place one
 /// for each height that a face has there, ascending.
 struct Loops {
-    std::vector<std::int64_t> face_offsets;        ///< entries of each face
-    std::vector<std::int64_t> edge_offsets;        ///< first entry of each face edge
-    std::vector<std::int32_t> vertices;            ///< of each entry, counter-clockwise in plan
-    std::vector<std::int32_t> place_offsets;       ///< first vertex of each place
-    std::vector<std::array<double, 3>> positions;  ///< rounded, all different
+    FlatArray<std::uint32_t> face_offsets;         ///< entries of each face
+    FlatArray<std::uint32_t> edge_begin;           ///< first entry of the edge that leaves a corner
+    FlatArray<std::int32_t> vertices;              ///< of each entry, counter-clockwise in plan
+    FlatArray<std::int32_t> place_offsets;         ///< first vertex of each place
+    std::vector<std::array<double, 3>> positions;  ///< rounded, heights of a place all different
 };
+/// Takes what it needs of the tracks: their `places` and `passed` are given back.
 Loops find_loops(const exact::PlanGeometry& geometry, const FaceList& faces, const Places& places,
-                 const Tracks& tracks, int threads, const Progress* progress);
+                 Tracks& tracks, int threads, const Progress* progress);
 
-/// A vertical face between two columns. Loop counter-clockwise seen from the right of its track.
-struct Walls {
-    std::vector<std::int64_t> offsets{0};
+/// Some of the vertical faces between columns. Loops counter-clockwise seen from the right of their
+/// track.
+struct WallBatch {
+    std::vector<std::int32_t> sizes;  ///< corners of each wall
     std::vector<std::int32_t> vertices;
     std::vector<std::array<std::int32_t, 2>> cells;  ///< left and right of the track, -1 outside
 };
-/// The walls between columns; where columns left and right of a track cross in height, nothing but
-/// the points that the tracks must pass first are returned in `missing`.
-Walls find_walls(exact::PlanGeometry& geometry, const FaceList& faces, const Tracks& tracks,
-                 const Loops& loops, std::vector<ExtraPoint>& missing, int threads,
-                 const Progress* progress);
+/// The walls between columns, in order of tracks; where columns left and right of a track cross in
+/// height, nothing but the points that the tracks must pass first are returned in `missing`.
+std::vector<WallBatch> find_walls(exact::PlanGeometry& geometry, const FaceList& faces,
+                                  const Tracks& tracks, const Loops& loops,
+                                  std::vector<ExtraPoint>& missing, int threads,
+                                  const Progress* progress);
+
+/// The complex (docs/geometry.md) from finished faces, conforming loops and walls, which are given
+/// back as they are used.
+CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
+                     Loops loops, std::vector<WallBatch> walls,
+                     std::vector<std::int32_t> cell_block, int threads, const Progress* progress);
 
 }  // namespace realmodel::strata

@@ -3,17 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
-#include "parallel_chunks.hpp"
+#include "parallel_counts.hpp"
 
 namespace realmodel::strata {
 
 namespace {
 
-using PlanPosition = std::array<double, 2>;
-
-double moved(double value, int units) {
+double moved_by(double value, int units) {
     for (; units > 0; --units)
         value = std::nextafter(value, HUGE_VAL);
     for (; units < 0; ++units)
@@ -25,55 +24,50 @@ double moved(double value, int units) {
 class Spreader {
 public:
     Spreader(const exact::PlanGeometry& geometry, const Places& places)
-        : geometry_(geometry), places_(places), position_(places.representative.size()) {
-        for (std::size_t p = 0; p < position_.size(); ++p) {
-            const auto& point = geometry.point(places.representative[p]);
-            position_[p] = {point.x, point.y};
-        }
-    }
+        : geometry_(geometry), places_(places) {}
 
     bool movable(std::size_t place) const {
         return places_.representative[place] >= geometry_.vertex_count();
     }
-    const PlanPosition& at(std::size_t place) const { return position_[place]; }
-    bool any_moved() const { return any_moved_; }
-
-    /// Gives places in equal positions positions of their own. Places are in order of position.
-    void separate() {
-        for (std::size_t p = 1; p < position_.size(); ++p) {
-            if (original(p) != original(p - 1)) continue;
-            index();
-            // input vertices come first among equals, so p is a crossing
-            move(p, [](int, int) { return true; });
+    const PlanPosition& at(std::size_t place) const {
+        if (!moved_.empty()) {
+            const auto moved = moved_.find(place);
+            if (moved != moved_.end()) return moved->second;
         }
+        return places_.position[place];
+    }
+    /// The places that were moved, and where to.
+    const std::map<std::size_t, PlanPosition>& moved() const { return moved_; }
+
+    /// Gives places in equal positions positions of their own.
+    void separate() {
+        // input vertices come first among equals, so these are crossings
+        for (const PlaceId place : places_.crowded)
+            move(static_cast<std::size_t>(place), [](int, int) { return true; });
     }
 
     /// Moves a place by as little as possible, but along the given axis.
     void move_along(std::size_t place, int axis) {
-        index();
         move(place, [axis](int x, int y) { return (axis == 0 ? x : y) != 0; });
     }
 
 private:
-    PlanPosition original(std::size_t place) const {
-        const auto& point = geometry_.point(places_.representative[place]);
-        return {point.x, point.y};
+    bool take(const PlanPosition& position) {
+        if (std::binary_search(places_.position.begin(), places_.position.end(), position))
+            return false;
+        return taken_.insert(position).second;
     }
-    void index() {
-        if (!taken_.empty()) return;
-        taken_.insert(position_.begin(), position_.end());
-        any_moved_ = true;
-    }
+
     template <class Allowed>
     void move(std::size_t place, const Allowed& allowed) {
-        const PlanPosition from = position_[place];
+        const PlanPosition from = at(place);
         for (int reach = 1;; ++reach) {
             for (int x = -reach; x <= reach; ++x) {
                 for (int y = -reach; y <= reach; ++y) {
                     if (std::max(std::abs(x), std::abs(y)) != reach || !allowed(x, y)) continue;
-                    const PlanPosition to{moved(from[0], x), moved(from[1], y)};
-                    if (!taken_.insert(to).second) continue;
-                    position_[place] = to;
+                    const PlanPosition to{moved_by(from[0], x), moved_by(from[1], y)};
+                    if (!take(to)) continue;
+                    moved_[place] = to;
                     return;
                 }
             }
@@ -82,9 +76,8 @@ private:
 
     const exact::PlanGeometry& geometry_;
     const Places& places_;
-    std::vector<PlanPosition> position_;
-    std::set<PlanPosition> taken_;
-    bool any_moved_ = false;
+    std::map<std::size_t, PlanPosition> moved_;
+    std::set<PlanPosition> taken_;  ///< besides the places' own positions
 };
 
 struct Extent {
@@ -95,77 +88,113 @@ struct Extent {
             high[axis] = std::max(high[axis], p[axis]);
         }
     }
+    bool is_flat(std::size_t axis) const { return low[axis] == high[axis]; }
+    bool is_flat() const { return is_flat(0) || is_flat(1); }
 };
 
-template <class Visit>
-void for_each_corner_of_cells(const FaceList& faces, const Progress* progress, const Visit& visit) {
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        poll(progress, f);
-        for (const std::int32_t cell : {faces.above[f], faces.below[f]}) {
-            if (cell == kOutsideCell) continue;
-            for (const Corner& corner : faces.polygons[f])
-                visit(static_cast<std::size_t>(cell), corner.point);
-        }
-    }
-}
+/// Finds cells whose places all have one x, or one y, and spreads them.
+class FlatCells {
+public:
+    FlatCells(const FaceList& faces, const Places& places, Spreader& spreader, int threads,
+              const Progress* progress)
+        : faces_(faces),
+          places_(places),
+          spreader_(spreader),
+          threads_(threads),
+          progress_(progress) {}
 
-/// Spreads the cells whose places all have one x, or one y; true where there were any.
-bool spread_flat_cells(const FaceList& faces, const Places& places, Spreader& spreader,
-                       const Progress* progress) {
-    std::int32_t cells = 0;
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        cells = std::max({cells, faces.above[f] + 1, faces.below[f] + 1});
-    }
-    std::vector<Extent> extent(static_cast<std::size_t>(cells));
-    const auto place_of = [&](PointId point) {
-        return static_cast<std::size_t>(places.of_point[static_cast<std::size_t>(point)]);
-    };
-    for_each_corner_of_cells(faces, progress, [&](std::size_t cell, PointId point) {
-        extent[cell].include(spreader.at(place_of(point)));
-    });
-    std::vector<std::array<std::int64_t, 2>> to_move(extent.size(), {-1, -1});
-    bool any = false;
-    for_each_corner_of_cells(faces, progress, [&](std::size_t cell, PointId point) {
-        const std::size_t place = place_of(point);
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            if (extent[cell].low[axis] == extent[cell].high[axis] && spreader.movable(place)) {
-                to_move[cell][axis] =
-                    std::max(to_move[cell][axis], static_cast<std::int64_t>(place));
+    /// Spreads what there is; false where there was nothing.
+    bool spread() {
+        std::vector<std::int32_t> cells = cells_of_flat_faces();
+        if (cells.empty()) return false;
+        // Few, and all of their faces must be flat.
+        std::vector<Extent> extents(cells.size());
+        for_each_corner(cells, [&](std::size_t i, std::size_t place) {
+            extents[i].include(spreader_.at(place));
+        });
+        std::vector<std::array<std::int64_t, 2>> to_move(cells.size(), {-1, -1});
+        bool any = false;
+        for_each_corner(cells, [&](std::size_t i, std::size_t place) {
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                if (!extents[i].is_flat(axis) || !spreader_.movable(place)) continue;
+                to_move[i][axis] = std::max(to_move[i][axis], static_cast<std::int64_t>(place));
                 any = true;
             }
+        });
+        for (const auto& of_cell : to_move) {
+            for (int axis = 0; axis < 2; ++axis) {
+                const std::int64_t place = of_cell[static_cast<std::size_t>(axis)];
+                if (place >= 0) spreader_.move_along(static_cast<std::size_t>(place), axis);
+            }
         }
-    });
-    if (!any) return false;
-    for (const auto& places_to_move : to_move) {
-        for (int axis = 0; axis < 2; ++axis) {
-            const std::int64_t place = places_to_move[static_cast<std::size_t>(axis)];
-            if (place >= 0) spreader.move_along(static_cast<std::size_t>(place), axis);
+        return any;
+    }
+
+private:
+    std::size_t place_of(const Corner& corner) const {
+        return static_cast<std::size_t>(places_.of_point[static_cast<std::size_t>(corner.point)]);
+    }
+
+    /// The cells above and below faces that are flat themselves, ascending.
+    std::vector<std::int32_t> cells_of_flat_faces() const {
+        constexpr std::size_t kFaces = 1 << 13;
+        std::vector<std::vector<std::int32_t>> found((faces_.size() + kFaces - 1) / kFaces);
+        parallel_ranges(faces_.size(), kFaces, threads_, progress_,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t f = begin; f < end; ++f) {
+                                Extent extent;
+                                for (const Corner& corner : faces_.polygons[f])
+                                    extent.include(spreader_.at(place_of(corner)));
+                                if (!extent.is_flat()) continue;
+                                for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
+                                    if (cell != kOutsideCell) found[begin / kFaces].push_back(cell);
+                                }
+                            }
+                        });
+        std::vector<std::int32_t> cells;
+        for (const auto& some : found)
+            cells.insert(cells.end(), some.begin(), some.end());
+        std::sort(cells.begin(), cells.end());
+        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+        return cells;
+    }
+
+    /// Calls visit(i, place) for every corner of every face of the i-th of some cells.
+    template <class Visit>
+    void for_each_corner(const std::vector<std::int32_t>& cells, const Visit& visit) const {
+        for (std::size_t f = 0; f < faces_.size(); ++f) {
+            poll(progress_, f);
+            for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
+                const auto at = std::lower_bound(cells.begin(), cells.end(), cell);
+                if (at == cells.end() || *at != cell) continue;
+                for (const Corner& corner : faces_.polygons[f])
+                    visit(static_cast<std::size_t>(at - cells.begin()), place_of(corner));
+            }
         }
     }
-    return true;
-}
+
+    const FaceList& faces_;
+    const Places& places_;
+    Spreader& spreader_;
+    int threads_;
+    const Progress* progress_;
+};
 
 }  // namespace
 
 void make_distinct(const exact::PlanGeometry& geometry, const FaceList& faces, const Places& places,
-                   Loops& loops, const Progress* progress) {
+                   Loops& loops, int threads, const Progress* progress) {
     Spreader spreader(geometry, places);
     spreader.separate();
     // Moving one cell's place may flatten its neighbour; a few rounds settle it.
-    for (int round = 0; round < 16 && spread_flat_cells(faces, places, spreader, progress);
-         ++round) {
+    FlatCells flat(faces, places, spreader, threads, progress);
+    for (int round = 0; round < 16 && flat.spread(); ++round) {
     }
-    for (std::size_t p = 0; p < places.representative.size(); ++p) {
-        poll(progress, p);
-        const auto begin = static_cast<std::size_t>(loops.place_offsets[p]);
-        const auto end = static_cast<std::size_t>(loops.place_offsets[p + 1]);
-        for (std::size_t v = begin; v < end; ++v) {
-            auto& position = loops.positions[v];
-            position[0] = spreader.at(p)[0];
-            position[1] = spreader.at(p)[1];
-            if (v > begin && position[2] <= loops.positions[v - 1][2]) {
-                position[2] = std::nextafter(loops.positions[v - 1][2], HUGE_VAL);
-            }
+    for (const auto& [place, position] : spreader.moved()) {
+        for (auto v = loops.place_offsets[place]; v < loops.place_offsets[place + 1]; ++v) {
+            auto& vertex = loops.positions[static_cast<std::size_t>(v)];
+            vertex[0] = position[0];
+            vertex[1] = position[1];
         }
     }
 }

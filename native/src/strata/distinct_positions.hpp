@@ -5,12 +5,12 @@
 
 namespace realmodel::strata {
 
-/// Distinct exact positions may round to one double. The structure is kept and such positions get
+/// Distinct exact positions may round to one double. The structure is kept and such places get
 /// neighbouring doubles: constructed places move (input vertices never do) by the least number of
 /// units in the last place that makes them unlike all others, whole verticals at a time, so that
-/// walls stay vertical; then the heights on each vertical are spread upward in their order. Places
-/// of a cell that all rounded to one x, or one y, are spread likewise.
+/// walls stay vertical. Places of a cell that all rounded to one x, or one y, are spread likewise.
+/// (The heights on each vertical are different already, see find_loops.)
 void make_distinct(const exact::PlanGeometry& geometry, const FaceList& faces, const Places& places,
-                   Loops& loops, const Progress* progress);
+                   Loops& loops, int threads, const Progress* progress);
 
 }  // namespace realmodel::strata

@@ -51,7 +51,7 @@ CellComplex merge_columns(const CellComplex& columns, const Progress* progress) 
              cells[1] < 0 ? -1 : part_of[static_cast<std::size_t>(cells[1])]});
         merged.face_surface.push_back(columns.face_surface[f]);
     }
-    merged.volumes = block_volumes(merged, columns.volumes.size(), progress);
+    merged.volumes = block_volumes(merged, columns.volumes.size(), 1, progress);
     merged.warnings = columns.warnings;
     merged.decisions = columns.decisions;
     merged.exact_decisions = columns.exact_decisions;

@@ -3,66 +3,142 @@
 #include <tuple>
 
 #include "conforming.hpp"
+#include "parallel_counts.hpp"
 #include "parallel_sort.hpp"
 
 namespace realmodel::strata {
 
 using exact::PlanGeometry;
 
+namespace {
+
+constexpr std::size_t kChunk = 1 << 14;
+
+/// A point with its rounded position.
+struct Rounded {
+    double x, y;
+    PointId point;
+
+    bool in_position_of(const Rounded& other) const { return x == other.x && y == other.y; }
+};
+
+/// The points that faces use and the extra ones, in order of position.
+std::vector<Rounded> points_in_use(const PlanGeometry& geometry, const FaceList& faces,
+                                   const std::vector<ExtraPoint>& extra, int threads,
+                                   const Progress* progress) {
+    auto used = zeros<std::uint8_t>(geometry.point_count(), threads, progress);
+    const auto& corners = faces.polygons.corners;
+    parallel_ranges(corners.size(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t c = begin; c < end; ++c)
+                            mark(used[static_cast<std::size_t>(corners[c].point)]);
+                    });
+    for (const ExtraPoint& e : extra)
+        used[static_cast<std::size_t>(e.point)] = 1;
+
+    std::vector<std::size_t> before((used.size() + kChunk - 1) / kChunk);
+    parallel_ranges(
+        used.size(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+            before[begin / kChunk] =
+                static_cast<std::size_t>(std::count(used.begin() + begin, used.begin() + end, 1));
+        });
+    std::vector<Rounded> points(count_before(before));
+    parallel_ranges(used.size(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        std::size_t next = before[begin / kChunk];
+                        for (std::size_t p = begin; p < end; ++p) {
+                            if (used[p] == 0) continue;
+                            const auto id = static_cast<PointId>(p);
+                            points[next++] = {geometry.point(id).x, geometry.point(id).y, id};
+                        }
+                    });
+    const auto in_order = [](const Rounded& a, const Rounded& b) {
+        return std::tie(a.x, a.y, a.point) < std::tie(b.x, b.y, b.point);
+    };
+    parallel_sort(points, in_order, threads, progress);  // input vertices have the lowest ids
+    return points;
+}
+
+/// Calls visit(begin, end) for the groups of points in equal positions that begin in a range.
+template <class Visit>
+void for_each_position(const std::vector<Rounded>& points, std::size_t begin, std::size_t end,
+                       const Visit& visit) {
+    while (begin < end && begin > 0 && points[begin].in_position_of(points[begin - 1]))
+        ++begin;
+    while (begin < end) {
+        std::size_t next = begin + 1;
+        while (next < points.size() && points[next].in_position_of(points[begin]))
+            ++next;
+        visit(begin, next);
+        begin = next;
+    }
+}
+
+}  // namespace
+
 // Rounded coordinates are the same for every way to name a place, so only points with equal ones
 // can be in the same place; among those the exact test decides.
 Places find_places(const PlanGeometry& geometry, const FaceList& faces,
                    const std::vector<ExtraPoint>& extra, int threads, const Progress* progress) {
-    std::vector<std::uint8_t> used(geometry.point_count(), 0);
-    for (const Corner& corner : faces.polygons.corners)
-        used[static_cast<std::size_t>(corner.point)] = 1;
-    for (const ExtraPoint& e : extra)
-        used[static_cast<std::size_t>(e.point)] = 1;
-    std::vector<PointId> points;
-    for (std::size_t p = 0; p < used.size(); ++p) {
-        if (used[p] != 0) points.push_back(static_cast<PointId>(p));
-    }
-    const auto in_order = [&](PointId a, PointId b) {
-        const auto &p = geometry.point(a), &q = geometry.point(b);
-        return std::tie(p.x, p.y, a) < std::tie(q.x, q.y, b);  // input vertices have the lowest ids
-    };
-    parallel_sort(points, in_order, threads, progress);
-    std::vector<std::size_t> group_begin;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const bool same = i > 0 && geometry.point(points[i]).x == geometry.point(points[i - 1]).x &&
-                          geometry.point(points[i]).y == geometry.point(points[i - 1]).y;
-        if (!same) group_begin.push_back(i);
-    }
-    group_begin.push_back(points.size());
+    const std::vector<Rounded> points = points_in_use(geometry, faces, extra, threads, progress);
+    FlatArray<std::uint32_t> first_there(points.size());  // the first point in the place of each
+    std::vector<std::size_t> before((points.size() + kChunk - 1) / kChunk);
+    parallel_ranges(points.size(), kChunk, threads, progress,
+                    [&](std::size_t range_begin, std::size_t range_end) {
+                        Scope scope(geometry);
+                        std::size_t places = 0;
+                        for_each_position(
+                            points, range_begin, range_end,
+                            [&](std::size_t begin, std::size_t end) {
+                                for (std::size_t i = begin; i < end; ++i) {
+                                    first_there[i] = static_cast<std::uint32_t>(i);
+                                    for (std::size_t j = begin; j < i; ++j) {
+                                        if (first_there[j] == j &&
+                                            scope.same_place(points[i].point, points[j].point)) {
+                                            first_there[i] = static_cast<std::uint32_t>(j);
+                                            break;
+                                        }
+                                    }
+                                    places += first_there[i] == i;
+                                }
+                            });
+                        before[range_begin / kChunk] = places;
+                    });
 
-    std::vector<PointId> first_there(points.size());  // the first point in the place of each
-    constexpr std::size_t kChunk = 4096;
-    const std::size_t groups = group_begin.size() - 1;
-    parallel_chunks((groups + kChunk - 1) / kChunk, threads, progress, [&](std::size_t chunk) {
-        Scope scope(geometry);
-        for (std::size_t g = chunk * kChunk; g < std::min(groups, (chunk + 1) * kChunk); ++g) {
-            for (std::size_t i = group_begin[g]; i < group_begin[g + 1]; ++i) {
-                first_there[i] = points[i];
-                for (std::size_t j = group_begin[g]; j < i; ++j) {
-                    if (first_there[j] == points[j] && scope.same_place(points[i], points[j])) {
-                        first_there[i] = points[j];
-                        break;
-                    }
-                }
-            }
-        }
-    });
     Places places;
-    places.of_point.assign(geometry.point_count(), -1);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        auto& place = places.of_point[static_cast<std::size_t>(points[i])];
-        if (first_there[i] == points[i]) {
-            place = static_cast<PlaceId>(places.representative.size());
-            places.representative.push_back(points[i]);
-        } else {
-            place = places.of_point[static_cast<std::size_t>(first_there[i])];
-        }
-    }
+    const std::size_t count = count_before(before);
+    places.representative = FlatArray<PointId>(count);
+    places.position = FlatArray<PlanPosition>(count);
+    places.of_point = FlatArray<PlaceId>(geometry.point_count());
+    parallel_ranges(places.of_point.size(), 1 << 18, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        std::fill(places.of_point.begin() + begin, places.of_point.begin() + end,
+                                  -1);
+                    });
+    std::vector<std::vector<PlaceId>> crowded(before.size());
+    parallel_ranges(
+        points.size(), kChunk, threads, progress,
+        [&](std::size_t range_begin, std::size_t range_end) {
+            std::size_t next = before[range_begin / kChunk];
+            for_each_position(
+                points, range_begin, range_end, [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t i = begin; i < end; ++i) {
+                        auto& place = places.of_point[static_cast<std::size_t>(points[i].point)];
+                        if (first_there[i] != i) {
+                            place = places.of_point[static_cast<std::size_t>(
+                                points[first_there[i]].point)];
+                            continue;
+                        }
+                        place = static_cast<PlaceId>(next);
+                        places.representative[next] = points[i].point;
+                        places.position[next] = {points[i].x, points[i].y};
+                        if (i > begin) crowded[range_begin / kChunk].push_back(place);
+                        ++next;
+                    }
+                });
+        });
+    for (const auto& some : crowded)
+        places.crowded.insert(places.crowded.end(), some.begin(), some.end());
     return places;
 }
 

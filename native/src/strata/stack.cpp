@@ -166,48 +166,6 @@ void check_base(const PlanGeometry& geometry, const Envelope& envelope, double b
     }
 }
 
-/// The complex (docs/geometry.md) from finished faces, conforming loops and walls.
-CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
-                     Loops loops, const Walls& walls, std::vector<std::int32_t> cell_block,
-                     const Progress* progress) {
-    CellComplex complex;
-    complex.vertices = std::move(loops.positions);
-    complex.cell_block = std::move(cell_block);
-    complex.face_offsets.push_back(0);
-    const auto add = [&](auto begin, auto end, std::int32_t owner, std::int32_t other,
-                         std::int32_t surface) {
-        complex.face_vertices.insert(complex.face_vertices.end(), begin, end);
-        complex.face_offsets.push_back(static_cast<std::int64_t>(complex.face_vertices.size()));
-        complex.face_cells.push_back({owner, other});
-        complex.face_surface.push_back(surface);
-    };
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        poll(progress, f);
-        const auto begin = loops.vertices.begin() + loops.face_offsets[f];
-        const auto end = loops.vertices.begin() + loops.face_offsets[f + 1];
-        const std::int32_t surface = surface_of_plane[static_cast<std::size_t>(faces.plane[f])];
-        if (faces.below[f] >= 0) {
-            add(begin, end, faces.below[f], faces.above[f], surface);
-        } else {
-            add(std::make_reverse_iterator(end), std::make_reverse_iterator(begin), faces.above[f],
-                kOutsideCell, surface);
-        }
-    }
-    for (std::size_t w = 0; w < walls.cells.size(); ++w) {
-        poll(progress, w);
-        const auto begin = walls.vertices.begin() + walls.offsets[w];
-        const auto end = walls.vertices.begin() + walls.offsets[w + 1];
-        const auto [left, right] = walls.cells[w];
-        if (left >= 0) {
-            add(begin, end, left, right, kWall);
-        } else {
-            add(std::make_reverse_iterator(end), std::make_reverse_iterator(begin), right,
-                kOutsideCell, kWall);
-        }
-    }
-    return complex;
-}
-
 CellComplex conform(PlanGeometry& geometry, Construction& construction,
                     const std::vector<std::int32_t>& surface_of_plane, int threads,
                     Progress* progress) {
@@ -224,20 +182,21 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
         next(0.2, "joining points");
         const Places places = find_places(geometry, faces, extra, threads, progress);
         next(0.4, "joining edges");
-        const Tracks tracks = find_tracks(geometry, faces, places, extra, threads, progress);
+        Tracks tracks = find_tracks(geometry, faces, places, extra, threads, progress);
         next(0.3, "rounding");
         Loops loops = find_loops(geometry, faces, places, tracks, threads, progress);
         next(0.1, "building walls");
         std::vector<ExtraPoint> missing;
-        const Walls walls = find_walls(geometry, faces, tracks, loops, missing, threads, progress);
+        auto walls = find_walls(geometry, faces, tracks, loops, missing, threads, progress);
         if (!missing.empty()) {
             extra.insert(extra.end(), missing.begin(), missing.end());
             continue;
         }
+        tracks = {};
         begin(progress, done, 1.0 - done, "putting the cells together");
-        make_distinct(geometry, faces, places, loops, progress);
-        return assemble(faces, surface_of_plane, std::move(loops), walls,
-                        std::move(construction.cell_block), progress);
+        make_distinct(geometry, faces, places, loops, threads, progress);
+        return assemble(faces, surface_of_plane, std::move(loops), std::move(walls),
+                        std::move(construction.cell_block), threads, progress);
     }
 }
 
@@ -350,7 +309,7 @@ CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping&
     } else {
         result.face_offsets.push_back(0);
     }
-    result.volumes = block_volumes(result, static_cast<std::size_t>(surfaces), progress);
+    result.volumes = block_volumes(result, static_cast<std::size_t>(surfaces), threads, progress);
     result.warnings = std::move(warnings);
     result.decisions = site.geometry.all_decisions();
     result.exact_decisions = site.geometry.exact_decisions();

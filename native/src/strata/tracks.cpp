@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <tuple>
+#include <numeric>
 
 #include "conforming.hpp"
-#include "parallel_sort.hpp"
+#include "parallel_counts.hpp"
+#include "same_lines.hpp"
 
 namespace realmodel::strata {
 
@@ -11,82 +12,124 @@ using exact::PlanGeometry;
 
 namespace {
 
-constexpr std::size_t kChunk = 4096;
+constexpr std::size_t kFaces = 1 << 12, kTracks = 1 << 10;  // worked on at a time
+constexpr std::uint64_t kMostEdges = 2000000000;  // so that places on tracks can be numbered
 
-/// Gives every line in use its track: rounded slope and offset are equal for lines that run through
-/// the same places, and among those with equal ones the exact test decides.
-void join_lines(const PlanGeometry& geometry, const std::vector<std::uint8_t>& used, Tracks& tracks,
-                int threads, const Progress* progress) {
-    std::vector<LineId> lines;
-    for (std::size_t l = 0; l < used.size(); ++l) {
-        if (used[l] != 0) lines.push_back(static_cast<LineId>(l));
+/// The places on one track, put in order. Rounded coordinates keep the order of places along a
+/// line, and exact ones decide where they are equal.
+class PlacesOnTrack {
+public:
+    PlacesOnTrack(const PlanGeometry& geometry, const Places& places)
+        : scope_(geometry), places_(places) {}
+
+    void clear() { ids_.clear(); }
+
+    /// Adds a place, which may be there already.
+    void add(PlaceId place) {
+        // most tracks have a handful of places, each the end of several edges
+        const std::size_t near = std::min(ids_.size(), kFew);
+        for (std::size_t i = 0; i < near; ++i) {
+            if (ids_[i] == place) return;
+        }
+        ids_.push_back(place);
     }
-    struct Keyed {
-        std::array<double, 3> key;
-        LineId line;
+
+    /// To be called when all are there, with a line of the track.
+    void sort(LineId line) {
+        std::sort(ids_.begin(), ids_.end());
+        if (ids_.size() > kFew) ids_.erase(std::unique(ids_.begin(), ids_.end()), ids_.end());
+        order_.resize(ids_.size());
+        std::iota(order_.begin(), order_.end(), 0);
+        // places are in order of x, so only where two have the same x more is to be asked
+        const bool doubtful =
+            std::adjacent_find(ids_.begin(), ids_.end(), [&](PlaceId a, PlaceId b) {
+                return position(a)[0] == position(b)[0];
+            }) != ids_.end();
+        if (!doubtful) {
+            rank_ = order_;
+            return;
+        }
+        const auto [x, y] = scope_.direction_signs(line);
+        const int rise = x == 0 ? 1 : x * y;
+        std::sort(order_.begin(), order_.end(), [&](std::int32_t a, std::int32_t b) {
+            return before(rise, ids_[static_cast<std::size_t>(a)],
+                          ids_[static_cast<std::size_t>(b)]);
+        });
+        rank_.resize(ids_.size());
+        for (std::size_t i = 0; i < order_.size(); ++i)
+            rank_[static_cast<std::size_t>(order_[i])] = static_cast<std::int32_t>(i);
+    }
+
+    std::size_t size() const { return ids_.size(); }
+    /// The i-th place along the track.
+    PlaceId operator[](std::size_t i) const { return ids_[static_cast<std::size_t>(order_[i])]; }
+    /// Which place along the track one is.
+    std::int32_t rank(PlaceId place) const {
+        const auto at = ids_.size() <= kFew ? std::find(ids_.begin(), ids_.end(), place)
+                                            : std::lower_bound(ids_.begin(), ids_.end(), place);
+        return rank_[static_cast<std::size_t>(at - ids_.begin())];
+    }
+
+private:
+    static constexpr std::size_t kFew = 16;
+
+    const PlanPosition& position(PlaceId place) const {
+        return places_.position[static_cast<std::size_t>(place)];
+    }
+
+    /// Whether place a comes before place b along a track that runs to rising x (and rising or
+    /// falling y).
+    bool before(int rise, PlaceId a, PlaceId b) {
+        const PlanPosition &p = position(a), &q = position(b);
+        if (p[0] != q[0]) return p[0] < q[0];
+        if (p[1] != q[1] && rise != 0) return (p[1] < q[1]) == (rise > 0);
+        const PointId from = places_.representative[static_cast<std::size_t>(a)];
+        const PointId to = places_.representative[static_cast<std::size_t>(b)];
+        const int x = scope_.compare(0, from, to);
+        if (x != 0) return x > 0;
+        return scope_.compare(1, from, to) * rise > 0;
+    }
+
+    Scope scope_;
+    const Places& places_;
+    std::vector<PlaceId> ids_;                // ascending once sorted
+    std::vector<std::int32_t> order_, rank_;  // into ids_ along the track, and back
+};
+
+/// Finds the face edges of each track; their ends are the places themselves for now.
+void gather_edges(const FaceList& faces, const Places& places,
+                  const FlatArray<std::int32_t>& track_of_line, Tracks& tracks, int threads,
+                  const Progress* progress) {
+    const auto& corners = faces.polygons.corners;
+    const auto track_of = [&](const Corner& corner) {
+        return static_cast<std::size_t>(
+            track_of_line[static_cast<std::size_t>(exact::line_of(corner.line))]);
     };
-    std::vector<Keyed> keyed(lines.size());
-    tracks.against.assign(geometry.line_count(), 0);
-    parallel_chunks((lines.size() + kChunk - 1) / kChunk, threads, progress,
-                    [&](std::size_t chunk) {
-                        Scope scope(geometry);
-                        for (std::size_t i = chunk * kChunk;
-                             i < std::min(lines.size(), (chunk + 1) * kChunk); ++i) {
-                            keyed[i] = {scope.line_key(lines[i]), lines[i]};
-                            const auto [x, y] = scope.direction_signs(lines[i]);
-                            tracks.against[static_cast<std::size_t>(lines[i])] =
-                                x < 0 || (x == 0 && y < 0) ? 1 : 0;
-                        }
+    tracks.edge_offsets = zeros<std::uint32_t>(tracks.size() + 1, threads, progress);
+    FlatArray<std::uint32_t> number(corners.size());  // of each edge on its track
+    parallel_ranges(corners.size(), 4 * kFaces, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t c = begin; c < end; ++c)
+                            number[c] = count_one(tracks.edge_offsets[track_of(corners[c])]);
                     });
-    const auto in_order = [](const Keyed& a, const Keyed& b) {
-        return std::tie(a.key, a.line) < std::tie(b.key, b.line);
-    };
-    parallel_sort(keyed, in_order, threads, progress);
-    std::vector<std::size_t> group_begin;
-    for (std::size_t i = 0; i < keyed.size(); ++i) {
-        if (i == 0 || keyed[i].key != keyed[i - 1].key) group_begin.push_back(i);
-    }
-    group_begin.push_back(keyed.size());
-    const std::size_t groups = group_begin.size() - 1;
-    std::vector<LineId> first_there(keyed.size());
-    parallel_chunks((groups + kChunk - 1) / kChunk, threads, progress, [&](std::size_t chunk) {
-        Scope scope(geometry);
-        for (std::size_t g = chunk * kChunk; g < std::min(groups, (chunk + 1) * kChunk); ++g) {
-            for (std::size_t i = group_begin[g]; i < group_begin[g + 1]; ++i) {
-                first_there[i] = keyed[i].line;
-                for (std::size_t j = group_begin[g]; j < i; ++j) {
-                    if (first_there[j] == keyed[j].line &&
-                        scope.same_line(keyed[i].line, keyed[j].line)) {
-                        first_there[i] = keyed[j].line;
-                        break;
-                    }
+    running_totals(tracks.edge_offsets, kMostEdges, threads, progress);
+    tracks.edges = FlatArray<TrackEdge>(corners.size());
+    parallel_ranges(
+        faces.size(), kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f) {
+                const auto first = static_cast<std::size_t>(faces.polygons.offsets[f]);
+                const auto last = static_cast<std::size_t>(faces.polygons.offsets[f + 1]) - 1;
+                PlaceId from = places.of_point[static_cast<std::size_t>(corners[last].point)];
+                for (std::size_t next = first; next <= last; ++next) {
+                    const std::size_t c = next > first ? next - 1 : last;
+                    const PlaceId to =
+                        places.of_point[static_cast<std::size_t>(corners[next].point)];
+                    tracks.edges[tracks.edge_offsets[track_of(corners[c])] + number[c]] = {
+                        from, to, static_cast<std::uint32_t>(c), static_cast<std::int32_t>(f)};
+                    from = to;
                 }
             }
-        }
-    });
-    tracks.of_line.assign(geometry.line_count(), -1);
-    for (std::size_t i = 0; i < keyed.size(); ++i) {
-        auto& track = tracks.of_line[static_cast<std::size_t>(keyed[i].line)];
-        if (first_there[i] == keyed[i].line) {
-            track = static_cast<std::int32_t>(tracks.representative.size());
-            tracks.representative.push_back(keyed[i].line);
-        } else {
-            track = tracks.of_line[static_cast<std::size_t>(first_there[i])];
-        }
-    }
-}
-
-/// Whether place a comes before place b along a track that runs to rising x (and rising or falling
-/// y): rounded coordinates keep the order, exact ones break ties.
-bool before(Scope& scope, const Places& places, int rise, PlaceId a, PlaceId b) {
-    const PointId p = places.representative[static_cast<std::size_t>(a)];
-    const PointId q = places.representative[static_cast<std::size_t>(b)];
-    const auto &pa = scope.point(p), &pb = scope.point(q);
-    if (pa.x != pb.x) return pa.x < pb.x;
-    if (pa.y != pb.y && rise != 0) return (pa.y < pb.y) == (rise > 0);
-    const int x = scope.compare(0, p, q);
-    if (x != 0) return x > 0;
-    return scope.compare(1, p, q) * rise > 0;
+        });
 }
 
 }  // namespace
@@ -94,99 +137,52 @@ bool before(Scope& scope, const Places& places, int rise, PlaceId a, PlaceId b) 
 Tracks find_tracks(const PlanGeometry& geometry, const FaceList& faces, const Places& places,
                    const std::vector<ExtraPoint>& extra, int threads, const Progress* progress) {
     Tracks tracks;
-    const auto& corners = faces.polygons.corners;
-    std::vector<std::uint8_t> used(geometry.line_count(), 0);
-    for (const Corner& corner : corners)
-        used[static_cast<std::size_t>(exact::line_of(corner.line))] = 1;
-    join_lines(geometry, used, tracks, threads, progress);
-
-    const auto track_of = [&](LineId line) {
-        return static_cast<std::size_t>(tracks.of_line[static_cast<std::size_t>(line)]);
-    };
-    tracks.edge_offsets.assign(tracks.size() + 1, 0);
-    tracks.forward.resize(corners.size());
-    for (std::size_t e = 0; e < corners.size(); ++e) {
-        poll(progress, e);
-        const LineId line = exact::line_of(corners[e].line);
-        ++tracks.edge_offsets[track_of(line) + 1];
-        tracks.forward[e] = exact::is_reversed(corners[e].line) ==
-                            (tracks.against[static_cast<std::size_t>(line)] != 0);
-    }
-    for (std::size_t t = 0; t < tracks.size(); ++t)
-        tracks.edge_offsets[t + 1] += tracks.edge_offsets[t];
-    tracks.edges.resize(corners.size());
+    std::vector<std::pair<std::int32_t, PlaceId>> extra_places;  // track and place, ascending
     {
-        auto free = tracks.edge_offsets;
-        for (std::size_t e = 0; e < corners.size(); ++e) {
-            poll(progress, e);
-            const std::size_t t = track_of(exact::line_of(corners[e].line));
-            tracks.edges[static_cast<std::size_t>(free[t]++)] = static_cast<std::int64_t>(e);
+        LineTracks lines = join_lines(geometry, faces, threads, progress);
+        tracks.representative = std::move(lines.representative);
+        gather_edges(faces, places, lines.of_line, tracks, threads, progress);
+        for (const ExtraPoint& e : extra) {
+            extra_places.emplace_back(lines.of_line[static_cast<std::size_t>(e.line)],
+                                      places.of_point[static_cast<std::size_t>(e.point)]);
         }
+        std::sort(extra_places.begin(), extra_places.end());
     }
-    // the corner at the far end of each edge
-    std::vector<PointId> to(corners.size());
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        poll(progress, f);
-        const auto begin = static_cast<std::size_t>(faces.polygons.offsets[f]);
-        const auto end = static_cast<std::size_t>(faces.polygons.offsets[f + 1]);
-        for (std::size_t e = begin; e < end; ++e)
-            to[e] = corners[e + 1 < end ? e + 1 : begin].point;
-    }
-    std::vector<std::vector<PlaceId>> extra_places(extra.empty() ? 0 : tracks.size());
-    for (const ExtraPoint& e : extra) {
-        extra_places[track_of(e.line)].push_back(
-            places.of_point[static_cast<std::size_t>(e.point)]);
-    }
-
-    tracks.low.resize(corners.size());
-    tracks.high.resize(corners.size());
-    const std::size_t chunks = (tracks.size() + kChunk - 1) / kChunk;
-    std::vector<std::vector<PlaceId>> places_of_chunk(chunks);
-    std::vector<std::int64_t> place_count(tracks.size());
-    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
-        Scope scope(geometry);
-        std::vector<PlaceId> on_track;
-        for (std::size_t t = chunk * kChunk; t < std::min(tracks.size(), (chunk + 1) * kChunk);
-             ++t) {
-            on_track.clear();
-            if (!extra.empty()) on_track = extra_places[t];
-            for (auto i = tracks.edge_offsets[t]; i < tracks.edge_offsets[t + 1]; ++i) {
-                const auto e = static_cast<std::size_t>(tracks.edges[static_cast<std::size_t>(i)]);
-                on_track.push_back(places.of_point[static_cast<std::size_t>(corners[e].point)]);
-                on_track.push_back(places.of_point[static_cast<std::size_t>(to[e])]);
+    // Each edge has two ends, so that many places have room; a chunk puts its own side by side.
+    tracks.places = FlatArray<PlaceId>(2 * tracks.edges.size() + extra_places.size());
+    tracks.passed = FlatArray<PassedPlaces>(tracks.edges.size());
+    parallel_ranges(
+        tracks.size(), kTracks, threads, progress, [&](std::size_t begin, std::size_t end) {
+            PlacesOnTrack on_track(geometry, places);
+            auto next_extra =
+                std::lower_bound(extra_places.begin(), extra_places.end(),
+                                 std::pair(static_cast<std::int32_t>(begin), PlaceId{-1}));
+            std::size_t next = 2 * std::size_t{tracks.edge_offsets[begin]} +
+                               static_cast<std::size_t>(next_extra - extra_places.begin());
+            for (std::size_t t = begin; t < end; ++t) {
+                on_track.clear();
+                for (; next_extra != extra_places.end() &&
+                       next_extra->first == static_cast<std::int32_t>(t);
+                     ++next_extra)
+                    on_track.add(next_extra->second);
+                for (auto e = tracks.edge_offsets[t]; e < tracks.edge_offsets[t + 1]; ++e) {
+                    on_track.add(tracks.edges[e].from);
+                    on_track.add(tracks.edges[e].to);
+                }
+                on_track.sort(tracks.representative[t]);
+                for (auto e = tracks.edge_offsets[t]; e < tracks.edge_offsets[t + 1]; ++e) {
+                    TrackEdge& edge = tracks.edges[e];
+                    edge.from = on_track.rank(edge.from);
+                    edge.to = on_track.rank(edge.to);
+                    tracks.passed[edge.corner] = {
+                        static_cast<std::uint32_t>(next + static_cast<std::size_t>(edge.from)),
+                        edge.to - edge.from};
+                }
+                for (std::size_t i = 0; i < on_track.size(); ++i)
+                    tracks.places[next + i] = on_track[i];
+                next += on_track.size();
             }
-            std::sort(on_track.begin(), on_track.end());
-            on_track.erase(std::unique(on_track.begin(), on_track.end()), on_track.end());
-            const LineId line = tracks.representative[t];
-            const auto [x, y] = scope.direction_signs(line);
-            const int rise = x == 0 ? 1 : x * y;
-            const auto precedes = [&](PlaceId a, PlaceId b) {
-                return before(scope, places, rise, a, b);
-            };
-            std::sort(on_track.begin(), on_track.end(), precedes);
-            const auto rank = [&](PointId p) {
-                const PlaceId place = places.of_point[static_cast<std::size_t>(p)];
-                return static_cast<std::int32_t>(
-                    std::lower_bound(on_track.begin(), on_track.end(), place, precedes) -
-                    on_track.begin());
-            };
-            for (auto i = tracks.edge_offsets[t]; i < tracks.edge_offsets[t + 1]; ++i) {
-                const auto e = static_cast<std::size_t>(tracks.edges[static_cast<std::size_t>(i)]);
-                const std::int32_t from = rank(corners[e].point), end = rank(to[e]);
-                tracks.low[e] = std::min(from, end);
-                tracks.high[e] = std::max(from, end);
-            }
-            place_count[t] = static_cast<std::int64_t>(on_track.size());
-            auto& all = places_of_chunk[chunk];
-            all.insert(all.end(), on_track.begin(), on_track.end());
-        }
-    });
-    tracks.place_offsets.assign(1, 0);
-    for (const std::int64_t count : place_count) {
-        tracks.place_offsets.push_back(tracks.place_offsets.back() + count);
-    }
-    for (const auto& all : places_of_chunk)
-        tracks.places.insert(tracks.places.end(), all.begin(), all.end());
+        });
     return tracks;
 }
 

@@ -1,24 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volumes.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 
-#include "parallel_chunks.hpp"
+#include "parallel_counts.hpp"
 
 namespace realmodel::strata {
 
 namespace {
-
-using Vector = std::array<double, 3>;
-
-Vector minus(const Vector& a, const Vector& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-double triple(const Vector& a, const Vector& b, const Vector& c) {
-    return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-           a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
 
 /// Sum with a running correction (Neumaier 1974).
 struct Sum {
@@ -32,47 +23,99 @@ struct Sum {
     double value() const { return total + correction; }
 };
 
-}  // namespace
+/// The area of a face in plan, and the volume between the face and the height of its first corner.
+struct Projection {
+    double area = 0, volume = 0;
+};
 
-std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks,
-                                  const Progress* progress) {
-    std::vector<std::int32_t> anchor(complex.cell_block.size(), -1);
-    const auto vertex = [&](std::int64_t corner) {
-        return complex.face_vertices[static_cast<std::size_t>(corner)];
+Projection project(const CellComplex& complex, std::size_t face) {
+    const auto corner = [&](std::int64_t i) -> const std::array<double, 3>& {
+        return complex
+            .vertices[static_cast<std::size_t>(complex.face_vertices[static_cast<std::size_t>(i)])];
     };
-    for (std::size_t f = 0; f < complex.face_cells.size(); ++f) {
-        for (const std::int32_t cell : complex.face_cells[f]) {
-            if (cell >= 0) anchor[static_cast<std::size_t>(cell)] = vertex(complex.face_offsets[f]);
-        }
+    const std::int64_t begin = complex.face_offsets[face], end = complex.face_offsets[face + 1];
+    const auto& origin = corner(begin);
+    Projection sum;
+    const auto* last = &corner(begin + 1);
+    double x = (*last)[0] - origin[0], y = (*last)[1] - origin[1], z = (*last)[2] - origin[2];
+    for (std::int64_t i = begin + 2; i < end; ++i) {
+        const auto& next = corner(i);
+        const double u = next[0] - origin[0], v = next[1] - origin[1], w = next[2] - origin[2];
+        const double twice_area = x * v - u * y;
+        sum.area += twice_area;
+        sum.volume += twice_area * (z + w);
+        x = u;
+        y = v;
+        z = w;
     }
-    std::vector<double> volume(complex.cell_block.size(), 0.0);
-    for (std::size_t f = 0; f < complex.face_cells.size(); ++f) {
-        poll(progress, f);
-        double sign = 1.0 / 6.0;
-        for (const std::int32_t cell : complex.face_cells[f]) {
-            if (cell >= 0) {
-                const auto c = static_cast<std::size_t>(cell);
-                const Vector& origin = complex.vertices[static_cast<std::size_t>(anchor[c])];
-                const auto at = [&](std::int64_t corner) {
-                    return minus(complex.vertices[static_cast<std::size_t>(vertex(corner))],
-                                 origin);
-                };
-                const Vector first = at(complex.face_offsets[f]);
-                for (auto i = complex.face_offsets[f] + 1; i + 1 < complex.face_offsets[f + 1];
-                     ++i) {
-                    volume[c] += sign * triple(first, at(i), at(i + 1));
+    sum.area /= 2;
+    sum.volume /= 6;
+    return sum;
+}
+
+/// The lowest face of each cell.
+FlatArray<std::int32_t> first_faces(const CellComplex& complex, int threads,
+                                    const Progress* progress) {
+    FlatArray<std::int32_t> first(complex.cell_block.size());
+    std::fill(first.begin(), first.end(), INT32_MAX);
+    parallel_ranges(
+        complex.face_cells.size(), 1 << 14, threads, progress,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f) {
+                for (const std::int32_t cell : complex.face_cells[f]) {
+                    if (cell < 0) continue;
+                    const auto face = static_cast<std::int32_t>(f);
+                    std::atomic_ref least(first[static_cast<std::size_t>(cell)]);
+                    std::int32_t known = least.load(std::memory_order_relaxed);
+                    while (face < known &&
+                           !least.compare_exchange_weak(known, face, std::memory_order_relaxed)) {
+                    }
                 }
             }
-            sign = -sign;
+        });
+    return first;
+}
+
+}  // namespace
+
+// Walls count too: the rounded corners of one are in line in plan only up to rounding.
+std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks, int threads,
+                                  const Progress* progress) {
+    const FlatArray<std::int32_t> first = first_faces(complex, threads, progress);
+    const auto height = [&](std::size_t face) {
+        const auto corner = static_cast<std::size_t>(complex.face_offsets[face]);
+        return complex.vertices[static_cast<std::size_t>(complex.face_vertices[corner])][2];
+    };
+    // Chunks depend on the input alone, and so do the sums.
+    const std::size_t faces = complex.face_cells.size();
+    const std::size_t chunk = std::max<std::size_t>(1 << 13, faces / 256 + 1);
+    std::vector<std::vector<Sum>> sums((faces + chunk - 1) / chunk);
+    parallel_ranges(faces, chunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+        auto& of_chunk = sums[begin / chunk];
+        of_chunk.resize(blocks);
+        for (std::size_t f = begin; f < end; ++f) {
+            const Projection below = project(complex, f);
+            double sign = 1.0;
+            for (const std::int32_t cell : complex.face_cells[f]) {
+                if (cell >= 0) {
+                    const auto c = static_cast<std::size_t>(cell);
+                    const double rise = height(f) - height(static_cast<std::size_t>(first[c]));
+                    of_chunk[static_cast<std::size_t>(complex.cell_block[c])].add(
+                        sign * (below.volume + below.area * rise));
+                }
+                sign = -sign;
+            }
         }
-    }
-    std::vector<Sum> sums(blocks);
-    for (std::size_t c = 0; c < volume.size(); ++c) {
-        sums[static_cast<std::size_t>(complex.cell_block[c])].add(volume[c]);
-    }
+    });
     std::vector<double> result;
-    for (const Sum& sum : sums)
+    for (std::size_t b = 0; b < blocks; ++b) {
+        Sum sum;
+        for (const auto& of_chunk : sums) {
+            sum.add(of_chunk[b].total);
+            sum.add(of_chunk[b].correction);
+        }
         result.push_back(sum.value());
+    }
     return result;
 }
 

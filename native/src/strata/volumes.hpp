@@ -6,9 +6,10 @@
 
 namespace realmodel::strata {
 
-/// Volume of every block: the sum of its cells, each by the divergence theorem about one of its own
-/// corners, so that coordinates far from the origin cost no digits.
-std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks,
+/// Volume of every block: what lies beneath the faces that bound it from above, less what lies
+/// beneath those that bound it from below. Heights are counted from a corner of each cell, so that
+/// coordinates far from the origin cost no digits. The same for any number of threads.
+std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks, int threads,
                                   const Progress* progress);
 
 }  // namespace realmodel::strata

@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "conforming.hpp"
-#include "parallel_chunks.hpp"
+#include "parallel_counts.hpp"
 
 namespace realmodel::strata {
 
@@ -12,86 +12,108 @@ using exact::PlanGeometry;
 
 namespace {
 
+constexpr std::size_t kTracks = 1 << 10;  // worked on at a time
+
 /// A face edge over one interval of a track: a straight line in height between two verticals.
 struct Curve {
-    std::int32_t interval;
-    bool left;                  ///< the face lies left of the track
-    std::int32_t start, end;    ///< vertices on the two verticals; ascending means rising
+    std::int32_t start, end;  ///< vertices on the two verticals; ascending means rising
+    std::int32_t face;
     std::int32_t layer;         ///< of equal curves on one side the younger is the upper
     std::int32_t above, below;  ///< cells
-    PlaneId plane;
+    bool left;                  ///< the face lies left of the track
 
-    std::pair<std::int32_t, std::int32_t> height() const { return {start, end}; }
+    bool as_high_as(const Curve& other) const { return start == other.start && end == other.end; }
+    /// Ascending; where two curves start at one vertex the lower end comes first.
+    friend bool operator<(const Curve& a, const Curve& b) {
+        if (a.start != b.start) return a.start < b.start;
+        return std::tie(a.end, a.left, a.layer, a.face) < std::tie(b.end, b.left, b.layer, b.face);
+    }
 };
 
-struct WallBatch {
-    explicit WallBatch(const PlanGeometry& geometry) : scope(geometry) {}
+/// What the walls of some tracks are found in.
+struct Batch {
+    explicit Batch(const PlanGeometry& geometry) : scope(geometry) {}
     Scope scope;
-    Walls walls;
+    WallBatch walls;
     std::vector<ExtraPoint> missing;
 };
 
-/// The walls of one track.
+/// The walls of one track after another.
 class TrackWalls {
 public:
-    TrackWalls(const FaceList& faces, const Tracks& tracks, const Loops& loops,
-               const std::vector<std::int32_t>& face_of_corner, WallBatch& batch)
-        : faces_(faces),
-          tracks_(tracks),
-          loops_(loops),
-          face_of_corner_(face_of_corner),
-          batch_(batch) {}
+    TrackWalls(const FaceList& faces, const Tracks& tracks, const Loops& loops, Batch& batch)
+        : faces_(faces), tracks_(tracks), loops_(loops), batch_(batch) {}
 
     void process(std::size_t track) {
         collect(track);
-        for (std::size_t i = 0; i < curves_.size();) {
-            std::size_t end = i + 1;
-            while (end < curves_.size() && curves_[end].interval == curves_[i].interval)
-                ++end;
-            process_interval(track, i, end);
+        for (std::size_t i = 0; i + 1 < begins_.size(); ++i) {
+            process_interval(track, begins_[i], begins_[i + 1]);
             // what did not go on in this interval is finished
-            for (const OpenWall& wall : open_)
-                emit(wall);
+            finish_open();
             std::swap(open_, growing_);
-            growing_.clear();
-            i = end;
         }
-        for (const OpenWall& wall : open_)
-            emit(wall);
-        open_.clear();
+        finish_open();
     }
 
 private:
+    /// Puts the curves of a track in order of intervals, and those of each in order of height.
     void collect(std::size_t track) {
-        curves_.clear();
-        for (auto i = tracks_.edge_offsets[track]; i < tracks_.edge_offsets[track + 1]; ++i) {
-            const auto e = static_cast<std::size_t>(tracks_.edges[static_cast<std::size_t>(i)]);
-            const auto face = static_cast<std::size_t>(face_of_corner_[e]);
-            const bool forward = tracks_.forward[e] != 0;
-            const std::int32_t steps = tracks_.high[e] - tracks_.low[e];
-            for (std::int32_t s = 0; s < steps; ++s) {
-                const std::int64_t here = loops_.edge_offsets[e] + s;
-                const std::int64_t there =
-                    here + 1 < loops_.face_offsets[face + 1] ? here + 1 : loops_.face_offsets[face];
-                const std::int32_t a = loops_.vertices[static_cast<std::size_t>(here)];
-                const std::int32_t b = loops_.vertices[static_cast<std::size_t>(there)];
-                curves_.push_back({forward ? tracks_.low[e] + s : tracks_.high[e] - s - 1, forward,
-                                   forward ? a : b, forward ? b : a, faces_.layer[face],
-                                   faces_.above[face], faces_.below[face], faces_.plane[face]});
+        const auto first = tracks_.edges.begin() + tracks_.edge_offsets[track];
+        const auto last = tracks_.edges.begin() + tracks_.edge_offsets[track + 1];
+        begins_.clear();
+        for (auto edge = first; edge != last; ++edge) {
+            const auto [low, high] = std::minmax(edge->from, edge->to);
+            if (begins_.size() < static_cast<std::size_t>(high) + 1)
+                begins_.resize(static_cast<std::size_t>(high) + 1, 0);
+            for (std::int32_t i = low; i < high; ++i)
+                ++begins_[static_cast<std::size_t>(i)];
+        }
+        std::uint32_t total = 0;
+        for (std::uint32_t& begin : begins_) {
+            const std::uint32_t own = begin;
+            begin = total;
+            total += own;
+        }
+        curves_.resize(total);
+        free_.assign(begins_.begin(), begins_.end());
+        for (auto edge = first; edge != last; ++edge)
+            add_curves(*edge);
+        for (std::size_t i = 0; i + 1 < begins_.size(); ++i) {
+            const auto begin = curves_.begin() + begins_[i], end = curves_.begin() + begins_[i + 1];
+            if (end - begin == 2) {
+                if (begin[1] < begin[0]) std::swap(begin[0], begin[1]);
+            } else {
+                std::sort(begin, end);
             }
         }
-        std::sort(curves_.begin(), curves_.end(), [](const Curve& a, const Curve& b) {
-            return std::tuple(a.interval, a.start, a.end, a.left, a.layer) <
-                   std::tuple(b.interval, b.start, b.end, b.left, b.layer);
-        });
+    }
+
+    void add_curves(const TrackEdge& edge) {
+        const auto face = static_cast<std::size_t>(edge.face);
+        const bool left = edge.from < edge.to;
+        Curve curve{0,   0, edge.face, faces_.layer[face], faces_.above[face], faces_.below[face],
+                    left};
+        const std::int32_t steps = std::abs(edge.to - edge.from);
+        std::uint32_t entry = loops_.edge_begin[edge.corner];
+        std::int32_t vertex = loops_.vertices[entry];
+        std::int32_t interval = left ? edge.from : edge.from - 1;
+        for (std::int32_t s = 0; s < steps; ++s) {
+            ++entry;
+            if (entry == loops_.face_offsets[face + 1]) entry = loops_.face_offsets[face];
+            const std::int32_t next = loops_.vertices[entry];
+            curve.start = left ? vertex : next;
+            curve.end = left ? next : vertex;
+            curves_[free_[static_cast<std::size_t>(interval)]++] = curve;
+            vertex = next;
+            interval += left ? 1 : -1;
+        }
     }
 
     void process_interval(std::size_t track, std::size_t begin, std::size_t end) {
         // The common case: one face edge on either side, the same cells above and below.
         if (end - begin == 2) {
             const Curve &a = curves_[begin], &b = curves_[begin + 1];
-            if (a.left != b.left && a.height() == b.height() && a.above == b.above &&
-                a.below == b.below) {
+            if (a.left != b.left && a.as_high_as(b) && a.above == b.above && a.below == b.below) {
                 return;
             }
         }
@@ -109,7 +131,7 @@ private:
         std::int32_t right = cell_below_all(begin, end, false);
         for (std::size_t i = begin; i < end;) {
             std::size_t level = i;  // past the curves at this height
-            for (; level < end && curves_[level].height() == curves_[i].height(); ++level) {
+            for (; level < end && curves_[level].as_high_as(curves_[i]); ++level) {
                 (curves_[level].left ? left : right) = curves_[level].above;
             }
             if (level == end) break;
@@ -126,15 +148,31 @@ private:
     }
 
     void add_missing(std::size_t track, const Curve& a, const Curve& b) {
+        const auto plane = [&](const Curve& curve) {
+            return faces_.plane[static_cast<std::size_t>(curve.face)];
+        };
         const LineId line = tracks_.representative[track];
-        const LineId trace = exact::line_of(batch_.scope.trace(a.plane, b.plane));
+        const LineId trace = exact::line_of(batch_.scope.trace(plane(a), plane(b)));
         batch_.missing.push_back({line, batch_.scope.crossing(line, trace)});
     }
 
     /// A wall between two cells that may go on in the next interval.
     struct OpenWall {
-        std::int32_t left, right;
+        std::int32_t left = kOutsideCell, right = kOutsideCell;
         std::vector<std::int32_t> lower, upper;  ///< vertices along the track
+    };
+
+    /// Walls that keep their memory when they are removed.
+    struct OpenWalls {
+        std::vector<OpenWall> all;
+        std::size_t count = 0;
+
+        OpenWall& add() {
+            if (count == all.size()) all.emplace_back();
+            return all[count++];
+        }
+        OpenWall* begin() { return all.data(); }
+        OpenWall* end() { return all.data() + count; }
     };
 
     // Walls of neighbouring intervals between the same cells are one face where they share a whole
@@ -144,19 +182,31 @@ private:
             return wall.left == left && wall.right == right && wall.lower.back() == low.start &&
                    wall.upper.back() == high.start && low.start != high.start;
         };
-        const auto before = std::find_if(open_.begin(), open_.end(), continues);
+        OpenWall* before = std::find_if(open_.begin(), open_.end(), continues);
+        OpenWall& wall = growing_.add();
         if (before == open_.end()) {
-            growing_.push_back({left, right, {low.start, low.end}, {high.start, high.end}});
+            wall.left = left;
+            wall.right = right;
+            wall.lower.assign({low.start, low.end});
+            wall.upper.assign({high.start, high.end});
             return;
         }
-        growing_.push_back(std::move(*before));
-        open_.erase(before);
-        growing_.back().lower.push_back(low.end);
-        growing_.back().upper.push_back(high.end);
+        std::swap(wall, *before);
+        std::rotate(before, before + 1, open_.end());
+        --open_.count;
+        wall.lower.push_back(low.end);
+        wall.upper.push_back(high.end);
+    }
+
+    void finish_open() {
+        for (const OpenWall& wall : open_)
+            emit(wall);
+        open_.count = 0;
     }
 
     void emit(const OpenWall& wall) {
         auto& loop = batch_.walls.vertices;
+        const std::size_t first = loop.size();
         loop.insert(loop.end(), wall.lower.begin(), wall.lower.end());
         // up the far vertical and down the near one, through every vertex on them
         for (std::int32_t v = wall.lower.back() + 1; v < wall.upper.back(); ++v)
@@ -167,57 +217,44 @@ private:
                     wall.upper.rend() - static_cast<std::ptrdiff_t>(keep));
         for (std::int32_t v = wall.upper.front() - 1; v > wall.lower.front(); --v)
             loop.push_back(v);
-        batch_.walls.offsets.push_back(static_cast<std::int64_t>(loop.size()));
+        batch_.walls.sizes.push_back(static_cast<std::int32_t>(loop.size() - first));
         batch_.walls.cells.push_back({wall.left, wall.right});
     }
 
     const FaceList& faces_;
     const Tracks& tracks_;
     const Loops& loops_;
-    const std::vector<std::int32_t>& face_of_corner_;
-    WallBatch& batch_;
+    Batch& batch_;
     std::vector<Curve> curves_;
-    std::vector<OpenWall> open_, growing_;
+    std::vector<std::uint32_t> begins_, free_;  ///< curves of each interval, and where more go
+    OpenWalls open_, growing_;
 };
 
 }  // namespace
 
-Walls find_walls(PlanGeometry& geometry, const FaceList& faces, const Tracks& tracks,
-                 const Loops& loops, std::vector<ExtraPoint>& missing, int threads,
-                 const Progress* progress) {
-    std::vector<std::int32_t> face_of_corner(faces.polygons.corners.size());
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        for (auto c = faces.polygons.offsets[f]; c < faces.polygons.offsets[f + 1]; ++c) {
-            face_of_corner[static_cast<std::size_t>(c)] = static_cast<std::int32_t>(f);
-        }
-    }
-    constexpr std::size_t kChunk = 2048;
-    const std::size_t chunks = (tracks.size() + kChunk - 1) / kChunk;
-    std::vector<std::unique_ptr<WallBatch>> batches(chunks);
-    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
-        batches[chunk] = std::make_unique<WallBatch>(geometry);
-        TrackWalls walls(faces, tracks, loops, face_of_corner, *batches[chunk]);
-        for (std::size_t t = chunk * kChunk; t < std::min(tracks.size(), (chunk + 1) * kChunk);
-             ++t) {
-            walls.process(t);
-        }
-    });
+std::vector<WallBatch> find_walls(PlanGeometry& geometry, const FaceList& faces,
+                                  const Tracks& tracks, const Loops& loops,
+                                  std::vector<ExtraPoint>& missing, int threads,
+                                  const Progress* progress) {
+    const std::size_t chunks = (tracks.size() + kTracks - 1) / kTracks;
+    std::vector<WallBatch> walls(chunks);
+    std::vector<std::unique_ptr<Batch>> with_missing(chunks);
+    parallel_ranges(tracks.size(), kTracks, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        auto batch = std::make_unique<Batch>(geometry);
+                        TrackWalls of_track(faces, tracks, loops, *batch);
+                        for (std::size_t t = begin; t < end; ++t)
+                            of_track.process(t);
+                        walls[begin / kTracks] = std::move(batch->walls);
+                        if (!batch->missing.empty())
+                            with_missing[begin / kTracks] = std::move(batch);
+                    });
     missing.clear();
-    Walls walls;
-    for (auto& batch : batches) {
-        if (progress != nullptr) progress->check();
+    for (const auto& batch : with_missing) {
+        if (batch == nullptr) continue;
         batch->scope.hand_over(geometry);
-        for (const ExtraPoint& e : batch->missing) {
+        for (const ExtraPoint& e : batch->missing)
             missing.push_back({e.line, batch->scope.shared_point(e.point)});
-        }
-        const auto base = static_cast<std::int64_t>(walls.vertices.size());
-        for (std::size_t w = 1; w < batch->walls.offsets.size(); ++w) {
-            walls.offsets.push_back(base + batch->walls.offsets[w]);
-        }
-        walls.vertices.insert(walls.vertices.end(), batch->walls.vertices.begin(),
-                              batch->walls.vertices.end());
-        walls.cells.insert(walls.cells.end(), batch->walls.cells.begin(), batch->walls.cells.end());
-        batch.reset();
     }
     if (!missing.empty()) return {};
     return walls;

@@ -73,6 +73,21 @@ struct Point {
     double error = 0;     ///< bound on the distance in x and in y
 };
 
+/// A plan point in extended precision, relative to a plan vertex, with bounds on its errors.
+struct NearPoint {
+    VertexId origin;
+    long double x, y;
+    long double error_x, error_y;
+};
+
+/// What is known of the height of a plane above a point without arithmetic; planes with equal names
+/// are equally high there. A space vertex twice: it stands there; two of them, ascending: an input
+/// edge between the two passes there; -1 and a plane: nothing but that it is as high as that plane.
+struct HeightName {
+    std::int32_t first, second;
+    friend bool operator==(const HeightName&, const HeightName&) = default;
+};
+
 /// A space vertex: a plan vertex and a height.
 struct SpaceVertex {
     VertexId plan;
@@ -203,8 +218,15 @@ public:
 
     /// The doubles nearest to a point's true coordinates: the same for every way to name the place.
     std::array<double, 2> rounded(PointId point);
+    /// By what the height of a plane above a point is known; planes that are equally high may still
+    /// have different names.
+    HeightName height_name(PlaneId plane, PointId point) const;
+
+    /// Where a point lies, as closely as is cheap to say; for several heights above it.
+    NearPoint near(PointId point) const;
     /// The double nearest to the height of a plane above a point.
     double rounded_height(PlaneId plane, PointId point);
+    double rounded_height(PlaneId plane, PointId point, const NearPoint& near);
     /// Slope and offset of a line, rounded: equal for lines that run through the same places.
     std::array<double, 3> line_key(LineId line);
 
@@ -228,6 +250,7 @@ private:
     int filtered_side(const LineFilter& line, const Point& point) const;
     int exact_side(const Line& line, PointId point);
     bool on_trace_by_name(PlaneId a, PlaneId b, const Point& point) const;
+    NearPoint near(const Point& point) const;
     void locate(Point& point);
 
     const PlanGeometry& shared_;

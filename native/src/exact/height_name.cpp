@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <optional>
+
+#include "realmodel/exact/plan_geometry.hpp"
+
+namespace realmodel::exact {
+
+namespace {
+
+/// The corners of a plane's triangle.
+class Corners {
+public:
+    Corners(const PlanGeometry& geometry, PlaneId plane) : space_(geometry.plane(plane).corner) {
+        for (std::size_t i = 0; i < 3; ++i)
+            plan_[i] = geometry.space(space_[i]).plan;
+    }
+    /// The one above a plan vertex, -1 where there is none.
+    SpaceId above(VertexId vertex) const {
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (plan_[i] == vertex) return space_[i];
+        }
+        return -1;
+    }
+
+private:
+    const std::array<SpaceId, 3>& space_;
+    std::array<VertexId, 3> plan_;
+};
+
+/// The side of a plane's triangle that stands on one of a crossing's two lines.
+std::optional<HeightName> standing_edge(const PlanGeometry& geometry, PlaneId plane,
+                                        const std::array<const Line*, 2>& lines) {
+    const Corners corners(geometry, plane);
+    for (const Line* line : lines) {
+        if (line->kind != Line::Kind::kEdge) continue;
+        const SpaceId s = corners.above(line->first);
+        const SpaceId t = s < 0 ? -1 : corners.above(line->second);
+        if (t >= 0) return HeightName{std::min(s, t), std::max(s, t)};
+    }
+    return std::nullopt;
+}
+
+bool is_trace_of(const Line& line, PlaneId plane) {
+    return line.kind == Line::Kind::kTrace && (line.first == plane || line.second == plane);
+}
+
+}  // namespace
+
+HeightName Scope::height_name(PlaneId plane, PointId id) const {
+    if (is_vertex(id)) {
+        const SpaceId s = shared_.corner_above(plane, id);
+        return s >= 0 ? HeightName{s, s} : HeightName{-1, plane};
+    }
+    const Point& p = point(id);
+    const std::array<const Line*, 2> lines{&line(p.first), &line(p.second)};
+    if (const auto edge = standing_edge(shared_, plane, lines)) return *edge;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Line &trace = *lines[i], &other = *lines[1 - i];
+        if (!is_trace_of(trace, plane)) continue;
+        // along the trace another plane is equally high
+        const PlaneId partner = trace.first == plane ? trace.second : trace.first;
+        if (const auto edge = standing_edge(shared_, partner, lines)) return *edge;
+        const bool shared = is_trace_of(other, trace.first) != is_trace_of(other, trace.second);
+        return {-1, shared && is_trace_of(other, trace.second) ? trace.second : trace.first};
+    }
+    return {-1, plane};
+}
+
+}  // namespace realmodel::exact

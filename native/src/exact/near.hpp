@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "realmodel/exact/plan_geometry.hpp"
+
+// Lines, planes and points in extended precision (64 bits of mantissa, as on x86), each with bounds
+// on its errors. Enough to round nearly all coordinates at a fraction of what twice the precision
+// of doubles costs. Where `long double` is no such type every bound is infinite, and the slower
+// ways (ball.hpp, GMP) give the same doubles.
+namespace realmodel::exact {
+
+/// a x + b y + c relative to a plan vertex.
+struct NearLine {
+    long double a, b, c;
+    long double error_a, error_b, error_c;
+};
+NearLine near_line(const PlanGeometry& geometry, const Line& line, VertexId origin);
+
+/// The gradient of a plane.
+struct NearGradient {
+    long double x, y;
+    long double error_x, error_y;
+};
+NearGradient near_gradient(const PlanGeometry& geometry, PlaneId plane);
+
+/// The double nearest to `from` and a number close to `value`, or nothing where the bound on its
+/// error leaves two to choose from.
+std::optional<double> nearest_sum(double from, long double value, long double error);
+
+/// The height of a plane above a point, likewise.
+std::optional<double> near_height(const PlanGeometry& geometry, PlaneId plane,
+                                  const NearPoint& point);
+
+/// Scope::line_key of a line relative to the origin of the keys, likewise.
+std::optional<std::array<double, 3>> near_line_key(const NearLine& line);
+
+}  // namespace realmodel::exact

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "polygon.hpp"
+
+namespace realmodel::strata {
+
+/// The different heights of planes at one place, ascending. Planes that are known to be equally
+/// high there by what the place is made of share a name and are asked once; rounded heights keep
+/// the order of the others, and where they are equal, the exact test decides.
+class PlaceHeights {
+public:
+    explicit PlaceHeights(const exact::PlanGeometry& geometry) : scope_(geometry) {}
+
+    /// Finds the heights of planes above a point.
+    /// @param planes  of each of them; in its place comes which of the heights it has
+    void find(PointId point, std::span<std::int32_t> planes);
+
+    /// The heights, rounded; not all different.
+    const std::vector<double>& heights() const { return heights_; }
+
+private:
+    /// Planes that are known to be equally high.
+    struct Level {
+        exact::HeightName name;
+        PlaneId plane;  ///< one of them
+        double z;
+        std::int32_t rank;
+    };
+    struct Plane {
+        PlaneId plane;
+        std::int32_t level;
+    };
+
+    std::int32_t level_of(PointId point, PlaneId plane);
+    void find_distinct(PointId point, std::span<const std::int32_t> planes);
+    void rank_levels(PointId point);
+
+    Scope scope_;
+    std::vector<Plane> planes_;  ///< each once; ascending where there are many
+    std::vector<Level> levels_;
+    std::vector<std::int32_t> order_;  ///< of the levels, ascending
+    std::vector<double> heights_;
+};
+
+}  // namespace realmodel::strata
