@@ -116,6 +116,11 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         action="store_true",
         help="tell cells, memory and time that it would take, and build nothing",
     )
+    parser.add_argument(
+        "--check-model",
+        action="store_true",
+        help="prove the model before anything is written, and print the proof",
+    )
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     options = parser.parse_args(arguments)
     for name, ending in (("blend", ".blend"), ("report", ".json"), ("render", ".png")):
@@ -170,7 +175,8 @@ def _run(options: argparse.Namespace) -> None:
                 stage=options.stage,
                 memory=options.memory,
             )
-            _write(options, model, outputs, progress)
+            validation = _validation(options, model, progress)
+            _write(options, model, outputs, progress, validation)
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, signal.SIG_IGN)  # in a moment all is there: too late to stop
         finally:
@@ -179,6 +185,8 @@ def _run(options: argparse.Namespace) -> None:
         with contextlib.suppress(BrokenPipeError):  # the outputs are there
             for warning in model.warnings:
                 print(f"warning: {warning}")
+            if options.check_model:
+                print(f"{validation}\n")
             print(volume_table(model), flush=True)
 
 
@@ -195,6 +203,29 @@ def _estimate(options: argparse.Namespace, project, progress) -> None:
     limit = found.available if options.memory is None else options.memory
     if found.memory > limit:
         print("this would be refused: it takes more memory than there is (see --cells, --memory)", flush=True)
+
+
+def _validation(options: argparse.Namespace, model, progress):
+    """The proof of the model, where it is asked for or goes into the report. One that was asked for and
+    failed keeps anything from being written."""
+    from realmodel.core import BuildFailed, BuildWarning
+
+    if not options.check_model and options.report is None:
+        return None
+    report = model.validate(options.threads, progress=lambda _share, text: progress(1.0, text))
+    if report.passed:
+        return report
+    if options.check_model:
+        progress.close()
+        if not options.quiet:
+            print(report, flush=True)
+        raise BuildFailed(
+            f"the model fails its check: {report.failure()}; nothing was written; this is a defect of "
+            "RealModel: please report it with the project"
+        )
+    text = f"the model fails its check: {report.failure()}; the report says more"
+    model.warnings.append(BuildWarning(text, "validation"))
+    return report
 
 
 def _checked_targets(options: argparse.Namespace) -> list[Path]:
@@ -222,7 +253,7 @@ def _refuse_overwriting(project, targets: list[Path]) -> None:
             raise UsageError(f"{target}: this is a file that the project reads; choose another name")
 
 
-def _write(options: argparse.Namespace, model, outputs, progress) -> None:
+def _write(options: argparse.Namespace, model, outputs, progress, validation) -> None:
     from realmodel.core.exporters import write_model
     from realmodel.core.exporters.report import write_report
 
@@ -233,7 +264,7 @@ def _write(options: argparse.Namespace, model, outputs, progress) -> None:
         _write_with_blender(options, model, outputs, progress)
     if options.report is not None:
         with outputs.file(options.report) as file:
-            write_report(model, options.report, file, options.stage)
+            write_report(model, options.report, file, options.stage, validation)
 
 
 def _write_with_blender(options: argparse.Namespace, model, outputs, progress) -> None:

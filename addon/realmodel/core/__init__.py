@@ -21,6 +21,7 @@ from .model import Block, BlockBoundary, Model
 from .planar_mesh import mesh_region
 from .project import Project, Rock, Surface
 from .project_file import load_project
+from .validation import ValidationReport
 from .variogram import Structure, Variogram
 
 __all__ = [
@@ -44,6 +45,7 @@ __all__ = [
     "Structure",
     "Surface",
     "UsageError",
+    "ValidationReport",
     "Variogram",
     "build",
     "cross_validate",

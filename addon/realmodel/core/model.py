@@ -14,6 +14,7 @@ from .build_warning import BuildWarning
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
+from .validation import ValidationReport, validate
 from .work import Cancel, Progress, native_module
 
 
@@ -108,6 +109,16 @@ class Model:
         from .build import build_stage
 
         return build_stage(self, m, progress, cancel)
+
+    def validate(
+        self, threads: int = 0, progress: Progress | None = None, cancel: Cancel | None = None
+    ) -> ValidationReport:
+        """Tests the model as docs/geometry.md says, every cell, face and vertex of it.
+
+        threads: 0 for all that there are; the findings are the same for any number. A model that fails is
+        no error here: the report says what is wrong and where. Raises Cancelled.
+        """
+        return validate(self, threads, progress, cancel)
 
     @cached_property
     def face_blocks(self) -> np.ndarray:

@@ -11,13 +11,18 @@ from pathlib import Path
 import numpy as np
 
 from ..rock_input import used_vertices
+from ..validation import ValidationReport
 from ..work import native_module
 
 SCHEMA = 1
 
 
-def model_report(model, stage: int | None = None) -> dict:
-    """The report's content. Volumes are in model units cubed, times in seconds, memory in bytes."""
+def model_report(model, stage: int | None = None, validation: ValidationReport | None = None) -> dict:
+    """The report's content. Volumes are in model units cubed, times in seconds, memory in bytes.
+
+    validation: what Model.validate found; it is asked now where none is given.
+    """
+    validation = validation or model.validate(threads=model.threads)
     total = model.volume
     library = model.project.library
     return {
@@ -46,6 +51,7 @@ def model_report(model, stage: int | None = None) -> dict:
             {"kind": w.kind, "rock": w.rock, "surface": w.surface, "items": list(w.items), "text": w.text}
             for w in model.warnings
         ],
+        "validation": validation.to_json(),
         "timings": model.timings,
         "threads": model.threads,
         "peak_memory": _peak_memory(),
@@ -118,7 +124,9 @@ def _peak_memory() -> int | None:
     return peak if sys.platform == "darwin" else 1024 * peak
 
 
-def write_report(model, path: str | Path, file, stage: int | None = None) -> None:
+def write_report(
+    model, path: str | Path, file, stage: int | None = None, validation: ValidationReport | None = None
+) -> None:
     """Writes the report as UTF-8 JSON to an open binary file."""
-    text = json.dumps(model_report(model, stage), indent=2, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(model_report(model, stage, validation), indent=2, ensure_ascii=False, allow_nan=False)
     file.write(f"{text}\n".encode())

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The proof of a model: the tests of docs/geometry.md, as a report for its reviewer."""
+
+from __future__ import annotations
+
+import textwrap
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .errors import place_text
+from .work import Cancel, Progress, Work, native_module, run
+
+_DTYPES = {
+    "vertices": np.float64,
+    "face_offsets": np.int64,
+    "face_vertices": np.int32,
+    "face_cells": np.int32,
+    "face_surface": np.int32,
+    "cell_block": np.int32,
+}
+# By the name of a test: its number in docs/geometry.md, and what it says of the model.
+_SAYS = {
+    "arrays": (0, "the arrays fit together: every number that they name is there"),
+    "closed": (1, "every cell is closed: its faces use each edge once in each direction"),
+    "faces": (2, "faces are simple polygons, each in one plane; convex, or upright walls"),
+    "loops": (2, "no face passes a vertex twice"),
+    "vertices": (2, "no two vertices are in one place, and none is unused"),
+    "outside": (3, "a face has one cell only where the outside begins"),
+    "volumes": (4, "every cell has a volume, none is inside out"),
+    "block volumes": (4, "the volume of each block is the sum of its cells"),
+}
+_SAYS_OF_BLOCKS = {"closed": "every cell is closed: its faces use each edge as often in either direction"}
+_WIDTH = 100
+
+
+@dataclass(frozen=True)
+class Offender:
+    """One thing that is wrong: a sentence, the numbers of the cell, face, vertex and block meant (None: no
+    such), and the place (x, y, z) in model units or None."""
+
+    text: str
+    cell: int | None = None
+    face: int | None = None
+    vertex: int | None = None
+    block: int | None = None
+    place: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True)
+class ValidationTest:
+    """One test. number: as in docs/geometry.md (0: that the others can be asked). says: what it says of a
+    model that passes. examined counts cells, faces or what else `unit` is; undecided are those that rounding
+    leaves open (a cell thinner than the spacing of doubles, a place as close to an edge): they are counted as
+    neither passed nor failed. offenders are the first few that failed."""
+
+    name: str
+    number: int
+    says: str
+    unit: str
+    examined: int
+    failed: int
+    undecided: int
+    seconds: float
+    offenders: list[Offender] = field(default_factory=list)
+
+    @property
+    def passed(self) -> bool:
+        return self.failed == 0
+
+    def to_json(self) -> dict:
+        return {
+            "name": self.name,
+            "number": self.number,
+            "says": self.says,
+            "unit": self.unit,
+            "examined": self.examined,
+            "passed": self.passed,
+            "failed": self.failed,
+            "undecided": self.undecided,
+            "seconds": self.seconds,
+            "offenders": [
+                {**vars(offender), "place": list(offender.place) if offender.place else None}
+                for offender in self.offenders
+            ],
+        }
+
+
+@dataclass(frozen=True)
+class ValidationReport:
+    """What Model.validate found. `str(report)` is for a reviewer to read, `to_json()` for report.json.
+    build_seconds: what intersecting took, to compare the cost with (0: not known)."""
+
+    project: str
+    cell_kind: str
+    cells: int
+    faces: int
+    vertices: int
+    tests: list[ValidationTest]
+    build_seconds: float = 0.0
+
+    @property
+    def passed(self) -> bool:
+        return all(test.passed for test in self.tests)
+
+    @property
+    def seconds(self) -> float:
+        return sum(test.seconds for test in self.tests)
+
+    def failure(self) -> str | None:
+        """One line about the first test that failed, with its first offender; None where all passed."""
+        for test in self.tests:
+            if not test.passed:
+                return f"test '{test.name}' ({test.says}): {_offender_line(test.offenders[0])}"
+        return None
+
+    def to_json(self) -> dict:
+        return {
+            "passed": self.passed,
+            "seconds": self.seconds,
+            "tests": [test.to_json() for test in self.tests],
+        }
+
+    def __str__(self) -> str:
+        verdict = "passed" if self.passed else "FAILED"
+        cost = f"{self.seconds:.2f} s"
+        if self.build_seconds:
+            cost += f", {100 * self.seconds / self.build_seconds:.1f} % of what intersecting took"
+        lines = [
+            f"Validation of {self.project}: {verdict}",
+            f"{self.cells:,} cells ({self.cell_kind}), {self.faces:,} faces, {self.vertices:,} vertices",
+            f"in {cost}",
+            "",
+        ]
+        names = max(len(test.name) for test in self.tests)
+        counts = max(len(_examined(test)) for test in self.tests)
+        for test in self.tests:
+            result = "passed" if test.passed else "FAILED"
+            head = f"{test.number}  {test.name.ljust(names)}  {_examined(test).rjust(counts)}  {result}  "
+            rest = " " * len(head)
+            lines += textwrap.wrap(test.says, _WIDTH, initial_indent=head, subsequent_indent=rest)
+            if test.undecided:
+                lines.append(f"{rest}{test.undecided:,} of them within rounding, left open")
+            if test.failed:
+                lines.append(f"   {test.failed:,} failed:")
+                lines += [f"   - {_offender_line(offender)}" for offender in test.offenders]
+                if test.failed > len(test.offenders):
+                    lines.append(f"   - and {test.failed - len(test.offenders):,} more")
+        return "\n".join(lines)
+
+
+def _examined(test: ValidationTest) -> str:
+    return f"{test.examined:,} {test.unit}"
+
+
+def _offender_line(offender: Offender) -> str:
+    return f"{offender.text} near {place_text(offender.place)}" if offender.place else offender.text
+
+
+def validate(
+    model, threads: int = 0, progress: Progress | None = None, cancel: Cancel | None = None
+) -> ValidationReport:
+    """Model.validate."""
+
+    def task(work: Work) -> list[ValidationTest]:
+        wrong = _wrong_arrays(model)
+        if wrong:
+            offenders = [Offender(text) for text in wrong]
+            number, says = _SAYS["arrays"]
+            faces = len(model.face_surface)
+            return [ValidationTest("arrays", number, says, "faces", faces, len(wrong), 0, 0.0, offenders)]
+        with work.phase(0.0, 1.0, "checking every cell and face"):
+            found = work.native(native_module().check_topology, _native_model(model), threads=threads)
+        tests = [_test(entry, model.cell_kind) for entry in found]
+        return sorted(tests, key=lambda test: test.number)
+
+    tests = run(task, progress, cancel)
+    return ValidationReport(
+        project=model.project.name,
+        cell_kind=model.cell_kind,
+        cells=len(model.cell_block),
+        faces=len(model.face_surface),
+        vertices=len(model.vertices),
+        tests=tests,
+        build_seconds=model.timings.get("intersect", 0.0),
+    )
+
+
+def _wrong_arrays(model) -> list[str]:
+    """Sentences about arrays of another dtype or shape than docs/geometry.md gives them."""
+    columns = {"vertices": 3, "face_cells": 2}
+    wrong = []
+    for name, dtype in _DTYPES.items():
+        array = getattr(model, name)
+        if array.dtype != dtype:
+            wrong.append(f"{name} is {array.dtype}, not {np.dtype(dtype)}")
+        if array.ndim != (2 if name in columns else 1) or array.shape[1:] != (columns.get(name),) * (
+            array.ndim - 1
+        ):
+            wrong.append(f"{name} has the shape {array.shape}")
+    return wrong
+
+
+def _native_model(model) -> dict:
+    """What the native tests take."""
+    bases = [rock.base_elevation for rock in model.project.rocks]
+    oldest = np.cumsum([0, *(len(rock.surfaces) for rock in model.project.rocks)])
+    stands = [
+        bases[block.rock] if block.surface == oldest[block.rock] and bases[block.rock] is not None else np.nan
+        for block in model.blocks
+    ]
+    return {
+        **{name: getattr(model, name) for name in _DTYPES},
+        "block_volume": np.array([block.volume for block in model.blocks], np.float64),
+        "block_base": np.array(stands, np.float64),
+        "surfaces": len(model.surface_names),
+        "cells_are_blocks": model.cell_kind == "blocks",
+    }
+
+
+def _test(entry: dict, cell_kind: str) -> ValidationTest:
+    """A test as the native part tells it; -1 stands for no number there."""
+    number, says = _SAYS[entry["name"]]
+    if cell_kind == "blocks":
+        says = _SAYS_OF_BLOCKS.get(entry["name"], says)
+    offenders = [
+        Offender(
+            text=offender["text"],
+            place=offender["place"],
+            **{
+                key: offender[key] if offender[key] >= 0 else None
+                for key in ("cell", "face", "vertex", "block")
+            },
+        )
+        for offender in entry["offenders"]
+    ]
+    return ValidationTest(
+        name=entry["name"],
+        number=number,
+        says=says,
+        unit=entry["unit"],
+        examined=entry["examined"],
+        failed=entry["failed"],
+        undecided=entry["undecided"],
+        seconds=entry["seconds"],
+        offenders=offenders,
+    )

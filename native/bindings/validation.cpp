@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// check_topology.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <string>
+#include <vector>
+
+#include "arrays.hpp"
+#include "realmodel/base/progress.hpp"
+#include "realmodel/validation/topology.hpp"
+
+namespace py = pybind11;
+
+namespace realmodel::bindings {
+
+namespace {
+
+template <class T>
+std::span<const T> view(const Array<T>& array) {
+    return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+py::list to_list(const std::vector<validation::TestResult>& results) {
+    py::list list;
+    for (const validation::TestResult& test : results) {
+        py::list offenders;
+        for (const validation::Offender& o : test.findings.first) {
+            py::dict entry;
+            entry["text"] = o.text;
+            entry["cell"] = o.cell;
+            entry["face"] = o.face;
+            entry["vertex"] = o.vertex;
+            entry["block"] = o.block;
+            entry["place"] =
+                o.place ? py::object(py::make_tuple((*o.place)[0], (*o.place)[1], (*o.place)[2]))
+                        : py::object(py::none());
+            offenders.append(entry);
+        }
+        py::dict entry;
+        entry["name"] = test.name;
+        entry["unit"] = test.unit;
+        entry["examined"] = test.findings.examined;
+        entry["failed"] = test.findings.failed;
+        entry["undecided"] = test.findings.undecided;
+        entry["offenders"] = offenders;
+        entry["seconds"] = test.seconds;
+        list.append(entry);
+    }
+    return list;
+}
+
+/// The arrays of a model, kept while they are looked at.
+struct ComplexArrays {
+    Array<double> vertices;
+    Array<std::int64_t> face_offsets;
+    Array<std::int32_t> face_vertices, face_cells, face_surface, cell_block;
+    Array<double> block_volume, block_base;
+    std::int32_t surfaces;
+    bool cells_are_blocks;
+
+    explicit ComplexArrays(const py::dict& model)
+        : vertices(model["vertices"].cast<decltype(vertices)>()),
+          face_offsets(model["face_offsets"].cast<decltype(face_offsets)>()),
+          face_vertices(model["face_vertices"].cast<decltype(face_vertices)>()),
+          face_cells(model["face_cells"].cast<decltype(face_cells)>()),
+          face_surface(model["face_surface"].cast<decltype(face_surface)>()),
+          cell_block(model["cell_block"].cast<decltype(cell_block)>()),
+          block_volume(model["block_volume"].cast<decltype(block_volume)>()),
+          block_base(model["block_base"].cast<decltype(block_base)>()),
+          surfaces(model["surfaces"].cast<std::int32_t>()),
+          cells_are_blocks(model["cells_are_blocks"].cast<bool>()) {
+        require_columns(vertices, 3, "vertices");
+        require_columns(face_cells, 2, "face_cells");
+    }
+
+    validation::ComplexView complex() const {
+        return {.vertices = view(vertices),
+                .face_offsets = view(face_offsets),
+                .face_vertices = view(face_vertices),
+                .face_cells = view(face_cells),
+                .face_surface = view(face_surface),
+                .cell_block = view(cell_block),
+                .block_volume = view(block_volume),
+                .block_base = view(block_base),
+                .surfaces = surfaces,
+                .cells_are_blocks = cells_are_blocks};
+    }
+};
+
+py::list check_topology(const py::dict& model, int threads, Progress* control) {
+    const ComplexArrays arrays(model);
+    std::vector<validation::TestResult> results;
+    {
+        const py::gil_scoped_release release;
+        results = validation::check_topology(arrays.complex(), threads, control);
+    }
+    return to_list(results);
+}
+
+}  // namespace
+
+void bind_validation(py::module_& module) {
+    module.def("check_topology", &check_topology, py::arg("model"), py::arg("threads") = 0,
+               py::arg("control") = nullptr,
+               R"(Every test of cells that needs nothing but the cells, of all of them.
+
+model: dict of vertices (V, 3) float64, face_offsets (F + 1,) int64, face_vertices int32, face_cells
+(F, 2) int32, face_surface (F,) int32, cell_block (C,) int32, block_volume (B,) float64, block_base
+(B,) float64 (height of the base that a block stands on, NaN: none), surfaces int, cells_are_blocks
+bool. Returns a list of tests, each a dict of name, unit, examined, failed, undecided, offenders
+(list of dicts: text, cell, face, vertex, block, place), seconds. Raises Cancelled.)");
+}
+
+}  // namespace realmodel::bindings

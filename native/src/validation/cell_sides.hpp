@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "realmodel/base/progress.hpp"
+#include "realmodel/validation/complex_view.hpp"
+
+namespace realmodel::validation {
+
+/// A face seen from one of its cells: `face * 2 + side`. From the second cell its loop runs the
+/// other way.
+using Side = std::uint32_t;
+inline std::size_t face_of(Side side) {
+    return side >> 1;
+}
+inline bool is_turned(Side side) {
+    return (side & 1) != 0;
+}
+
+/// The sides of every cell, ascending.
+class CellSides {
+public:
+    CellSides(const ComplexView& model, int threads, const Progress* progress);
+
+    std::span<const Side> operator[](std::size_t cell) const {
+        return {sides_.data() + begin_[cell],
+                static_cast<std::size_t>(begin_[cell + 1] - begin_[cell])};
+    }
+
+    /// Behind the last side of the last cell.
+    const Side* end() const { return sides_.data() + sides_.size(); }
+
+private:
+    std::vector<std::int64_t> begin_;
+    std::vector<Side> sides_;
+};
+
+}  // namespace realmodel::validation

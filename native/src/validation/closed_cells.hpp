@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "cell_sides.hpp"
+#include "edge_table.hpp"
+#include "realmodel/base/progress.hpp"
+#include "realmodel/validation/complex_view.hpp"
+
+namespace realmodel::validation {
+
+/// An edge of a cell that is not closed there, or none. One thread, one table for all its cells.
+std::optional<EdgeUse> open_edge(const ComplexView& model, std::span<const Side> sides,
+                                 EdgeTable& table);
+
+/// The same of a cell of many faces, on several threads.
+std::optional<EdgeUse> open_edge_of_large_cell(const ComplexView& model,
+                                               std::span<const Side> sides, int threads,
+                                               const Progress* progress);
+
+}  // namespace realmodel::validation

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace realmodel::validation {
+
+/// An edge of a cell and how often its faces run along it: from `low` to `high`, and back.
+struct EdgeUse {
+    std::int32_t low = -1, high = -1;
+    std::int64_t ahead = 0, back = 0;
+};
+
+/// Pairs the edges of one cell: open addressing, emptied at little cost for the next cell. Nothing
+/// is asked while edges are entered (whether one is new cannot be foretold); closed() asks all.
+class EdgeTable {
+public:
+    /// Ready for up to `uses` calls of use(). several: an edge may be used more than once each way.
+    void reset(std::size_t uses, bool several) {
+        several_ = several;
+        int bits = 3;
+        while ((std::size_t{1} << bits) <= uses)
+            ++bits;
+        shift_ = 64 - bits;
+        mask_ = (std::size_t{1} << bits) - 1;
+        if (keys_.size() <= mask_) {
+            keys_.resize(mask_ + 1);
+            uses_.resize(mask_ + 1);
+        }
+        std::fill_n(keys_.begin(), mask_ + 1, kFree);
+        std::fill_n(uses_.begin(), mask_ + 1, 0);
+    }
+
+    /// A face runs along the edge from one vertex to another.
+    void use(std::int32_t from, std::int32_t to) {
+        const std::uint64_t way = from < to ? kAhead : kBack;
+        const auto key =
+            (static_cast<std::uint64_t>(static_cast<std::uint32_t>(std::min(from, to))) << 32) |
+            static_cast<std::uint32_t>(std::max(from, to));
+        auto i = static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> shift_);
+        while (keys_[i] != key && keys_[i] != kFree)
+            i = (i + 1) & mask_;
+        keys_[i] = key;
+        uses_[i] += way;
+    }
+
+    /// Whether every edge was used once each way (or as often either way, where several are
+    /// allowed).
+    bool closed() const {
+        bool all = true;
+        if (several_) {
+            for (std::size_t i = 0; i <= mask_; ++i)
+                all &= (uses_[i] >> 32) == (uses_[i] & kAheadMask);
+        } else {
+            for (std::size_t i = 0; i <= mask_; ++i)
+                all &= (uses_[i] == 0) | (uses_[i] == (kAhead | kBack));
+        }
+        return all;
+    }
+
+    /// Of the edges that were not, the one with the lowest vertices.
+    std::optional<EdgeUse> open_edge() const {
+        std::optional<EdgeUse> lowest;
+        std::uint64_t lowest_key = kFree;
+        for (std::size_t i = 0; i <= mask_; ++i) {
+            const EdgeUse edge{static_cast<std::int32_t>(keys_[i] >> 32),
+                               static_cast<std::int32_t>(keys_[i] & 0xffffffffu),
+                               static_cast<std::int64_t>(uses_[i] & kAheadMask),
+                               static_cast<std::int64_t>(uses_[i] >> 32)};
+            const bool fine = edge.ahead == edge.back && (several_ || edge.ahead <= 1);
+            if (fine || keys_[i] >= lowest_key) continue;
+            lowest_key = keys_[i];
+            lowest = edge;
+        }
+        return lowest;
+    }
+
+private:
+    static constexpr std::uint64_t kFree = ~std::uint64_t{0};
+    static constexpr std::uint64_t kAhead = 1, kBack = std::uint64_t{1} << 32;
+    static constexpr std::uint64_t kAheadMask = kBack - 1;
+
+    std::vector<std::uint64_t> keys_;  ///< the edge's low vertex, then its high one
+    std::vector<std::uint64_t> uses_;  ///< how often ahead, and in the upper half how often back
+    std::size_t mask_ = 0;
+    int shift_ = 0;
+    bool several_ = false;
+};
+
+}  // namespace realmodel::validation

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "face_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "realmodel/exact/ball.hpp"
+#include "realmodel/strata/stack.hpp"
+
+namespace realmodel::validation {
+
+using exact::Ball;
+
+namespace {
+
+constexpr double kTiny = 1e-290;
+
+double cross(const std::array<double, 2>& u, const std::array<double, 2>& v) {
+    return u[0] * v[1] - u[1] * v[0];
+}
+
+std::array<double, 2> minus(const std::array<double, 2>& a, const std::array<double, 2>& b) {
+    return {a[0] - b[0], a[1] - b[1]};
+}
+
+}  // namespace
+
+std::optional<std::string> FaceShape::fault() {
+    const std::int32_t surface = model_.face_surface[face_];
+    if (surface == strata::kWall) {
+        const PlanPosition way = way_of_wall();
+        if (way == PlanPosition{0, 0}) return "is a wall, but has no extent in plan";
+        if (!is_upright(way)) return "is a wall, but does not stand upright";
+        project(std::abs(way[0]) >= std::abs(way[1]) ? 0 : 1, 2);
+        return crosses_itself() ? std::optional<std::string>("crosses itself") : std::nullopt;
+    }
+    if (surface == strata::kBase) {
+        if (auto text = fault_of_base()) return text;
+    }
+    if (!is_flat()) return "is bent: its corners lie in no plane";
+    project(0, 1);
+    if (is_convex()) return std::nullopt;
+    return crosses_itself() ? "crosses itself" : "is not convex";
+}
+
+void FaceShape::load(std::size_t face) {
+    face_ = face;
+    const auto loop = model_.corners(face);
+    corners_.resize(loop.size());
+    Position largest{0, 0, 0};
+    // vertices lie all over the memory: those of some faces ahead are sent for
+    constexpr std::size_t kAhead = 64;
+    const auto begin = static_cast<std::size_t>(model_.face_offsets[face]);
+    const std::size_t corners = model_.face_vertices.size();
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const std::size_t ahead = std::min(begin + i + kAhead, corners - 1);
+        __builtin_prefetch(
+            &model_.vertices[static_cast<std::size_t>(model_.face_vertices[ahead]) * 3]);
+        corners_[i] = model_.position(loop[i]);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            largest[axis] = std::max(largest[axis], std::abs(corners_[i][axis]));
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        allowance_[axis] = kRoundingSteps * last_place(largest[axis]) + kTiny;
+    area_ = {0, 0, 0};
+    const Position& o = corners_.front();
+    Position u{};
+    for (std::size_t i = 1; i < corners_.size(); ++i) {
+        const Position v{corners_[i][0] - o[0], corners_[i][1] - o[1], corners_[i][2] - o[2]};
+        if (i > 1) {
+            area_[0] += u[1] * v[2] - u[2] * v[1];
+            area_[1] += u[2] * v[0] - u[0] * v[2];
+            area_[2] += u[0] * v[1] - u[1] * v[0];
+        }
+        u = v;
+    }
+}
+
+std::optional<std::string> FaceShape::fault_of_base() const {
+    const std::int32_t block = model_.block(model_.cell(face_, 0));
+    const double base = model_.block_base[static_cast<std::size_t>(block)];
+    if (std::isnan(base)) return "names the flat base, but its block stands on none";
+    if (model_.cell(face_, 1) >= 0) return "names the flat base, but lies between two cells";
+    const bool level = std::all_of(corners_.begin(), corners_.end(),
+                                   [&](const Position& p) { return p[2] == base; });
+    return level ? std::nullopt : std::optional<std::string>("is not level with the flat base");
+}
+
+// The area vector stands on the plane that fits the corners; rounding moves a corner off it by no
+// more than the sum of what it moves each coordinate.
+bool FaceShape::is_flat() const {
+    if (corners_.size() == 3) return true;
+    const double allowed = std::abs(area_[0]) * allowance_[0] + std::abs(area_[1]) * allowance_[1] +
+                           std::abs(area_[2]) * allowance_[2];
+    const Position& o = corners_.front();
+    for (const Position& p : corners_) {
+        const double off =
+            area_[0] * (p[0] - o[0]) + area_[1] * (p[1] - o[1]) + area_[2] * (p[2] - o[2]);
+        if (std::abs(off) > allowed) return is_flat_precisely() || is_needle();
+    }
+    return true;
+}
+
+// The area of a needle is a small difference of large products.
+bool FaceShape::is_flat_precisely() const {
+    const Position& o = corners_.front();
+    const auto from_first = [&](const Position& p) {
+        return std::array<Ball, 3>{Ball::difference(p[0], o[0]), Ball::difference(p[1], o[1]),
+                                   Ball::difference(p[2], o[2])};
+    };
+    std::array<Ball, 3> area{};
+    for (std::size_t i = 2; i < corners_.size(); ++i) {
+        const auto u = from_first(corners_[i - 1]), v = from_first(corners_[i]);
+        area[0] = area[0] + (u[1] * v[2] - u[2] * v[1]);
+        area[1] = area[1] + (u[2] * v[0] - u[0] * v[2]);
+        area[2] = area[2] + (u[0] * v[1] - u[1] * v[0]);
+    }
+    double allowed = kTiny;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        allowed += area[axis].magnitude() * allowance_[axis];
+    return std::all_of(corners_.begin(), corners_.end(), [&](const Position& p) {
+        const auto d = from_first(p);
+        const Ball off = area[0] * d[0] + area[1] * d[1] + area[2] * d[2];
+        return std::abs(off.high) - off.error <= allowed;
+    });
+}
+
+// Whether all corners lie on one line, up to rounding: any plane through it will do, and the area,
+// which is nothing but rounding, does not say which.
+bool FaceShape::is_needle() const {
+    const Position& o = corners_.front();
+    Position way{0, 0, 0};
+    for (const Position& p : corners_) {
+        const Position d{p[0] - o[0], p[1] - o[1], p[2] - o[2]};
+        if (std::abs(d[0]) + std::abs(d[1]) + std::abs(d[2]) >
+            std::abs(way[0]) + std::abs(way[1]) + std::abs(way[2]))
+            way = d;
+    }
+    return std::all_of(corners_.begin(), corners_.end(), [&](const Position& p) {
+        double low = -HUGE_VAL, high = HUGE_VAL;  // how far along the line, as a share of it
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double d = p[axis] - o[axis], reach = 2 * allowance_[axis];
+            if (way[axis] == 0.0) {
+                if (std::abs(d) > reach) return false;
+                continue;
+            }
+            const double one = (d - reach) / way[axis], two = (d + reach) / way[axis];
+            low = std::max(low, std::min(one, two));
+            high = std::min(high, std::max(one, two));
+        }
+        return low <= high;
+    });
+}
+
+// From the first corner to the one farthest from it.
+FaceShape::PlanPosition FaceShape::way_of_wall() const {
+    const Position& o = corners_.front();
+    PlanPosition way{0, 0};
+    for (const Position& p : corners_) {
+        const PlanPosition d{p[0] - o[0], p[1] - o[1]};
+        if (std::abs(d[0]) + std::abs(d[1]) > std::abs(way[0]) + std::abs(way[1])) way = d;
+    }
+    return way;
+}
+
+bool FaceShape::is_upright(const PlanPosition& way) const {
+    const Position& o = corners_.front();
+    const double allowed =
+        2 * (allowance_[0] * std::abs(way[1]) + allowance_[1] * std::abs(way[0]));
+    return std::all_of(corners_.begin(), corners_.end(), [&](const Position& p) {
+        return std::abs(cross(way, {p[0] - o[0], p[1] - o[1]})) <= allowed;
+    });
+}
+
+void FaceShape::project(std::size_t first_axis, std::size_t second_axis) {
+    flat_.resize(corners_.size());
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+        flat_[i] = {corners_[i][first_axis], corners_[i][second_axis]};
+    flat_allowance_ = {allowance_[first_axis], allowance_[second_axis]};
+}
+
+// Moving both ends of both edges by the allowance changes their cross product by this much.
+double FaceShape::turn_allowance(const PlanPosition& u, const PlanPosition& v) const {
+    return 2 * (flat_allowance_[0] * (std::abs(u[1]) + std::abs(v[1]) + flat_allowance_[1]) +
+                flat_allowance_[1] * (std::abs(u[0]) + std::abs(v[0]) + flat_allowance_[0]));
+}
+
+// Rounding keeps the order of coordinates on each axis. So a convex polygon still turns one way (up
+// to rounding), and rises and falls once along either axis.
+bool FaceShape::is_convex() const {
+    return turns_one_way() && rises_and_falls_once(0) && rises_and_falls_once(1);
+}
+
+bool FaceShape::turns_one_way() const {
+    const std::size_t n = flat_.size();
+    bool left = true, right = true;
+    PlanPosition before = minus(flat_[0], flat_[n - 1]);
+    for (std::size_t i = 0; i < n; ++i) {
+        const PlanPosition after = minus(flat_[i + 1 < n ? i + 1 : 0], flat_[i]);
+        const double turn = cross(before, after);
+        if (turn < 0 && left) left = -turn <= turn_allowance(before, after);
+        if (turn > 0 && right) right = turn <= turn_allowance(before, after);
+        before = after;
+    }
+    return left || right;
+}
+
+bool FaceShape::rises_and_falls_once(std::size_t axis) const {
+    const std::size_t n = flat_.size();
+    std::size_t lowest = 0, highest = 0;
+    for (std::size_t i = 1; i < n; ++i) {
+        if (flat_[i][axis] < flat_[lowest][axis]) lowest = i;
+        if (flat_[i][axis] > flat_[highest][axis]) highest = i;
+    }
+    const double allowed = 2 * flat_allowance_[axis];
+    double reached = flat_[lowest][axis];
+    for (std::size_t i = lowest; i != highest; i = i + 1 < n ? i + 1 : 0) {
+        if (reached - flat_[i][axis] > allowed) return false;
+        reached = std::max(reached, flat_[i][axis]);
+    }
+    reached = flat_[highest][axis];
+    for (std::size_t i = highest; i != lowest; i = i + 1 < n ? i + 1 : 0) {
+        if (flat_[i][axis] - reached > allowed) return false;
+        reached = std::min(reached, flat_[i][axis]);
+    }
+    return true;
+}
+
+bool FaceShape::crosses_itself() const {
+    if (rises_and_falls_once(0) && !chains_cross()) return false;
+    const std::size_t n = flat_.size();
+    const auto at = [&](std::size_t i) -> const PlanPosition& { return flat_[i < n ? i : i - n]; };
+    // whether the ends of the other edge lie on different sides of an edge, beyond rounding
+    const auto parts = [&](std::size_t edge, std::size_t other) {
+        const PlanPosition way = minus(at(edge + 1), at(edge));
+        const PlanPosition p = minus(at(other), at(edge)), q = minus(at(other + 1), at(edge));
+        const double one = cross(way, p), two = cross(way, q);
+        return (one < 0) != (two < 0) && std::abs(one) > turn_allowance(way, p) &&
+               std::abs(two) > turn_allowance(way, q);
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = i + 2; j < n; ++j) {
+            if (i == 0 && j + 1 == n) continue;
+            if (parts(i, j) && parts(j, i)) return true;
+        }
+    }
+    return false;
+}
+
+// A loop that goes there and back along the first axis consists of two chains, and can cross itself
+// only where vertices of the one lie on both sides of the other.
+bool FaceShape::chains_cross() const {
+    const std::size_t n = flat_.size();
+    std::size_t lowest = 0, highest = 0;
+    for (std::size_t i = 1; i < n; ++i) {
+        if (flat_[i] < flat_[lowest]) lowest = i;
+        if (flat_[i] > flat_[highest]) highest = i;
+    }
+    const auto next = [n](std::size_t i) { return i + 1 < n ? i + 1 : 0; };
+    const auto before = [n](std::size_t i) { return i > 0 ? i - 1 : n - 1; };
+    bool left = false, right = false;
+    // the side of a vertex as seen along an edge that runs to growing values of the first axis
+    const auto look = [&](std::size_t vertex, std::size_t from, std::size_t to) {
+        const PlanPosition way = minus(flat_[to], flat_[from]);
+        const PlanPosition d = minus(flat_[vertex], flat_[from]);
+        const double side = cross(way, d);
+        if (std::abs(side) <= turn_allowance(way, d)) return;
+        (side > 0 ? left : right) = true;
+    };
+    std::size_t there = lowest, back = lowest;
+    while (there != highest || back != highest) {
+        const std::size_t a = next(there), b = before(back);
+        if (there != highest && (back == highest || flat_[a][0] < flat_[b][0])) {
+            if (back != highest && a != highest) look(a, back, b);
+            there = a;
+        } else {
+            // seen from there, what is on the left of back is on its right
+            if (there != highest && b != highest) {
+                std::swap(left, right);
+                look(b, there, a);
+                std::swap(left, right);
+            }
+            back = b;
+        }
+    }
+    return left && right;
+}
+
+}  // namespace realmodel::validation

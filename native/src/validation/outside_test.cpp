@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "outside_test.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "chunked.hpp"
+#include "strata/parallel_sort.hpp"
+
+namespace realmodel::validation {
+
+namespace {
+
+struct OuterFace {
+    std::uint64_t corners;  ///< the same for faces of the same corners, in whatever order
+    std::int32_t face;
+    friend bool operator<(const OuterFace& a, const OuterFace& b) {
+        return a.corners != b.corners ? a.corners < b.corners : a.face < b.face;
+    }
+};
+
+std::uint64_t corners_in_any_order(std::span<const std::int32_t> loop) {
+    std::uint64_t sum = loop.size();
+    for (const std::int32_t v : loop) {
+        std::uint64_t h = (static_cast<std::uint64_t>(v) + 1) * 0x9E3779B97F4A7C15u;
+        h ^= h >> 29;
+        sum += h * 0xBF58476D1CE4E5B9u;
+    }
+    return sum;
+}
+
+bool same_corners(std::span<const std::int32_t> a, std::span<const std::int32_t> b) {
+    std::vector<std::int32_t> one(a.begin(), a.end()), other(b.begin(), b.end());
+    std::sort(one.begin(), one.end());
+    std::sort(other.begin(), other.end());
+    return one == other;
+}
+
+}  // namespace
+
+Findings check_outside(const ComplexView& model, int threads, const Progress* progress) {
+    std::vector<OuterFace> outer;
+    for (std::size_t f = 0; f < model.face_count(); ++f) {
+        strata::poll(progress, f);
+        if (model.cell(f, 1) < 0)
+            outer.push_back({corners_in_any_order(model.corners(f)), static_cast<std::int32_t>(f)});
+    }
+    strata::parallel_sort(outer, std::less<>(), threads, progress);
+    Findings found;
+    found.examined = static_cast<std::int64_t>(outer.size());
+    for (std::size_t i = 1; i < outer.size(); ++i) {
+        if (outer[i].corners != outer[i - 1].corners) continue;
+        const auto one = static_cast<std::size_t>(outer[i - 1].face);
+        const auto other = static_cast<std::size_t>(outer[i].face);
+        if (!same_corners(model.corners(one), model.corners(other))) continue;
+        found.fail([&] {
+            return Offender{.text = "face " + std::to_string(other) + " has one cell, but face " +
+                                    std::to_string(one) + " of cell " +
+                                    std::to_string(model.cell(one, 0)) + " lies in its place",
+                            .cell = model.cell(other, 0),
+                            .face = static_cast<std::int64_t>(other),
+                            .place = model.position(model.corners(other)[0])};
+        });
+    }
+    return found;
+}
+
+}  // namespace realmodel::validation

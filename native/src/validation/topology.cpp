@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/validation/topology.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "arrays_test.hpp"
+#include "cell_extent.hpp"
+#include "cell_sides.hpp"
+#include "chunked.hpp"
+#include "closed_cells.hpp"
+#include "face_measures.hpp"
+#include "face_shape.hpp"
+#include "outside_test.hpp"
+#include "vertex_test.hpp"
+
+namespace realmodel::validation {
+
+namespace {
+
+/// Cells with more faces than this are looked at one by one, on all threads.
+constexpr std::size_t kFacesOfLargeCell = 4096;
+
+std::string figure(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", value);
+    return text;
+}
+
+/// Sum with a running correction (Neumaier 1974).
+struct Sum {
+    double total = 0, correction = 0;
+    void add(double value) {
+        const double next = total + value;
+        correction +=
+            std::abs(total) >= std::abs(value) ? (total - next) + value : (value - next) + total;
+        total = next;
+    }
+    double value() const { return total + correction; }
+};
+
+/// What is found cell by cell.
+struct CellFindings {
+    Findings closed, volumes;
+    void append(const CellFindings& later) {
+        closed.append(later.closed);
+        volumes.append(later.volumes);
+    }
+};
+
+/// Cell by cell: is it closed, and has it a volume.
+class CellTests {
+public:
+    CellTests(const ComplexView& model, const CellSides& sides, const FaceMeasures& faces,
+              int threads, const Progress* progress)
+        : model_(model),
+          threads_(threads),
+          progress_(progress),
+          sides_(sides),
+          faces_(faces),
+          volume_(model.cell_count()) {}
+
+    CellFindings run() {
+        const std::size_t chunks = (model_.cell_count() + kCellsOfChunk - 1) / kCellsOfChunk;
+        std::vector<CellFindings> found(chunks);
+        std::vector<std::vector<std::size_t>> large(chunks);
+        strata::parallel_chunks(chunks, threads_, progress_, [&](std::size_t chunk) {
+            EdgeTable table;
+            const std::size_t end = std::min(model_.cell_count(), (chunk + 1) * kCellsOfChunk);
+            for (std::size_t c = chunk * kCellsOfChunk; c < end; ++c) {
+                const auto sides = sides_[c];
+                volume(c, found[chunk].volumes);
+                if (sides.size() > kFacesOfLargeCell) {
+                    large[chunk].push_back(c);
+                } else {
+                    send_for(sides);
+                    closed(c, open_edge(model_, sides, table), found[chunk].closed);
+                }
+            }
+        });
+        CellFindings all;
+        for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+            all.append(found[chunk]);
+            for (const std::size_t c : large[chunk])
+                closed(c, open_edge_of_large_cell(model_, sides_[c], threads_, progress_),
+                       all.closed);
+        }
+        all.closed.examined = all.volumes.examined = static_cast<std::int64_t>(model_.cell_count());
+        return all;
+    }
+
+    const std::vector<double>& volumes() const { return volume_; }
+
+private:
+    static constexpr std::size_t kCellsOfChunk = 1024;
+
+    // The faces of a cell lie all over the memory: those of the next cells are sent for while this
+    // one is looked at, first where their corners are, then the corners.
+    void send_for(std::span<const Side> sides) const {
+        constexpr std::size_t kNear = 24, kFar = 64;
+        const Side* const end = sides_.end();
+        for (const Side& side : sides) {
+            const Side* const ahead = &side;
+            if (end - ahead > static_cast<std::ptrdiff_t>(kFar)) {
+                __builtin_prefetch(&model_.face_offsets[face_of(ahead[kFar])]);
+                __builtin_prefetch(&faces_[face_of(ahead[kFar])]);
+            }
+            if (end - ahead > static_cast<std::ptrdiff_t>(kNear)) {
+                const auto corners = model_.corners(face_of(ahead[kNear]));
+                __builtin_prefetch(corners.data());
+                __builtin_prefetch(corners.data() + corners.size() - 1);
+            }
+        }
+    }
+
+    void closed(std::size_t c, const std::optional<EdgeUse>& open, Findings& found) const {
+        if (!open) return;
+        found.fail([&] {
+            const auto times = [](std::int64_t n) {
+                return n == 1 ? std::string("once") : std::to_string(n) + " times";
+            };
+            return Offender{.text = "cell " + std::to_string(c) + " is not closed: its faces use " +
+                                    "edge " + std::to_string(open->low) + "-" +
+                                    std::to_string(open->high) + " " + times(open->ahead) +
+                                    " one way and " + times(open->back) + " the other",
+                            .cell = static_cast<std::int64_t>(c),
+                            .vertex = open->low,
+                            .block = model_.cell_block[c],
+                            .place = model_.position(open->low)};
+        });
+    }
+
+    void volume(std::size_t c, Findings& found) {
+        double sum = 0, rounding = 0;
+        for (const Side side : sides_[c]) {
+            const FaceMeasure& face = faces_[face_of(side)];
+            sum += face.volume[is_turned(side) ? 1 : 0];
+            rounding += face.rounding;
+        }
+        volume_[c] = sum;
+        if (sum > kRoundingSteps * rounding) return;
+        const CellExtent extent(model_, sides_[c]);
+        ++found.undecided;
+        if (!extent.is_flat() && sum >= -extent.volume_rounding()) return;
+        found.fail([&] {
+            const std::string text =
+                extent.is_flat() ? " is flat" : " is inside out: its volume is " + figure(sum);
+            return Offender{.text = "cell " + std::to_string(c) + text,
+                            .cell = static_cast<std::int64_t>(c),
+                            .block = model_.cell_block[c],
+                            .place = extent.middle()};
+        });
+    }
+
+    const ComplexView& model_;
+    int threads_;
+    const Progress* progress_;
+    const CellSides& sides_;
+    const FaceMeasures& faces_;
+    std::vector<double> volume_;
+};
+
+/// How far the volumes of the cells of a block may be off, each by the rounding of all its extent.
+double volume_rounding(const ComplexView& model, const CellSides& sides, std::size_t block) {
+    double rounding = 0;
+    for (std::size_t c = 0; c < model.cell_count(); ++c) {
+        if (model.cell_block[c] == static_cast<std::int32_t>(block))
+            rounding += CellExtent(model, sides[c]).volume_rounding();
+    }
+    return rounding;
+}
+
+Findings check_block_volumes(const ComplexView& model, const CellSides& sides,
+                             const std::vector<double>& cell_volume) {
+    std::vector<Sum> sums(model.block_volume.size());
+    for (std::size_t c = 0; c < cell_volume.size(); ++c)
+        sums[static_cast<std::size_t>(model.cell_block[c])].add(cell_volume[c]);
+    Findings found;
+    found.examined = static_cast<std::int64_t>(sums.size());
+    for (std::size_t b = 0; b < sums.size(); ++b) {
+        const double told = model.block_volume[b], summed = sums[b].value();
+        const double off = std::abs(told - summed);
+        if (off <= 1e-9 * std::abs(summed)) continue;
+        if (off <= volume_rounding(model, sides, b)) {  // a block as thin as rounding
+            ++found.undecided;
+            continue;
+        }
+        found.fail([&] {
+            return Offender{.text = "block " + std::to_string(b) + " is told to have volume " +
+                                    figure(told) + ", its cells have " + figure(summed),
+                            .block = static_cast<std::int64_t>(b)};
+        });
+    }
+    return found;
+}
+
+/// Seconds since the last question.
+class Clock {
+public:
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        const std::chrono::duration<double> since = now - std::exchange(last_, now);
+        return since.count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+std::vector<TestResult> check_topology(const ComplexView& model, int threads, Progress* progress) {
+    std::vector<TestResult> results;
+    Clock clock;
+    const auto add = [&](const char* name, const char* unit, Findings&& findings) {
+        results.push_back({name, unit, std::move(findings), clock.lap()});
+    };
+    const auto report = [&](double fraction, const char* text) {
+        if (progress == nullptr) return;
+        progress->check();
+        progress->report(fraction, text);
+    };
+    report(0.0, "checking the arrays");
+    add("arrays", "faces", check_arrays(model, threads, progress));
+    if (!results.back().findings.passed()) return results;
+    report(0.1, "checking every face");
+    add("loops", "faces", check_loops(model, threads, progress));
+    add("vertices", "vertices", check_vertices(model, threads, progress));
+    add("outside", "faces", check_outside(model, threads, progress));
+    const CellSides sides(model, threads, progress);
+    FaceMeasures faces(model, sides, threads, progress);
+    add("faces", "faces", std::move(faces.findings()));
+    report(0.5, "checking every cell");
+    CellTests tests(model, sides, faces, threads, progress);
+    CellFindings cells = tests.run();
+    add("closed", "cells", std::move(cells.closed));  // its time is that of the volumes, too
+    add("volumes", "cells", std::move(cells.volumes));
+    add("block volumes", "blocks", check_block_volumes(model, sides, tests.volumes()));
+    report(1.0, "checking every cell");
+    return results;
+}
+
+}  // namespace realmodel::validation

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "realmodel/base/progress.hpp"
+#include "realmodel/validation/complex_view.hpp"
+#include "realmodel/validation/findings.hpp"
+
+namespace realmodel::validation {
+
+/// Vertices in the place of an earlier one, and vertices of no face.
+Findings check_vertices(const ComplexView& model, int threads, const Progress* progress);
+
+/// Faces that name a vertex twice.
+Findings check_loops(const ComplexView& model, int threads, const Progress* progress);
+
+}  // namespace realmodel::validation

@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Model.validate finds what is wrong with a model and passes what is right; so does the outside check."""
+
+import dataclasses
+import importlib.util
+import json
+import random
+
+import numpy as np
+import pytest
+from conftest import ROOT, grid_surface
+from realmodel.core import Project, Rock, Surface, build
+from realmodel.core.exporters.report import model_report
+from realmodel.core.validation import ValidationReport
+from stacks import places
+from stacks.generate import FAMILIES, random_stack
+from stacks.rock_masses import random_rock_masses
+from validated import as_model, outside_failures
+
+
+def crossing_project():
+    """Three surfaces that cross each other and end at walls, on a flat base."""
+
+    def surface(name, height, size=1.0, n=5):
+        return Surface(name, *grid_surface(n, height, size))
+
+    return Project(
+        "crossing",
+        [
+            Rock(
+                "rock",
+                [
+                    surface("level", lambda x, y: 0 * x),
+                    surface("tilted", lambda x, y: x - 0.4, n=4),
+                    surface("small", lambda x, y: 2 + 0 * x, size=0.7, n=3),
+                ],
+                base_elevation=-1.0,
+            )
+        ],
+    )
+
+
+@pytest.fixture(scope="module", params=["columns", "blocks"])
+def model(request):
+    return build(crossing_project(), cells=request.param)
+
+
+def damaged(model, **arrays):
+    """A copy of a model with some arrays replaced."""
+    return dataclasses.replace(model, **arrays)
+
+
+def failed(report):
+    return [test.name for test in report.tests if not test.passed]
+
+
+def test_a_built_model_passes(model):
+    report = model.validate()
+    assert isinstance(report, ValidationReport)
+    assert report.passed and failed(report) == [] and report.failure() is None
+    assert {test.number for test in report.tests} >= {0, 1, 2, 3, 4}
+    counts = {test.name: test.examined for test in report.tests}
+    assert counts["closed"] == counts["volumes"] == len(model.cell_block)
+    assert counts["faces"] == counts["loops"] == len(model.face_surface)
+    assert counts["vertices"] == len(model.vertices)
+    assert counts["outside"] == (model.face_cells[:, 1] < 0).sum()
+    assert counts["block volumes"] == len(model.blocks)
+
+
+def open_cell(m):
+    keep = np.arange(len(m.face_surface)) != 3
+    size = np.diff(m.face_offsets)
+    return {
+        "face_vertices": m.face_vertices[np.repeat(keep, size)],
+        "face_offsets": np.concatenate([[0], np.cumsum(size[keep])]),
+        "face_cells": m.face_cells[keep],
+        "face_surface": m.face_surface[keep],
+    }
+
+
+def turned_face(m):
+    corners = m.face_vertices.copy()
+    a, b = m.face_offsets[4:6]
+    corners[a:b] = corners[a:b][::-1]
+    return {"face_vertices": corners}
+
+
+def missing_side(m):
+    cells = m.face_cells.copy()
+    cells[np.flatnonzero(cells[:, 1] >= 0)[0], 1] = -1
+    return {"face_cells": cells}
+
+
+def wrong_cell(m):
+    cells = m.face_cells.copy()
+    cells[0, 0] = len(m.cell_block) - 1 if cells[0, 0] == 0 else 0
+    return {"face_cells": cells}
+
+
+def unused_vertex(m):
+    return {"vertices": np.concatenate([m.vertices, [[9.0, 9.0, 9.0]]])}
+
+
+def inside_out(m):
+    corners = m.face_vertices.copy()
+    for a, b in zip(m.face_offsets[:-1], m.face_offsets[1:], strict=True):
+        corners[a:b] = corners[a:b][::-1]
+    return {"face_vertices": corners}
+
+
+def equal_vertices(m):
+    vertices = m.vertices.copy()
+    vertices[1] = vertices[0]
+    return {"vertices": vertices}
+
+
+def repeated_vertex(m):
+    corners = m.face_vertices.copy()
+    corners[m.face_offsets[2]] = corners[m.face_offsets[2] + 1]
+    return {"face_vertices": corners}
+
+
+def vertex_out_of_range(m):
+    corners = m.face_vertices.copy()
+    corners[5] = len(m.vertices)
+    return {"face_vertices": corners}
+
+
+def wrong_volume(m):
+    b = dataclasses.replace(m.blocks[1], volume=m.blocks[1].volume * (1 + 1e-6))
+    return {"blocks": [m.blocks[0], b, *m.blocks[2:]]}
+
+
+def not_finite(m):
+    vertices = m.vertices.copy()
+    vertices[0, 2] = np.nan
+    return {"vertices": vertices}
+
+
+DAMAGES = {
+    open_cell: "closed",
+    turned_face: "closed",
+    missing_side: "closed",
+    wrong_cell: "closed",
+    unused_vertex: "vertices",
+    equal_vertices: "vertices",
+    inside_out: "volumes",
+    repeated_vertex: "loops",
+    vertex_out_of_range: "arrays",
+    wrong_volume: "block volumes",
+    not_finite: "arrays",
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES, ids=lambda f: f.__name__)
+def test_damage_is_found_and_named(model, damage):
+    report = damaged(model, **damage(model)).validate()
+    assert not report.passed
+    test = next(test for test in report.tests if test.name == DAMAGES[damage])
+    assert test.failed and test.offenders
+    assert test.offenders[0].text in str(report)
+    assert report.failure() and "\n" not in report.failure()
+
+
+@pytest.mark.skipif(places.checker() is None, reason=places.CHECK_ABSENT)
+@pytest.mark.parametrize("damage", [d for d in DAMAGES if d is not wrong_volume], ids=lambda f: f.__name__)
+def test_the_outside_check_refuses_the_same(model, damage):
+    assert outside_failures(damaged(model, **damage(model)))
+
+
+@pytest.mark.parametrize(
+    "name, array",
+    [
+        ("vertices", lambda a: a.astype(np.float32)),
+        ("face_offsets", lambda a: a.astype(np.int32)),
+        ("face_cells", lambda a: a.ravel()),
+        ("cell_block", lambda a: a[:, None]),
+    ],
+)
+def test_arrays_of_other_types_are_named(model, name, array):
+    report = damaged(model, **{name: array(getattr(model, name))}).validate()
+    assert failed(report) == ["arrays"]
+    assert name in report.tests[0].offenders[0].text
+
+
+def test_the_report_reads_well(model):
+    text = str(damaged(model, **unused_vertex(model)).validate())
+    assert text.startswith("Validation of crossing: FAILED\n")
+    assert f"vertex {len(model.vertices)} belongs to no face near (9, 9, 9)" in text
+    assert max(len(line) for line in text.splitlines()) <= 100
+    passed = str(model.validate())
+    assert passed.startswith("Validation of crossing: passed\n") and "FAILED" not in passed
+
+
+def test_it_is_part_of_the_json_report(model):
+    report = model_report(damaged(model, **unused_vertex(model)))
+    assert json.loads(json.dumps(report, allow_nan=False)) == report
+    assert report["validation"]["passed"] is False
+    tests = {test["name"]: test for test in report["validation"]["tests"]}
+    assert tests["vertices"]["offenders"][0]["vertex"] == len(model.vertices)
+    assert tests["vertices"]["offenders"][0]["place"] == [9.0, 9.0, 9.0]
+    assert tests["closed"]["passed"] and tests["closed"]["offenders"] == []
+    assert model_report(model)["validation"]["passed"] is True
+
+
+def test_the_same_findings_for_any_number_of_threads(model):
+    spoilt = damaged(model, **turned_face(model))
+    for threads in (2, 5):
+        for one, other in zip(spoilt.validate(threads=1).tests, spoilt.validate(threads).tests, strict=True):
+            assert dataclasses.replace(one, seconds=0) == dataclasses.replace(other, seconds=0)
+
+
+def test_random_stacks_pass():
+    """Every family of degenerate stacks; the outside check has been asked of them elsewhere."""
+    rng = random.Random(6)
+    for family in [*FAMILIES, "rock masses"] * 6:
+        case = random_rock_masses(rng) if family == "rock masses" else random_stack(rng, family)
+        for cells in ("columns", "blocks"):
+            report = as_model(case, cells).validate(threads=1)
+            assert report.passed, (family, cells, report.failure())
+
+
+@pytest.fixture
+def program(monkeypatch):
+    """build_model.py as a module, and a way to spoil what it builds."""
+    spec = importlib.util.spec_from_file_location("build_model", ROOT / "build_model.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    monkeypatch.setattr(module.signal, "signal", lambda *_: None)
+    return module
+
+
+def spoil_builds(monkeypatch):
+    import realmodel.core as core
+
+    whole = core.build
+
+    def spoilt(*arguments, **options):
+        model = whole(*arguments, **options)
+        return damaged(model, **unused_vertex(model))
+
+    monkeypatch.setattr(core, "build", spoilt)
+
+
+def test_check_model_prints_the_proof(program, layers, tmp_path, capsys):
+    assert program.main([str(layers([0, 1])), "--check-model", "--export", str(tmp_path / "m.npz")]) == 0
+    out = capsys.readouterr().out
+    assert "Validation of layers: passed" in out and "% of what intersecting took" in out
+    assert (tmp_path / "m.npz").exists()
+
+
+def test_check_model_keeps_a_wrong_model_from_being_written(program, monkeypatch, layers, tmp_path, capsys):
+    spoil_builds(monkeypatch)
+    status = program.main([str(layers([0, 1])), "--check-model", "--export", str(tmp_path / "m.npz")])
+    captured = capsys.readouterr()
+    assert status == 1
+    assert captured.err.count("\n") == 1 and "belongs to no face" in captured.err
+    assert "Validation of layers: FAILED" in captured.out
+    assert not (tmp_path / "m.npz").exists()
+
+
+def test_the_report_of_a_wrong_model_says_so(program, monkeypatch, layers, tmp_path, capsys):
+    spoil_builds(monkeypatch)
+    assert program.main([str(layers([0, 1])), "--report", str(tmp_path / "r.json")]) == 0
+    assert "the model fails its check" in capsys.readouterr().out
+    report = json.loads((tmp_path / "r.json").read_text())
+    assert report["validation"]["passed"] is False
+    assert any(warning["kind"] == "validation" for warning in report["warnings"])

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models for the tests of Model.validate, and what the outside check says of them."""
+
+import io
+
+import numpy as np
+from realmodel.core import Block, Model, Project, Rock, Surface
+from realmodel.core.exporters.npz import write_npz
+from realmodel.core.rock_input import RockInput
+from stacks import places
+from stacks.model_view import built, exported_arrays, rocks_of
+
+_OF_MODEL = (
+    "vertices",
+    "face_offsets",
+    "face_vertices",
+    "face_cells",
+    "face_surface",
+    "cell_block",
+    "surface_vertices",
+    "surface_triangles",
+    "surface_vertex_offsets",
+    "surface_triangle_offsets",
+)
+
+
+def as_model(case, cells="columns"):
+    """The model of a Stack, or of several beside each other, whose regions are triangulations."""
+    result = built(case, cells=cells, threads=1)
+    arrays = exported_arrays(case, result, cells)
+    inputs = []
+    for number, stack in enumerate(rocks_of(case)):
+        surfaces = [
+            Surface(f"S{k}", vertices=v, triangles=t, rule=rule)
+            for k, ((v, t), rule) in enumerate(zip(stack.surfaces, stack.all_rules(), strict=True))
+        ]
+        rock = Rock(f"rock {number}", surfaces, base_elevation=stack.base_elevation)
+        inputs.append(RockInput(rock, list(stack.surfaces), stack.region))
+    counts = np.bincount(arrays["cell_block"], minlength=len(arrays["block_surface"]))
+    blocks = [
+        Block(f"block {b}", int(rock), int(s), 0, float(result["volumes"][s]), int(counts[b]), 0)
+        for b, (s, rock) in enumerate(zip(arrays["block_surface"], arrays["block_rock"], strict=True))
+    ]
+    return Model(
+        **{name: arrays[name] for name in _OF_MODEL},
+        cell_kind=cells,
+        blocks=blocks,
+        surface_names=[s.name for entry in inputs for s in entry.rock.surfaces],
+        project=Project("stack", [entry.rock for entry in inputs]),
+        rock_inputs=inputs,
+    )
+
+
+def outside_failures(model):
+    """What the outside check's tests of the cells alone say of a model."""
+    checker = places.checker()
+    file = io.BytesIO()
+    write_npz(model, file, lambda _share: None)
+    file.seek(0)
+    m = checker.Complex(file)
+    found = list(checker.check_shapes(m))
+    if not found:
+        for check in (checker.check_vertices, checker.check_closed, checker.check_volumes):
+            found += list(check(m))
+    return found
