@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// build_rock_masses, build_stack, cell_components.
+// build_rock_masses, build_stack, cell_components, cell_sides.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -115,13 +115,26 @@ py::dict build_stack(const std::vector<SurfaceArrays>& surfaces,
     return build_rock_masses({{surfaces, region, base_elevation, rules}}, cells, threads, control);
 }
 
-Array<std::int32_t> cell_components(const Indices& face_cells, const Indices& cell_block,
-                                    const Progress* control) {
+std::span<const std::array<std::int32_t, 2>> cells_of_faces(const Indices& face_cells) {
     require_columns(face_cells, 2, "face_cells");
     static_assert(sizeof(std::array<std::int32_t, 2>) == 2 * sizeof(std::int32_t));
-    const std::span<const std::array<std::int32_t, 2>> faces(
-        reinterpret_cast<const std::array<std::int32_t, 2>*>(face_cells.data()),
-        static_cast<std::size_t>(face_cells.shape(0)));
+    return {reinterpret_cast<const std::array<std::int32_t, 2>*>(face_cells.data()),
+            static_cast<std::size_t>(face_cells.shape(0))};
+}
+
+py::tuple cell_sides(const Indices& face_cells, std::size_t cells, const Progress* control) {
+    const auto faces = cells_of_faces(face_cells);
+    strata::CellSides found;
+    {
+        const py::gil_scoped_release release;
+        found = strata::cell_sides(faces, cells, control);
+    }
+    return py::make_tuple(to_array(std::move(found.offsets)), to_array(std::move(found.sides)));
+}
+
+Array<std::int32_t> cell_components(const Indices& face_cells, const Indices& cell_block,
+                                    const Progress* control) {
+    const auto faces = cells_of_faces(face_cells);
     std::vector<std::int32_t> component;
     {
         const py::gil_scoped_release release;
@@ -159,6 +172,14 @@ surface, items, text); decisions, exact_decisions: int. Raises InputError and Ca
 face_cells: (F, 2) int32, the cells on both sides of each face, -1 outside; cell_block: (C,) int32.
 Returns (C,) int32: for each cell the least cell that it reaches through faces between cells of its
 own block. Raises InputError kind "bad_index" (items: the face); Cancelled.)");
+    module.def("cell_sides", &cell_sides, py::arg("face_cells"), py::arg("cells"),
+               py::arg("control") = nullptr,
+               R"(The sides of each cell, in the order of the faces.
+
+face_cells: (F, 2) int32, the cells on both sides of each face, -1 outside; cells: how many there are.
+Returns (offsets (C + 1,) int64, sides (S,) int64): those of cell c are sides[offsets[c]:offsets[c +
+1]], each 2 face + 1 where the cell is the face's second one, else 2 face. Raises InputError kind
+"bad_index" (items: the face); Cancelled.)");
 }
 
 }  // namespace realmodel::bindings

@@ -12,8 +12,10 @@ from typing import BinaryIO
 
 import numpy as np
 
+from ..work import native_module
+
 _POLYHEDRON = 42
-_CELLS_AT_ONCE = 100_000
+_CELLS_AT_ONCE = 20_000
 
 
 def write_vtu(model, file: BinaryIO, step: Callable[[float], None]) -> None:
@@ -104,13 +106,8 @@ class CellFaces:
     def __init__(self, model):
         self.model = model
         self.face_size = np.diff(model.face_offsets)
-        cell = np.concatenate([model.face_cells[:, 0], model.face_cells[:, 1]])
-        order = np.argsort(cell, kind="stable")
-        order = order[np.searchsorted(cell, 0, sorter=order) :]
-        count = len(model.face_cells)
-        self.face = order % max(count, 1)
-        self.turned = order >= count
-        self.begin = np.searchsorted(cell[order], np.arange(len(model.cell_block) + 1))
+        self.begin, sides = native_module().cell_sides(model.face_cells, len(model.cell_block))
+        self.face, self.turned = sides >> 1, (sides & 1).astype(bool)
 
     def stream_length(self) -> np.ndarray:
         """(C,) how many numbers describe the faces of each cell."""

@@ -11,8 +11,8 @@ namespace realmodel {
 /// is known, the largest number.
 std::uint64_t available_memory();
 
-/// Gives memory that was freed but is kept by the allocator for later back to the system, as after a
-/// large computation (glibc; elsewhere allocators do so on their own, and this does nothing).
+/// Gives memory that was freed but is kept by the allocator for later back to the system, as after
+/// a large computation (glibc; elsewhere allocators do so on their own, and this does nothing).
 void give_back_memory() noexcept;
 
 }  // namespace realmodel

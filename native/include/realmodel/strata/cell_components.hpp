@@ -22,4 +22,15 @@ std::vector<std::int32_t> cell_components(std::span<const std::array<std::int32_
                                           std::span<const std::int32_t> cell_block,
                                           const Progress* progress = nullptr);
 
+/// The sides of each cell: the faces that bound it, and whether it lies on their far side.
+struct CellSides {
+    std::vector<std::int64_t> offsets;  ///< sides of cell c: offsets[c] .. offsets[c + 1] - 1
+    std::vector<std::int64_t> sides;    ///< 2 face + 1 where the cell is the face's second one
+};
+/// Sorts the sides of faces by cell, in the order of the faces.
+/// @throws InputError kind bad_index where a face names a cell that is not there
+/// @throws Cancelled
+CellSides cell_sides(std::span<const std::array<std::int32_t, 2>> face_cells, std::size_t cells,
+                     const Progress* progress = nullptr);
+
 }  // namespace realmodel::strata
