@@ -11,8 +11,6 @@ cells and number of threads; the least of N times is given. Needs NumPy and a bu
 
 import argparse
 import json
-import os
-import platform
 import random
 import resource
 import subprocess
@@ -22,8 +20,9 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "tests" / "core")]
+sys.path[:0] = [str(ROOT / folder) for folder in ("addon", "scripts", "tests/core")]
 
+from benchmarks import page  # noqa: E402
 from stacks import places, project_files, real_data  # noqa: E402
 from stacks.generate import sine_surface  # noqa: E402
 
@@ -117,17 +116,6 @@ def row_of(name, cells, threads, figures):
     )
 
 
-def processor():
-    """The processor's name as the system tells it."""
-    try:
-        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
-            if line.startswith("model name"):
-                return line.split(":", 1)[1].strip()
-    except OSError:
-        pass
-    return platform.machine()
-
-
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -166,18 +154,10 @@ def main():
     return 1 if failed else 0
 
 
-BEGIN, END = "<!-- benchmark_real_data.py begins -->", "<!-- benchmark_real_data.py ends -->"
-
-
 def write_table(path, rows):
-    """Puts the table between its two marks in a Markdown file, with the machine and what each case is."""
-    text = path.read_text(encoding="utf-8") if path.is_file() else f"# Performance\n\n{BEGIN}\n{END}\n"
-    before, _, rest = text.partition(BEGIN)
-    after = rest.partition(END)[2]
-    machine = f"{processor()}, {os.cpu_count()} processors, Python {platform.python_version()}."
+    """Puts the table into its part of a Markdown file, with the machine and what each case is."""
     cases = [f"- **{name}**: {what}" for name, (_, _, what) in CASES.items()]
-    parts = [BEGIN, f"Machine: {machine}", "", *rows, "", *cases, END]
-    path.write_text(before + "\n".join(parts) + after, encoding="utf-8")
+    page.write_part(path, "benchmark_real_data.py", [page.machine(), "", *rows, "", *cases])
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import itertools
 import time
+from collections.abc import Callable
 
 import numpy as np
 
@@ -36,6 +37,7 @@ CASES = [
 ]
 _KNOTS = 25
 _STEEPEST = 1.1
+_QUICK = 1_000_000  # triangles in all
 _BOUND = 1.5  # how far memory by triangles alone lies above the dearest case
 
 
@@ -178,31 +180,77 @@ def steps_before() -> dict:
     return {"read": read, "mesh": mesh, "interpolate": nodes_second}
 
 
-def fit(quick: bool, memory: float, threads: int = 0) -> list[dict]:
-    """Measures all cases that the memory allows, writes the constants, and returns the cases."""
-    costs = {
-        name: float(f"{value:.3g}") for name, value in alone("fitting.steps_before").items() if name != "peak"
-    }
+HEADINGS = ("work", "cells are", "cells", "told", "bytes taken, MB", "told", "s", "told", "estimate took, s")
+
+
+def fit_and_check(
+    quick: bool, memory: float, say: Callable[[str], None], threads: int = 2, *, write: bool
+) -> list[list[str]]:
+    """Measures all cases that the memory allows and fits the constants, which are written if asked.
+
+    Returns rows for HEADINGS: what was measured, and what estimate() tells of it with the constants as they
+    are then.
+    """
+    before = alone("fitting.steps_before")
+    costs = {name: float(f"{before[name]:.3g}") for name in ("read", "mesh", "interpolate")}
     measured = []
     for cells in CELLS:
         cases = []
         for spec in CASES:
-            if quick and spec.triangles * spec.surfaces > 1_000_000:
+            if quick and spec.triangles * spec.surfaces > _QUICK:
                 continue
             try:
                 case = alone("fitting.build_measured", vars(spec), cells, threads, memory=memory)
                 case["sample"] = alone("fitting.sample_measured", vars(spec), cells, threads)
             except Skipped as skipped:
-                print(f"fit: {spec} {cells}: left out, {skipped}", flush=True)
+                say(f"fit: {spec} {cells}: left out, {skipped}")
                 continue
-            case["spec"], case["cells_are"] = vars(spec), cells
-            print(f"fit: {spec} {cells}: {case['seconds']:.2f} s, {case['bytes'] / 1e6:.0f} MB", flush=True)
+            case["spec"], case["kind"] = vars(spec), cells
+            say(f"fit: {spec} {cells}: {case['seconds']:.2f} s, {case['bytes'] / 1e6:.0f} MB")
             cases.append(case)
         costs[cells] = constants(cells, cases)
         measured += cases
-    head = TARGET.read_text(encoding="utf-8").partition("COSTS = ")[0]
-    TARGET.write_text(f"{head}COSTS = {literal(costs)}\n", encoding="utf-8")
-    return measured
+    if write:
+        head = TARGET.read_text(encoding="utf-8").partition("COSTS = ")[0]
+        TARGET.write_text(f"{head}COSTS = {literal(costs)}\n", encoding="utf-8")
+    rows = []
+    for case in measured:
+        told = alone("fitting.told", case["spec"], case["kind"], threads)
+        rows.append(_row(case, told))
+        say("estimate: " + " | ".join(rows[-1]))
+    return rows
+
+
+def told(spec: dict, cells: str, threads: int) -> dict:
+    """What estimate() tells of a case."""
+    from realmodel.core import estimate
+
+    from .watching import project
+
+    given = project(StackSpec(**spec))
+    began = time.perf_counter()
+    found = estimate(given, cells, threads)
+    return {
+        "cells": found.cells,
+        "memory": found.memory,
+        "seconds": found.seconds,
+        "took": time.perf_counter() - began,
+    }
+
+
+def _row(case: dict, found: dict) -> list[str]:
+    spec = StackSpec(**case["spec"])
+    return [
+        f"{spec.surfaces} x {spec.triangles:,}, {spec.plan}, {spec.heights}",
+        case["kind"],
+        f"{case['cells']:,}",
+        f"x {found['cells'] / case['cells']:.2f}",
+        f"{case['bytes'] / 1e6:,.0f}",
+        f"x {found['memory'] / case['bytes']:.2f}",
+        f"{case['seconds']:.2f}",
+        f"x {found['seconds'] / case['seconds']:.2f}",
+        f"{found['took']:.2f}",
+    ]
 
 
 def literal(value, indent: str = "") -> str:

@@ -21,4 +21,5 @@ def stack(spec: dict, cells: str, threads: int, base: float | None = None) -> di
         "cells": len(built["cell_block"]),
         "faces": len(built["face_cells"]),
         "triangles": sum(len(triangles) for _, triangles in surfaces),
+        "volume": float(built["volumes"].sum()),
     }

@@ -17,6 +17,7 @@ import sys
 import time
 from pathlib import Path
 
+_LEFT_FREE = 2e9  # bytes that everything else on the machine keeps
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -41,12 +42,13 @@ def resident() -> int:
 def run_apart(command: list, seconds: float, memory: int) -> tuple[str, float, int]:
     """Runs a command in a process group of its own: its standard output, seconds, and peak memory in bytes.
 
-    Raises Skipped where it takes longer, where it needs more memory than `memory` bytes, where it fails, and
-    before it begins where less than that is free.
+    Raises Skipped where it takes longer, where it fails, where it comes to more than `memory` bytes or leaves
+    less than _LEFT_FREE to the machine, and before it begins where there is less than that now.
     """
-    if available_memory() < memory:
-        free = available_memory() / 1e9
-        raise Skipped(f"{memory / 1e9:.0f} GB may be needed and {free:.1f} are free")
+    if available_memory() < _LEFT_FREE:
+        raise Skipped(
+            f"{available_memory() / 1e9:.1f} GB are free, and {_LEFT_FREE / 1e9:.0f} are left alone"
+        )
     began = time.perf_counter()
     with subprocess.Popen(
         [str(part) for part in command],
@@ -56,30 +58,40 @@ def run_apart(command: list, seconds: float, memory: int) -> tuple[str, float, i
         start_new_session=True,
         cwd=ROOT,
     ) as process:
-        peak, why = 0, None
-        while why is None:
-            try:
-                out, err = process.communicate(timeout=0.1)
-                break
-            except subprocess.TimeoutExpired:
-                peak = max(peak, _group_memory(process.pid))
-            if time.perf_counter() - began > seconds:
-                why = f"not done within {seconds:.0f} s"
-            elif peak > memory:
-                why = f"more than {memory / 1e9:.0f} GB"
-        if why is not None:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.communicate()
-            raise Skipped(why)
+        try:
+            out, err, peak, why = _watched(process, began, seconds, memory)
+        finally:
+            if process.poll() is None:  # too long, too large, or the whole run is being stopped
+                os.killpg(process.pid, signal.SIGKILL)
+                process.communicate()
+    if why is not None:
+        raise Skipped(why)
     if process.returncode != 0:
         lines = (err or out).strip().splitlines() or [f"status {process.returncode}"]
         raise Skipped(f"failed: {lines[-1][:200]}")
     return out, time.perf_counter() - began, peak
 
 
-def _group_memory(leader: int) -> int:
+def _watched(process, began: float, seconds: float, memory: int) -> tuple[str, str, int, str | None]:
+    """What it wrote to both streams, its peak memory, and why it should not go on, if it did not end."""
+    peak = 0
+    while True:
+        try:
+            out, err = process.communicate(timeout=0.1)
+            return out, err, peak, None
+        except subprocess.TimeoutExpired:
+            peak = max(peak, _resident(process.pid))
+        if time.perf_counter() - began > seconds:
+            return "", "", peak, f"not done within {seconds:.0f} s"
+        if peak > memory:
+            return "", "", peak, f"more than {memory / 1e9:.0f} GB"
+        if available_memory() < _LEFT_FREE:
+            return "", "", peak, "the machine's memory ran low"
+
+
+def _resident(number: int) -> int:
     try:
-        pages = int(Path(f"/proc/{leader}/statm").read_text(encoding="ascii").split()[1])
+        pages = int(Path(f"/proc/{number}/statm").read_text(encoding="ascii").split()[1])
     except (OSError, IndexError, ValueError):  # ended meanwhile
         return 0
     return pages * os.sysconf("SC_PAGESIZE")

@@ -2,6 +2,7 @@
 """Connected parts of blocks, against a plain search from cell to cell."""
 
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -67,10 +68,7 @@ def test_cancelled():
 def test_sides_of_cells_are_in_the_order_of_the_faces():
     faces = np.array([[0, 1], [1, -1], [2, 0], [0, -1]], np.int32)
     offsets, sides = _native.cell_sides(faces, 4)
-    found = [
-        [(int(side) >> 1, int(side) & 1) for side in sides[a:b]]
-        for a, b in zip(offsets[:-1], offsets[1:], strict=True)
-    ]
+    found = [[(int(side) >> 1, int(side) & 1) for side in sides[a:b]] for a, b in pairwise(offsets)]
     assert found == [[(0, 0), (2, 1), (3, 0)], [(0, 1), (1, 0)], [(2, 0)], []]
     with pytest.raises(_native.InputError, match="face 2"):
         _native.cell_sides(faces, 2)

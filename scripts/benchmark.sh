@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Measures RealModel beside its peers in one run and writes docs/performance.md; also fits what
+# estimates and progress stand on (addon/realmodel/core/measured_costs.py). On a quiet machine the
+# whole run takes about half an hour and up to 12 GB. Peers that are missing are SKIPPED, and why.
+#
+#   scripts/benchmark.sh              all sizes; writes the page and the constants
+#   scripts/benchmark.sh --quick      small sizes, each once, as a look; the page is left as it is
+#   scripts/benchmark.sh --fit        only fits the constants and compares estimates with builds
+#   scripts/benchmark.sh --only stacks|fit|watch, --memory GB, --write F.md, --help
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+python=/usr/bin/python3
+
+"$root/scripts/install_dependencies.sh" build benchmark
+"$root/scripts/build.sh" "$python"
+environment=$root/build/benchmark_environment
+runs=$environment/bin/python
+if ! "$root/scripts/python_environment.sh" "$environment" "$root/scripts/requirements/benchmark.txt" "$python"; then
+    echo "benchmark.sh: manifold3d could not be fetched; measuring without it" >&2
+    runs=$python
+fi
+if ! { (cd "$root" && cmake --preset release -DREALMODEL_BUILD_BENCHMARKS=ON --log-level=WARNING) &&
+    cmake --build "$root/build/release" --target cgal_corefinement; }; then
+    echo "benchmark.sh: the program of CGAL's corefinement could not be built; measuring without it" >&2
+fi
+cd "$root/scripts"
+PYTHONPATH="$root/addon:$root/scripts" exec "$runs" -m benchmarks "$@"

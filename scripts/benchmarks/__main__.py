@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scripts/benchmark.sh, once everything is built: measures, tells, and writes docs/performance.md."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+from pathlib import Path
+
+from . import fitting, page, watching_table
+from .process import ROOT
+from .stacks_table import Limits, Row, StackRows
+
+PARTS = ("stacks", "fit", "watch")
+_QUICK_TRIANGLES, _ALL_TRIANGLES = 800_000, 10_000_000
+
+
+def main() -> int:
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # ends what runs apart as well
+    given = _arguments()
+    memory = 1e9 * given.memory
+    limits = Limits(
+        _QUICK_TRIANGLES if given.quick else _ALL_TRIANGLES, memory, pairs=1 if given.quick else None
+    )
+    machine = page.machine()
+    print(machine, flush=True)
+    lines: dict[str, list[str]] = {}
+    parts = given.only or PARTS
+    if "stacks" in parts:
+        rows = StackRows(limits, lambda row: print(" | ".join(_cells(row)), flush=True)).all()
+        lines["stacks"] = [machine, "", *page.table(_HEADINGS, [_cells(row) for row in rows], 2)]
+    if "fit" in parts:
+        rows = fitting.fit_and_check(given.quick, memory, _say, write=given.fit or not given.quick)
+        lines["estimates"] = [machine, "", *page.table(fitting.HEADINGS, rows, 2)]
+    if "watch" in parts:
+        progress, cancels = watching_table.measure(limits, _say)
+        lines["progress"] = [
+            machine,
+            "",
+            *page.table(watching_table.PROGRESS, progress, 2),
+            "",
+            *page.table(watching_table.CANCELS, cancels, 2),
+        ]
+    if given.write:
+        for name, part in lines.items():
+            page.write_part(given.write, f"benchmark.sh {name}", part)
+        print(f"written into {given.write}", flush=True)
+    return 0
+
+
+def _arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="benchmark.sh", description=__doc__)
+    parser.add_argument(
+        "--quick", action="store_true", help="small sizes, each once; the page is left as it is"
+    )
+    parser.add_argument(
+        "--only", action="append", choices=PARTS, help="this part only; may be given several times"
+    )
+    parser.add_argument("--fit", action="store_true", help="the same as --only fit")
+    parser.add_argument(
+        "--memory", type=float, default=12.0, metavar="GB", help="most that a process may take"
+    )
+    parser.add_argument(
+        "--write", type=Path, metavar="F.md", help="page to write (default: docs/performance.md)"
+    )
+    given = parser.parse_args()
+    if given.fit:
+        given.only = [*(given.only or []), "fit"]
+    if given.write is None and not given.quick:
+        given.write = ROOT / "docs" / "performance.md"
+    return given
+
+
+def _say(line: str) -> None:
+    print(line, flush=True)
+
+
+_HEADINGS = (
+    "work",
+    "beside",
+    "ours, s",
+    "theirs, s",
+    "ours / theirs",
+    "asked",
+    "goal",
+    "our memory, MB",
+    "their memory, MB",
+    "",
+)
+
+
+def _cells(row: Row) -> list[str]:
+    return [
+        row.work,
+        row.peer,
+        _seconds(row.ours),
+        _seconds(row.theirs),
+        "-" if row.ratio is None else f"**{_ratio(row.ratio)}**",
+        _ratio(row.must),
+        _ratio(row.goal),
+        _megabytes(row.our_peak),
+        _megabytes(row.their_peak),
+        "; ".join([*({True: ["met"], False: ["NOT met"], None: ["SKIPPED"]}[row.met]), *row.notes]),
+    ]
+
+
+def _ratio(value: float) -> str:
+    return f"{value:.2f}" if value >= 0.1 else f"1/{1 / value:.0f}"
+
+
+def _seconds(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2f}"
+
+
+def _megabytes(value: int | None) -> str:
+    return "-" if value is None else f"{value / 1e6:,.0f}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

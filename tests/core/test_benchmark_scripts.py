@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What scripts/benchmark.sh stands on: its inputs, its page, its fit, and the guard round its processes."""
+
+import ast
+import sys
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from realmodel import _native
+
+sys.path.insert(0, str(ROOT / "scripts"))
+
+from benchmarks import fitting, page, peers, process
+from benchmarks.made_stacks import StackSpec
+
+
+@pytest.mark.parametrize(
+    "spec",
+    [
+        StackSpec(3, 8),
+        StackSpec(3, 8, "shared"),
+        StackSpec(3, 8, "lattice", "steps"),
+        StackSpec(2, 8, "shared", "half"),
+    ],
+)
+def test_made_stacks_are_what_they_say(spec):
+    surfaces, again = spec.make(), spec.make()
+    assert len(surfaces) == spec.surfaces
+    for (vertices, triangles), (same, _) in zip(surfaces, again, strict=True):
+        assert (vertices == same).all()
+        assert len(triangles) == spec.triangles
+        assert triangles.max() == len(vertices) - 1
+    plans = [vertices[:, :2] for vertices, _ in surfaces]
+    assert all((plan == plans[0]).all() for plan in plans) == (spec.plan != "own")
+    assert len(_native.build_stack(surfaces)["cell_block"]) > 0
+    if spec.heights == "half":
+        (older, _), (younger, _) = surfaces
+        assert (older[:, 2] == younger[:, 2]).mean() == pytest.approx(5 / 9)
+
+
+def test_a_surface_closed_for_peers_is_a_closed_solid():
+    spec = StackSpec(1, 5)
+    vertices, triangles = peers.close_to_solid(spec.make()[0], -1.0)
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    directed = {tuple(edge) for edge in edges.tolist()}
+    assert len(directed) == len(edges)
+    assert all((b, a) in directed for a, b in directed)
+    a, b, c = (vertices[triangles[:, i]] for i in range(3))
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+    assert 0.8 < volume < 1.3, "counter-clockwise seen from outside"
+
+
+def test_each_run_rewrites_its_own_part_of_the_page(tmp_path):
+    path = tmp_path / "page.md"
+    page.write_part(path, "one", ["1"])
+    page.write_part(path, "two", ["2"])
+    path.write_text(path.read_text() + "\nby hand\n")
+    page.write_part(path, "one", ["1", "more"])
+    assert path.read_text() == (
+        "# Performance\n\n<!-- one begins -->\n1\nmore\n<!-- one ends -->\n\n"
+        "<!-- two begins -->\n2\n<!-- two ends -->\n\nby hand\n"
+    )
+
+
+def test_the_fit_finds_what_was_put_in():
+    rows = np.random.default_rng(6).uniform(1, 9, (12, 4))
+    found = fitting.least_squares(rows, rows @ [3.0, 0.0, 5.0, 0.0])
+    assert found == pytest.approx([3.0, 0.0, 5.0, 0.0], abs=1e-9)
+    assert (fitting.least_squares(rows, rows @ [3.0, -1.0, 0.0, 4.0]) >= 0).all()
+
+
+def test_a_pace_rises_where_counting_jumps_and_stands_still():
+    told = [[0.0, 0.0], [0.2, 0.5], [0.4, 0.5], [0.6, 0.5], [0.9, 0.6], [1.0, 1.0]]
+    knots = fitting.pace([{"told": told}])
+    shares = [share for _, share in knots]
+    assert knots[0] == [0.0, 0.0]
+    assert knots[-1] == [1.0, 1.0]
+    assert shares == sorted(shares)
+    middle = dict(map(tuple, knots))[0.5]
+    assert 0.2 <= middle <= 0.6
+
+
+def test_constants_are_written_as_python_that_reads_back():
+    costs = {"read": 1.5e-08, "columns": {"bytes": {"faces": 3.0}, "pace_own": [[0.0, 0.0], [1.0, 1.0]]}}
+    assert ast.literal_eval(fitting.literal(costs)) == costs
+
+
+def test_a_process_that_takes_too_long_or_fails_is_skipped():
+    with pytest.raises(process.Skipped, match="not done within"):
+        process.run_apart([sys.executable, "-c", "import time; time.sleep(60)"], 0.3, 10**9)
+    with pytest.raises(process.Skipped, match="no such thing"):
+        process.run_apart([sys.executable, "-c", "raise SystemExit('no such thing')"], 30, 10**9)
+    with pytest.raises(process.Skipped, match="more than"):
+        process.run_apart(
+            [sys.executable, "-c", "b = bytearray(300_000_000); import time; time.sleep(60)"], 30, 10**8
+        )
+    out, seconds, _ = process.run_apart([sys.executable, "-c", "print(42)"], 30, 10**9)
+    assert out == "42\n"
+    assert seconds < 30
