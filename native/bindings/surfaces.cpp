@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// outside_hull.
+// outside_hull, tin, natural_neighbour, surface_heights.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
@@ -7,6 +7,8 @@
 
 #include "realmodel/base/progress.hpp"
 #include "realmodel/interpolation/convex_hull.hpp"
+#include "realmodel/interpolation/mesh_locator.hpp"
+#include "realmodel/interpolation/triangulated.hpp"
 #include "rows.hpp"
 
 namespace py = pybind11;
@@ -27,6 +29,32 @@ py::array outside_hull(const Array<double>& points, const Array<double>& nodes, 
     return to_array(std::move(outside)).attr("view")("bool");
 }
 
+template <auto method>
+Array<double> on_triangulation(const Array<double>& points, const Array<double>& nodes, int threads,
+                               Progress* control) {
+    const auto from = rows<3>(points, "points");
+    const auto to = rows<2>(nodes, "nodes");
+    std::vector<double> z;
+    {
+        const py::gil_scoped_release unlocked;
+        z = method(from, to, threads, control);
+    }
+    return to_array(std::move(z));
+}
+
+Array<double> surface_heights(const Array<double>& vertices, const Array<std::int32_t>& triangles,
+                              const Array<double>& nodes, int threads, Progress* control) {
+    const auto corners = rows<3>(vertices, "vertices");
+    const auto faces = rows<3>(triangles, "triangles");
+    const auto to = rows<2>(nodes, "nodes");
+    std::vector<double> z;
+    {
+        const py::gil_scoped_release unlocked;
+        z = interpolation::heights_on_surface(corners, faces, to, threads, control);
+    }
+    return to_array(std::move(z));
+}
+
 }  // namespace
 
 void bind_surfaces(py::module_& module) {
@@ -34,6 +62,22 @@ void bind_surfaces(py::module_& module) {
     module.def("outside_hull", &outside_hull, arg("points"), arg("nodes"), arg("threads") = 0,
                arg("control") = py::none(),
                R"(The nodes (N, 2) outside the convex hull of points (P, 3) in plan: (N,) bool.)");
+    module.def(
+        "tin", &on_triangulation<interpolation::linear_on_triangulation>, arg("points"),
+        arg("nodes"), arg("threads") = 0, arg("control") = py::none(),
+        R"(Linear interpolation on the Delaunay triangulation of points (P, 3) at nodes (N, 2).
+
+Outside the convex hull of the points the value at the nearest place of its border. Returns z (N,).
+Raises InputError: kind "no_points", "not_finite", "contradicting_points"; Cancelled.)");
+    module.def("natural_neighbour", &on_triangulation<interpolation::natural_neighbours>,
+               arg("points"), arg("nodes"), arg("threads") = 0, arg("control") = py::none(),
+               R"(Natural neighbour interpolation (Sibson); arguments and result as tin.)");
+    module.def(
+        "surface_heights", &surface_heights, arg("vertices"), arg("triangles"), arg("nodes"),
+        arg("threads") = 0, arg("control") = py::none(),
+        R"(Heights of a triangulated surface, vertices (V, 3), triangles (T, 3), at nodes (N, 2).
+
+Returns z (N,), NaN where the surface has none. Raises InputError: kind "not_finite", "bad_index".)");
 }
 
 }  // namespace realmodel::bindings

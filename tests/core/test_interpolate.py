@@ -298,5 +298,5 @@ def test_a_surface_ends_with_its_points_where_no_extrapolation_is_wanted(basin, 
     inside &= nodes[:, 1] <= 3 + (nodes[:, 0] - 2) / 3 + 1e-12
     assert share == pytest.approx(1 - inside.mean())
     write("top.csv", "20,20,3\n28,20,3\n24,25,3.5\n")
-    with pytest.raises(InputRefused, match="no triangle of the region's mesh lies within the hull"):
+    with pytest.raises(InputRefused, match="no triangle of the region's mesh has heights"):
         build(load_project(path))

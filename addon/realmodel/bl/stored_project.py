@@ -34,7 +34,7 @@ FORMAT = 1
 _BROKEN = (KeyError, TypeError, ValueError, AttributeError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
 
 _ROCK_KEYS = ("name", "edge_length", "mesher", "base_elevation")
-_SURFACE_KEYS = ("name", "method", "options", "rule", "property", "block")
+_SURFACE_KEYS = ("name", "method", "options", "rule", "property", "block", "minimum_thickness")
 
 
 def pack(project):
@@ -111,7 +111,7 @@ def _rock(archive, r, entry):
             for key in ("points", "vertices", "triangles")
             if f"{r}/{s}/{key}" in archive
         }
-        surfaces.append(Surface(**{key: given[key] for key in _SURFACE_KEYS}, **shape))
+        surfaces.append(Surface(**{key: given[key] for key in _SURFACE_KEYS if key in given}, **shape))
     return Rock(surfaces=surfaces, region=region, holes=holes, **{key: entry[key] for key in _ROCK_KEYS})
 
 
@@ -135,9 +135,9 @@ def _array(given, dtype):
 
 
 def _plain(value):
-    """What JSON does not know: NumPy's numbers, and a variogram found by an earlier interpolation."""
+    """What JSON does not know: NumPy's numbers and arrays, a variogram found by an earlier interpolation."""
     if hasattr(value, "settings"):
         return value.settings()
-    if isinstance(value, np.generic):
-        return value.item()
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
     raise TypeError(f"{value!r} cannot be stored in a .blend file")

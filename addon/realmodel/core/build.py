@@ -12,7 +12,7 @@ from .build_options import CELL_KINDS, check_cells, check_memory, check_stage
 from .build_warning import BuildWarning
 from .estimate import require_memory
 from .expected_costs import expected_costs, expected_shares, stack_pace
-from .methods import check_threads
+from .method_options import check_threads
 from .model import Block, Model, count_blocks
 from .project import Project, check_project
 from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
@@ -67,7 +67,8 @@ def build_stage(
         for entry, whole in zip(inputs, model.rock_inputs, strict=True)
     ):
         return model
-    project = model.project.stage(m)
+    given = model.project
+    project = Project(given.name, [entry.rock for entry in inputs], given.library, given.path)
 
     def task(work: Work) -> Model:
         built = _intersect(work, inputs, model.cell_kind, model.threads, 0.0, _STAGE_INTERSECTED)
@@ -94,9 +95,11 @@ def _build(
 
     with timed("read"), work.phase(0.0, shares.read, "reading"):
         inputs = read_rocks(work, project)
-    if stage is not None:
-        inputs = [entry.stage(stage) for entry in inputs]
-    costs = expected_costs(inputs, cells)
+
+    def taken() -> list[RockInput]:
+        return inputs if stage is None else [entry.stage(stage) for entry in inputs]
+
+    costs = expected_costs(taken(), cells)
     scale = (shares.intersect - shares.read) / sum(cost.total for cost in costs)
     at = shares.read
     for entry, cost in zip(inputs, costs, strict=True):
@@ -107,11 +110,12 @@ def _build(
             mesh_rock(work, entry)
         at += scale * cost.mesh
     with work.phase(at, at, "looking whether it fits the memory"):
-        require_memory(work, inputs, cells, threads, memory)
+        require_memory(work, taken(), cells, threads, memory)
     for entry, cost in zip(inputs, costs, strict=True):
         with timed("interpolate"):
-            interpolate_rock(work, entry, at, at + scale * cost.interpolate, threads)
+            interpolate_rock(work, entry, at, at + scale * cost.interpolate, threads, stage)
         at += scale * cost.interpolate
+    inputs = taken()
     with timed("intersect"):
         built = _intersect(work, inputs, cells, threads, at, shares.intersect)
     given = Project(project.name, [entry.rock for entry in inputs], project.library, project.path)

@@ -11,7 +11,8 @@ from .errors import InputRefused, UsageError
 from .heights import left_out_heights
 from .heights.run import LEAVE_ONE_OUT, heights
 from .interpolation import checked_points, method_settings
-from .methods import DEFAULT_NEIGHBOURS, check_threads
+from .method_options import check_threads
+from .methods import DEFAULT_NEIGHBOURS
 from .mis_ties import without_mis_ties
 from .variogram import Variogram
 from .work import Cancel, Progress, Work, run

@@ -11,18 +11,17 @@ import numpy as np
 from .build_options import check_cells, check_stage
 from .coarse_blocks import coarse_blocks
 from .errors import InputRefused, NotEnoughMemory
-from .heights import heights
 from .measured_costs import COSTS
-from .methods import check_threads, checked_options
-from .project import Project, Surface, check_project, surface_item
-from .rock_input import RockInput, mesh_rock, read_rocks, where_known
+from .method_options import check_threads
+from .project import Project, check_project, surface_item
+from .rock_input import RockInput, mesh_rock, read_rocks
 from .sample_windows import Counts, Plan, Window, counted, cut_out, sample_windows, triangles_in
 from .stack_refusals import refused_stack
+from .surface_heights import rough_heights, where_known
 from .work import Cancel, Progress, Work, native_module, run
 
-_SAMPLED_METHODS = ("kriging", "universal_kriging", "idw")  # local: the same on a part of the nodes as on all
-_STAND_IN = "idw"  # shape enough to count crossings
 _FEW_NODES = 16
+_SHAPE_NODES = 20_000  # show the shape of a surface without points
 _TIMES, _LONG_ENOUGH = 2, 0.3  # how often a window is built at most, and the seconds from which once will do
 
 
@@ -294,26 +293,29 @@ class _Interpolating:
         surface = self.entry.rock.surfaces[number]
         try:
             if number not in self._once:
-                self._once[number] = self._timed(surface, nodes[:_FEW_NODES])[1]
-            z, seconds = self._timed(surface, nodes)
+                self._once[number] = self._timed(number, nodes[:_FEW_NODES])[1]
+            z, seconds = self._timed(number, nodes)
         except InputRefused as error:
             file, line = surface.shape_source()
             raise error.within(surface_item(self.entry.rock, surface), file=file, line=line) from error
         self._per_node.append(max(0.0, seconds - self._once[number]) / len(nodes))
         return z
 
-    def _timed(self, surface: Surface, nodes: np.ndarray) -> tuple[np.ndarray, float]:
-        method, settings = surface.method_options()
-        if method not in _SAMPLED_METHODS or not settings.get("neighbours"):
-            method, settings = _STAND_IN, checked_options(_STAND_IN, {})
+    def _timed(self, number: int, nodes: np.ndarray) -> tuple[np.ndarray, float]:
         began = time.perf_counter()
-        z = heights(self.work, surface.points, nodes, method, settings, self.threads).z
+        z = rough_heights(self.work, self.entry, number, nodes, self.threads)
         return z, time.perf_counter() - began
 
     def places(self, number: int) -> np.ndarray:
         """(N, 3) places that show a surface's shape: its vertices, or its points."""
         given = self.entry.surfaces[number]
-        return self.entry.rock.surfaces[number].points if given is None else given[0]
+        if given is not None:
+            return given[0]
+        points = self.entry.rock.surfaces[number].points
+        if len(points):
+            return points
+        nodes = np.ascontiguousarray(self.entry.region[0][:: 1 + len(self.entry.region[0]) // _SHAPE_NODES])
+        return np.column_stack([nodes, rough_heights(self.work, self.entry, number, nodes, self.threads)])
 
     def seconds_of_all(self) -> float:
         """Seconds that all nodes of all surfaces that have points will take."""

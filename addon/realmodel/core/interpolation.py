@@ -7,7 +7,8 @@ import numpy as np
 
 from .errors import InputRefused, UsageError, place_text
 from .heights import Interpolation, heights
-from .methods import DEFAULT_NEIGHBOURS, METHODS, check_method, check_threads, checked_options
+from .method_options import check_threads
+from .methods import DEFAULT_NEIGHBOURS, METHODS, check_method, checked_options
 from .work import Cancel, Progress, Work, run
 
 
@@ -25,7 +26,8 @@ def interpolate(
 ) -> Interpolation:
     """Interpolates scattered points at nodes.
 
-    points: (P, 3) float64, model units. nodes: (N, 2). method and its options: docs/methods.md.
+    points: (P, 3) float64, model units; None for a method that does without. nodes: (N, 2).
+    method and its options: docs/methods.md.
     triangles: (T, 3) of the nodes' mesh, where the method works on it.
     neighbours: the nearest in plan that count at a node, 0 for all points. threads: 0 for all.
 
@@ -34,11 +36,14 @@ def interpolate(
 
     Raises InputRefused for points or options that make no sense, UsageError for a wrong call, Cancelled.
     """
-    points = checked_points(points)
+    settings = method_settings(method, neighbours, options)
+    if points is not None or METHODS[method].needs_points(settings):
+        points = checked_points(points)
+    else:
+        points = np.empty((0, 3))
     nodes = np.ascontiguousarray(_array(nodes, 2, "nodes"))
     if not np.isfinite(nodes).all():
         raise InputRefused(f"node {_first_bad(nodes)} is not finite", item="nodes")
-    settings = method_settings(method, neighbours, options)
     threads = check_threads(threads)
     triangles = checked_triangles(triangles, len(nodes))
 

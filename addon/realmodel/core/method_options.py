@@ -77,6 +77,46 @@ def optional_positive(option: str, value) -> float | None:
     return None if value is None else positive(option, value)
 
 
+def dip(option: str, value) -> float | None:
+    """Degrees from the horizontal."""
+    if value is None:
+        return None
+    checked = number(option, value, least=0.0)
+    if checked >= 90:
+        raise OptionRefused(f"'{option}' must be below 90 degrees, not {checked:g}", option=option)
+    return checked
+
+
+def surface(option: str, value):
+    """Another surface: a height, its name in a project, heights at the nodes (N,), or a triangulated surface
+    (vertices (V, 3), triangles (T, 3))."""
+    if value is None:
+        raise OptionRefused(
+            f"'{option}' is missing", option=option, advice="name another surface, or a height"
+        )
+    if isinstance(value, str):
+        return value
+    if isinstance(value, (tuple, list)) and len(value) == 2 and np.ndim(value[0]) == 2:
+        try:
+            vertices = np.ascontiguousarray(value[0], np.float64)
+            triangles = np.ascontiguousarray(value[1], np.int32)
+        except (TypeError, ValueError) as error:
+            raise OptionRefused(f"'{option}' is no triangulated surface", option=option) from error
+        if vertices.shape[1:] != (3,) or triangles.ndim != 2 or triangles.shape[1] != 3:
+            raise OptionRefused(
+                f"'{option}' must be vertices (V, 3) and triangles (T, 3), not {vertices.shape} and "
+                f"{triangles.shape}",
+                option=option,
+            )
+        return vertices, triangles
+    if np.ndim(value) == 1:
+        try:
+            return np.asarray(value, np.float64)
+        except (TypeError, ValueError) as error:
+            raise OptionRefused(f"'{option}' is not an array of heights", option=option) from error
+    return number(option, value)
+
+
 def one_of(*known: str):
     """The check of an option that is one of a few words."""
 

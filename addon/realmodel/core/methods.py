@@ -11,13 +11,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from . import method_options as check
-from .method_options import OptionRefused, check_threads
-
-__all__ = ["ALL_OPTIONS", "DEFAULT_METHOD", "DEFAULT_NEIGHBOURS", "METHODS", "Method", "Option"]
-__all__ += ["OptionRefused", "check_method", "check_threads", "checked_options"]
+from .method_options import OptionRefused
 
 DEFAULT_METHOD = "kriging"
 DEFAULT_NEIGHBOURS = 16
+THICKNESS_METHODS = ("idw", "kriging", "natural_neighbour", "plane", "constant")
 EXTRAPOLATE = ("method", "nearest", "none")
 
 
@@ -32,10 +30,14 @@ class Option:
 
 @dataclass(frozen=True)
 class Method:
-    """options: by name. needs_points: whether there is nothing without points."""
+    """options: by name. instead_of_points: the option that tells what points would, where there is one."""
 
     options: Mapping[str, Option]
-    needs_points: bool = True
+    instead_of_points: str | None = None
+
+    def needs_points(self, settings: Mapping) -> bool:
+        """Whether there is nothing without points, with these settings."""
+        return self.instead_of_points is None or settings.get(self.instead_of_points) is None
 
 
 _NEIGHBOURHOOD = {
@@ -57,8 +59,28 @@ METHODS: dict[str, Method] = {
         }
     ),
     "idw": Method({**_NEIGHBOURHOOD, "power": Option(2.0, check.positive), **_EXTRAPOLATE}),
+    "natural_neighbour": Method(_EXTRAPOLATE),
+    "tin": Method(_EXTRAPOLATE),
+    "grid": Method(_EXTRAPOLATE),
+    "plane": Method(
+        {
+            "dip": Option(None, check.dip),
+            "dip_direction": Option(0.0, check.number),
+            **_EXTRAPOLATE,
+        }
+    ),
+    "constant": Method({"value": Option(None, check.optional_number)}, instead_of_points="value"),
+    "parallel": Method(
+        {
+            "to": Option(None, check.surface),
+            "thickness": Option(None, check.optional_number),
+            "thickness_method": Option("idw", check.one_of(*THICKNESS_METHODS)),
+        },
+        instead_of_points="thickness",
+    ),
 }
-LATER_METHODS = ("dsi", "natural_neighbour", "auto")
+LATER_METHODS = ("dsi", "auto")
+SURFACE_OPTIONS = ("to",)  # that may name another surface
 
 ALL_OPTIONS = tuple(dict.fromkeys(option for method in METHODS.values() for option in method.options))
 

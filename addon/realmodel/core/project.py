@@ -13,7 +13,14 @@ import numpy as np
 from .errors import InputRefused
 from .finite import is_finite
 from .library import Library
-from .methods import DEFAULT_METHOD, OptionRefused, check_method, checked_options
+from .methods import (
+    DEFAULT_METHOD,
+    METHODS,
+    SURFACE_OPTIONS,
+    OptionRefused,
+    check_method,
+    checked_options,
+)
 from .toml_table import TomlDocument
 
 RULES = ("erosional", "conformable", "base", "discontinuous")
@@ -40,7 +47,9 @@ class Surface:
     Its shape is a ready triangulation - `vertices` (V, 3) float64 in model units with `triangles`
     (T, 3) of vertex numbers, or the file `mesh` - or scattered `points`, (P, 3) or a file, which are
     interpolated on the planar mesh of the rock's region by `method` with its `options`.
-    `property` is the library id of the block deposited beneath it (0: none), `block` that block's name.
+    Some methods do without points. With `minimum_thickness` an interpolated surface stays so far above the
+    older one. `property` is the library id of the block deposited beneath it (0: none), `block` that block's
+    name.
     `shape_file` is the file that the arrays were read from, if any: messages name it.
     """
 
@@ -54,12 +63,21 @@ class Surface:
     property: int = 0
     block: str | None = None
     mesh: str | Path | None = None
+    minimum_thickness: float | None = None
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False)
 
     @builtins.property  # a field of this class is called property
     def interpolated(self) -> bool:
-        return self.points is not None
+        return self.points is not None or (
+            self.method is not None and self.mesh is None and self.vertices is None
+        )
+
+    @builtins.property  # a field of this class is called property
+    def needs_points(self) -> bool:
+        """Whether its method makes nothing without points. Raises OptionRefused."""
+        method, settings = self.method_options()
+        return METHODS[method].needs_points(settings)
 
     @builtins.property  # a field of this class is called property
     def block_name(self) -> str:
@@ -234,6 +252,7 @@ def _check_rock(project: Project, rock: Rock) -> None:
                 "give each surface of a rock mass its own name",
             )
         names.add(surface.name)
+    _check_references(rock)
 
 
 def _is_number(value) -> bool:
@@ -269,7 +288,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
         )
         if given
     ]
-    if not shapes:
+    if not shapes and not surface.interpolated:
         raise refuse("it has neither points nor a mesh", advice="add points = ... or mesh = ...")
     if len(shapes) > 1:
         raise refuse(f"it has both {shapes[0]} and {shapes[1]}", shapes[1], "keep one of them")
@@ -280,11 +299,16 @@ def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
         raise refuse(f"there is no file {file}", shapes[0], "check the path")
     if not surface.interpolated:
         given = [*(["method"] if surface.method is not None else []), *surface.options]
+        given += ["minimum_thickness"] if surface.minimum_thickness is not None else []
         if given:
             raise refuse(f"a ready mesh is not interpolated, so '{given[0]}' has no meaning here", given[0])
         return
     try:
         check_method(surface.method or DEFAULT_METHOD)
+        if not shapes and surface.needs_points:
+            option = METHODS[surface.method].instead_of_points
+            either = f", or {option} = ..." if option else ""
+            raise refuse(f"method '{surface.method}' needs points", "method", f"add points = ...{either}")
         surface.method_options()
     except OptionRefused as error:
         raise refuse(error.what, error.option, error.advice) from error
@@ -295,6 +319,47 @@ def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
                 "points",
                 f"give the rock mass {'an' if key == 'edge_length' else 'a'} {key}",
             )
+
+
+def _check_references(rock: Rock) -> None:
+    """Refuses names of surfaces that are not there, a minimum thickness above nothing, and surfaces each of
+    which is to be made from the other."""
+    numbers = {surface.name: number for number, surface in enumerate(rock.surfaces)}
+    needs: list[list[tuple[str, int]]] = []
+    for number, surface in enumerate(rock.surfaces):
+        item, needed = surface_item(rock, surface), []
+        for option in SURFACE_OPTIONS:
+            name = surface.options.get(option)
+            if not isinstance(name, str):
+                continue
+            if name not in numbers:
+                what = f"'{option}' names surface '{name}', which {rock_item(rock)} does not have"
+                raise _refuse(surface.source, item, what, option, f"it has {', '.join(numbers)}")
+            needed.append((option, numbers[name]))
+        if surface.minimum_thickness is not None:
+            if not (_is_number(surface.minimum_thickness) and surface.minimum_thickness >= 0):
+                what = f"minimum_thickness must be a number from 0, not {surface.minimum_thickness!r}"
+                raise _refuse(surface.source, item, what, "minimum_thickness")
+            if number == 0:
+                what = "the oldest surface has none beneath it to keep a minimum_thickness from"
+                raise _refuse(surface.source, item, what, "minimum_thickness")
+            needed.append(("minimum_thickness", number - 1))
+        needs.append(needed)
+    done: set[int] = set()
+
+    def visit(number: int, above: tuple[int, ...]) -> None:
+        for option, needed in needs[number]:
+            if needed in (*above, number):
+                surface, other = rock.surfaces[number], rock.surfaces[needed]
+                what = f"'{option}' makes it from '{other.name}', which is itself made from it"
+                raise _refuse(surface.source, surface_item(rock, surface), what, option)
+            if needed not in done:
+                visit(needed, (*above, number))
+        done.add(number)
+
+    for number in range(len(rock.surfaces)):
+        if number not in done:
+            visit(number, ())
 
 
 def _check_property(library: Library | None, surface: Surface, refuse) -> None:

@@ -16,7 +16,17 @@ from .toml_table import Table, TomlDocument
 FORMAT = 1
 _PROJECT_KEYS = ("format", "name", "library", "rock")
 _ROCK_KEYS = ("name", "region", "holes", "edge_length", "mesher", "base_elevation", "surface")
-_SURFACE_KEYS = ("name", "points", "mesh", "method", *ALL_OPTIONS, "rule", "property", "block")
+_SURFACE_KEYS = (
+    "name",
+    "points",
+    "mesh",
+    "method",
+    *ALL_OPTIONS,
+    "minimum_thickness",
+    "rule",
+    "property",
+    "block",
+)
 
 
 def load_project(path: str | Path) -> Project:
@@ -107,6 +117,7 @@ def _read_surface(table: Table, folder: Path) -> Surface:
         rule=table.text("rule") or "erosional",
         property=0 if property_id is None else property_id,
         block=table.text("block"),
+        minimum_thickness=table.number("minimum_thickness"),
         source=Source(table.document, table.path),
         **files,
     )

@@ -9,15 +9,15 @@ import numpy as np
 
 from .build_warning import BuildWarning
 from .errors import InputRefused, place_text
-from .heights import Interpolation, heights
+from .heights import Interpolation
 from .interpolation import checked_points
 from .planar_mesh import mesh_rings, triangulate_rings
 from .project import Project, Rock, Surface, rock_item, surface_item
 from .readers import read_off, read_points, read_region
 from .region_rings import checked_ring
+from .surface_heights import Triangulation, give_heights, interpolation_order, named_surfaces
 from .work import Work
 
-Triangulation = tuple[np.ndarray, np.ndarray]
 _EDGE_LENGTH_KINDS = ("edge_length", "too_large", "too_close")  # what native meshing lays to the edge length
 
 
@@ -29,7 +29,7 @@ class RockInput:
     (T, 3) int32), oldest first. region: its triangulation ((V, 2) float64, (T, 3) int32) or None.
     interpolations: what interpolating each surface gave, None for ready meshes. file_faces: for each
     surface None, or the face of its file that each triangle is of. warnings: what reading and interpolating
-    had to tell.
+    had to tell. whole: of a stage, what it is a part of: its surfaces may be made from younger ones.
     """
 
     rock: Rock
@@ -38,25 +38,34 @@ class RockInput:
     interpolations: list[Interpolation | None] = field(default_factory=list)
     file_faces: list[np.ndarray | None] = field(default_factory=list)
     warnings: list[BuildWarning] = field(default_factory=list)
+    whole: RockInput | None = None
 
     def stage(self, m: int) -> RockInput:
-        """The same with the surfaces up to m only; the region stays what it was."""
+        """The same with the surfaces up to m only; the region stays what it was. A surface made from one that
+        is gone keeps its heights as a ready mesh, if it has them yet."""
         gone = {surface.name for surface in self.rock.surfaces[m + 1 :]}
+        surfaces = self.rock.surfaces[: m + 1]
+        for number, surface in enumerate(surfaces):
+            if self.surfaces[number] is not None and gone.intersection(named_surfaces(self.rock, number)):
+                vertices, triangles = self.surfaces[number]
+                surfaces[number] = replace(
+                    surface,
+                    points=None,
+                    method=None,
+                    options={},
+                    minimum_thickness=None,
+                    vertices=vertices,
+                    triangles=triangles,
+                )
         return RockInput(
-            replace(self.rock, surfaces=self.rock.surfaces[: m + 1]),
+            replace(self.rock, surfaces=surfaces),
             self.surfaces[: m + 1],
             self.region,
             self.interpolations[: m + 1],
             self.file_faces[: m + 1],
             [warning for warning in self.warnings if warning.surface not in gone],
+            self,
         )
-
-
-def used_vertices(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(V,) bool: the vertices that triangles name."""
-    used = np.zeros(len(vertices), bool)
-    used[triangles] = True
-    return used
 
 
 def read_rocks(work: Work, project: Project) -> list[RockInput]:
@@ -114,10 +123,14 @@ def _read_surface(
     try:
         if surface.interpolated:
             points = surface.points if surface.input_file is None else read_points(surface.input_file, step)
+            if points is None or (not len(points) and not surface.needs_points):
+                points = np.empty((0, 3))
+            else:
+                points = checked_points(points)
             return (
                 replace(
                     surface,
-                    points=checked_points(points),
+                    points=points,
                     shape_file=surface.input_file or surface.shape_file,
                 ),
                 None,
@@ -182,42 +195,13 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
         raise error.within(rock_item(rock), file=file, line=line) from error
 
 
-def interpolate_rock(work: Work, entry: RockInput, start: float, end: float, threads: int) -> None:
-    """Gives heights to each surface of a rock mass that has points; progress goes from `start` to `end`."""
-    waiting = [number for number, surface in enumerate(entry.rock.surfaces) if surface.interpolated]
+def interpolate_rock(
+    work: Work, entry: RockInput, start: float, end: float, threads: int, stage: int | None = None
+) -> None:
+    """Gives heights to each surface of a rock mass that is interpolated; for a stage only to those that it
+    takes. Progress goes from `start` to `end`."""
+    waiting = interpolation_order(entry.rock, stage)
     for at, number in enumerate(waiting):
         begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
         with work.phase(begin, finish, f"interpolating {entry.rock.surfaces[number].name}"):
-            _give_heights(work, entry, number, threads)
-
-
-def _give_heights(work: Work, entry: RockInput, number: int, threads: int) -> None:
-    surface = entry.rock.surfaces[number]
-    nodes, triangles = entry.region
-    method, settings = surface.method_options()
-    try:
-        result = heights(work, surface.points, nodes, method, settings, threads, triangles)
-        entry.surfaces[number] = where_known(nodes, triangles, result.z)
-    except InputRefused as error:
-        file, line = surface.shape_source()
-        raise error.within(surface_item(entry.rock, surface), file=file, line=line) from error
-    entry.interpolations[number] = result
-    entry.warnings += [
-        BuildWarning(text, "points", entry.rock.name, surface.name) for text in result.warnings
-    ]
-
-
-def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Triangulation:
-    """The triangles all of whose nodes have a height: all of them, unless extrapolation was not wanted."""
-    known = np.isfinite(z)
-    if known.all():
-        return np.column_stack([nodes, z]), triangles
-    kept = triangles[known[triangles].all(axis=1)]
-    if not len(kept):
-        raise InputRefused(
-            "no triangle of the region's mesh lies within the hull of its points",
-            advice='extrapolate = "method" or "nearest" gives heights beyond it',
-        )
-    used = used_vertices(nodes, kept)
-    number = np.cumsum(used, dtype=np.int32) - 1
-    return np.column_stack([nodes[used], z[used]]), number[kept]
+            give_heights(work, entry, number, threads)

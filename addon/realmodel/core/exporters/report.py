@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..rock_input import used_vertices
+from ..surface_heights import used_vertices
 from ..validation import ValidationReport
 from ..work import native_module
 

@@ -3,16 +3,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..work import native_module
+from .from_neighbours import nearest_heights
 from .interpolation import Result, Task
 
 
 def outside_hull(task: Task) -> np.ndarray:
     """(N,) bool: the nodes outside the convex hull of the points; its border is inside. Exact."""
     if not len(task.points):
-        return np.ones(len(task.nodes), bool)
+        return np.zeros(len(task.nodes), bool)
     return task.run(native_module().outside_hull, task.points, task.nodes)
 
 
@@ -28,14 +31,15 @@ def replace_extrapolated(task: Task, result: Result, outside: np.ndarray) -> Res
         z[outside] = np.nan
         if variance is not None:
             variance[outside] = np.nan
-        return Result(z, variance, result.variogram, result.warnings)
-    native = native_module()
+        return replace(result, z=z, variance=variance)
     nodes = np.ascontiguousarray(task.nodes[outside])
-    if variance is None:
-        z[outside] = task.run(native.idw, task.points, nodes, neighbours=1)
-    else:  # kriging from one point gives its height, with twice the semivariance as variance of the error
+    if result.variogram is not None:
+        # Kriging from one point gives its height, with twice the semivariance as variance of the error.
         arguments = result.variogram.native(task.settings["anisotropy"])
-        z[outside], variance[outside], _ = task.run(
-            native.krige, task.points, nodes, **arguments, neighbours=1
-        )
-    return Result(z, variance, result.variogram, result.warnings)
+        krige = native_module().krige
+        z[outside], variance[outside], _ = task.run(krige, task.points, nodes, **arguments, neighbours=1)
+    else:
+        z[outside] = nearest_heights(task, nodes)
+        if variance is not None:
+            variance[outside] = np.nan
+    return replace(result, z=z, variance=variance)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..variogram import Variogram, fit_warnings
 from ..work import native_module
 from .interpolation import Result, Task
@@ -46,6 +48,11 @@ def krige(task: Task) -> Result:
             "point alone counts"
         )
     return Result(z, variance, variogram, warnings)
+
+
+def nearest_heights(task: Task, nodes: np.ndarray) -> np.ndarray:
+    """(N,) heights of the points nearest to nodes."""
+    return task.run(native_module().idw, task.points, nodes, neighbours=1)
 
 
 def inverse_distance(task: Task) -> Result:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,11 +14,12 @@ from ..work import Work
 
 @dataclass(frozen=True)
 class Interpolation:
-    """z (N,) heights, NaN where none was wanted; variance (N,) of the error, None where there is none; the
-    method used; the variogram, None where the method has none; warnings, sentences about the points.
+    """z (N,) heights, NaN where there are none; variance (N,) of the error, NaN where it is not known, None
+    where the method gives none; the method used; the variogram, None where the method has none; warnings,
+    sentences about the points.
 
-    extrapolated: share of the nodes that lie outside the convex hull of the points. reason: why a method was
-    chosen, where "auto" chose it.
+    extrapolated: share of the nodes that lie outside the convex hull of the points, or outside a grid.
+    reason: why a method was chosen, where "auto" chose it.
     """
 
     z: np.ndarray
@@ -33,7 +35,7 @@ class Interpolation:
 class Task:
     """What a method works on: points (P, 3) of which no two contradict, nodes (N, 2), the complete settings
     of the method, and the triangles (T, 3) of the nodes' mesh or None. left_out: each point is to be told by
-    the others, and there are no nodes."""
+    the others, and there are no nodes. surfaces: others by name, (vertices (V, 3), triangles (T, 3))."""
 
     work: Work
     points: np.ndarray
@@ -42,6 +44,7 @@ class Task:
     threads: int
     triangles: np.ndarray | None = None
     left_out: bool = False
+    surfaces: Mapping[str, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
 
     def run(self, function, *arguments, **options):
         """A native function, with this task's threads."""
@@ -50,9 +53,11 @@ class Task:
 
 @dataclass
 class Result:
-    """z, variance and variogram as in Interpolation."""
+    """z, variance and variogram as in Interpolation. outside: (N,) bool, the nodes that are extrapolated,
+    where the method knows better than the points' hull."""
 
     z: np.ndarray
     variance: np.ndarray | None = None
     variogram: Variogram | None = None
     warnings: list[str] = field(default_factory=list)
+    outside: np.ndarray | None = None

@@ -9,9 +9,10 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import InputRefused
+from ..methods import METHODS, checked_options
 from ..mis_ties import without_mis_ties
 from ..work import Work, native_module
-from . import from_neighbours
+from . import from_neighbours, from_triangulation, plain, regular_grid
 from .extrapolation import outside_hull, replace_extrapolated
 from .interpolation import Interpolation, Result, Task
 
@@ -19,31 +20,49 @@ RUNS: dict[str, Callable[[Task], Result]] = {
     "kriging": from_neighbours.krige,
     "universal_kriging": from_neighbours.krige,
     "idw": from_neighbours.inverse_distance,
+    "natural_neighbour": from_triangulation.natural_neighbour,
+    "tin": from_triangulation.linear,
+    "grid": regular_grid.bilinear,
+    "plane": plain.plane,
+    "constant": plain.constant,
+    "parallel": plain.parallel,
 }
 # These can tell each point from the others at once; the rest are run again without some of the points.
 LEAVE_ONE_OUT = ("kriging", "universal_kriging", "idw")
 
 
+def settings_of(method: str) -> dict:
+    """The settings of a method all of whose options are left at their defaults."""
+    return checked_options(method, {})
+
+
 def heights(
-    work: Work, points, nodes, method: str, settings: dict, threads: int, triangles=None
+    work: Work, points, nodes, method: str, settings: dict, threads: int, triangles=None, surfaces=None
 ) -> Interpolation:
-    """interpolate within a work that is already running, from checked arrays and complete settings."""
+    """interpolate within a work that is already running, from checked arrays and complete settings.
+
+    surfaces: what options may name, (vertices (V, 3), triangles (T, 3)) by name.
+    """
     native = native_module()
+    if not len(points) and METHODS[method].needs_points(settings):
+        raise InputRefused("there are no points", item="points")
     points, mis_ties = without_mis_ties(points)
-    task = Task(work, points, nodes, settings, threads, triangles)
+    task = Task(work, points, nodes, settings, threads, triangles, surfaces=surfaces or {})
     try:
         result = RUNS[method](task)
-        outside = outside_hull(task)
+        outside = result.outside if result.outside is not None else outside_hull(task)
         result = replace_extrapolated(task, result, outside)
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error
-    warnings = [*([mis_ties] if mis_ties else []), *few_points(points), *result.warnings]
+    warnings = [*([mis_ties] if mis_ties else []), *few_points(points, method), *result.warnings]
     share = float(outside.mean()) if len(outside) else 0.0
     return Interpolation(result.z, result.variance, method, result.variogram, tuple(warnings), share)
 
 
-def few_points(points: np.ndarray) -> list[str]:
-    """What to tell where points are too few for a surface."""
+def few_points(points: np.ndarray, method: str) -> list[str]:
+    """What to tell where points are too few for a surface that was to have a shape of its own."""
+    if method in ("constant", "parallel"):
+        return []
     places = np.unique(points[:, :2], axis=0)
     if len(places) == 1:
         return ["there is one point only: the surface is its height everywhere"]

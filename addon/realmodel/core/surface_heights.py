@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Heights for the surfaces of a rock mass: in which order, with which others, and kept in order."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .build_warning import BuildWarning
+from .errors import InputRefused, place_text
+from .heights import heights
+from .methods import SURFACE_OPTIONS, checked_options
+from .project import Rock, surface_item
+from .work import Work, native_module
+
+Triangulation = tuple[np.ndarray, np.ndarray]
+
+
+def used_vertices(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(V,) bool: the vertices that triangles name."""
+    used = np.zeros(len(vertices), bool)
+    used[triangles] = True
+    return used
+
+
+def named_surfaces(rock: Rock, number: int) -> dict[str, int]:
+    """The surfaces of the rock mass that the options of one of them name: numbers by names."""
+    numbers = {surface.name: n for n, surface in enumerate(rock.surfaces)}
+    options = rock.surfaces[number].options
+    names = [options[option] for option in SURFACE_OPTIONS if isinstance(options.get(option), str)]
+    return {name: numbers[name] for name in names}
+
+
+def _needs(rock: Rock, number: int) -> list[int]:
+    """The surfaces that have to have heights before one of them."""
+    needs = list(named_surfaces(rock, number).values())
+    if rock.surfaces[number].minimum_thickness is not None:
+        needs.append(number - 1)
+    return needs
+
+
+def interpolation_order(rock: Rock, last: int | None = None) -> list[int]:
+    """The surfaces to be given heights so that those up to `last` (None: all) have theirs, each after those
+    that it needs. check_project has made sure that there is such an order."""
+    order: list[int] = []
+
+    def visit(number: int) -> None:
+        if number in order:
+            return
+        for needed in _needs(rock, number):
+            visit(needed)
+        order.append(number)
+
+    for number in range(len(rock.surfaces) if last is None else min(last + 1, len(rock.surfaces))):
+        visit(number)
+    return [number for number in order if rock.surfaces[number].interpolated]
+
+
+def give_heights(work: Work, entry, number: int, threads: int) -> None:
+    """Interpolates one surface of a RockInput on the mesh of its region, and keeps it above the older one
+    where it has a minimum thickness."""
+    rock, surface = entry.rock, entry.rock.surfaces[number]
+    nodes, triangles = entry.region
+    method, settings = surface.method_options()
+    others = {name: entry.surfaces[n] for name, n in named_surfaces(rock, number).items()}
+    try:
+        result = heights(work, surface.points, nodes, method, settings, threads, triangles, others)
+        shape = where_known(nodes, triangles, result.z)
+        warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]
+        if surface.minimum_thickness is not None:
+            shape, told = _above_older(work, entry, number, shape, threads)
+            warnings += told
+    except InputRefused as error:
+        file, line = surface.shape_source()
+        raise error.within(surface_item(rock, surface), file=file, line=line) from error
+    entry.surfaces[number] = shape
+    entry.interpolations[number] = result
+    entry.warnings += warnings
+
+
+# Local methods give on a part of the nodes what they give on all, and cheap ones cost nothing.
+_SAMPLED_METHODS = ("kriging", "universal_kriging", "idw", "constant", "plane")
+_STAND_IN = "idw"
+
+
+def rough_heights(work: Work, entry, number: int, nodes: np.ndarray, threads: int) -> np.ndarray:
+    """(N,) heights of a surface at a few nodes (N, 2), shape enough to count how surfaces cross: by another
+    method where its own is dear, and NaN where it has none. Other surfaces need no heights yet."""
+    entry = entry.whole or entry
+    rock, surface = entry.rock, entry.rock.surfaces[number]
+    if entry.surfaces[number] is not None:
+        return _heights_at(work, entry.surfaces[number], nodes, threads)
+    method, settings = surface.method_options()
+    if method == "parallel" and settings["thickness"] is not None:
+        below = named_surfaces(rock, number).get(settings["to"]) if isinstance(settings["to"], str) else None
+        if below is not None:
+            return rough_heights(work, entry, below, nodes, threads) + settings["thickness"]
+        if isinstance(settings["to"], np.ndarray):  # known at all the nodes only
+            return np.full(len(nodes), np.nanmean(settings["to"]) + settings["thickness"])
+    points = surface.points
+    if len(points) and (method not in _SAMPLED_METHODS or settings.get("neighbours") == 0):
+        method, settings = _STAND_IN, checked_options(_STAND_IN, {})
+    z = heights(work, points, nodes, method, settings, threads).z
+    if surface.minimum_thickness is not None:
+        z = np.fmax(z, rough_heights(work, entry, number - 1, nodes, threads) + surface.minimum_thickness)
+    return z
+
+
+def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Triangulation:
+    """The triangles all of whose nodes have a height: all of them, unless extrapolation was not wanted."""
+    known = np.isfinite(z)
+    if known.all():
+        return np.column_stack([nodes, z]), triangles
+    kept = triangles[known[triangles].all(axis=1)]
+    if not len(kept):
+        raise InputRefused(
+            "no triangle of the region's mesh has heights at all its nodes",
+            advice='extrapolate = "method" or "nearest" gives heights beyond the points',
+        )
+    used = used_vertices(nodes, kept)
+    number = np.cumsum(used, dtype=np.int32) - 1
+    return np.column_stack([nodes[used], z[used]]), number[kept]
+
+
+def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: int):
+    """The shape, raised to the minimum thickness above the older surface, and what to tell: where it was
+    raised, and the points of both that lie on the wrong side of the other."""
+    rock = entry.rock
+    surface, older = rock.surfaces[number], rock.surfaces[number - 1]
+    warnings = [
+        *_on_wrong_side(work, rock, number, entry.surfaces[number - 1], older.name, "below", threads),
+        *_on_wrong_side(work, rock, number - 1, shape, surface.name, "above", threads),
+    ]
+    vertices, triangles = shape
+    older_vertices, _ = entry.surfaces[number - 1]
+    if np.array_equal(older_vertices[:, :2], vertices[:, :2]):
+        least = older_vertices[:, 2] + surface.minimum_thickness
+    else:
+        least = _heights_at(work, entry.surfaces[number - 1], vertices[:, :2], threads)
+        least += surface.minimum_thickness
+    lift = np.where(np.isfinite(least), least - vertices[:, 2], 0.0)
+    raised = lift > 0
+    if not raised.any():
+        return shape, warnings
+    worst = int(lift.argmax())
+    text = (
+        f"raised at {int(raised.sum())} of {len(vertices)} nodes to keep {surface.minimum_thickness:g} above "
+        f"'{older.name}', most by {lift[worst]:.4g} at {place_text(vertices[worst, :2])}"
+    )
+    warnings.append(BuildWarning(text, "minimum_thickness", rock.name, surface.name))
+    vertices = vertices.copy()
+    vertices[raised, 2] = least[raised]
+    return (vertices, triangles), warnings
+
+
+def _heights_at(work: Work, shape: Triangulation, plan: np.ndarray, threads: int) -> np.ndarray:
+    surface_heights = native_module().surface_heights
+    return work.native(surface_heights, *shape, np.ascontiguousarray(plan), threads=threads)
+
+
+def _on_wrong_side(
+    work: Work, rock: Rock, number: int, shape: Triangulation, name: str, side: str, threads: int
+) -> list[BuildWarning]:
+    """Points of a surface that lie below the older one, or above the younger one: usually errors in data."""
+    surface = rock.surfaces[number]
+    points = surface.points
+    if points is None or not len(points):
+        return []
+    z = _heights_at(work, shape, points[:, :2], threads)
+    beyond = z - points[:, 2] if side == "below" else points[:, 2] - z
+    beyond[~(beyond > 0)] = 0.0  # NaN, where the other surface has no height, too
+    wrong = np.flatnonzero(beyond)
+    if not len(wrong):
+        return []
+    worst = int(beyond.argmax())
+    text = (
+        f"{len(wrong)} of its {len(points)} points lie {side} '{name}', the farthest by {beyond[worst]:.4g}: "
+        f"point {worst} at {place_text(points[worst])}"
+    )
+    return [BuildWarning(text, "wrong_side", rock.name, surface.name, tuple(int(i) for i in wrong))]

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces of a rock mass that are made from each other, or keep order."""
+
+import numpy as np
+import pytest
+from realmodel.core import InputRefused, Project, Rock, Surface, build, estimate, load_project
+from realmodel.core.exporters.report import model_report
+
+SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]]
+CORNERS = np.array([[0, 0], [10, 0], [10, 10], [0, 10.0]])
+
+
+def points(*heights):
+    return np.column_stack([CORNERS, heights])
+
+
+def rock(*surfaces, **options):
+    return Project("p", [Rock("r", list(surfaces), region=SQUARE, edge_length=1.0, **options)])
+
+
+def test_parallel_to_a_younger_surface_and_to_a_ready_mesh():
+    mesh = Surface("top", np.column_stack([CORNERS, [10, 10, 14, 14.0]]), np.array([[0, 1, 2], [0, 2, 3]]))
+    middle = Surface("middle", method="parallel", options={"to": "top", "thickness": -3})
+    bottom = Surface("bottom", method="parallel", options={"to": "middle", "thickness": -2.5})
+    floor = Surface("floor", method="constant", options={"value": 1})
+    model = build(rock(floor, bottom, middle, mesh))
+    assert model.volume == pytest.approx(100 * (12 - 1))
+    assert [block.volume for block in model.blocks] == pytest.approx([550, 250, 300])
+    y = model.surface(1)[0][:, 1]
+    assert model.surface(1)[0][:, 2] == pytest.approx(10 + 0.4 * y - 5.5)
+    assert [result and result.method for result in model.interpolations] == [
+        "constant", "parallel", "parallel", None
+    ]  # fmt: skip
+
+
+def test_a_stage_keeps_what_was_made_from_a_younger_surface():
+    floor = Surface("floor", method="constant", options={"value": 0})
+    middle = Surface("middle", method="parallel", options={"to": "top", "thickness": -3})
+    top = Surface("top", points=points(10, 10, 14, 14), method="plane")
+    project = rock(floor, middle, top)
+    model, staged = build(project), build(project, stage=1)
+    assert staged.volume == pytest.approx(900)
+    assert np.array_equal(model.stage(1).vertices, staged.vertices)
+    again = build(model.stage(1).project)
+    assert again.volume == pytest.approx(900)
+    assert build(staged.project).volume == pytest.approx(900)
+
+
+def test_minimum_thickness_and_points_on_the_wrong_side():
+    low = Surface("low", points=points(0, 0, 6, 6), method="tin")
+    high = Surface("high", points=points(2, 2, 4, 8), method="tin", minimum_thickness=0.5)
+    model = build(rock(low, high))
+    z = [model.surface(k)[0][:, 2] for k in (0, 1)]
+    assert (z[1] - z[0]).min() == pytest.approx(0.5)
+    plain = build(rock(low, Surface("high", points=points(2, 2, 4, 8), method="tin")))
+    free = plain.surface(1)[0][:, 2]
+    assert np.array_equal(z[1], np.maximum(free, z[0] + 0.5))
+    told = {(w.kind, w.surface): w for w in model.warnings}
+    assert told["wrong_side", "high"].items == (2,)
+    assert "1 of its 4 points lie below 'low', the farthest by 2: point 2 at (10, 10, 4)" in str(
+        told["wrong_side", "high"]
+    )
+    assert told["wrong_side", "low"].items == (2,)
+    raised = told["minimum_thickness", "high"]
+    count = int((free < z[0] + 0.5).sum())
+    assert f"raised at {count} of {len(free)} nodes to keep 0.5 above 'low', most by 2.5 at (10, 10)" in str(
+        raised
+    )
+    assert not [w for w in plain.warnings if w.kind in ("wrong_side", "minimum_thickness")]
+
+
+def test_minimum_thickness_above_a_ready_mesh_of_part_of_the_region():
+    part = Surface(
+        "low", np.array([[0, 0, 3], [5, 0, 3], [5, 10, 3], [0, 10, 3.0]]), np.array([[0, 1, 2], [0, 2, 3]])
+    )
+    high = Surface("high", method="constant", options={"value": 1}, minimum_thickness=2)
+    vertices, _ = build(rock(part, high, base_elevation=0)).surface(1)
+    assert set(vertices[vertices[:, 0] <= 5, 2]) == {5.0}
+    assert set(vertices[vertices[:, 0] > 5, 2]) == {1.0}
+
+
+@pytest.fixture
+def written(write):
+    def put(text):
+        return write(
+            "p.toml",
+            f"""format = 1
+name = "p"
+[[rock]]
+name = "r"
+region = {SQUARE}
+edge_length = 1
+[[rock.surface]]
+name = "low"
+method = "constant"
+value = 2
+[[rock.surface]]
+name = "high"
+{text}""",
+        )
+
+    return put
+
+
+def test_in_a_project_file(written):
+    path = written('method = "parallel"\nto = "low"\nthickness = 3\nminimum_thickness = 3.5\n')
+    model = build(load_project(path))
+    assert model.volume == pytest.approx(350)
+    low, high = model_report(model)["surfaces"]
+    assert (low["method"], low["points"], high["method"]) == ("constant", 0, "parallel")
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        (
+            'method = "parallel"\nto = "lwo"\nthickness = 1\n',
+            14,
+            "'to' names surface 'lwo', which rock 'r' does not",
+        ),
+        ('method = "parallel"\nto = "high"\nthickness = 1\n', 14, "itself made from it"),
+        ('method = "parallel"\nto = "low"\n', 13, "needs points; add points = ..., or thickness = ..."),
+        ('method = "constant"\n', 13, "needs points; add points = ..., or value = ..."),
+        ('method = "kriging"\n', 13, "needs points; add points = ..."),
+        ('method = "parallel"\nthickness = 1\n', 11, "'to' is missing"),
+        ('method = "constant"\nvalue = 3\nminimum_thickness = -1\n', 15, "must be a number from 0"),
+        (
+            'method = "parallel"\nto = "third"\nthickness = 1\n[[rock.surface]]\nname = "third"\n'
+            'method = "parallel"\nto = "high"\nthickness = 1\n',
+            19,
+            "'to' makes it from 'high', which is itself made from it",
+        ),
+        (
+            'mesh = "m.off"\nminimum_thickness = 1\n',
+            14,
+            "a ready mesh is not interpolated, so 'minimum_thickness' has no meaning here",
+        ),
+    ],
+)
+def test_refused_at_the_line(written, write, text, line, words):
+    write("m.off", "OFF\n3 1 0\n0 0 1\n9 0 1\n0 9 1\n3 0 1 2\n")
+    with pytest.raises(InputRefused) as raised:
+        load_project(written(text))
+    assert words in str(raised.value)
+    assert raised.value.line == line
+
+
+def test_minimum_thickness_of_the_oldest():
+    with pytest.raises(InputRefused, match="the oldest surface has none beneath it"):
+        build(rock(Surface("a", method="constant", options={"value": 1}, minimum_thickness=1)))
+
+
+def test_surfaces_without_points_can_be_estimated():
+    top = Surface("top", points=points(10, 10, 14, 14), method="plane")
+    middle = Surface("middle", method="parallel", options={"to": "top", "thickness": -3})
+    floor = Surface("floor", method="constant", options={"value": 0})
+    low = Surface("low", points=points(1, 1, 2, 2), method="natural_neighbour", minimum_thickness=1)
+    project = rock(floor, low, middle, top)
+    for cells in ("columns", "blocks"):
+        for stage in (None, 2):
+            told, model = estimate(project, cells, stage=stage), build(project, cells, stage=stage)
+            assert told.cells == pytest.approx(len(model.cell_block), rel=0.1)
