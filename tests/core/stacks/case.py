@@ -74,9 +74,8 @@ def _mesh_rows(mesh):
     }
 
 
-def save_stack(stack, path, why=""):
-    """Writes a case as JSON; doubles that are no integers as exact hexadecimal strings."""
-    data = {"why": why, "label": stack.label}
+def _rock_rows(stack):
+    data = {}
     if stack.rules:
         data["rules"] = list(stack.rules)
     if stack.base_elevation is not None:
@@ -84,6 +83,16 @@ def save_stack(stack, path, why=""):
     if stack.region is not None:
         data["region"] = _mesh_rows(stack.region)
     data["surfaces"] = [_mesh_rows(surface) for surface in stack.surfaces]
+    return data
+
+
+def save_stack(case, path, why=""):
+    """Writes a case, one Stack or a list of them, as JSON; doubles that are no integers as exact hexadecimal
+    strings. native/fuzz reads and writes the same files."""
+    if isinstance(case, Stack):
+        data = {"why": why, "label": case.label, **_rock_rows(case)}
+    else:
+        data = {"why": why, "label": case[0].label, "rocks": [_rock_rows(stack) for stack in case]}
     text = json.dumps(data, indent=1)
     # one row of numbers a line reads better than one number a line
     text = re.sub(r"\[\s*([^\[\]{}]*?)\s*\]", lambda row: "[" + " ".join(row.group(1).split()) + "]", text)
@@ -91,8 +100,15 @@ def save_stack(stack, path, why=""):
 
 
 def load_stack(path):
-    """Reads what save_stack wrote."""
+    """Reads what save_stack wrote: a Stack, or a list of them where there are several rock masses."""
     data = json.loads(Path(path).read_text(encoding="utf-8"))
+    label = data.get("label", "")
+    if "rocks" in data:
+        return [_rock(rows, label) for rows in data["rocks"]]
+    return _rock(data, label)
+
+
+def _rock(data, label):
     surfaces = [
         as_surface([[_double(x) for x in row] for row in s["vertices"]], s["triangles"])
         for s in data["surfaces"]
@@ -102,10 +118,4 @@ def load_stack(path):
         rows = data["region"]["vertices"]
         region = as_region([[_double(x) for x in row] for row in rows], data["region"]["triangles"])
     base = data.get("base_elevation")
-    return Stack(
-        surfaces,
-        region,
-        None if base is None else _double(base),
-        data.get("rules", []),
-        data.get("label", ""),
-    )
+    return Stack(surfaces, region, None if base is None else _double(base), data.get("rules", []), label)

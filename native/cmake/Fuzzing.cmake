@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The fuzzer of the stack builder (native/fuzz): made stacks, judged by oracles of their own.
+
+file(GLOB fuzzing_sources CONFIGURE_DEPENDS fuzz/*.cpp)
+list(REMOVE_ITEM fuzzing_sources ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/stack_fuzzer.cpp)
+add_library(realmodel_fuzzing STATIC ${fuzzing_sources})
+target_include_directories(realmodel_fuzzing PUBLIC fuzz)
+target_link_libraries(realmodel_fuzzing PUBLIC realmodel PRIVATE realmodel_warnings)
+
+add_executable(stack_fuzzer fuzz/stack_fuzzer.cpp)
+target_link_libraries(stack_fuzzer PRIVATE realmodel_fuzzing realmodel_warnings)
+
+# Every stack of the corpus, and a bounded number of made ones: the same on every run.
+set(stacks "${PROJECT_SOURCE_DIR}/tests/data/stacks")
+file(GLOB stack_files CONFIGURE_DEPENDS "${stacks}/*.json")
+set(fuzz_cases 500)
+if(REALMODEL_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug")
+    set(fuzz_cases 120) # several times slower
+endif()
+set(fuzz_findings "${CMAKE_CURRENT_BINARY_DIR}/fuzz_findings")
+add_test(NAME StackFuzzer.Corpus COMMAND stack_fuzzer --into ${fuzz_findings} ${stack_files})
+add_test(NAME StackFuzzer.Cases
+    COMMAND stack_fuzzer --cases ${fuzz_cases} --seed 1 --corpus ${stacks} --into ${fuzz_findings})
+set_tests_properties(StackFuzzer.Corpus StackFuzzer.Cases PROPERTIES ${test_properties})
