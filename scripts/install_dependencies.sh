@@ -3,7 +3,7 @@
 # Installs the Debian packages that RealModel needs and this machine lacks; with nothing missing it
 # does nothing. docs/dependencies.md says what each is for.
 #
-#   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|tsan]...      (default: build)
+#   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|clang|tsan]...      (default: build)
 set -euo pipefail
 
 # A package, or package=command where the command in any version on PATH does as well.
@@ -14,6 +14,7 @@ bpy=(libegl1 libgl1 libice6 libsm6 libx11-6 libxfixes3 libxi6 libxkbcommon0 libx
 test=(clang-format=clang-format shellcheck=shellcheck git=git)
 tidy=(clang-tidy=clang-tidy)
 benchmark=(libmpfr-dev blender=blender python3-numpy)
+clang=(clang=clang++ libomp-dev)
 tsan=(clang=clang++ libclang-rt-dev libomp-dev)
 
 is_present() { # PACKAGE[=COMMAND]
@@ -35,9 +36,10 @@ for group in "$@"; do
         test) wanted+=("${test[@]}") ;;
         tidy) wanted+=("${tidy[@]}") ;;
         benchmark) wanted+=("${benchmark[@]}") ;;
+        clang) wanted+=("${clang[@]}") ;;
         tsan) wanted+=("${tsan[@]}") ;;
         *)
-            echo "install_dependencies.sh: no group '$group'; there are build, blender, bpy, test, tidy, benchmark, tsan" >&2
+            echo "install_dependencies.sh: no group '$group'; there are build, blender, bpy, test, tidy, benchmark, clang, tsan" >&2
             exit 2
             ;;
     esac

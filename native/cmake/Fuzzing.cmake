@@ -2,13 +2,21 @@
 # The fuzzer of the stack builder (native/fuzz): made stacks, judged by oracles of their own.
 
 file(GLOB fuzzing_sources CONFIGURE_DEPENDS fuzz/*.cpp)
-list(REMOVE_ITEM fuzzing_sources ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/stack_fuzzer.cpp)
 add_library(realmodel_fuzzing STATIC ${fuzzing_sources})
 target_include_directories(realmodel_fuzzing PUBLIC fuzz)
 target_link_libraries(realmodel_fuzzing PUBLIC realmodel PRIVATE realmodel_warnings)
 
-add_executable(stack_fuzzer fuzz/stack_fuzzer.cpp)
-target_link_libraries(stack_fuzzer PRIVATE realmodel_fuzzing realmodel_warnings)
+set(fuzzing_programs stack_fuzzer build_digests)
+if(REALMODEL_SANITIZE MATCHES "fuzzer-no-link") # preset fuzz: clang++'s libFuzzer
+    list(APPEND fuzzing_programs coverage_fuzzer)
+endif()
+foreach(program IN LISTS fuzzing_programs)
+    add_executable(${program} fuzz/programs/${program}.cpp)
+    target_link_libraries(${program} PRIVATE realmodel_fuzzing realmodel_warnings)
+endforeach()
+if(TARGET coverage_fuzzer)
+    target_link_options(coverage_fuzzer PRIVATE -fsanitize=fuzzer)
+endif()
 
 # Every stack of the corpus, and a bounded number of made ones: the same on every run.
 set(stacks "${PROJECT_SOURCE_DIR}/tests/data/stacks")

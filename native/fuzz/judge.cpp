@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "digest.hpp"
 #include "exact_volumes.hpp"
 #include "realmodel/base/errors.hpp"
 #include "repair.hpp"
@@ -115,12 +116,6 @@ void compare_kinds(const StackCase& stack, const CellComplex& columns, const Cel
         defects.push_back(std::move(defect));
 }
 
-void add_bytes(std::uint64_t& sum, const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < size; ++i)
-        sum = (sum ^ bytes[i]) * 0x100000001b3U;
-}
-
 std::vector<Defect> named(std::vector<Defect> defects, const char* which) {
     for (Defect& defect : defects)
         defect.kind = std::string(which) + " " + defect.kind;
@@ -148,23 +143,6 @@ void tidy(std::optional<PlanMesh>& region) {
 }
 
 }  // namespace
-
-std::uint64_t digest(const CellComplex& c) {
-    std::uint64_t sum = 0xcbf29ce484222325U;
-    const auto add = [&](const auto& array) {
-        const std::uint64_t count = array.size();
-        add_bytes(sum, &count, sizeof count);
-        if (count > 0) add_bytes(sum, array.data(), count * sizeof array[0]);
-    };
-    add(c.vertices);
-    add(c.face_offsets);
-    add(c.face_vertices);
-    add(c.face_cells);
-    add(c.face_surface);
-    add(c.cell_block);
-    add(c.volumes);
-    return sum;
-}
 
 std::vector<double> volume_allowance(const StackCase& stack, const std::vector<double>& volumes) {
     Point low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};

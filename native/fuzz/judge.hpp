@@ -23,9 +23,6 @@ std::vector<Defect> make_valid(StackCase& stack, bool& usable);
 /// all is well.
 std::vector<Defect> defects_of(const StackCase& stack, const JudgeOptions& options = {});
 
-/// The bytes of a model's arrays in one number (FNV-1a, 64 bits).
-std::uint64_t digest(const strata::CellComplex& complex);
-
 /// How far each block volume may be off: 1e-9 of it, and the rounding of the coordinates
 /// themselves.
 std::vector<double> volume_allowance(const StackCase& stack, const std::vector<double>& volumes);
