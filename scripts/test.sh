@@ -6,9 +6,9 @@
 # 1 if anything failed. What each step printed is kept in build/test.
 #
 #   scripts/test.sh [--quick] [--only STEP]...
-#     --quick       without the sanitizer build
+#     --quick       without the sanitizer build, and without the comparison of builds
 #     --only STEP   only this step, and the build it needs:
-#                   format ruff shellcheck native core blender bpy asan;
+#                   format ruff shellcheck native core blender bpy asan builds;
 #                   and two that are not run unless asked for: tidy tsan
 #
 # shellcheck disable=SC2317  # the functions are called by name, through step
@@ -16,15 +16,15 @@ set -uo pipefail # and not -e: one step that fails does not keep the others from
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 1
 
-all_steps=(format ruff shellcheck native core blender bpy asan)
+all_steps=(format ruff shellcheck native core blender bpy asan builds)
 steps=("${all_steps[@]}")
 only=()
 while (($# > 0)); do
     case $1 in
-        --quick) steps=("${all_steps[@]/asan/}") ;;
+        --quick) steps=(format ruff shellcheck native core blender bpy) ;;
         --only)
             case ${2-} in
-                format | ruff | shellcheck | native | core | blender | bpy | asan | tidy | tsan) only+=("$2") ;;
+                format | ruff | shellcheck | native | core | blender | bpy | asan | builds | tidy | tsan) only+=("$2") ;;
                 *)
                     echo "test.sh: --only needs a step: ${all_steps[*]} tidy tsan" >&2
                     exit 2
@@ -112,6 +112,7 @@ install() {
     wants format shellcheck && groups+=(test)
     wants blender && groups+=(blender)
     wants bpy && groups+=(bpy)
+    wants builds && groups+=(clang)
     wants tidy && groups+=(tidy)
     wants tsan && groups+=(tsan)
     scripts/install_dependencies.sh "${groups[@]}" &&
@@ -165,6 +166,13 @@ if wants bpy; then
     fi
 fi
 wants asan && step asan test_sanitized asan
+if wants builds; then
+    if command -v clang++ >/dev/null; then
+        step builds scripts/compare_builds.sh release asan clang
+    else
+        skip builds "there is no clang++ here, and it could not be installed"
+    fi
+fi
 wants tidy && step tidy check_tidy
 wants tsan && step tsan test_sanitized tsan
 finish

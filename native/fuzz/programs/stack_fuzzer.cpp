@@ -2,7 +2,7 @@
 // Builds random stacks and judges what comes out; scripts/fuzz.sh runs it.
 //
 //   stack_fuzzer [--cases N] [--seconds S] [--seed K] [--first N] [--corpus FOLDER] [--into FOLDER]
-//                [--polygons N] [--most N]
+//                [--threads N,N...] [--polygons N] [--patience S] [--most N]
 //   stack_fuzzer FILE...         judges files of the corpus and makes those smaller that fail
 //
 // The cases of a seed are the same everywhere. They are judged in a process of their own; a crash
@@ -195,10 +195,22 @@ int judge_files(const Options& options) {
     return failed > 0 ? 1 : 0;
 }
 
+/// Of "2,4".
+std::vector<int> numbers_of(const char* list) {
+    std::vector<int> numbers;
+    for (char* end = nullptr; *list != '\0'; list = *end == ',' ? end + 1 : end) {
+        numbers.push_back(static_cast<int>(std::strtol(list, &end, 10)));
+        if (end == list) return {};
+    }
+    return numbers;
+}
+
 int usage() {
     std::fputs(
         "usage: stack_fuzzer [--cases N] [--seconds S] [--seed K] [--first N] [--corpus FOLDER]\n"
-        "                    [--into FOLDER] [--polygons N] [--patience S] [--most N] [FILE...]\n",
+        "                    [--into FOLDER] [--threads N,N...] [--polygons N] [--patience S] "
+        "[--most N]\n"
+        "                    [FILE...]\n",
         stderr);
     return 2;
 }
@@ -229,6 +241,8 @@ int main(int count, char** arguments) {
             options.corpus = value;
         } else if (name == "--into") {
             options.into = value;
+        } else if (name == "--threads") {
+            options.judge.threads = numbers_of(value);
         } else if (name == "--polygons") {
             options.judge.most_polygons = whole();
         } else if (name == "--patience") {
