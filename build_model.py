@@ -209,10 +209,15 @@ def _validation(options: argparse.Namespace, model, progress):
     """The proof of the model, where it is asked for or goes into the report. One that was asked for and
     failed keeps anything from being written."""
     from realmodel.core import BuildFailed, BuildWarning
+    from realmodel.core.validation import PLACES_OF_CHECK, PLACES_OF_REPORT
 
     if not options.check_model and options.report is None:
         return None
-    report = model.validate(options.threads, progress=lambda _share, text: progress(1.0, text))
+    report = model.validate(
+        PLACES_OF_CHECK if options.check_model else PLACES_OF_REPORT,
+        threads=options.threads,
+        progress=lambda _share, text: progress(1.0, text),
+    )
     if report.passed:
         return report
     if options.check_model:

@@ -14,19 +14,13 @@
 #include "realmodel/base/progress.hpp"
 #include "realmodel/strata/cell_components.hpp"
 #include "realmodel/strata/stack.hpp"
+#include "rock_arrays.hpp"
 
 namespace py = pybind11;
 
 namespace realmodel::bindings {
 
 namespace {
-
-using SurfaceArrays = std::pair<Array<double>, Indices>;
-
-template <class T>
-std::span<const T> view(const Array<T>& array) {
-    return {array.data(), static_cast<std::size_t>(array.size())};
-}
 
 py::dict to_dict(strata::CellComplex&& complex) {
     py::dict result;
@@ -45,41 +39,6 @@ py::dict to_dict(strata::CellComplex&& complex) {
     result["decisions"] = complex.decisions;
     result["exact_decisions"] = complex.exact_decisions;
     return result;
-}
-
-strata::Rule rule_of(const std::string& name) {
-    if (name == "erosional") return strata::Rule::kErosional;
-    if (name == "conformable") return strata::Rule::kConformable;
-    if (name == "base") return strata::Rule::kBase;
-    if (name == "discontinuous") return strata::Rule::kDiscontinuous;
-    throw py::value_error(
-        "rules: \"erosional\", \"conformable\", \"base\" or \"discontinuous\", got \"" + name +
-        "\"");
-}
-
-using RockArrays = std::tuple<std::vector<SurfaceArrays>, std::optional<SurfaceArrays>,
-                              std::optional<double>, std::vector<std::string>>;
-
-strata::StackInput view_of(const RockArrays& rock) {
-    const auto& [surfaces, region, base_elevation, rules] = rock;
-    strata::StackInput input;
-    for (const auto& [vertices, triangles] : surfaces) {
-        require_columns(vertices, 3, "vertices of a surface");
-        require_columns(triangles, 3, "triangles of a surface");
-        input.surfaces.push_back({view(vertices), view(triangles)});
-    }
-    if (region) {
-        require_columns(region->first, 2, "vertices of the region");
-        require_columns(region->second, 3, "triangles of the region");
-        input.region = {view(region->first), view(region->second)};
-    }
-    input.base_elevation = base_elevation;
-    for (const std::string& rule : rules)
-        input.rules.push_back(rule_of(rule));
-    if (!rules.empty() && rules.size() != surfaces.size()) {
-        throw py::value_error("rules: one for each surface, or none at all");
-    }
-    return input;
 }
 
 /// When the work is done, refused or cancelled, what it had is the system's again.

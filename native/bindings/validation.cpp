@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// check_topology.
+// check_topology and check_samples.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -8,18 +8,15 @@
 
 #include "arrays.hpp"
 #include "realmodel/base/progress.hpp"
+#include "realmodel/validation/sampling.hpp"
 #include "realmodel/validation/topology.hpp"
+#include "rock_arrays.hpp"
 
 namespace py = pybind11;
 
 namespace realmodel::bindings {
 
 namespace {
-
-template <class T>
-std::span<const T> view(const Array<T>& array) {
-    return {array.data(), static_cast<std::size_t>(array.size())};
-}
 
 py::list to_list(const std::vector<validation::TestResult>& results) {
     py::list list;
@@ -98,6 +95,29 @@ py::list check_topology(const py::dict& model, int threads, Progress* control) {
     return to_list(results);
 }
 
+py::list check_samples(const py::dict& model, const std::vector<RockArrays>& rocks,
+                       const Indices& block_of_surface, std::int64_t places, std::uint64_t seed,
+                       int threads, Progress* control) {
+    const ComplexArrays arrays(model);
+    std::vector<strata::StackInput> input;
+    std::size_t surfaces = 0;
+    for (const RockArrays& rock : rocks) {
+        input.push_back(view_of(rock));
+        surfaces += input.back().surfaces.size();
+    }
+    const auto block = view(block_of_surface);
+    if (block.size() != surfaces || surfaces != static_cast<std::size_t>(arrays.surfaces)) {
+        throw py::value_error("block_of_surface: one for each surface of the rocks");
+    }
+    std::vector<validation::TestResult> results;
+    {
+        const py::gil_scoped_release release;
+        results = validation::check_samples(arrays.complex(), {input, block}, places, seed, threads,
+                                            control);
+    }
+    return to_list(results);
+}
+
 }  // namespace
 
 void bind_validation(py::module_& module) {
@@ -110,6 +130,15 @@ model: dict of vertices (V, 3) float64, face_offsets (F + 1,) int64, face_vertic
 (B,) float64 (height of the base that a block stands on, NaN: none), surfaces int, cells_are_blocks
 bool. Returns a list of tests, each a dict of name, unit, examined, failed, undecided, offenders
 (list of dicts: text, cell, face, vertex, block, place), seconds. Raises Cancelled.)");
+    module.def("check_samples", &check_samples, py::arg("model"), py::arg("rocks"),
+               py::arg("block_of_surface"), py::arg("places"), py::arg("seed") = 1,
+               py::arg("threads") = 0, py::arg("control") = nullptr,
+               R"(Compares a model with the closed form of what it was built from, at plan places.
+
+model as for check_topology, which it must have passed so far that its arrays fit together; rocks as for
+build_rock_masses; block_of_surface (S,) int32: the block beneath each surface, -1: none; places: about how
+many; seed: which. Returns tests like check_topology. Raises Cancelled, and InputError where a triangle names
+a vertex that is not there.)");
 }
 
 }  // namespace realmodel::bindings

@@ -9,7 +9,7 @@ import random
 import numpy as np
 import pytest
 from conftest import ROOT, grid_surface
-from realmodel.core import Project, Rock, Surface, build
+from realmodel.core import Cancelled, Project, Rock, Surface, UsageError, build
 from realmodel.core.exporters.report import model_report
 from realmodel.core.validation import ValidationReport
 from stacks import places
@@ -58,13 +58,37 @@ def test_a_built_model_passes(model):
     report = model.validate()
     assert isinstance(report, ValidationReport)
     assert report.passed and failed(report) == [] and report.failure() is None
-    assert {test.number for test in report.tests} >= {0, 1, 2, 3, 4}
+    assert {test.number for test in report.tests} == {0, 1, 2, 3, 4, 5}
     counts = {test.name: test.examined for test in report.tests}
     assert counts["closed"] == counts["volumes"] == len(model.cell_block)
     assert counts["faces"] == counts["loops"] == len(model.face_surface)
     assert counts["vertices"] == len(model.vertices)
     assert counts["outside"] == (model.face_cells[:, 1] < 0).sum()
     assert counts["block volumes"] == len(model.blocks)
+
+
+def wrong_block(m):
+    block = m.cell_block.copy()
+    block[0] = 1 if block[0] == 0 else 0
+    return {"cell_block": block}
+
+
+def wrong_surface(m):
+    """The level surface is named where the tilted one lies."""
+    return {"face_surface": np.where(m.face_surface == 1, 0, m.face_surface).astype(np.int32)}
+
+
+def other_heights(m):
+    """The model is that of surfaces a hair lower."""
+    vertices = m.surface_vertices.copy()
+    vertices[:, 2] += 1e-11
+    return {"surface_vertices": vertices}
+
+
+def other_rules(m):
+    rock = m.project.rocks[0]
+    surfaces = [dataclasses.replace(s, rule="conformable") for s in rock.surfaces]
+    return {"project": dataclasses.replace(m.project, rocks=[dataclasses.replace(rock, surfaces=surfaces)])}
 
 
 def open_cell(m):
@@ -138,6 +162,10 @@ def not_finite(m):
 
 
 DAMAGES = {
+    wrong_block: "places",
+    wrong_surface: "surfaces",
+    other_heights: "places",
+    other_rules: "places",
     open_cell: "closed",
     turned_face: "closed",
     missing_side: "closed",
@@ -163,7 +191,11 @@ def test_damage_is_found_and_named(model, damage):
 
 
 @pytest.mark.skipif(places.checker() is None, reason=places.CHECK_ABSENT)
-@pytest.mark.parametrize("damage", [d for d in DAMAGES if d is not wrong_volume], ids=lambda f: f.__name__)
+@pytest.mark.parametrize(
+    "damage",
+    [d for d in DAMAGES if d not in (wrong_volume, other_heights)],
+    ids=lambda f: f.__name__,
+)
 def test_the_outside_check_refuses_the_same(model, damage):
     assert outside_failures(damaged(model, **damage(model)))
 
@@ -205,19 +237,71 @@ def test_it_is_part_of_the_json_report(model):
 
 def test_the_same_findings_for_any_number_of_threads(model):
     spoilt = damaged(model, **turned_face(model))
+    expected = spoilt.validate(2000, threads=1).tests
     for threads in (2, 5):
-        for one, other in zip(spoilt.validate(threads=1).tests, spoilt.validate(threads).tests, strict=True):
+        for one, other in zip(expected, spoilt.validate(2000, threads=threads).tests, strict=True):
             assert dataclasses.replace(one, seconds=0) == dataclasses.replace(other, seconds=0)
 
 
 def test_random_stacks_pass():
-    """Every family of degenerate stacks; the outside check has been asked of them elsewhere."""
+    """Every family of degenerate stacks, with features as thin as rounding."""
     rng = random.Random(6)
     for family in [*FAMILIES, "rock masses"] * 6:
         case = random_rock_masses(rng) if family == "rock masses" else random_stack(rng, family)
         for cells in ("columns", "blocks"):
-            report = as_model(case, cells).validate(threads=1)
+            report = as_model(case, cells).validate(places=500, threads=1)
             assert report.passed, (family, cells, report.failure())
+
+
+def test_a_model_knows_its_region_without_its_input(write):
+    """Put together from arrays, a model has a project but no rock_inputs; heights may be interpolated."""
+    points = np.array([[0, 0, 1], [4, 0, 2], [4, 4, 1], [0, 4, 3], [2, 2, 2]], float)
+    rock = Rock(
+        "rock",
+        [
+            Surface("bottom", points=points - [0, 0, 3]),
+            Surface("top", *grid_surface(5, lambda x, y: 2 + x, 6.0)),
+        ],
+        region=[[0, 0], [4, 0], [4, 4], [0, 4]],
+        holes=[[[1, 1], [2, 1], [2, 2], [1, 2]]],
+        edge_length=0.5,
+    )
+    model = build(Project("holes", [rock]))
+    report = dataclasses.replace(model, rock_inputs=[]).validate(places=3000)
+    assert report.passed, report.failure()
+    smaller = dataclasses.replace(model.project.rocks[0], region=[[0, 0], [3, 0], [3, 4], [0, 4]])
+    project = dataclasses.replace(model.project, rocks=[smaller])
+    wrong = dataclasses.replace(model, rock_inputs=[], project=project)
+    assert "places" in failed(wrong.validate(places=3000))
+
+
+def test_surfaces_that_cannot_be_read_are_named(model):
+    triangles = model.surface_triangles.copy()
+    triangles[3, 1] = 10_000
+    report = damaged(model, surface_triangles=triangles).validate()
+    assert failed(report) == ["arrays"] and "surface_triangles" in report.failure()
+
+
+def test_stages_pass(model):
+    for m in range(3):
+        assert model.stage(m).validate(places=400).passed
+
+
+def test_places_and_seed(model):
+    none = model.validate(places=0)
+    assert {test.number for test in none.tests} == {0, 1, 2, 3, 4}
+    spoilt = damaged(model, **wrong_surface(model))
+    one, same, other = (spoilt.validate(places=800, seed=s).tests for s in (1, 1, 2))
+    texts = [[o.text for test in tests for o in test.offenders] for tests in (one, same, other)]
+    assert texts[0] == texts[1] != texts[2]
+    for options in ({"places": -1}, {"places": 1.5}, {"seed": -1}, {"places": True}):
+        with pytest.raises(UsageError):
+            model.validate(**options)
+
+
+def test_it_can_be_cancelled(model):
+    with pytest.raises(Cancelled):
+        model.validate(places=3_000_000, cancel=lambda: True)
 
 
 @pytest.fixture

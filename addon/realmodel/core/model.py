@@ -14,7 +14,7 @@ from .build_warning import BuildWarning
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
-from .validation import ValidationReport, validate
+from .validation import PLACES_OF_CHECK, ValidationReport, validate
 from .work import Cancel, Progress, native_module
 
 
@@ -111,14 +111,21 @@ class Model:
         return build_stage(self, m, progress, cancel)
 
     def validate(
-        self, threads: int = 0, progress: Progress | None = None, cancel: Cancel | None = None
+        self,
+        places: int = PLACES_OF_CHECK,
+        seed: int = 1,
+        threads: int = 0,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
     ) -> ValidationReport:
-        """Tests the model as docs/geometry.md says, every cell, face and vertex of it.
+        """Tests the model as docs/geometry.md says: every cell, face and vertex of it; and whether at about
+        `places` plan places it is what the closed form says. 0 places: only the first.
 
-        threads: 0 for all that there are; the findings are the same for any number. A model that fails is
-        no error here: the report says what is wrong and where. Raises Cancelled.
+        seed draws the places. threads: 0 for all that there are; the findings are the same for any number.
+        A model that fails is no error here: the report says what is wrong and where.
+        Raises UsageError, Cancelled.
         """
-        return validate(self, threads, progress, cancel)
+        return validate(self, places, seed, threads, progress, cancel)
 
     @cached_property
     def face_blocks(self) -> np.ndarray:

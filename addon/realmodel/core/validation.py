@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .errors import place_text
+from .errors import UsageError, place_text
+from .methods import check_threads
+from .planar_mesh import triangulate_rings
 from .work import Cancel, Progress, Work, native_module, run
 
 _DTYPES = {
@@ -29,9 +31,14 @@ _SAYS = {
     "outside": (3, "a face has one cell only where the outside begins"),
     "volumes": (4, "every cell has a volume, none is inside out"),
     "block volumes": (4, "the volume of each block is the sum of its cells"),
+    "places": (5, "on vertical lines the model has the blocks of the closed form, at their heights"),
+    "surfaces": (5, "faces lie on the surfaces that they name"),
+    "walls": (5, "on either side of a wall lies what the wall names, a block or the outside"),
 }
 _SAYS_OF_BLOCKS = {"closed": "every cell is closed: its faces use each edge as often in either direction"}
 _WIDTH = 100
+PLACES_OF_CHECK = 40_000  # where nothing is said: for a reviewer, seconds at most
+PLACES_OF_REPORT = 4_000  # in every report.json
 
 
 @dataclass(frozen=True)
@@ -89,6 +96,7 @@ class ValidationTest:
 @dataclass(frozen=True)
 class ValidationReport:
     """What Model.validate found. `str(report)` is for a reviewer to read, `to_json()` for report.json.
+    seed: of the places where the model was compared with the closed form.
     build_seconds: what intersecting took, to compare the cost with (0: not known)."""
 
     project: str
@@ -97,6 +105,7 @@ class ValidationReport:
     faces: int
     vertices: int
     tests: list[ValidationTest]
+    seed: int = 1
     build_seconds: float = 0.0
 
     @property
@@ -106,6 +115,15 @@ class ValidationReport:
     @property
     def seconds(self) -> float:
         return sum(test.seconds for test in self.tests)
+
+    def _cost(self) -> str:
+        """What it took: looking at all of the model, and at places in it."""
+        sampled = sum(test.seconds for test in self.tests if test.number == 5)
+        whole = self.seconds - sampled
+        text = f"every cell, face and vertex in {whole:.2f} s"
+        if self.build_seconds:
+            text += f" ({100 * whole / self.build_seconds:.1f} % of what intersecting took)"
+        return f"{text}, places (seed {self.seed}) in {sampled:.2f} s" if sampled else text
 
     def failure(self) -> str | None:
         """One line about the first test that failed, with its first offender; None where all passed."""
@@ -118,18 +136,16 @@ class ValidationReport:
         return {
             "passed": self.passed,
             "seconds": self.seconds,
+            "seed": self.seed,
             "tests": [test.to_json() for test in self.tests],
         }
 
     def __str__(self) -> str:
         verdict = "passed" if self.passed else "FAILED"
-        cost = f"{self.seconds:.2f} s"
-        if self.build_seconds:
-            cost += f", {100 * self.seconds / self.build_seconds:.1f} % of what intersecting took"
         lines = [
             f"Validation of {self.project}: {verdict}",
             f"{self.cells:,} cells ({self.cell_kind}), {self.faces:,} faces, {self.vertices:,} vertices",
-            f"in {cost}",
+            self._cost(),
             "",
         ]
         names = max(len(test.name) for test in self.tests)
@@ -158,9 +174,18 @@ def _offender_line(offender: Offender) -> str:
 
 
 def validate(
-    model, threads: int = 0, progress: Progress | None = None, cancel: Cancel | None = None
+    model,
+    places: int = PLACES_OF_CHECK,
+    seed: int = 1,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
 ) -> ValidationReport:
     """Model.validate."""
+    for name, value, least in (("places", places, 0), ("seed", seed, 0)):
+        if isinstance(value, bool) or not hasattr(value, "__index__") or not least <= int(value) < 2**63:
+            raise UsageError(f"{name} must be a whole number from {least}, not {value!r}")
+    threads = check_threads(threads)
 
     def task(work: Work) -> list[ValidationTest]:
         wrong = _wrong_arrays(model)
@@ -169,8 +194,20 @@ def validate(
             number, says = _SAYS["arrays"]
             faces = len(model.face_surface)
             return [ValidationTest("arrays", number, says, "faces", faces, len(wrong), 0, 0.0, offenders)]
-        with work.phase(0.0, 1.0, "checking every cell and face"):
-            found = work.native(native_module().check_topology, _native_model(model), threads=threads)
+        native, arrays = native_module(), _native_model(model)
+        with work.phase(0.0, 0.6, "checking every cell and face"):
+            found = work.native(native.check_topology, arrays, threads=threads)
+        if places and found[0]["failed"] == 0:
+            with work.phase(0.6, 1.0, "comparing with the closed form"):
+                found += work.native(
+                    native.check_samples,
+                    arrays,
+                    _native_rocks(model),
+                    _block_of_surface(model),
+                    int(places),
+                    int(seed),
+                    threads,
+                )
         tests = [_test(entry, model.cell_kind) for entry in found]
         return sorted(tests, key=lambda test: test.number)
 
@@ -182,6 +219,7 @@ def validate(
         faces=len(model.face_surface),
         vertices=len(model.vertices),
         tests=tests,
+        seed=int(seed),
         build_seconds=model.timings.get("intersect", 0.0),
     )
 
@@ -198,6 +236,11 @@ def _wrong_arrays(model) -> list[str]:
             array.ndim - 1
         ):
             wrong.append(f"{name} has the shape {array.shape}")
+    counts = np.diff(model.surface_vertex_offsets)
+    triangles = model.surface_triangles
+    limit = np.repeat(counts, np.diff(model.surface_triangle_offsets))
+    if len(limit) != len(triangles) or (triangles < 0).any() or (triangles >= limit[:, None]).any():
+        wrong.append("surface_triangles name vertices that are not there")
     return wrong
 
 
@@ -216,6 +259,28 @@ def _native_model(model) -> dict:
         "surfaces": len(model.surface_names),
         "cells_are_blocks": model.cell_kind == "blocks",
     }
+
+
+def _native_rocks(model) -> list[tuple]:
+    """The rock masses as the stack builder took them: surfaces, and regions as triangulations."""
+    rocks, first = [], 0
+    for number, rock in enumerate(model.project.rocks):
+        surfaces = [model.surface(first + k) for k in range(len(rock.surfaces))]
+        if model.rock_inputs:
+            region = model.rock_inputs[number].region
+        else:  # a model that was put together from arrays
+            region = triangulate_rings([rock.region, *rock.holes]) if rock.region is not None else None
+        rocks.append((surfaces, region, rock.base_elevation, [surface.rule for surface in rock.surfaces]))
+        first += len(rock.surfaces)
+    return rocks
+
+
+def _block_of_surface(model) -> np.ndarray:
+    """(S,) int32: the block beneath each surface; -1 beneath the oldest where there is no base."""
+    of_surface = np.full(len(model.surface_names), -1, np.int32)
+    for number, block in enumerate(model.blocks):
+        of_surface[block.surface] = number
+    return of_surface
 
 
 def _test(entry: dict, cell_kind: str) -> ValidationTest:

@@ -34,7 +34,8 @@ double CellExtent::volume_rounding() const {
         size[axis] = high_[axis] - low_[axis] + step[axis];
     }
     return kRoundingSteps * (step[0] * size[1] * size[2] + size[0] * step[1] * size[2] +
-                             size[0] * size[1] * step[2]);
+                             size[0] * size[1] * step[2]) +
+           0x1p-1000;  // what underflows
 }
 
 std::array<double, 3> CellExtent::middle() const {

@@ -87,7 +87,9 @@ std::optional<std::string> FaceShape::fault_of_base() const {
 }
 
 // The area vector stands on the plane that fits the corners; rounding moves a corner off it by no
-// more than the sum of what it moves each coordinate.
+// more than the sum of what it moves each coordinate. Where all corners lie on one line in plan, up
+// to rounding, they lie in the upright plane through it: the area of such needles is nothing but
+// rounding and does not say in which plane they were.
 bool FaceShape::is_flat() const {
     if (corners_.size() == 3) return true;
     const double allowed = std::abs(area_[0]) * allowance_[0] + std::abs(area_[1]) * allowance_[1] +
@@ -96,7 +98,7 @@ bool FaceShape::is_flat() const {
     for (const Position& p : corners_) {
         const double off =
             area_[0] * (p[0] - o[0]) + area_[1] * (p[1] - o[1]) + area_[2] * (p[2] - o[2]);
-        if (std::abs(off) > allowed) return is_flat_precisely() || is_needle();
+        if (std::abs(off) > allowed) return is_flat_precisely() || is_upright(way_of_wall());
     }
     return true;
 }
@@ -122,33 +124,6 @@ bool FaceShape::is_flat_precisely() const {
         const auto d = from_first(p);
         const Ball off = area[0] * d[0] + area[1] * d[1] + area[2] * d[2];
         return std::abs(off.high) - off.error <= allowed;
-    });
-}
-
-// Whether all corners lie on one line, up to rounding: any plane through it will do, and the area,
-// which is nothing but rounding, does not say which.
-bool FaceShape::is_needle() const {
-    const Position& o = corners_.front();
-    Position way{0, 0, 0};
-    for (const Position& p : corners_) {
-        const Position d{p[0] - o[0], p[1] - o[1], p[2] - o[2]};
-        if (std::abs(d[0]) + std::abs(d[1]) + std::abs(d[2]) >
-            std::abs(way[0]) + std::abs(way[1]) + std::abs(way[2]))
-            way = d;
-    }
-    return std::all_of(corners_.begin(), corners_.end(), [&](const Position& p) {
-        double low = -HUGE_VAL, high = HUGE_VAL;  // how far along the line, as a share of it
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double d = p[axis] - o[axis], reach = 2 * allowance_[axis];
-            if (way[axis] == 0.0) {
-                if (std::abs(d) > reach) return false;
-                continue;
-            }
-            const double one = (d - reach) / way[axis], two = (d + reach) / way[axis];
-            low = std::max(low, std::min(one, two));
-            high = std::min(high, std::max(one, two));
-        }
-        return low <= high;
     });
 }
 

@@ -42,7 +42,6 @@ private:
     std::optional<std::string> fault_of_base() const;
     bool is_flat() const;
     bool is_flat_precisely() const;
-    bool is_needle() const;
     PlanPosition way_of_wall() const;
     bool is_upright(const PlanPosition& way) const;
     void project(std::size_t first_axis, std::size_t second_axis);

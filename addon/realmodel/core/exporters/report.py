@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..surface_heights import used_vertices
-from ..validation import ValidationReport
+from ..validation import PLACES_OF_REPORT, ValidationReport
 from ..work import native_module
 
 SCHEMA = 1
@@ -22,7 +22,7 @@ def model_report(model, stage: int | None = None, validation: ValidationReport |
 
     validation: what Model.validate found; it is asked now where none is given.
     """
-    validation = validation or model.validate(threads=model.threads)
+    validation = validation or model.validate(PLACES_OF_REPORT, threads=model.threads)
     total = model.volume
     library = model.project.library
     return {

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rock masses as Python hands them over: lists of arrays.
+#pragma once
+
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "realmodel/strata/stack.hpp"
+
+namespace realmodel::bindings {
+
+using SurfaceArrays = std::pair<Array<double>, Indices>;
+
+template <class T>
+std::span<const T> view(const Array<T>& array) {
+    return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+inline strata::Rule rule_of(const std::string& name) {
+    if (name == "erosional") return strata::Rule::kErosional;
+    if (name == "conformable") return strata::Rule::kConformable;
+    if (name == "base") return strata::Rule::kBase;
+    if (name == "discontinuous") return strata::Rule::kDiscontinuous;
+    throw pybind11::value_error(
+        "rules: \"erosional\", \"conformable\", \"base\" or \"discontinuous\", got \"" + name +
+        "\"");
+}
+
+/// (surfaces, region, base elevation, rules).
+using RockArrays = std::tuple<std::vector<SurfaceArrays>, std::optional<SurfaceArrays>,
+                              std::optional<double>, std::vector<std::string>>;
+
+inline strata::StackInput view_of(const RockArrays& rock) {
+    const auto& [surfaces, region, base_elevation, rules] = rock;
+    strata::StackInput input;
+    for (const auto& [vertices, triangles] : surfaces) {
+        require_columns(vertices, 3, "vertices of a surface");
+        require_columns(triangles, 3, "triangles of a surface");
+        input.surfaces.push_back({view(vertices), view(triangles)});
+    }
+    if (region) {
+        require_columns(region->first, 2, "vertices of the region");
+        require_columns(region->second, 3, "triangles of the region");
+        input.region = {view(region->first), view(region->second)};
+    }
+    input.base_elevation = base_elevation;
+    for (const std::string& rule : rules)
+        input.rules.push_back(rule_of(rule));
+    if (!rules.empty() && rules.size() != surfaces.size()) {
+        throw pybind11::value_error("rules: one for each surface, or none at all");
+    }
+    return input;
+}
+
+}  // namespace realmodel::bindings

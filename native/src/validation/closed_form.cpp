@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "closed_form.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "realmodel/exact/plan_geometry.hpp"
+#include "realmodel/exact/turn.hpp"
+
+namespace realmodel::validation {
+
+using exact::PlaneId;
+using exact::PlanGeometry;
+using exact::Scope;
+using strata::Rule;
+
+namespace {
+
+constexpr PlaneId kNone = -1;
+
+bool cuts(Rule rule) {
+    return rule == Rule::kErosional || rule == Rule::kDiscontinuous;
+}
+bool protects(Rule rule) {
+    return rule == Rule::kBase || rule == Rule::kDiscontinuous;
+}
+
+/// The planes of a rock mass's surfaces above one place.
+class PlaneColumn {
+public:
+    PlaneColumn(const strata::StackInput& rock, std::span<const std::int32_t> triangles,
+                const PlanPosition& place, ClosedColumn& column) {
+        point_ = geometry_.add_vertex(place[0], place[1]);
+        for (std::size_t k = 0; k < rock.surfaces.size(); ++k)
+            plane_.push_back(triangles[k] < 0 ? kNone
+                                              : add(rock.surfaces[k], triangles[k], column));
+        geometry_.freeze_vertices();
+    }
+
+    /// e_k and the rest, as the rules say it, going forward in time and back.
+    void replay(const strata::StackInput& rock, std::span<const std::int32_t> block,
+                ClosedColumn& column) {
+        Scope scope(geometry_);
+        const auto higher = [&](PlaneId a, PlaneId b) {
+            return scope.compare_heights(a, b, point_) >= 0 ? a : b;
+        };
+        const std::size_t count = plane_.size();
+        std::vector<PlaneId> level(count, kNone), before(count, kNone);
+        PlaneId top = kNone, floor = kNone;
+        for (std::size_t k = 0; k < count; ++k) {
+            column.surface_height.push_back(std::nullopt);
+            PlaneId e = plane_[k];
+            if (e == kNone) continue;
+            column.surface_height.back() = scope.rounded_height(e, point_);
+            const Rule rule = rock.rules.empty() ? Rule::kErosional : rock.rules[k];
+            before[k] = top;
+            if (!cuts(rule) && top != kNone) e = higher(e, top);
+            if (floor != kNone) e = higher(e, floor);
+            level[k] = top = e;
+            if (protects(rule)) floor = e;
+        }
+        std::vector<PlaneId> upper(count, kNone);
+        PlaneId lowest = kNone;
+        for (std::size_t k = count; k-- > 0;) {
+            if (level[k] == kNone) continue;
+            lowest = lowest == kNone || higher(lowest, level[k]) == lowest ? level[k] : lowest;
+            upper[k] = lowest;
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            if (upper[k] == kNone) continue;
+            const double high = scope.rounded_height(upper[k], point_);
+            if (k == 0 && rock.base_elevation) {
+                column.intervals.push_back({block[k], *rock.base_elevation, high});
+            } else if (before[k] != kNone &&
+                       scope.compare_heights(before[k], upper[k], point_) < 0) {
+                column.intervals.push_back(
+                    {block[k], scope.rounded_height(before[k], point_), high});
+            }
+        }
+    }
+
+private:
+    PlaneId add(const strata::SurfaceView& surface, std::int32_t triangle, ClosedColumn& column) {
+        std::array<const double*, 3> row;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::int32_t v = surface.triangles[3 * static_cast<std::size_t>(triangle) + i];
+            row[i] = &surface.vertices[3 * static_cast<std::size_t>(v)];
+            column.highest = std::max(column.highest, std::abs(row[i][2]));
+        }
+        if (exact::turn({row[0][0], row[0][1]}, {row[1][0], row[1][1]}, {row[2][0], row[2][1]}) < 0)
+            std::swap(row[1], row[2]);
+        std::array<exact::SpaceId, 3> corner;
+        for (std::size_t i = 0; i < 3; ++i)
+            corner[i] =
+                geometry_.add_space_vertex(geometry_.add_vertex(row[i][0], row[i][1]), row[i][2]);
+        const PlaneId plane = geometry_.add_plane(corner);
+        const exact::PlaneFilter& slope = geometry_.plane_filter(plane);
+        column.slope = std::max(column.slope, std::abs(slope.gx) + std::abs(slope.gy));
+        return plane;
+    }
+
+    PlanGeometry geometry_;
+    exact::VertexId point_ = 0;
+    std::vector<PlaneId> plane_;
+};
+
+}  // namespace
+
+ClosedColumn closed_column(const ModelInput& input, std::span<const std::int32_t> triangles,
+                           const PlanPosition& place) {
+    ClosedColumn column;
+    std::size_t first = 0;
+    for (const strata::StackInput& rock : input.rocks) {
+        const std::size_t count = rock.surfaces.size();
+        const auto own = triangles.subspan(first, count);
+        if (std::all_of(own.begin(), own.end(), [](std::int32_t t) { return t < 0; })) {
+            column.surface_height.resize(first + count);
+        } else {
+            PlaneColumn planes(rock, own, place, column);
+            planes.replay(rock, input.block_of_surface.subspan(first, count), column);
+            if (rock.base_elevation)
+                column.highest = std::max(column.highest, std::abs(*rock.base_elevation));
+        }
+        first += count;
+    }
+    return column;
+}
+
+}  // namespace realmodel::validation

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "input_columns.hpp"
+
+#include <algorithm>
+#include <atomic>
+
+#include "chunked.hpp"
+#include "plan_tests.hpp"
+#include "probe_bins.hpp"
+#include "realmodel/exact/turn.hpp"
+
+namespace realmodel::validation {
+
+namespace {
+
+bool contains(const std::array<PlanPosition, 3>& p, const PlanPosition& place) {
+    const int turn = exact::turn(p[0], p[1], p[2]);
+    if (turn == 0) return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (exact::turn(p[i], p[(i + 1) % 3], place) == -turn) return false;
+    }
+    return true;
+}
+
+/// Of several threads the lowest number stays, whichever comes first.
+void keep_lowest(std::int32_t& kept, std::int32_t number) {
+    std::atomic_ref<std::int32_t> entry(kept);
+    std::int32_t known = entry.load(std::memory_order_relaxed);
+    while ((known < 0 || number < known) &&
+           !entry.compare_exchange_weak(known, number, std::memory_order_relaxed)) {
+    }
+}
+
+}  // namespace
+
+InputColumns::InputColumns(const ModelInput& input, const Probes& probes,
+                           const PlanRounding& rounding, int threads, const Progress* progress)
+    : near_edge_(probes.probes.size(), 0) {
+    std::vector<PlanPosition> places;
+    for (const Probe& probe : probes.probes)
+        places.push_back(probe.place);
+    const ProbeBins bins(places);
+    for (const strata::StackInput& rock : input.rocks)
+        surfaces_ += rock.surfaces.size();
+    triangle_.assign(places.size() * surfaces_, -1);
+
+    /// Calls visit(probe, triangle) for all triangles of a mesh that contain a probe.
+    const auto look = [&](std::span<const double> vertices, std::size_t columns,
+                          std::span<const std::int32_t> triangles, const auto& visit) {
+        in_chunks(
+            triangles.size() / 3, threads, progress,
+            [&](std::size_t begin, std::size_t end, Findings&) {
+                for (std::size_t t = begin; t < end; ++t) {
+                    std::array<PlanPosition, 3> p;
+                    for (std::size_t i = 0; i < 3; ++i) {
+                        const double* row =
+                            &vertices[static_cast<std::size_t>(triangles[3 * t + i]) * columns];
+                        p[i] = {row[0], row[1]};
+                    }
+                    PlanPosition low, high;
+                    for (std::size_t axis = 0; axis < 2; ++axis) {
+                        low[axis] = std::min({p[0][axis], p[1][axis], p[2][axis]}) - rounding.near;
+                        high[axis] = std::max({p[0][axis], p[1][axis], p[2][axis]}) + rounding.near;
+                    }
+                    bins.within(low, high, [&](std::size_t i) {
+                        for (std::size_t e = 0; e < 3; ++e) {
+                            if (!passes(p[e], p[(e + 1) % 3], places[i], rounding.near)) continue;
+                            std::atomic_ref<std::uint8_t>(near_edge_[i])
+                                .store(1, std::memory_order_relaxed);
+                        }
+                        if (contains(p, places[i])) visit(i, static_cast<std::int32_t>(t));
+                    });
+                }
+            });
+    };
+    std::size_t first = 0;
+    for (const strata::StackInput& rock : input.rocks) {
+        for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
+            const strata::SurfaceView& s = rock.surfaces[k];
+            look(s.vertices, 3, s.triangles, [&](std::size_t probe, std::int32_t t) {
+                keep_lowest(triangle_[probe * surfaces_ + first + k], t);
+            });
+        }
+        if (rock.region) {
+            std::vector<std::uint8_t> inside(places.size(), 0);
+            look(rock.region->vertices, 2, rock.region->triangles,
+                 [&](std::size_t probe, std::int32_t) {
+                     std::atomic_ref<std::uint8_t>(inside[probe])
+                         .store(1, std::memory_order_relaxed);
+                 });
+            for (std::size_t i = 0; i < places.size(); ++i) {
+                if (inside[i] != 0) continue;
+                std::fill_n(triangle_.begin() + static_cast<std::ptrdiff_t>(i * surfaces_ + first),
+                            rock.surfaces.size(), -1);
+            }
+        }
+        first += rock.surfaces.size();
+    }
+}
+
+}  // namespace realmodel::validation

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model_columns.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "chunked.hpp"
+#include "plan_tests.hpp"
+#include "probe_bins.hpp"
+#include "realmodel/exact/ball.hpp"
+#include "realmodel/exact/turn.hpp"
+
+namespace realmodel::validation {
+
+using exact::Ball;
+
+namespace {
+
+void mark(std::vector<std::uint8_t>& flags, std::size_t i) {
+    // threads may say so at once; they all write the same
+    std::atomic_ref<std::uint8_t>(flags[i]).store(1, std::memory_order_relaxed);
+}
+
+/// A face's corners, and its loop seen from above.
+class FaceInPlan {
+public:
+    explicit FaceInPlan(const ComplexView& model) : model_(model) {}
+
+    void load(std::size_t face) {
+        const auto loop = model_.corners(face);
+        corners.resize(loop.size());
+        plan.resize(loop.size());
+        low = {HUGE_VAL, HUGE_VAL};
+        high = {-HUGE_VAL, -HUGE_VAL};
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            corners[i] = model_.position(loop[i]);
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                plan[i][axis] = corners[i][axis];
+                low[axis] = std::min(low[axis], plan[i][axis]);
+                high[axis] = std::max(high[axis], plan[i][axis]);
+            }
+        }
+    }
+
+    /// The height of the face at a place within it: of the triangle of its fan there.
+    double height(const PlanPosition& place) const {
+        for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+            const int a = exact::turn(plan[0], plan[i], place);
+            const int b = exact::turn(plan[i], plan[i + 1], place);
+            const int c = exact::turn(plan[i + 1], plan[0], place);
+            if (exact::turn(plan[0], plan[i], plan[i + 1]) == 0) continue;
+            if ((a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0))
+                return triangle_height(i, place);
+        }
+        return corners[0][2];
+    }
+
+    std::vector<std::array<double, 3>> corners;
+    std::vector<PlanPosition> plan;
+    PlanPosition low{}, high{};
+
+private:
+    // to twice the precision of doubles, for needles
+    double triangle_height(std::size_t i, const PlanPosition& place) const {
+        const auto &o = corners[0], &p = corners[i], &q = corners[i + 1];
+        const auto d = [&](double a, double b) { return Ball::difference(a, b); };
+        const Ball ux = d(p[0], o[0]), uy = d(p[1], o[1]), vx = d(q[0], o[0]), vy = d(q[1], o[1]);
+        const Ball wx = d(place[0], o[0]), wy = d(place[1], o[1]);
+        const Ball area = ux * vy - uy * vx;
+        const Ball s = (wx * vy - wy * vx) / area, t = (ux * wy - uy * wx) / area;
+        return (Ball(o[2]) + s * d(p[2], o[2]) + t * d(q[2], o[2])).high;
+    }
+
+    const ComplexView& model_;
+};
+
+bool same_stretch(const WallSample& wall, const PlanPosition& p, const PlanPosition& q) {
+    return (wall.from == p && wall.to == q) || (wall.from == q && wall.to == p);
+}
+
+}  // namespace
+
+ModelColumns::ModelColumns(const ComplexView& model, const Probes& probes,
+                           const PlanRounding& rounding, int threads, const Progress* progress)
+    : near_edge_(probes.probes.size(), 0), crowded_(probes.walls.size(), 0) {
+    const std::size_t count = probes.probes.size();
+    std::vector<PlanPosition> places;
+    for (const Probe& probe : probes.probes)
+        places.push_back(probe.place);
+    for (const WallSample& wall : probes.walls)
+        places.push_back(wall.middle);
+    const ProbeBins bins(places);
+    const double beside = rounding.step + rounding.near;
+    std::vector<std::vector<Crossing>> found((model.face_count() + kItemsOfChunk - 1) /
+                                             kItemsOfChunk);
+    in_chunks(model.face_count(), threads, progress,
+              [&](std::size_t begin, std::size_t end, Findings&) {
+                  auto& own = found[begin / kItemsOfChunk];
+                  FaceInPlan face(model);
+                  const auto edge_passes = [&](std::size_t i, double reach, const auto& leave_out) {
+                      for (std::size_t k = 0; k < face.plan.size(); ++k) {
+                          const PlanPosition& p = face.plan[k];
+                          const PlanPosition& q = face.plan[k + 1 < face.plan.size() ? k + 1 : 0];
+                          if (p != q && !leave_out(p, q) && passes(p, q, places[i], reach))
+                              return true;
+                      }
+                      return false;
+                  };
+                  for (std::size_t f = begin; f < end; ++f) {
+                      face.load(f);
+                      const PlanPosition low{face.low[0] - beside, face.low[1] - beside};
+                      const PlanPosition high{face.high[0] + beside, face.high[1] + beside};
+                      bins.within(low, high, [&](std::size_t i) {
+                          if (i >= count) {
+                              const WallSample& wall = probes.walls[i - count];
+                              const auto its_own = [&](const auto& p, const auto& q) {
+                                  return same_stretch(wall, p, q);
+                              };
+                              if (edge_passes(i, beside, its_own)) mark(crowded_, i - count);
+                              return;
+                          }
+                          const auto none = [](const auto&, const auto&) { return false; };
+                          if (edge_passes(i, rounding.near, none)) mark(near_edge_, i);
+                          const int turns = winding(face.plan, places[i]);
+                          if (turns == 0) return;
+                          const bool up = turns > 0;
+                          own.push_back({static_cast<std::int32_t>(i), static_cast<std::int32_t>(f),
+                                         model.cell(f, up ? 0 : 1), model.cell(f, up ? 1 : 0),
+                                         face.height(places[i])});
+                      });
+                  }
+              });
+    for (const auto& part : found)
+        crossings_.insert(crossings_.end(), part.begin(), part.end());
+    std::stable_sort(crossings_.begin(), crossings_.end(),
+                     [](const Crossing& a, const Crossing& b) { return a.probe < b.probe; });
+    begin_.assign(count + 1, 0);
+    for (const Crossing& c : crossings_)
+        ++begin_[static_cast<std::size_t>(c.probe) + 1];
+    for (std::size_t i = 1; i < begin_.size(); ++i)
+        begin_[i] += begin_[i - 1];
+}
+
+}  // namespace realmodel::validation

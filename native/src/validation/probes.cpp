@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "probes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "strata/parallel_chunks.hpp"
+
+namespace realmodel::validation {
+
+namespace {
+
+/// Random numbers by index, so that none depends on what was drawn before (splitmix64, Steele et
+/// al. 2014).
+class Random {
+public:
+    Random(std::uint64_t seed, std::uint64_t stream) : state_(mix(seed) ^ mix(~stream)) {}
+    std::uint64_t next() { return mix(state_ += 0x9E3779B97F4A7C15u); }
+    /// 0 <= value < 1
+    double share() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+    std::size_t below(std::size_t count) {
+        return std::min(static_cast<std::size_t>(share() * static_cast<double>(count)), count - 1);
+    }
+
+private:
+    static std::uint64_t mix(std::uint64_t z) {
+        z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+        z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+        return z ^ (z >> 31);
+    }
+    std::uint64_t state_;
+};
+
+struct Box {
+    PlanPosition low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+    void include(const double* p) {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            low[axis] = std::min(low[axis], p[axis]);
+            high[axis] = std::max(high[axis], p[axis]);
+        }
+    }
+    bool empty() const { return !(low[0] <= high[0]); }
+};
+
+const double* corner(std::span<const double> vertices, std::size_t columns, std::int32_t v) {
+    return &vertices[static_cast<std::size_t>(v) * columns];
+}
+
+/// Around what a rock mass covers at most.
+Box rock_box(const strata::StackInput& rock) {
+    Box box;
+    for (const strata::SurfaceView& s : rock.surfaces) {
+        for (const std::int32_t v : s.triangles)
+            box.include(corner(s.vertices, 3, v));
+    }
+    if (rock.region && !box.empty()) {
+        Box region;
+        for (const std::int32_t v : rock.region->triangles)
+            region.include(corner(rock.region->vertices, 2, v));
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            box.low[axis] = std::max(box.low[axis], region.low[axis]);
+            box.high[axis] = std::min(box.high[axis], region.high[axis]);
+        }
+    }
+    return box;
+}
+
+PlanPosition place_in_triangle(const std::array<PlanPosition, 3>& p, double s, double t) {
+    if (s + t > 1) {
+        s = 1 - s;
+        t = 1 - t;
+    }
+    PlanPosition place;
+    for (std::size_t axis = 0; axis < 2; ++axis)
+        place[axis] = p[0][axis] + s * (p[1][axis] - p[0][axis]) + t * (p[2][axis] - p[0][axis]);
+    return place;
+}
+
+PlanPosition plan(const ComplexView& model, std::int32_t vertex) {
+    const auto p = model.position(vertex);
+    return {p[0], p[1]};
+}
+
+/// In the middle of the largest triangle of a face's fan: away from its edges as far as may be.
+PlanPosition place_on_face(const ComplexView& model, std::size_t face) {
+    const auto loop = model.corners(face);
+    std::array<PlanPosition, 3> largest{};
+    double largest_area = -1;
+    for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+        const std::array<PlanPosition, 3> p{plan(model, loop[0]), plan(model, loop[i]),
+                                            plan(model, loop[i + 1])};
+        const double area = std::abs((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
+                                     (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]));
+        if (area > largest_area) {
+            largest_area = area;
+            largest = p;
+        }
+    }
+    return place_in_triangle(largest, 1.0 / 3, 1.0 / 3);
+}
+
+/// The longest stretch of a wall between two neighbouring places, and the middle of the widest
+/// vertical chord there. Nothing where it is too short, or the wall has no area there.
+std::optional<WallSample> point_in_wall(const ComplexView& model, std::size_t face,
+                                        const PlanRounding& rounding) {
+    std::vector<std::array<double, 3>> corners;
+    for (const std::int32_t v : model.corners(face))
+        corners.push_back(model.position(v));
+    std::array<double, 2> extent;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const auto [low, high] =
+            std::minmax_element(corners.begin(), corners.end(),
+                                [axis](const auto& a, const auto& b) { return a[axis] < b[axis]; });
+        extent[axis] = (*high)[axis] - (*low)[axis];
+    }
+    const std::size_t axis = extent[0] >= extent[1] ? 0 : 1;
+    auto along = corners;
+    std::sort(along.begin(), along.end(),
+              [axis](const auto& a, const auto& b) { return a[axis] < b[axis]; });
+    std::size_t widest = 0;
+    double gap = 0;
+    for (std::size_t i = 0; i + 1 < along.size(); ++i) {
+        if (along[i + 1][axis] - along[i][axis] > gap) {
+            gap = along[i + 1][axis] - along[i][axis];
+            widest = i;
+        }
+    }
+    if (gap < 8 * rounding.step) return std::nullopt;
+    WallSample sample;
+    sample.face = static_cast<std::int32_t>(face);
+    sample.from = {along[widest][0], along[widest][1]};
+    sample.to = {along[widest + 1][0], along[widest + 1][1]};
+    for (std::size_t i = 0; i < 2; ++i)
+        sample.middle[i] = sample.from[i] + (sample.to[i] - sample.from[i]) / 2;
+    const double at = sample.middle[axis];
+    std::vector<double> heights;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const auto& p = corners[i];
+        const auto& q = corners[i + 1 < corners.size() ? i + 1 : 0];
+        if ((p[axis] > at) != (q[axis] > at))
+            heights.push_back(p[2] + (at - p[axis]) / (q[axis] - p[axis]) * (q[2] - p[2]));
+    }
+    std::sort(heights.begin(), heights.end());
+    for (std::size_t i = 0; i + 1 < heights.size(); i += 2) {
+        const double half = (heights[i + 1] - heights[i]) / 2;
+        if (half <= sample.half_width) continue;
+        sample.half_width = half;
+        sample.height = heights[i] + half;
+    }
+    if (sample.half_width <= 0) return std::nullopt;
+    return sample;
+}
+
+/// The way out of a wall's first cell, a unit vector.
+PlanPosition outward(const ComplexView& model, const WallSample& wall) {
+    const double dx = wall.to[0] - wall.from[0], dy = wall.to[1] - wall.from[1];
+    const auto loop = model.corners(static_cast<std::size_t>(wall.face));
+    const auto o = model.position(loop[0]);
+    double area_x = 0, area_y = 0;
+    for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+        const auto p = model.position(loop[i]), q = model.position(loop[i + 1]);
+        area_x += (p[1] - o[1]) * (q[2] - o[2]) - (p[2] - o[2]) * (q[1] - o[1]);
+        area_y += (p[2] - o[2]) * (q[0] - o[0]) - (p[0] - o[0]) * (q[2] - o[2]);
+    }
+    const double length = std::hypot(dx, dy), sign = area_x * dy - area_y * dx >= 0 ? 1 : -1;
+    return {sign * dy / length, -sign * dx / length};
+}
+
+class Choice {
+public:
+    Choice(const ComplexView& model, const ModelInput& input, std::uint64_t seed,
+           const PlanRounding& rounding)
+        : model_(model), input_(input), seed_(seed), rounding_(rounding) {}
+
+    void evenly(std::size_t count) {
+        for (std::size_t r = 0; r < input_.rocks.size(); ++r) {
+            const Box box = rock_box(input_.rocks[r]);
+            if (box.empty()) continue;
+            for (std::size_t i = 0; i < std::max<std::size_t>(count / input_.rocks.size(), 1);
+                 ++i) {
+                Random random = draw(1 + r, i);
+                PlanPosition place;
+                for (std::size_t axis = 0; axis < 2; ++axis)
+                    place[axis] = box.low[axis] + random.share() * (box.high[axis] - box.low[axis]);
+                add(place);
+            }
+        }
+    }
+
+    void in_triangles(std::size_t count) {
+        std::vector<std::pair<std::size_t, const strata::SurfaceView*>> surfaces;
+        std::size_t total = 0;
+        for (const strata::StackInput& rock : input_.rocks) {
+            for (const strata::SurfaceView& s : rock.surfaces) {
+                total += s.triangles.size() / 3;
+                surfaces.emplace_back(total, &s);
+            }
+        }
+        for (std::size_t i = 0; i < count && total > 0; ++i) {
+            Random random = draw(1001, i);
+            const std::size_t t = random.below(total);
+            const auto at = std::upper_bound(
+                surfaces.begin(), surfaces.end(), t,
+                [](std::size_t value, const auto& entry) { return value < entry.first; });
+            const strata::SurfaceView& s = *at->second;
+            const std::size_t own = t - (at->first - s.triangles.size() / 3);
+            std::array<PlanPosition, 3> p;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double* row = corner(s.vertices, 3, s.triangles[3 * own + c]);
+                p[c] = {row[0], row[1]};
+            }
+            const double one = random.share();
+            add(place_in_triangle(p, one, random.share()));
+        }
+    }
+
+    void on_faces(std::size_t count, const std::vector<std::int32_t>& faces) {
+        for (std::size_t i = 0; i < count && !faces.empty(); ++i) {
+            const std::int32_t face = faces[draw(1002, i).below(faces.size())];
+            add(place_on_face(model_, static_cast<std::size_t>(face)));
+        }
+    }
+
+    void beside_walls(std::size_t count, const std::vector<std::int32_t>& walls) {
+        for (std::size_t i = 0; i < count && !walls.empty(); ++i) {
+            const std::int32_t face = walls[draw(1003, i).below(walls.size())];
+            const auto wall = point_in_wall(model_, static_cast<std::size_t>(face), rounding_);
+            if (!wall) {
+                ++chosen.narrow_walls;
+                continue;
+            }
+            const PlanPosition out = outward(model_, *wall);
+            for (const std::int32_t side : {0, 1}) {
+                const double way = side == 0 ? -rounding_.step : rounding_.step;
+                chosen.probes.push_back(
+                    {{wall->middle[0] + way * out[0], wall->middle[1] + way * out[1]},
+                     static_cast<std::int32_t>(chosen.walls.size()),
+                     side});
+            }
+            chosen.walls.push_back(*wall);
+        }
+    }
+
+    Probes chosen;
+
+private:
+    Random draw(std::uint64_t kind, std::size_t i) const {
+        return Random(seed_, kind << 40 | static_cast<std::uint64_t>(i));
+    }
+    void add(const PlanPosition& place) { chosen.probes.push_back({place}); }
+
+    const ComplexView& model_;
+    const ModelInput& input_;
+    std::uint64_t seed_;
+    const PlanRounding& rounding_;
+};
+
+}  // namespace
+
+double largest_plan_coordinate(const ComplexView& model, const ModelInput& input) {
+    double largest = 0;
+    const auto look = [&](std::span<const double> vertices, std::size_t columns) {
+        for (std::size_t i = 0; i + 1 < vertices.size(); i += columns)
+            largest = std::max({largest, std::abs(vertices[i]), std::abs(vertices[i + 1])});
+    };
+    look(model.vertices, 3);
+    for (const strata::StackInput& rock : input.rocks) {
+        for (const strata::SurfaceView& s : rock.surfaces)
+            look(s.vertices, 3);
+        if (rock.region) look(rock.region->vertices, 2);
+    }
+    return largest;
+}
+
+Probes choose_probes(const ComplexView& model, const ModelInput& input, std::int64_t places,
+                     std::uint64_t seed, const PlanRounding& rounding, const Progress* progress) {
+    std::vector<std::int32_t> walls, others;
+    for (std::size_t f = 0; f < model.face_count(); ++f) {
+        strata::poll(progress, f);
+        (model.face_surface[f] == strata::kWall ? walls : others)
+            .push_back(static_cast<std::int32_t>(f));
+    }
+    const auto count = static_cast<std::size_t>(std::max<std::int64_t>(places, 0));
+    Choice choice(model, input, seed, rounding);
+    choice.evenly(count / 4);
+    choice.in_triangles(count / 4);
+    choice.on_faces(count / 4, others);
+    choice.beside_walls(count / 8, walls);  // two places each
+    return std::move(choice.chosen);
+}
+
+}  // namespace realmodel::validation

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/validation/sampling.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "chunked.hpp"
+#include "closed_form.hpp"
+#include "input_columns.hpp"
+#include "model_columns.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::validation {
+
+namespace {
+
+/// Rounding moves a height by this many units in its last place, or in that of the plan times the
+/// slope, at most; the larger part of it is what is done to the input before it is built.
+constexpr double kHeightSteps = 32;
+
+std::string figure(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", value);
+    return text;
+}
+
+std::string told(const std::vector<Interval>& column) {
+    std::string text;
+    for (const Interval& i : column) {
+        text += (text.empty() ? "block " : ", block ") + std::to_string(i.block) + " from " +
+                figure(i.low) + " to " + figure(i.high);
+    }
+    return text.empty() ? "nothing" : text;
+}
+
+/// The model along a vertical line: upwards from the outside, from cell to cell, to the outside.
+struct ModelColumn {
+    std::vector<Interval> intervals;
+    std::string broken;  ///< why that could not be done; empty where it could
+};
+
+ModelColumn walk(const ComplexView& model, std::span<const Crossing> crossings) {
+    ModelColumn column;
+    std::vector<const Crossing*> left;
+    for (const Crossing& c : crossings)
+        left.push_back(&c);
+    std::int32_t cell = -1;
+    double level = 0;
+    while (!left.empty()) {
+        const auto next = std::find_if(left.begin(), left.end(),
+                                       [&](const Crossing* c) { return c->below == cell; });
+        if (next == left.end() || (cell < 0 && !column.intervals.empty())) {
+            column.broken = cell < 0 ? "face " + std::to_string(left.front()->face) +
+                                           " lies apart from what is below it"
+                                     : "cell " + std::to_string(cell) + " has no upper side";
+            return column;
+        }
+        const Crossing& face = **next;
+        left.erase(next);
+        if (cell >= 0) {
+            const std::int32_t block = model.block(cell);
+            if (!column.intervals.empty() && column.intervals.back().block == block) {
+                column.intervals.back().high = face.height;
+            } else {
+                column.intervals.push_back({block, level, face.height});
+            }
+        }
+        cell = face.above;
+        level = face.height;
+    }
+    if (cell >= 0) column.broken = "cell " + std::to_string(cell) + " has no upper side";
+    return column;
+}
+
+std::vector<Interval> thicker_than(const std::vector<Interval>& column, double least) {
+    std::vector<Interval> kept;
+    for (const Interval& i : column) {
+        if (i.high - i.low > least) kept.push_back(i);
+    }
+    return kept;
+}
+
+bool agree(const std::vector<Interval>& a, const std::vector<Interval>& b, double allowed) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [allowed](const Interval& one, const Interval& other) {
+                          return one.block == other.block &&
+                                 std::abs(one.low - other.low) <= allowed &&
+                                 std::abs(one.high - other.high) <= allowed;
+                      });
+}
+
+struct SampleFindings {
+    Findings places, surfaces, walls;
+    void append(const SampleFindings& later) {
+        places.append(later.places);
+        surfaces.append(later.surfaces);
+        walls.append(later.walls);
+    }
+};
+
+/// Compares the model with the closed form probe by probe.
+class Comparison {
+public:
+    Comparison(const ComplexView& model, const ModelInput& input, const Probes& probes,
+               const PlanRounding& rounding, const ModelColumns& model_columns,
+               const InputColumns& input_columns)
+        : model_(model),
+          input_(input),
+          probes_(probes),
+          rounding_(rounding),
+          model_columns_(model_columns),
+          input_columns_(input_columns) {}
+
+    void look(std::size_t probe, SampleFindings& found) const {
+        const PlanPosition& place = probes_.probes[probe].place;
+        std::vector<std::int32_t> triangles(input_columns_.surface_count());
+        for (std::size_t s = 0; s < triangles.size(); ++s)
+            triangles[s] = input_columns_.triangle(probe, s);
+        const ClosedColumn closed = closed_column(input_, triangles, place);
+        const auto crossings = model_columns_.of_probe(probe);
+        const ModelColumn column = walk(model_, crossings);
+        double highest = closed.highest;
+        for (const Crossing& c : crossings)
+            highest = std::max(highest, std::abs(c.height));
+        // a height may be moved on either side of the comparison
+        const double allowed =
+            2 * (kHeightSteps * highest * 0x1p-52 + closed.slope * rounding_.near);
+        compare(probe, column, closed, allowed, found.places);
+        on_surfaces(probe, crossings, closed, allowed, found.surfaces);
+        if (probes_.probes[probe].wall >= 0)
+            beside_wall(probe, column, closed, allowed, found.walls);
+    }
+
+private:
+    bool near_edge(std::size_t probe) const {
+        return model_columns_.near_edge(probe) || input_columns_.near_edge(probe);
+    }
+
+    std::string at(std::size_t probe) const {
+        const PlanPosition& p = probes_.probes[probe].place;
+        return "at (" + figure(p[0]) + ", " + figure(p[1]) + ") ";
+    }
+
+    void compare(std::size_t probe, const ModelColumn& column, const ClosedColumn& closed,
+                 double allowed, Findings& found) const {
+        ++found.examined;
+        // what is thinner than rounding need not be there, on either side
+        const auto have = thicker_than(column.intervals, allowed);
+        const auto want = thicker_than(closed.intervals, allowed);
+        if (column.broken.empty() &&
+            (agree(have, want, allowed) ||
+             agree(thicker_than(have, 2 * allowed), thicker_than(want, 2 * allowed), 2 * allowed)))
+            return;
+        if (near_edge(probe)) {
+            ++found.undecided;
+            return;
+        }
+        found.fail([&] {
+            const PlanPosition& p = probes_.probes[probe].place;
+            const double height = !have.empty()   ? (have[0].low + have[0].high) / 2
+                                  : !want.empty() ? (want[0].low + want[0].high) / 2
+                                                  : 0.0;
+            return Offender{
+                .text = at(probe) +
+                        (column.broken.empty() ? "the model has " + told(have) : column.broken) +
+                        "; the closed form has " + told(want),
+                .block = !have.empty() ? have[0].block : -1,
+                .place = std::array<double, 3>{p[0], p[1], height}};
+        });
+    }
+
+    void on_surfaces(std::size_t probe, std::span<const Crossing> crossings,
+                     const ClosedColumn& closed, double allowed, Findings& found) const {
+        for (const Crossing& c : crossings) {
+            const std::int32_t surface = model_.face_surface[static_cast<std::size_t>(c.face)];
+            if (surface < 0) continue;  // a base is level: all of them were looked at
+            ++found.examined;
+            const auto height = closed.surface_height[static_cast<std::size_t>(surface)];
+            if (height && std::abs(*height - c.height) <= allowed) continue;
+            if (near_edge(probe)) {
+                ++found.undecided;
+                continue;
+            }
+            found.fail([&] {
+                const PlanPosition& p = probes_.probes[probe].place;
+                return Offender{.text = at(probe) + "face " + std::to_string(c.face) +
+                                        " lies at height " + figure(c.height) + ", the surface " +
+                                        std::to_string(surface) + " that it names " +
+                                        (height ? "at " + figure(*height) : "nowhere"),
+                                .face = c.face,
+                                .place = std::array<double, 3>{p[0], p[1], c.height}};
+            });
+        }
+    }
+
+    void beside_wall(std::size_t probe, const ModelColumn& column, const ClosedColumn& closed,
+                     double allowed, Findings& found) const {
+        const Probe& p = probes_.probes[probe];
+        const auto w = static_cast<std::size_t>(p.wall);
+        const WallSample& wall = probes_.walls[w];
+        ++found.examined;
+        // so far may the borders rise or fall on the way from the wall to here
+        const double margin = allowed + closed.slope * (rounding_.step + rounding_.near);
+        bool at_border = wall.half_width <= margin || !column.broken.empty();
+        std::int32_t have = -1;
+        for (const Interval& i : column.intervals) {
+            if (i.low < wall.height && wall.height < i.high) have = i.block;
+            at_border |=
+                std::abs(i.low - wall.height) <= margin || std::abs(i.high - wall.height) <= margin;
+        }
+        const std::int32_t cell =
+            model_.cell(static_cast<std::size_t>(wall.face), static_cast<std::size_t>(p.side));
+        const std::int32_t named = model_.block(cell);
+        if (have == named) return;
+        if (at_border || model_columns_.crowded(w) || near_edge(probe)) {
+            ++found.undecided;
+            return;
+        }
+        found.fail([&] {
+            const auto name = [](std::int32_t block) {
+                return block < 0 ? std::string("the outside") : "block " + std::to_string(block);
+            };
+            return Offender{.text = "wall " + std::to_string(wall.face) + " has " + name(named) +
+                                    " on its " + (p.side == 0 ? "first" : "second") +
+                                    " side, but " + name(have) + " lies there",
+                            .cell = cell,
+                            .face = wall.face,
+                            .place = std::array<double, 3>{p.place[0], p.place[1], wall.height}};
+        });
+    }
+
+    const ComplexView& model_;
+    const ModelInput& input_;
+    const Probes& probes_;
+    const PlanRounding& rounding_;
+    const ModelColumns& model_columns_;
+    const InputColumns& input_columns_;
+};
+
+void require_vertices(const ModelInput& input) {
+    const auto check = [](std::span<const std::int32_t> triangles, std::size_t vertices,
+                          int surface) {
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            if (triangles[i] >= 0 && static_cast<std::size_t>(triangles[i]) < vertices) continue;
+            throw InputError("bad_index", "a triangle names a vertex that is not there", surface,
+                             {static_cast<std::int64_t>(i / 3)});
+        }
+    };
+    int surface = 0;
+    for (const strata::StackInput& rock : input.rocks) {
+        for (const strata::SurfaceView& s : rock.surfaces)
+            check(s.triangles, s.vertices.size() / 3, surface++);
+        if (rock.region) check(rock.region->triangles, rock.region->vertices.size() / 2, -1);
+    }
+}
+
+}  // namespace
+
+std::vector<TestResult> check_samples(const ComplexView& model, const ModelInput& input,
+                                      std::int64_t places, std::uint64_t seed, int threads,
+                                      Progress* progress) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto report = [&](double fraction, const char* text) {
+        if (progress == nullptr) return;
+        progress->check();
+        progress->report(fraction, text);
+    };
+    report(0.0, "choosing places");
+    require_vertices(input);
+    const PlanRounding rounding(largest_plan_coordinate(model, input));
+    const Probes probes = choose_probes(model, input, places, seed, rounding, progress);
+    report(0.1, "finding the faces there");
+    const ModelColumns model_columns(model, probes, rounding, threads, progress);
+    report(0.5, "finding the surfaces there");
+    const InputColumns input_columns(input, probes, rounding, threads, progress);
+    report(0.7, "comparing with the closed form");
+    const Comparison comparison(model, input, probes, rounding, model_columns, input_columns);
+    constexpr std::size_t kProbesOfChunk = 64;
+    const std::size_t count = probes.probes.size();
+    std::vector<SampleFindings> found((count + kProbesOfChunk - 1) / kProbesOfChunk);
+    strata::parallel_chunks(found.size(), threads, progress, [&](std::size_t chunk) {
+        for (std::size_t i = chunk * kProbesOfChunk;
+             i < std::min(count, (chunk + 1) * kProbesOfChunk); ++i)
+            comparison.look(i, found[chunk]);
+    });
+    SampleFindings all;
+    for (const SampleFindings& part : found)
+        all.append(part);
+    all.walls.examined += 2 * probes.narrow_walls;
+    all.walls.undecided += 2 * probes.narrow_walls;
+    report(1.0, "comparing with the closed form");
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    // what the three cost is one thing, told with the first
+    return {{"places", "places", std::move(all.places), seconds.count()},
+            {"surfaces", "faces met", std::move(all.surfaces), 0.0},
+            {"walls", "wall sides", std::move(all.walls), 0.0}};
+}
+
+}  // namespace realmodel::validation
