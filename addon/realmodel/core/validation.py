@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .errors import UsageError, place_text
-from .methods import check_threads
+from .method_options import check_threads
 from .planar_mesh import triangulate_rings
 from .work import Cancel, Progress, Work, native_module, run
 
