@@ -8,34 +8,14 @@ namespace realmodel::exact {
 
 namespace {
 
-/// The corners of a plane's triangle.
-class Corners {
-public:
-    Corners(const PlanGeometry& geometry, PlaneId plane) : space_(geometry.plane(plane).corner) {
-        for (std::size_t i = 0; i < 3; ++i)
-            plan_[i] = geometry.space(space_[i]).plan;
-    }
-    /// The one above a plan vertex, -1 where there is none.
-    SpaceId above(VertexId vertex) const {
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (plan_[i] == vertex) return space_[i];
-        }
-        return -1;
-    }
-
-private:
-    const std::array<SpaceId, 3>& space_;
-    std::array<VertexId, 3> plan_;
-};
-
 /// The side of a plane's triangle that stands on one of a crossing's two lines.
 std::optional<HeightName> standing_edge(const PlanGeometry& geometry, PlaneId plane,
                                         const std::array<const Line*, 2>& lines) {
-    const Corners corners(geometry, plane);
+    const Plane& triangle = geometry.plane(plane);
     for (const Line* line : lines) {
         if (line->kind != Line::Kind::kEdge) continue;
-        const SpaceId s = corners.above(line->first);
-        const SpaceId t = s < 0 ? -1 : corners.above(line->second);
+        const SpaceId s = triangle.above(line->first);
+        const SpaceId t = s < 0 ? -1 : triangle.above(line->second);
         if (t >= 0) return HeightName{std::min(s, t), std::max(s, t)};
     }
     return std::nullopt;

@@ -11,9 +11,12 @@ namespace {
 
 using Extended = long double;
 
-/// Bound on the relative error of one operation: 2^-64, and a little for the bounds' own rounding.
-/// The exponents of extended numbers are so wide that nothing made of a few doubles leaves them.
-constexpr Extended kUnit = 0x1.001p-64L;
+/// Bound on the relative error of one operation: 2^-64, and a little for what bounds lose to their
+/// own rounding. The exponents of extended numbers are so wide that nothing made of a few doubles
+/// leaves them; where a bound itself overflows nothing is known.
+constexpr double kUnit = 0x1.01p-64;
+/// Covers what the bounds lose where doubles underflow.
+constexpr double kTiny = 0x1p-1000;
 
 /// Whether operations round to 64 bits here, as they may not under an emulator or where another
 /// library changed the precision.
@@ -25,120 +28,134 @@ bool is_extended() {
 }
 const bool kExtended = is_extended();
 
-constexpr Extended kUnknown = HUGE_VALL;
-
-Extended size(Extended value) {
-    return std::fabs(value);
+/// The size of a number as far as bounds need it.
+double size(Extended value) {
+    return std::abs(static_cast<double>(value));
 }
 
-/// A quotient and a bound on its error.
-struct NearQuotient {
-    Extended value, error;
-};
-NearQuotient near_quotient(Extended numerator, Extended numerator_error, Extended denominator,
-                           Extended denominator_error) {
-    const Extended least = size(denominator) - denominator_error;
-    if (!(least > 0)) return {0, kUnknown};
-    const Extended value = numerator / denominator;
-    return {value, (numerator_error + size(value) * denominator_error) / least * (1 + 8 * kUnit) +
-                       kUnit * size(value)};
+Near sum(const Near& a, const Near& b) {
+    const Extended value = a.value + b.value;
+    return {value, a.error + b.error + kUnit * size(value)};
+}
+
+Near operator-(const Near& a) {
+    return {-a.value, a.error};
+}
+
+/// s * t - u * v of numbers with errors.
+Near determinant(const Near& s, const Near& t, const Near& u, const Near& v) {
+    const Extended st = s.value * t.value, uv = u.value * v.value;
+    const double error = size(s.value) * t.error + (size(t.value) + t.error) * s.error +
+                         size(u.value) * v.error + (size(v.value) + v.error) * u.error +
+                         3 * kUnit * (size(st) + size(uv));
+    return {st - uv, error == 0 && st == 0 && uv == 0 ? 0 : error + kTiny};
+}
+
+/// The same of differences of doubles, each of which errs by one unit: three for a product.
+Near determinant(Extended s, Extended t, Extended u, Extended v) {
+    const Extended st = s * t, uv = u * v;
+    return {st - uv, st == 0 && uv == 0 ? 0 : 5 * kUnit * (size(st) + size(uv)) + kTiny};
+}
+
+Near quotient(const Near& numerator, const Near& denominator) {
+    const double least = size(denominator.value) * (1 - 0x1p-50) - denominator.error;
+    if (!(least > 0)) return {0, HUGE_VAL};
+    const Extended value = numerator.value / denominator.value;
+    const double error =
+        (numerator.error + size(value) * denominator.error) / least + kUnit * size(value);
+    return {value, error == 0 && value == 0 ? 0 : error + kTiny};
 }
 
 /// The double nearest to the true value, or nothing where the bound leaves two to choose from.
-std::optional<double> nearest(Extended value, Extended error) {
-    const Extended slack = error == 0 ? 0 : error * (1 + 8 * kUnit) + 2 * kUnit * size(value);
+std::optional<double> nearest(Extended value, double error) {
+    const double slack =
+        error == 0 ? 0 : error * (1 + 0x1p-40) + 2 * kUnit * size(value) + 8 * kTiny;
     const auto up = static_cast<double>(value + slack);
     const auto down = static_cast<double>(value - slack);
-    if (up == down && std::isfinite(up)) return up;
+    if (up == down && std::isfinite(up)) return up + 0.0;  // 0 is not negative
     return std::nullopt;
 }
 
-}  // namespace
-
-NearGradient near_gradient(const PlanGeometry& g, PlaneId plane) {
-    const auto& corner = g.plane(plane).corner;
+/// The normal of a plane.
+struct NearNormal {
+    Near a, b, c;
+};
+NearNormal near_normal(const PlanGeometry& g, PlaneId plane) {
+    const auto& [corner, plan] = g.plane(plane);
     const SpaceVertex &s0 = g.space(corner[0]), &s1 = g.space(corner[1]), &s2 = g.space(corner[2]);
-    const Point &p0 = g.point(s0.plan), &p1 = g.point(s1.plan), &p2 = g.point(s2.plan);
+    const Point &p0 = g.point(plan[0]), &p1 = g.point(plan[1]), &p2 = g.point(plan[2]);
     const Extended ux = Extended(p1.x) - p0.x, uy = Extended(p1.y) - p0.y;
     const Extended vx = Extended(p2.x) - p0.x, vy = Extended(p2.y) - p0.y;
     const Extended uz = Extended(s1.z) - s0.z, vz = Extended(s2.z) - s0.z;
-    // Each product of two differences errs by three units, their difference by one more.
-    const Extended a1 = uz * vy, a2 = uy * vz, b1 = ux * vz, b2 = uz * vx, c1 = ux * vy,
-                   c2 = uy * vx;
-    const Extended error_c = 5 * kUnit * (size(c1) + size(c2));
-    const NearQuotient x =
-        near_quotient(a1 - a2, 5 * kUnit * (size(a1) + size(a2)), c1 - c2, error_c);
-    const NearQuotient y =
-        near_quotient(b1 - b2, 5 * kUnit * (size(b1) + size(b2)), c1 - c2, error_c);
-    if (!kExtended) return {0, 0, kUnknown, kUnknown};
-    return {x.value, y.value, x.error, y.error};
+    return {determinant(uy, vz, uz, vy), determinant(uz, vx, ux, vz), determinant(ux, vy, uy, vx)};
 }
+
+/// What is added to a height along x and along y.
+struct NearGradient {
+    Near x, y;
+};
+NearGradient near_gradient(const PlanGeometry& g, PlaneId plane) {
+    const NearNormal n = near_normal(g, plane);
+    return {quotient(-n.a, n.c), quotient(-n.b, n.c)};
+}
+
+/// b - a of doubles.
+Near difference(double a, double b) {
+    const Extended value = Extended(b) - a;
+    return {value, kUnit * size(value)};
+}
+
+}  // namespace
 
 NearLine near_line(const PlanGeometry& g, const Line& line, VertexId origin) {
     const Point& o = g.point(origin);
     if (line.kind == Line::Kind::kEdge) {
         const Point &p = g.point(line.first), &q = g.point(line.second);
-        const Extended a = Extended(p.y) - q.y, b = Extended(q.x) - p.x;
-        if (!kExtended) return {0, 0, 0, kUnknown, kUnknown, kUnknown};
-        if (line.first == origin) return {a, b, 0, kUnit * size(a), kUnit * size(b), 0};
-        const Extended u = a * (Extended(p.x) - o.x), v = b * (Extended(p.y) - o.y);
-        return {a, b, -(u + v), kUnit * size(a), kUnit * size(b), 5 * kUnit * (size(u) + size(v))};
+        const Near a = difference(q.y, p.y), b = difference(p.x, q.x);
+        if (line.first == origin) return {a, b, {0, 0}};
+        // a (x - px) + b (y - py) at the origin
+        return {a, b, determinant(a, difference(p.x, o.x), -b, difference(p.y, o.y))};
     }
     const NearGradient p = near_gradient(g, line.first), q = near_gradient(g, line.second);
     const SpaceVertex& sp = g.space(g.plane(line.first).corner[0]);
     const SpaceVertex& sq = g.space(g.plane(line.second).corner[0]);
     const Point &vp = g.point(sp.plan), &vq = g.point(sq.plan);
-    const Extended px = Extended(vp.x) - o.x, py = Extended(vp.y) - o.y;
-    const Extended qx = Extended(vq.x) - o.x, qy = Extended(vq.y) - o.y;
-    const Extended p1 = p.x * px, p2 = p.y * py, q1 = q.x * qx, q2 = q.y * qy;
-    const Extended rise = Extended(sp.z) - sq.z;
-    return {p.x - q.x,
-            p.y - q.y,
-            rise - (p1 + p2) + (q1 + q2),
-            p.error_x + q.error_x + 2 * kUnit * (size(p.x) + size(q.x)),
-            p.error_y + q.error_y + 2 * kUnit * (size(p.y) + size(q.y)),
-            (p.error_x * size(px) + p.error_y * size(py) + q.error_x * size(qx) +
-             q.error_y * size(qy)) *
-                    (1 + 8 * kUnit) +
-                8 * kUnit * (size(rise) + size(p1) + size(p2) + size(q1) + size(q2))};
+    const Near p_rise = determinant(p.x, difference(vp.x, o.x), -p.y, difference(vp.y, o.y));
+    const Near q_rise = determinant(q.x, difference(vq.x, o.x), -q.y, difference(vq.y, o.y));
+    const Near p_height = sum({sp.z, 0}, p_rise), q_height = sum({sq.z, 0}, q_rise);
+    return {sum(p.x, -q.x), sum(p.y, -q.y), sum(p_height, -q_height)};
 }
 
-std::optional<double> nearest_sum(double from, Extended value, Extended error) {
-    const Extended sum = from + value;
-    return nearest(sum, error == 0 && value == 0 ? 0 : error + kUnit * size(sum));
+std::optional<double> nearest_sum(double from, const Near& value) {
+    if (!kExtended) return std::nullopt;
+    const Extended whole = from + value.value;
+    const bool exact = value.error == 0 && value.value == 0;
+    return nearest(whole, exact ? 0 : value.error + kUnit * size(whole));
 }
 
 std::optional<double> near_height(const PlanGeometry& g, PlaneId plane, const NearPoint& p) {
     const SpaceVertex& corner = g.space(g.plane(plane).corner[0]);
     const Point &c = g.point(corner.plan), &o = g.point(p.origin);
-    const NearGradient slope = near_gradient(g, plane);
-    const Extended from_x = Extended(o.x) - c.x, from_y = Extended(o.y) - c.y;
-    const Extended dx = from_x + p.x, dy = from_y + p.y;
-    const Extended error_dx = p.error_x + kUnit * (size(from_x) + size(dx));
-    const Extended error_dy = p.error_y + kUnit * (size(from_y) + size(dy));
-    const Extended u = slope.x * dx, v = slope.y * dy;
-    const Extended error = slope.error_x * size(dx) + (size(slope.x) + slope.error_x) * error_dx +
-                           slope.error_y * size(dy) + (size(slope.y) + slope.error_y) * error_dy +
-                           3 * kUnit * (size(u) + size(v));
-    return nearest_sum(corner.z, u + v, error * (1 + 16 * kUnit));
+    const NearNormal n = near_normal(g, plane);
+    const Near dx = sum(difference(c.x, o.x), p.x), dy = sum(difference(c.y, o.y), p.y);
+    return nearest_sum(corner.z, -quotient(determinant(n.a, dx, -n.b, dy), n.c));
 }
 
 std::optional<std::array<double, 3>> near_line_key(const NearLine& l) {
-    const Extended a = size(l.a), b = size(l.b);
-    const Extended either = l.error_a + l.error_b + kUnit * (a + b);
+    if (!kExtended) return std::nullopt;
+    const double a = size(l.a.value), b = size(l.b.value);
+    const double either = l.a.error + l.b.error + 0x1p-50 * (a + b);
     const bool steep = a - b > either;
     if (!steep && !(b - a > either)) return std::nullopt;
-    const NearQuotient slope = steep ? near_quotient(l.b, l.error_b, l.a, l.error_a)
-                                     : near_quotient(l.a, l.error_a, l.b, l.error_b);
-    const NearQuotient offset = steep ? near_quotient(l.c, l.error_c, l.a, l.error_a)
-                                      : near_quotient(l.c, l.error_c, l.b, l.error_b);
+    const Near& divisor = steep ? l.a : l.b;
+    const Near slope = quotient(steep ? l.b : l.a, divisor), offset = quotient(l.c, divisor);
     const auto s = nearest(slope.value, slope.error), t = nearest(offset.value, offset.error);
     if (!s || !t) return std::nullopt;
     return std::array<double, 3>{steep ? 1.0 : 0.0, *s, *t};
 }
 
 NearPoint Scope::near(PointId id) const {
-    if (is_vertex(id)) return {id, 0, 0, 0, 0};
+    if (is_vertex(id)) return {id, {0, 0}, {0, 0}};
     return near(point(id));
 }
 
@@ -150,20 +167,9 @@ NearPoint Scope::near(const Point& p) const {
                                 ? l->first
                                 : shared_.space(shared_.plane(l->first).corner[0]).plan;
     const NearLine a = near_line(shared_, *l, origin), b = near_line(shared_, *m, origin);
-    // a product of two inexact numbers, less another one
-    const auto error = [](Extended s, Extended es, Extended t, Extended et, Extended u, Extended eu,
-                          Extended v, Extended ev) {
-        return (size(s) * et + (size(t) + et) * es + size(u) * ev + (size(v) + ev) * eu) *
-                   (1 + 8 * kUnit) +
-               3 * kUnit * (size(s * t) + size(u * v));
-    };
-    const Extended w = a.a * b.b - b.a * a.b;
-    const Extended error_w = error(a.a, a.error_a, b.b, b.error_b, b.a, b.error_a, a.b, a.error_b);
-    const Extended error_x = error(a.b, a.error_b, b.c, b.error_c, b.b, b.error_b, a.c, a.error_c);
-    const Extended error_y = error(a.c, a.error_c, b.a, b.error_a, b.c, b.error_c, a.a, a.error_a);
-    const NearQuotient x = near_quotient(a.b * b.c - b.b * a.c, error_x, w, error_w);
-    const NearQuotient y = near_quotient(a.c * b.a - b.c * a.a, error_y, w, error_w);
-    return {origin, x.value, y.value, x.error, y.error};
+    const Near w = determinant(a.a, b.b, b.a, a.b);
+    return {origin, quotient(determinant(a.b, b.c, b.b, a.c), w),
+            quotient(determinant(a.c, b.a, b.c, a.a), w)};
 }
 
 }  // namespace realmodel::exact

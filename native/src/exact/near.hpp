@@ -14,21 +14,13 @@ namespace realmodel::exact {
 
 /// a x + b y + c relative to a plan vertex.
 struct NearLine {
-    long double a, b, c;
-    long double error_a, error_b, error_c;
+    Near a, b, c;
 };
 NearLine near_line(const PlanGeometry& geometry, const Line& line, VertexId origin);
 
-/// The gradient of a plane.
-struct NearGradient {
-    long double x, y;
-    long double error_x, error_y;
-};
-NearGradient near_gradient(const PlanGeometry& geometry, PlaneId plane);
-
 /// The double nearest to `from` and a number close to `value`, or nothing where the bound on its
 /// error leaves two to choose from.
-std::optional<double> nearest_sum(double from, long double value, long double error);
+std::optional<double> nearest_sum(double from, const Near& value);
 
 /// The height of a plane above a point, likewise.
 std::optional<double> near_height(const PlanGeometry& geometry, PlaneId plane,

@@ -72,7 +72,8 @@ PlaneId PlanGeometry::add_plane(const std::array<SpaceId, 3>& corner) {
     filter.error_y = safe ? (error_b + std::abs(filter.gy) * error_c) / least * (1 + 0x1p-40) +
                                 kEpsilon * std::abs(filter.gy)
                           : HUGE_VAL;
-    planes_.push_back({corner});
+    planes_.push_back(
+        {corner, {space(corner[0]).plan, space(corner[1]).plan, space(corner[2]).plan}});
     plane_filters_.push_back(filter);
     return static_cast<PlaneId>(planes_.size() - 1);
 }
@@ -114,13 +115,6 @@ PointId PlanGeometry::add_point(const Point& point) {
         points_.push_back(point);
     }
     return found.number + static_cast<PointId>(vertex_count_);
-}
-
-SpaceId PlanGeometry::corner_above(PlaneId plane_id, VertexId vertex) const {
-    for (const SpaceId s : plane(plane_id).corner) {
-        if (space(s).plan == vertex) return s;
-    }
-    return -1;
 }
 
 LineFilter PlanGeometry::edge_filter(VertexId from, VertexId to) const {

@@ -15,8 +15,8 @@ namespace realmodel::exact {
 void Scope::locate(Point& p) {
     const NearPoint close = near(p);
     const Point& from = shared_.point(close.origin);
-    auto x = nearest_sum(from.x, close.x, close.error_x);
-    auto y = nearest_sum(from.y, close.y, close.error_y);
+    auto x = nearest_sum(from.x, close.x);
+    auto y = nearest_sum(from.y, close.y);
     if (!x || !y) {
         const Line& l = line(p.first);
         const Line& m = line(p.second);

@@ -25,9 +25,10 @@ struct ExtraPoint {
 
 /// The points in use, those in the same position taken together, in order of rounded x, then y.
 struct Places {
-    FlatArray<PlaceId> of_point;        ///< -1 for points that no face uses
-    FlatArray<PointId> representative;  ///< an input vertex where one is there
-    FlatArray<PlanPosition> position;   ///< rounded
+    FlatArray<PlaceId> of_point;          ///< -1 for points that no face uses
+    FlatArray<PointId> representative;    ///< an input vertex where one is there
+    FlatArray<PlanPosition> position;     ///< rounded
+    FlatArray<std::uint8_t> same_x_next;  ///< 1 where the next place rounds to the same x
     std::vector<PlaceId> crowded;  ///< those that round to the position of the place before them
 
     std::size_t size() const { return representative.size(); }

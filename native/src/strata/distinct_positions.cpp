@@ -89,7 +89,6 @@ struct Extent {
         }
     }
     bool is_flat(std::size_t axis) const { return low[axis] == high[axis]; }
-    bool is_flat() const { return is_flat(0) || is_flat(1); }
 };
 
 /// Finds cells whose places all have one x, or one y, and spreads them.
@@ -135,6 +134,17 @@ private:
         return static_cast<std::size_t>(places_.of_point[static_cast<std::size_t>(corner.point)]);
     }
 
+    bool is_flat(PolygonView face) const {
+        const PlanPosition& first = spreader_.at(place_of(face[0]));
+        bool same_x = true, same_y = true;
+        for (std::size_t i = 1; i < face.size() && (same_x || same_y); ++i) {
+            const PlanPosition& next = spreader_.at(place_of(face[i]));
+            same_x = same_x && next[0] == first[0];
+            same_y = same_y && next[1] == first[1];
+        }
+        return same_x || same_y;
+    }
+
     /// The cells above and below faces that are flat themselves, ascending.
     std::vector<std::int32_t> cells_of_flat_faces() const {
         constexpr std::size_t kFaces = 1 << 13;
@@ -142,10 +152,7 @@ private:
         parallel_ranges(faces_.size(), kFaces, threads_, progress_,
                         [&](std::size_t begin, std::size_t end) {
                             for (std::size_t f = begin; f < end; ++f) {
-                                Extent extent;
-                                for (const Corner& corner : faces_.polygons[f])
-                                    extent.include(spreader_.at(place_of(corner)));
-                                if (!extent.is_flat()) continue;
+                                if (!is_flat(faces_.polygons[f])) continue;
                                 for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
                                     if (cell != kOutsideCell) found[begin / kFaces].push_back(cell);
                                 }

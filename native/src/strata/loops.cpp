@@ -14,12 +14,11 @@ namespace {
 
 constexpr std::size_t kFaces = 1 << 12, kEntries = 1 << 15, kPlaces = 1 << 11;  // at a time
 
-/// What faces have on places, sorted by place: first their planes, then which of the heights
-/// there those planes have.
+/// What faces have on places, sorted by place.
 struct FacesOnPlaces {
-    FlatArray<PlaceId> place;               ///< of each entry
-    FlatArray<std::uint32_t> offsets;       ///< of each place
-    FlatArray<std::int32_t> plane_or_rank;  ///< in the order of places
+    FlatArray<std::uint32_t> offsets;  ///< of each place
+    /// First the planes of the faces, then which of the heights there those have, at last vertices.
+    FlatArray<std::int32_t> values;
 };
 
 /// Numbers the entries: each edge has one for each place on it but its far end.
@@ -52,45 +51,81 @@ void number_entries(const FaceList& faces, const Tracks& tracks, Loops& loops, i
         });
 }
 
-/// Sorts the entries by place. Which of a place's entries comes first is left to chance;
-/// `loops.vertices` says where each stands among them.
-FacesOnPlaces sort_by_place(const FaceList& faces, const Places& places, const Tracks& tracks,
-                            Loops& loops, int threads, const Progress* progress) {
-    const std::size_t entries = loops.face_offsets[faces.size()];
-    FacesOnPlaces on;
-    on.place = FlatArray<PlaceId>(entries);
-    on.offsets = zeros<std::uint32_t>(places.size() + 1, threads, progress);
-    loops.vertices = FlatArray<std::int32_t>(entries);
+/// The places that faces pass, entry by entry.
+FlatArray<PlaceId> places_of_entries(const Tracks& tracks, const Loops& loops, std::size_t entries,
+                                     int threads, const Progress* progress) {
+    FlatArray<PlaceId> place(entries);
     parallel_ranges(loops.edge_begin.size(), 4 * kFaces, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t c = begin; c < end; ++c) {
                             const auto [first, steps] = tracks.passed[c];
                             const PlaceId* along = tracks.places.begin() + first;
-                            PlaceId* to = on.place.begin() + loops.edge_begin[c];
+                            PlaceId* to = place.begin() + loops.edge_begin[c];
                             const std::int32_t step = steps > 0 ? 1 : -1;
                             for (std::int32_t i = 0; i != steps; i += step)
                                 *to++ = along[i];
                         }
                     });
-    parallel_ranges(entries, kEntries, threads, progress, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            loops.vertices[i] = static_cast<std::int32_t>(
-                count_one(on.offsets[static_cast<std::size_t>(on.place[i])]));
-        }
-    });
+    return place;
+}
+
+/// Sorts the entries by place. Which of a place's entries comes first is left to chance;
+/// `loops.vertices` says where each stands.
+FacesOnPlaces sort_by_place(const FaceList& faces, const FlatArray<PlaceId>& place,
+                            std::size_t places, Loops& loops, int threads,
+                            const Progress* progress) {
+    FacesOnPlaces on;
+    on.offsets = zeros<std::uint32_t>(places + 1, threads, progress);
+    loops.vertices = FlatArray<std::int32_t>(place.size());
+    const auto offset_of = [&](std::size_t entry) -> std::uint32_t& {
+        return on.offsets[static_cast<std::size_t>(place[entry])];
+    };
+    const auto prefetch_offset = [&](std::size_t entry) {
+        prefetch(&offset_of(std::min(entry + 32, place.size() - 1)));
+    };
+    parallel_ranges(place.size(), kEntries, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                            prefetch_offset(i);
+                            loops.vertices[i] = static_cast<std::int32_t>(count_one(offset_of(i)));
+                        }
+                    });
     running_totals(on.offsets, UINT32_MAX, threads, progress);
-    on.plane_or_rank = FlatArray<std::int32_t>(entries);
+    on.values = FlatArray<std::int32_t>(place.size());
     parallel_ranges(
         faces.size(), kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
             for (std::size_t f = begin; f < end; ++f) {
                 const PlaneId plane = faces.plane[f];
                 for (auto i = loops.face_offsets[f]; i < loops.face_offsets[f + 1]; ++i) {
-                    on.plane_or_rank[on.offsets[static_cast<std::size_t>(on.place[i])] +
-                                     static_cast<std::uint32_t>(loops.vertices[i])] = plane;
+                    prefetch_offset(i);
+                    const std::uint32_t at =
+                        offset_of(i) + static_cast<std::uint32_t>(loops.vertices[i]);
+                    on.values[at] = plane;
+                    loops.vertices[i] = static_cast<std::int32_t>(at);
                 }
             }
         });
     return on;
+}
+
+/// Asks for what is known of the places after one. They come in order of position, what they are
+/// made of in the order in which it was made.
+[[gnu::always_inline]] inline void prefetch_points(const PlanGeometry& geometry,
+                                                   const Places& places, std::size_t place) {
+    const auto point = [&](std::size_t ahead) -> const exact::Point& {
+        return geometry.point(places.representative[std::min(place + ahead, places.size() - 1)]);
+    };
+    prefetch(&point(24));
+    for (const LineId line : {point(16).first, point(16).second}) {
+        if (line >= 0) prefetch(&geometry.line(line));
+    }
+    for (const LineId id : {point(8).first, point(8).second}) {
+        if (id < 0) continue;
+        const exact::Line& line = geometry.line(id);
+        if (line.kind != exact::Line::Kind::kEdge) continue;
+        prefetch(&geometry.point(line.first));
+        prefetch(&geometry.point(line.second));
+    }
 }
 
 /// Finds the heights on each place and turns planes into ranks. Equal doubles among the heights of
@@ -100,23 +135,23 @@ std::vector<std::vector<double>> find_heights(const PlanGeometry& geometry, cons
                                               const Progress* progress) {
     loops.place_offsets = FlatArray<std::int32_t>(places.size() + 1);
     std::vector<std::vector<double>> heights((places.size() + kPlaces - 1) / kPlaces);
-    parallel_ranges(places.size(), kPlaces, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        PlaceHeights of_place(geometry);
-                        auto& all = heights[begin / kPlaces];
-                        for (std::size_t p = begin; p < end; ++p) {
-                            of_place.find(places.representative[p],
-                                          {on.plane_or_rank.begin() + on.offsets[p],
-                                           on.plane_or_rank.begin() + on.offsets[p + 1]});
-                            const std::size_t first = all.size();
-                            for (double z : of_place.heights()) {
-                                if (all.size() > first && z <= all.back())
-                                    z = std::nextafter(all.back(), HUGE_VAL);
-                                all.push_back(z);
-                            }
-                            loops.place_offsets[p] = static_cast<std::int32_t>(all.size() - first);
-                        }
-                    });
+    parallel_ranges(
+        places.size(), kPlaces, threads, progress, [&](std::size_t begin, std::size_t end) {
+            PlaceHeights of_place(geometry);
+            auto& all = heights[begin / kPlaces];
+            for (std::size_t p = begin; p < end; ++p) {
+                prefetch_points(geometry, places, p);
+                of_place.find(places.representative[p], {on.values.begin() + on.offsets[p],
+                                                         on.values.begin() + on.offsets[p + 1]});
+                const std::size_t first = all.size();
+                for (double z : of_place.heights()) {
+                    if (all.size() > first && z <= all.back())
+                        z = std::nextafter(all.back(), HUGE_VAL);
+                    all.push_back(z);
+                }
+                loops.place_offsets[p] = static_cast<std::int32_t>(all.size() - first);
+            }
+        });
     running_totals(loops.place_offsets, INT32_MAX, threads, progress);
     return heights;
 }
@@ -127,33 +162,40 @@ Loops find_loops(const PlanGeometry& geometry, const FaceList& faces, const Plac
                  Tracks& tracks, int threads, const Progress* progress) {
     Loops loops;
     number_entries(faces, tracks, loops, threads, progress);
-    FacesOnPlaces on = sort_by_place(faces, places, tracks, loops, threads, progress);
-    tracks.places = {};
-    tracks.passed = {};
+    FacesOnPlaces on;
+    {
+        const auto place =
+            places_of_entries(tracks, loops, loops.face_offsets[faces.size()], threads, progress);
+        tracks.places = {};
+        tracks.passed = {};
+        on = sort_by_place(faces, place, places.size(), loops, threads, progress);
+    }
     auto heights = find_heights(geometry, places, on, loops, threads, progress);
+    loops.positions.resize(static_cast<std::size_t>(loops.place_offsets[places.size()]));
+    parallel_ranges(places.size(), kPlaces, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        auto& all = heights[begin / kPlaces];
+                        auto z = all.begin();
+                        for (std::size_t p = begin; p < end; ++p) {
+                            const std::int32_t first = loops.place_offsets[p];
+                            const auto [x, y] = places.position[p];
+                            for (auto v = first; v < loops.place_offsets[p + 1]; ++v)
+                                loops.positions[static_cast<std::size_t>(v)] = {x, y, *z++};
+                            for (auto i = on.offsets[p]; i < on.offsets[p + 1]; ++i)
+                                on.values[i] += first;
+                        }
+                        all = {};
+                    });
     parallel_ranges(loops.vertices.size(), kEntries, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
+                        const auto vertex = [&](std::size_t i) -> const std::int32_t& {
+                            return on.values[static_cast<std::uint32_t>(loops.vertices[i])];
+                        };
                         for (std::size_t i = begin; i < end; ++i) {
-                            const auto place = static_cast<std::size_t>(on.place[i]);
-                            loops.vertices[i] =
-                                loops.place_offsets[place] +
-                                on.plane_or_rank[on.offsets[place] +
-                                                 static_cast<std::uint32_t>(loops.vertices[i])];
+                            prefetch(&vertex(std::min(i + 32, end - 1)));
+                            loops.vertices[i] = vertex(i);
                         }
                     });
-    on = {};
-    loops.positions.resize(static_cast<std::size_t>(loops.place_offsets[places.size()]));
-    parallel_ranges(
-        places.size(), kPlaces, threads, progress, [&](std::size_t begin, std::size_t end) {
-            auto& all = heights[begin / kPlaces];
-            auto z = all.begin();
-            for (std::size_t p = begin; p < end; ++p) {
-                const auto [x, y] = places.position[p];
-                for (auto v = loops.place_offsets[p]; v < loops.place_offsets[p + 1]; ++v)
-                    loops.positions[static_cast<std::size_t>(v)] = {x, y, *z++};
-            }
-            all = {};
-        });
     return loops;
 }
 

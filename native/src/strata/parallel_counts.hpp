@@ -79,6 +79,12 @@ inline std::uint32_t count_one(std::uint32_t& counter) {
     return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed);
 }
 
+/// Asks for memory that will be read some rounds later. (Calls that do nothing else are left out by
+/// g++, so this and what calls it for that alone must be inlined.)
+[[gnu::always_inline]] inline void prefetch(const void* address) {
+    __builtin_prefetch(address);
+}
+
 /// Says so of an item, from any thread: all write the same.
 inline void mark(std::uint8_t& flag) {
     std::atomic_ref(flag).store(1, std::memory_order_relaxed);

@@ -22,59 +22,65 @@ public:
     PlacesOnTrack(const PlanGeometry& geometry, const Places& places)
         : scope_(geometry), places_(places) {}
 
-    void clear() { ids_.clear(); }
+    void clear() {
+        added_.clear();
+        known_.clear();
+    }
 
     /// Adds a place, which may be there already.
-    void add(PlaceId place) {
-        // most tracks have a handful of places, each the end of several edges
-        const std::size_t near = std::min(ids_.size(), kFew);
-        for (std::size_t i = 0; i < near; ++i) {
-            if (ids_[i] == place) return;
+    /// @return a number to ask rank() with
+    std::int32_t add(PlaceId place) {
+        // Most tracks have a handful of places, each the end of several edges, and the last ones
+        // are met again soonest.
+        for (std::size_t i = added_.size(), least = i > kFew ? i - kFew : 0; i > least; --i) {
+            if (added_[i - 1] == place) return static_cast<std::int32_t>(i - 1);
         }
-        ids_.push_back(place);
+        added_.push_back(place);
+        return static_cast<std::int32_t>(added_.size()) - 1;
     }
 
     /// To be called when all are there, with a line of the track.
     void sort(LineId line) {
-        std::sort(ids_.begin(), ids_.end());
-        if (ids_.size() > kFew) ids_.erase(std::unique(ids_.begin(), ids_.end()), ids_.end());
-        order_.resize(ids_.size());
+        order_.resize(added_.size());
         std::iota(order_.begin(), order_.end(), 0);
         // places are in order of x, so only where two have the same x more is to be asked
-        const bool doubtful =
-            std::adjacent_find(ids_.begin(), ids_.end(), [&](PlaceId a, PlaceId b) {
-                return position(a)[0] == position(b)[0];
-            }) != ids_.end();
-        if (!doubtful) {
-            rank_ = order_;
-            return;
+        std::sort(order_.begin(), order_.end(),
+                  [&](std::int32_t a, std::int32_t b) { return added(a) < added(b); });
+        if (same_x()) {
+            const auto [x, y] = scope_.direction_signs(line);
+            const int rise = x == 0 ? 1 : x * y;
+            std::sort(order_.begin(), order_.end(), [&](std::int32_t a, std::int32_t b) {
+                return added(a) != added(b) && before(rise, added(a), added(b));
+            });
         }
-        const auto [x, y] = scope_.direction_signs(line);
-        const int rise = x == 0 ? 1 : x * y;
-        std::sort(order_.begin(), order_.end(), [&](std::int32_t a, std::int32_t b) {
-            return before(rise, ids_[static_cast<std::size_t>(a)],
-                          ids_[static_cast<std::size_t>(b)]);
-        });
-        rank_.resize(ids_.size());
-        for (std::size_t i = 0; i < order_.size(); ++i)
-            rank_[static_cast<std::size_t>(order_[i])] = static_cast<std::int32_t>(i);
+        rank_.resize(added_.size());
+        for (const std::int32_t i : order_) {
+            if (known_.empty() || known_.back() != added(i)) known_.push_back(added(i));
+            rank_[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(known_.size()) - 1;
+        }
     }
 
-    std::size_t size() const { return ids_.size(); }
-    /// The i-th place along the track.
-    PlaceId operator[](std::size_t i) const { return ids_[static_cast<std::size_t>(order_[i])]; }
-    /// Which place along the track one is.
-    std::int32_t rank(PlaceId place) const {
-        const auto at = ids_.size() <= kFew ? std::find(ids_.begin(), ids_.end(), place)
-                                            : std::lower_bound(ids_.begin(), ids_.end(), place);
-        return rank_[static_cast<std::size_t>(at - ids_.begin())];
-    }
+    /// The places in order along the track, each once.
+    const std::vector<PlaceId>& in_order() const { return known_; }
+    /// Which of them was added under a number.
+    std::int32_t rank(std::int32_t number) const { return rank_[static_cast<std::size_t>(number)]; }
 
 private:
     static constexpr std::size_t kFew = 16;
 
+    PlaceId added(std::int32_t i) const { return added_[static_cast<std::size_t>(i)]; }
     const PlanPosition& position(PlaceId place) const {
         return places_.position[static_cast<std::size_t>(place)];
+    }
+
+    /// Whether two different places have the same x.
+    bool same_x() const {
+        for (std::size_t i = 1; i < order_.size(); ++i) {
+            const PlaceId a = added(order_[i - 1]), b = added(order_[i]);
+            const bool perhaps = places_.same_x_next[static_cast<std::size_t>(a)] != 0;
+            if (perhaps && a != b && position(a)[0] == position(b)[0]) return true;
+        }
+        return false;
     }
 
     /// Whether place a comes before place b along a track that runs to rising x (and rising or
@@ -92,8 +98,9 @@ private:
 
     Scope scope_;
     const Places& places_;
-    std::vector<PlaceId> ids_;                // ascending once sorted
-    std::vector<std::int32_t> order_, rank_;  // into ids_ along the track, and back
+    std::vector<PlaceId> added_;  ///< some of them twice, where there are many
+    std::vector<PlaceId> known_;  ///< along the track
+    std::vector<std::int32_t> order_, rank_;
 };
 
 /// Finds the face edges of each track; their ends are the places themselves for now.
@@ -166,8 +173,9 @@ Tracks find_tracks(const PlanGeometry& geometry, const FaceList& faces, const Pl
                      ++next_extra)
                     on_track.add(next_extra->second);
                 for (auto e = tracks.edge_offsets[t]; e < tracks.edge_offsets[t + 1]; ++e) {
-                    on_track.add(tracks.edges[e].from);
-                    on_track.add(tracks.edges[e].to);
+                    TrackEdge& edge = tracks.edges[e];
+                    edge.from = on_track.add(edge.from);
+                    edge.to = on_track.add(edge.to);
                 }
                 on_track.sort(tracks.representative[t]);
                 for (auto e = tracks.edge_offsets[t]; e < tracks.edge_offsets[t + 1]; ++e) {
@@ -178,9 +186,9 @@ Tracks find_tracks(const PlanGeometry& geometry, const FaceList& faces, const Pl
                         static_cast<std::uint32_t>(next + static_cast<std::size_t>(edge.from)),
                         edge.to - edge.from};
                 }
-                for (std::size_t i = 0; i < on_track.size(); ++i)
-                    tracks.places[next + i] = on_track[i];
-                next += on_track.size();
+                const auto& in_order = on_track.in_order();
+                std::copy(in_order.begin(), in_order.end(), tracks.places.begin() + next);
+                next += in_order.size();
             }
         });
     return tracks;

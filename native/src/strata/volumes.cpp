@@ -11,13 +11,13 @@ namespace realmodel::strata {
 
 namespace {
 
-/// Sum with a running correction (Neumaier 1974).
+/// Sum with a running correction (Knuth's exact sum of two doubles, added up).
 struct Sum {
     double total = 0, correction = 0;
     void add(double value) {
         const double next = total + value;
-        correction +=
-            std::abs(total) >= std::abs(value) ? (total - next) + value : (value - next) + total;
+        const double added = next - total;
+        correction += (total - (next - added)) + (value - added);
         total = next;
     }
     double value() const { return total + correction; }
@@ -34,11 +34,14 @@ Projection project(const CellComplex& complex, std::size_t face) {
             .vertices[static_cast<std::size_t>(complex.face_vertices[static_cast<std::size_t>(i)])];
     };
     const std::int64_t begin = complex.face_offsets[face], end = complex.face_offsets[face + 1];
+    const auto corners = static_cast<std::int64_t>(complex.face_vertices.size());
+    constexpr std::int64_t kAhead = 40;  // corners
     const auto& origin = corner(begin);
     Projection sum;
     const auto* last = &corner(begin + 1);
     double x = (*last)[0] - origin[0], y = (*last)[1] - origin[1], z = (*last)[2] - origin[2];
     for (std::int64_t i = begin + 2; i < end; ++i) {
+        prefetch(&corner(std::min(i + kAhead, corners - 1)));
         const auto& next = corner(i);
         const double u = next[0] - origin[0], v = next[1] - origin[1], w = next[2] - origin[2];
         const double twice_area = x * v - u * y;
@@ -53,27 +56,38 @@ Projection project(const CellComplex& complex, std::size_t face) {
     return sum;
 }
 
-/// The lowest face of each cell.
-FlatArray<std::int32_t> first_faces(const CellComplex& complex, int threads,
-                                    const Progress* progress) {
-    FlatArray<std::int32_t> first(complex.cell_block.size());
-    std::fill(first.begin(), first.end(), INT32_MAX);
-    parallel_ranges(
-        complex.face_cells.size(), 1 << 14, threads, progress,
-        [&](std::size_t begin, std::size_t end) {
-            for (std::size_t f = begin; f < end; ++f) {
-                for (const std::int32_t cell : complex.face_cells[f]) {
-                    if (cell < 0) continue;
-                    const auto face = static_cast<std::int32_t>(f);
-                    std::atomic_ref least(first[static_cast<std::size_t>(cell)]);
-                    std::int32_t known = least.load(std::memory_order_relaxed);
-                    while (face < known &&
-                           !least.compare_exchange_weak(known, face, std::memory_order_relaxed)) {
-                    }
-                }
-            }
-        });
-    return first;
+/// The height of one corner of each cell: the first of its first face.
+FlatArray<double> anchor_heights(const CellComplex& complex, int threads,
+                                 const Progress* progress) {
+    const std::size_t cells = complex.cell_block.size();
+    FlatArray<std::int32_t> face(cells);
+    parallel_ranges(cells, 1 << 16, threads, progress, [&](std::size_t begin, std::size_t end) {
+        std::fill(face.begin() + begin, face.begin() + end, INT32_MAX);
+    });
+    parallel_ranges(complex.face_cells.size(), 1 << 14, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f) {
+                            for (const std::int32_t cell : complex.face_cells[f]) {
+                                if (cell < 0) continue;
+                                const auto own = static_cast<std::int32_t>(f);
+                                std::atomic_ref least(face[static_cast<std::size_t>(cell)]);
+                                std::int32_t known = least.load(std::memory_order_relaxed);
+                                while (own < known && !least.compare_exchange_weak(
+                                                          known, own, std::memory_order_relaxed)) {
+                                }
+                            }
+                        }
+                    });
+    FlatArray<double> heights(cells);
+    parallel_ranges(cells, 1 << 14, threads, progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) {
+            const auto corner =
+                static_cast<std::size_t>(complex.face_offsets[static_cast<std::size_t>(face[c])]);
+            heights[c] =
+                complex.vertices[static_cast<std::size_t>(complex.face_vertices[corner])][2];
+        }
+    });
+    return heights;
 }
 
 }  // namespace
@@ -81,11 +95,7 @@ FlatArray<std::int32_t> first_faces(const CellComplex& complex, int threads,
 // Walls count too: the rounded corners of one are in line in plan only up to rounding.
 std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks, int threads,
                                   const Progress* progress) {
-    const FlatArray<std::int32_t> first = first_faces(complex, threads, progress);
-    const auto height = [&](std::size_t face) {
-        const auto corner = static_cast<std::size_t>(complex.face_offsets[face]);
-        return complex.vertices[static_cast<std::size_t>(complex.face_vertices[corner])][2];
-    };
+    const FlatArray<double> anchor = anchor_heights(complex, threads, progress);
     // Chunks depend on the input alone, and so do the sums.
     const std::size_t faces = complex.face_cells.size();
     const std::size_t chunk = std::max<std::size_t>(1 << 13, faces / 256 + 1);
@@ -95,13 +105,14 @@ std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks
         of_chunk.resize(blocks);
         for (std::size_t f = begin; f < end; ++f) {
             const Projection below = project(complex, f);
+            const double height = complex.vertices[static_cast<std::size_t>(
+                complex.face_vertices[static_cast<std::size_t>(complex.face_offsets[f])])][2];
             double sign = 1.0;
             for (const std::int32_t cell : complex.face_cells[f]) {
                 if (cell >= 0) {
                     const auto c = static_cast<std::size_t>(cell);
-                    const double rise = height(f) - height(static_cast<std::size_t>(first[c]));
                     of_chunk[static_cast<std::size_t>(complex.cell_block[c])].add(
-                        sign * (below.volume + below.area * rise));
+                        sign * (below.volume + below.area * (height - anchor[c])));
                 }
                 sign = -sign;
             }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <memory>
-#include <tuple>
+#include <utility>
 
 #include "conforming.hpp"
 #include "parallel_counts.hpp"
@@ -18,16 +18,10 @@ constexpr std::size_t kTracks = 1 << 10;  // worked on at a time
 struct Curve {
     std::int32_t start, end;  ///< vertices on the two verticals; ascending means rising
     std::int32_t face;
-    std::int32_t layer;         ///< of equal curves on one side the younger is the upper
     std::int32_t above, below;  ///< cells
     bool left;                  ///< the face lies left of the track
 
     bool as_high_as(const Curve& other) const { return start == other.start && end == other.end; }
-    /// Ascending; where two curves start at one vertex the lower end comes first.
-    friend bool operator<(const Curve& a, const Curve& b) {
-        if (a.start != b.start) return a.start < b.start;
-        return std::tie(a.end, a.left, a.layer, a.face) < std::tie(b.end, b.left, b.layer, b.face);
-    }
 };
 
 /// What the walls of some tracks are found in.
@@ -56,6 +50,18 @@ public:
     }
 
 private:
+    /// Ascending; where two curves start at one vertex the lower end comes first, and of equal
+    /// curves on one side the younger is the upper.
+    bool before(const Curve& a, const Curve& b) const {
+        if (a.start != b.start) return a.start < b.start;
+        if (a.end != b.end) return a.end < b.end;
+        if (a.left != b.left) return b.left;
+        const auto layer = [&](const Curve& curve) {
+            return faces_.layer[static_cast<std::size_t>(curve.face)];
+        };
+        return std::pair(layer(a), a.face) < std::pair(layer(b), b.face);
+    }
+
     /// Puts the curves of a track in order of intervals, and those of each in order of height.
     void collect(std::size_t track) {
         const auto first = tracks_.edges.begin() + tracks_.edge_offsets[track];
@@ -76,23 +82,37 @@ private:
         }
         curves_.resize(total);
         free_.assign(begins_.begin(), begins_.end());
-        for (auto edge = first; edge != last; ++edge)
+        for (auto edge = first; edge != last; ++edge) {
+            prefetch_edge(edge);
             add_curves(*edge);
+        }
         for (std::size_t i = 0; i + 1 < begins_.size(); ++i) {
             const auto begin = curves_.begin() + begins_[i], end = curves_.begin() + begins_[i + 1];
             if (end - begin == 2) {
-                if (begin[1] < begin[0]) std::swap(begin[0], begin[1]);
+                if (before(begin[1], begin[0])) std::swap(begin[0], begin[1]);
             } else {
-                std::sort(begin, end);
+                std::sort(begin, end, [&](const Curve& a, const Curve& b) { return before(a, b); });
             }
         }
+    }
+
+    /// Asks for what is known of the edges after one.
+    [[gnu::always_inline]] void prefetch_edge(const TrackEdge* edge) const {
+        const std::ptrdiff_t left = tracks_.edges.end() - 1 - edge;
+        const TrackEdge& far = edge[std::min<std::ptrdiff_t>(24, left)];
+        const auto face = static_cast<std::size_t>(far.face);
+        prefetch(&loops_.edge_begin[far.corner]);
+        prefetch(&loops_.face_offsets[face]);
+        prefetch(&faces_.above[face]);
+        prefetch(&faces_.below[face]);
+        const TrackEdge& near = edge[std::min<std::ptrdiff_t>(8, left)];
+        prefetch(&loops_.vertices[loops_.edge_begin[near.corner]]);
     }
 
     void add_curves(const TrackEdge& edge) {
         const auto face = static_cast<std::size_t>(edge.face);
         const bool left = edge.from < edge.to;
-        Curve curve{0,   0, edge.face, faces_.layer[face], faces_.above[face], faces_.below[face],
-                    left};
+        Curve curve{0, 0, edge.face, faces_.above[face], faces_.below[face], left};
         const std::int32_t steps = std::abs(edge.to - edge.from);
         std::uint32_t entry = loops_.edge_begin[edge.corner];
         std::int32_t vertex = loops_.vertices[entry];

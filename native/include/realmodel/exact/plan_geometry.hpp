@@ -73,11 +73,16 @@ struct Point {
     double error = 0;     ///< bound on the distance in x and in y
 };
 
-/// A plan point in extended precision, relative to a plan vertex, with bounds on its errors.
+/// A number in extended precision and a bound on its error.
+struct Near {
+    long double value;
+    double error;
+};
+
+/// A plan point relative to a plan vertex.
 struct NearPoint {
     VertexId origin;
-    long double x, y;
-    long double error_x, error_y;
+    Near x, y;
 };
 
 /// What is known of the height of a plane above a point without arithmetic; planes with equal names
@@ -99,9 +104,19 @@ struct PlaneFilter {
     double gx = 0, gy = 0, error_x = 0, error_y = 0;
 };
 
-/// A triangle that spans a plane: space vertices, counter-clockwise in plan.
+/// A triangle that spans a plane: space vertices, counter-clockwise in plan, and the plan vertices
+/// that they stand on.
 struct Plane {
     std::array<SpaceId, 3> corner;
+    std::array<VertexId, 3> plan;
+
+    /// The corner above a plan vertex, -1 where there is none.
+    SpaceId above(VertexId vertex) const {
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (plan[i] == vertex) return corner[i];
+        }
+        return -1;
+    }
 };
 
 /// The exact geometry that a whole stack is decided on: input vertices, planes, and the lines and
@@ -141,7 +156,7 @@ public:
     const SpaceVertex& space(SpaceId id) const { return space_[static_cast<std::size_t>(id)]; }
 
     /// The space vertex of a plane's triangle above a plan vertex, -1 where it has none there.
-    SpaceId corner_above(PlaneId plane, VertexId vertex) const;
+    SpaceId corner_above(PlaneId id, VertexId vertex) const { return plane(id).above(vertex); }
 
     LineFilter edge_filter(VertexId from, VertexId to) const;
     LineFilter trace_filter(PlaneId first, PlaneId second) const;
