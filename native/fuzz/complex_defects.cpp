@@ -77,17 +77,6 @@ public:
         }
         return sum;
     }
-    Point middle(std::size_t face) const {
-        const auto v = corners(face);
-        Point sum{};
-        for (const std::int32_t i : v) {
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                sum[axis] += at(i)[axis];
-        }
-        for (double& s : sum)
-            s /= static_cast<double>(v.size());
-        return sum;
-    }
     /// Spacing of doubles at the largest coordinate in plan.
     double plan_step() const {
         double largest = 0;
@@ -264,40 +253,6 @@ void check_faces(const View& view, Findings& findings) {
     }
 }
 
-/// Whether a point lies on the plane of a triangle that is near in plan.
-bool on_some_plane(const Mesh& surface, const Point& point) {
-    double largest = std::max(std::abs(point[0]), std::abs(point[1]));
-    for (const Point& p : surface.vertices)
-        largest = std::max({largest, std::abs(p[0]), std::abs(p[1])});
-    const double step = spacing(largest), reach = 64 * step;
-    for (const Triangle& t : surface.triangles) {
-        const auto vertex = [&](std::size_t i) {
-            return surface.vertices[static_cast<std::size_t>(t[i])];
-        };
-        const Point a = vertex(0), b = vertex(1), c = vertex(2);
-        bool near = true;
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            near = near && point[axis] >= std::min({a[axis], b[axis], c[axis]}) - reach &&
-                   point[axis] <= std::max({a[axis], b[axis], c[axis]}) + reach;
-        }
-        if (!near) continue;
-        const Point u = minus(b, a), v = minus(c, a), w = minus(point, a);
-        const Point normal = cross(u, v);
-        const double longest =
-            std::max({std::abs(u[0]), std::abs(u[1]), std::abs(v[0]), std::abs(v[1])});
-        // thinner than rounding: any height between its corners may result
-        if (std::abs(normal[2]) <= 64 * step * longest) return true;
-        const double slope = std::hypot(normal[0], normal[1]) / std::abs(normal[2]);
-        const double z = a[2] - (normal[0] * w[0] + normal[1] * w[1]) / normal[2];
-        const double lowest = std::min({a[2], b[2], c[2]}), highest = std::max({a[2], b[2], c[2]});
-        const double size = std::max(std::abs(lowest), std::abs(highest));
-        if (std::abs(z - point[2]) <=
-            1e-6 * (highest - lowest) + 64 * spacing(size) + slope * reach)
-            return true;
-    }
-    return false;
-}
-
 }  // namespace
 
 std::vector<double> cell_volumes(const CellComplex& c) {
@@ -336,28 +291,6 @@ std::vector<Defect> complex_defects(const CellComplex& complex, Cells cells) {
         check_closed(view, cells, findings);
         check_volumes(view, findings);
         check_faces(view, findings);
-    }
-    return findings.defects();
-}
-
-std::vector<Defect> surface_defects(const CellComplex& complex, const StackCase& stack) {
-    Findings findings;
-    const View view(complex);
-    std::vector<const Mesh*> surfaces;
-    for (const RockCase& rock : stack.rocks) {
-        for (const Mesh& surface : rock.surfaces)
-            surfaces.push_back(&surface);
-    }
-    for (std::size_t f = 0; f < view.faces(); ++f) {
-        const std::int32_t s = complex.face_surface[f];
-        if (s < 0) continue;
-        const Point middle = view.middle(f);
-        if (!on_some_plane(*surfaces[static_cast<std::size_t>(s)], middle)) {
-            findings.add("off its surface",
-                         "face " + std::to_string(f) + " of surface " + std::to_string(s) + " at " +
-                             std::to_string(middle[0]) + " " + std::to_string(middle[1]) + " " +
-                             std::to_string(middle[2]));
-        }
     }
     return findings.defects();
 }

@@ -9,6 +9,7 @@
 #include "exact_volumes.hpp"
 #include "realmodel/base/errors.hpp"
 #include "repair.hpp"
+#include "second_opinion.hpp"
 
 namespace realmodel::fuzz {
 
@@ -205,6 +206,8 @@ std::vector<Defect> defects_of(const StackCase& stack, const JudgeOptions& optio
         if (defects.empty()) {
             add(named(surface_defects(columns, stack), "columns"));
             add(named(surface_defects(blocks, stack), "blocks"));
+            add(named(second_opinion(columns, stack, Cells::kColumns), "columns"));
+            add(named(second_opinion(blocks, stack, Cells::kBlocks), "blocks"));
             compare_kinds(stack, columns, blocks, defects);
         }
         if (const auto exact = exact_volumes(stack, options.most_polygons))

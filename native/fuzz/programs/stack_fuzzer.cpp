@@ -49,6 +49,8 @@ struct Shared {
     std::atomic<bool> finding{false};  // it stopped at this case
 };
 
+volatile std::sig_atomic_t interrupted = 0;
+
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -108,10 +110,11 @@ private:
             if (shared_->started != seen) {
                 seen = shared_->started;
                 changed = Clock::now();
-            } else if (seconds_since(changed) > options_.patience) {
+            }
+            if (interrupted != 0 || seconds_since(changed) > options_.patience) {
                 kill(child, SIGKILL);
                 waitpid(child, &status, 0);
-                return "hang";
+                return interrupted != 0 ? "" : "hang";
             }
             usleep(5000);
         }
@@ -218,6 +221,8 @@ int usage() {
 }  // namespace
 
 int main(int count, char** arguments) {
+    for (const int signal : {SIGINT, SIGTERM})  // the sum so far is told
+        std::signal(signal, [](int) { interrupted = 1; });
     setenv("OMP_WAIT_POLICY", "passive", 0);  // small stacks on busy processors: no spinning
     Options options;
     for (int i = 1; i < count; ++i) {
