@@ -14,10 +14,9 @@ namespace realmodel::fuzz {
 namespace {
 
 /// In the child: kinds and sentences, each ended by a zero byte.
-[[noreturn]] void tell(int pipe, const StackCase& stack, const JudgeOptions& options) {
+[[noreturn]] void tell(int pipe, const std::vector<Defect>& defects) {
     std::string text;
-    const Examination found = examine(stack, options);
-    for (const Defect& defect : found.defects)
+    for (const Defect& defect : defects)
         text += defect.kind + '\0' + defect.sentence + '\0';
     text += '\1';
     for (std::size_t sent = 0; sent < text.size();) {
@@ -38,15 +37,14 @@ Examination examine(StackCase stack, const JudgeOptions& options) {
     return result;
 }
 
-std::vector<Defect> examine_apart(const StackCase& stack, const JudgeOptions& options,
-                                  double seconds) {
+std::vector<Defect> in_a_process(const std::function<std::vector<Defect>()>& work, double seconds) {
     int ends[2];
     if (pipe(ends) != 0) throw std::runtime_error("no pipe");
     const pid_t child = fork();
     if (child < 0) throw std::runtime_error("no process");
     if (child == 0) {
         close(ends[0]);
-        tell(ends[1], stack, options);
+        tell(ends[1], work());
     }
     close(ends[1]);
     std::string text;
@@ -77,6 +75,11 @@ std::vector<Defect> examine_apart(const StackCase& stack, const JudgeOptions& op
         at = end + 1;
     }
     return defects;
+}
+
+std::vector<Defect> examine_apart(const StackCase& stack, const JudgeOptions& options,
+                                  double seconds) {
+    return in_a_process([&] { return examine(stack, options).defects; }, seconds);
 }
 
 std::string least_kind(const std::vector<Defect>& defects) {

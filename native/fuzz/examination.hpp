@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "judge.hpp"
@@ -17,8 +19,11 @@ struct Examination {
 /// Makes a case valid and judges it, in this process.
 Examination examine(StackCase stack, const JudgeOptions& options);
 
-/// Judges a case as it is in a process of its own: a crash and a hang are defects too. The caller
-/// must not have used several threads before.
+/// Calls `work` in a process of its own and returns what it returns: a crash and a hang are defects
+/// too. Where `work` uses several threads the caller must not have done so before.
+std::vector<Defect> in_a_process(const std::function<std::vector<Defect>()>& work, double seconds);
+
+/// The defects of a case, judged in a process of its own.
 std::vector<Defect> examine_apart(const StackCase& stack, const JudgeOptions& options,
                                   double seconds);
 

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Making, writing, repairing and minimising stacks.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 
 #include "case_file.hpp"
+#include "examination.hpp"
 #include "generate.hpp"
 #include "heights.hpp"
 #include "judge.hpp"
@@ -135,6 +138,39 @@ TEST(Judge, CallsARefusalOfWhatShouldBeValidADefect) {
     const auto defects = defects_of(stack);
     ASSERT_EQ(defects.size(), 1u);
     EXPECT_EQ(defects[0].kind, "refused");
+}
+
+TEST(Examination, TellsWhatAProcessFound) {
+    const auto found = in_a_process(
+        [] {
+            return std::vector<Defect>{{"a", "b c"}, {"d", ""}};
+        },
+        20);
+    ASSERT_EQ(found.size(), 2u);
+    EXPECT_EQ(found[0].kind, "a");
+    EXPECT_EQ(found[0].sentence, "b c");
+    EXPECT_EQ(found[1].kind, "d");
+    EXPECT_EQ(least_kind(found), "a");
+    EXPECT_TRUE(in_a_process([] { return std::vector<Defect>{}; }, 20).empty());
+}
+
+TEST(Examination, ACrashAndAHangAreDefects) {
+    const auto killed = in_a_process(
+        []() -> std::vector<Defect> {
+            std::raise(SIGKILL);
+            return {};
+        },
+        20);
+    ASSERT_EQ(killed.size(), 1u);
+    EXPECT_EQ(killed[0].kind, "crash");
+    const auto hung = in_a_process(
+        []() -> std::vector<Defect> {
+            for (;;)
+                pause();
+        },
+        0.2);
+    ASSERT_EQ(hung.size(), 1u);
+    EXPECT_EQ(hung[0].kind, "hang");
 }
 
 }  // namespace
