@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "realmodel/validation/sampling.hpp"
 #include "realmodel/validation/topology.hpp"
 
 namespace realmodel::fuzz {
@@ -32,10 +33,24 @@ std::vector<Defect> second_opinion(const strata::CellComplex& complex, const Sta
     view.surfaces = static_cast<std::int32_t>(complex.volumes.size());
     view.cells_are_blocks = cells == Cells::kBlocks;
     std::vector<Defect> defects;
-    for (const auto& test : validation::check_topology(view, 1, nullptr)) {
-        if (!test.findings.passed())
-            defects.push_back({"validation " + test.name, test.findings.first[0].text});
+    const auto add = [&](const std::vector<validation::TestResult>& tests) {
+        for (const validation::TestResult& test : tests) {
+            if (!test.findings.passed())
+                defects.push_back({"validation " + test.name, test.findings.first[0].text});
+        }
+    };
+    add(validation::check_topology(view, 1, nullptr));
+    if (!defects.empty()) return defects;
+    std::vector<std::int32_t> block_of_surface;
+    for (const RockCase& rock : stack.rocks) {
+        for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
+            const auto surface = static_cast<std::int32_t>(block_of_surface.size());
+            block_of_surface.push_back(k > 0 || rock.base_elevation ? surface : -1);
+        }
     }
+    constexpr std::int64_t kPlaces = 150;
+    const std::vector<strata::StackInput> rocks = views_of(stack);
+    add(validation::check_samples(view, {rocks, block_of_surface}, kPlaces, 1, 1, nullptr));
     return defects;
 }
 
