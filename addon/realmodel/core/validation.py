@@ -116,14 +116,14 @@ class ValidationReport:
     def seconds(self) -> float:
         return sum(test.seconds for test in self.tests)
 
-    def _cost(self) -> str:
-        """What it took: looking at all of the model, and at places in it."""
+    def _cost(self) -> list[str]:
+        """Lines: what it took to look at all of the model, and at places in it."""
         sampled = sum(test.seconds for test in self.tests if test.number == 5)
         whole = self.seconds - sampled
-        text = f"every cell, face and vertex in {whole:.2f} s"
+        line = f"every cell, face and vertex in {whole:.2f} s"
         if self.build_seconds:
-            text += f" ({100 * whole / self.build_seconds:.1f} % of what intersecting took)"
-        return f"{text}, places (seed {self.seed}) in {sampled:.2f} s" if sampled else text
+            line += f" ({100 * whole / self.build_seconds:.1f} % of what intersecting took)"
+        return [line, f"places drawn with seed {self.seed} in {sampled:.2f} s"] if sampled else [line]
 
     def failure(self) -> str | None:
         """One line about the first test that failed, with its first offender; None where all passed."""
@@ -145,7 +145,7 @@ class ValidationReport:
         lines = [
             f"Validation of {self.project}: {verdict}",
             f"{self.cells:,} cells ({self.cell_kind}), {self.faces:,} faces, {self.vertices:,} vertices",
-            self._cost(),
+            *self._cost(),
             "",
         ]
         names = max(len(test.name) for test in self.tests)
