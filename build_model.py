@@ -117,6 +117,11 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         help="tell cells, memory and time that it would take, and build nothing",
     )
     parser.add_argument(
+        "--eroded",
+        action="store_true",
+        help="tell what each surface removed of each block, in the table and the report",
+    )
+    parser.add_argument(
         "--check-model",
         action="store_true",
         help="prove the model before anything is written, and print the proof",
@@ -176,7 +181,8 @@ def _run(options: argparse.Namespace) -> None:
                 memory=options.memory,
             )
             validation = _validation(options, model, progress)
-            _write(options, model, outputs, progress, validation)
+            erosion = _erosion(options, model, progress)
+            _write(options, model, outputs, progress, validation, erosion)
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, signal.SIG_IGN)  # in a moment all is there: too late to stop
         finally:
@@ -187,7 +193,7 @@ def _run(options: argparse.Namespace) -> None:
                 print(f"warning: {warning}")
             if options.check_model:
                 print(f"{validation}\n")
-            print(volume_table(model), flush=True)
+            print(volume_table(model, erosion), flush=True)
 
 
 def _estimate(options: argparse.Namespace, project, progress) -> None:
@@ -203,6 +209,12 @@ def _estimate(options: argparse.Namespace, project, progress) -> None:
     limit = found.available if options.memory is None else options.memory
     if found.memory > limit:
         print("this would be refused: it takes more memory than there is (see --cells, --memory)", flush=True)
+
+
+def _erosion(options: argparse.Namespace, model, progress):
+    if not options.eroded:
+        return None
+    return model.eroded(progress=lambda _share, text: progress(1.0, f"what was eroded: {text}"))
 
 
 def _validation(options: argparse.Namespace, model, progress):
@@ -258,7 +270,7 @@ def _refuse_overwriting(project, targets: list[Path]) -> None:
             raise UsageError(f"{target}: this is a file that the project reads; choose another name")
 
 
-def _write(options: argparse.Namespace, model, outputs, progress, validation) -> None:
+def _write(options: argparse.Namespace, model, outputs, progress, validation, erosion) -> None:
     from realmodel.core.exporters import write_model
     from realmodel.core.exporters.report import write_report
 
@@ -269,7 +281,7 @@ def _write(options: argparse.Namespace, model, outputs, progress, validation) ->
         _write_with_blender(options, model, outputs, progress)
     if options.report is not None:
         with outputs.file(options.report) as file:
-            write_report(model, options.report, file, options.stage, validation)
+            write_report(model, options.report, file, options.stage, validation, erosion)
 
 
 def _write_with_blender(options: argparse.Namespace, model, outputs, progress) -> None:

@@ -4,6 +4,7 @@
 from .build import build
 from .build_warning import BuildWarning
 from .cross_validation import CrossValidation, cross_validate
+from .erosion import Erosion
 from .errors import (
     BuildFailed,
     Cancelled,
@@ -31,6 +32,7 @@ __all__ = [
     "BuildWarning",
     "Cancelled",
     "CrossValidation",
+    "Erosion",
     "Estimate",
     "InputRefused",
     "Interpolation",

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from .build_warning import BuildWarning
+from .erosion import Erosion, eroded
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
@@ -110,6 +111,15 @@ class Model:
 
         return build_stage(self, m, progress, cancel)
 
+    def eroded(self, progress: Progress | None = None, cancel: Cancel | None = None) -> Erosion:
+        """What each surface removed of each block when it came: (S, B) volumes, and their sums.
+
+        The volume of a block just before the surface, less that just after. For each surface that cuts the
+        model is built once more up to the surface before, with whole blocks as cells; what rounding alone
+        makes is given as 0. Raises Cancelled.
+        """
+        return eroded(self, self.threads, progress, cancel)
+
     def validate(
         self,
         places: int = PLACES_OF_CHECK,
@@ -154,6 +164,27 @@ class Model:
             self.face_surface[faces],
             faces,
         )
+
+    @cached_property
+    def cell_volumes(self) -> np.ndarray:
+        """(C,) float64: the volume of each cell, model units cubed."""
+        return native_module().cell_volumes(
+            self.vertices,
+            self.face_offsets,
+            self.face_vertices,
+            self.face_cells,
+            len(self.cell_block),
+            self.threads,
+        )
+
+    @cached_property
+    def component_volumes(self) -> list[np.ndarray]:
+        """For each block the volumes of its connected parts, largest first."""
+        volume = np.bincount(self.cell_component, self.cell_volumes, len(self.cell_block))
+        roots = np.flatnonzero(self.cell_component == np.arange(len(self.cell_block)))
+        order = roots[np.lexsort((roots, -volume[roots], self.cell_block[roots]))]
+        counts = np.bincount(self.cell_block[order], minlength=len(self.blocks))
+        return np.split(volume[order], np.cumsum(counts)[:-1]) if len(counts) else []
 
     @cached_property
     def cell_component(self) -> np.ndarray:

@@ -3,42 +3,53 @@
 
 from __future__ import annotations
 
-_HEADINGS = ("block", "property", "rock", "volume", "share", "cells", "components")
+from .erosion import Erosion
+
+_HEADINGS = ("block", "property", "rock", "volume", "share", "cells", "components", "largest")
+_HEADINGS_OF_EROSION = ("eroded", "surface eroded")
 _NUMBERS_FROM = 3
 
 
-def volume_table(model) -> str:
-    """A line for each block, youngest first as in the field, and the sum; plain text with aligned columns."""
+def volume_table(model, erosion: Erosion | None = None) -> str:
+    """A line for each block, youngest first as in the field, and the sum; plain text with aligned columns.
+
+    `largest` is the share of a block's largest connected part, where it has several. With an erosion there
+    are what was eroded of each block, and what the surface above it eroded of all older ones.
+    """
     library = model.project.library
     total = model.volume
+    headings = _HEADINGS if erosion is None else (*_HEADINGS, *_HEADINGS_OF_EROSION)
     rows = []
-    for block in reversed(model.blocks):
+    for number, block in reversed(list(enumerate(model.blocks))):
         entry = library.get(block.property) if library else None
         name = entry.name if entry else str(block.property) if block.property else "none"
-        rows.append(
-            (
-                block.name,
-                name,
-                model.project.rocks[block.rock].name,
-                _figure(block.volume),
-                f"{100 * block.volume / total if total else 0:.2f} %",
-                f"{block.cells}",
-                f"{block.components}",
-            )
-        )
+        parts = model.component_volumes[number]
+        row = [
+            block.name,
+            name,
+            model.project.rocks[block.rock].name,
+            _figure(block.volume),
+            _share(block.volume, total),
+            f"{block.cells}",
+            f"{block.components}",
+            _share(parts[0], block.volume) if len(parts) > 1 else "",
+        ]
+        if erosion is not None:
+            row += [_figure(erosion.by_block[number]), _figure(erosion.by_surface[block.surface])]
+        rows.append(row)
     cells = sum(block.cells for block in model.blocks)
     parts = sum(block.components for block in model.blocks)
-    rows.append(("total", "", "", _figure(total), "100.00 %" if total else "0.00 %", f"{cells}", f"{parts}"))
-    widths = [max(len(row[i]) for row in (_HEADINGS, *rows)) for i in range(len(_HEADINGS))]
+    sums = ["total", "", "", _figure(total), _share(total, total), f"{cells}", f"{parts}", ""]
+    if erosion is not None:
+        sums += [_figure(erosion.total)] * 2
+    widths = [max(len(row[i]) for row in (headings, *rows, sums)) for i in range(len(headings))]
     rule = "-" * (sum(widths) + 2 * (len(widths) - 1))
-    lines = [
-        _line(_HEADINGS, widths),
-        rule,
-        *(_line(row, widths) for row in rows[:-1]),
-        rule,
-        _line(rows[-1], widths),
-    ]
+    lines = [_line(headings, widths), rule, *(_line(row, widths) for row in rows), rule, _line(sums, widths)]
     return "\n".join(lines)
+
+
+def _share(part: float, whole: float) -> str:
+    return f"{100 * part / whole if whole else 0:.2f} %"
 
 
 def _figure(volume: float) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 
 from .errors import UsageError, place_text
 from .method_options import check_threads
-from .planar_mesh import triangulate_rings
+from .native_rocks import native_rocks
 from .work import Cancel, Progress, Work, native_module, run
 
 _DTYPES = {
@@ -202,7 +202,7 @@ def validate(
                 found += work.native(
                     native.check_samples,
                     arrays,
-                    _native_rocks(model),
+                    native_rocks(model),
                     _block_of_surface(model),
                     int(places),
                     int(seed),
@@ -259,20 +259,6 @@ def _native_model(model) -> dict:
         "surfaces": len(model.surface_names),
         "cells_are_blocks": model.cell_kind == "blocks",
     }
-
-
-def _native_rocks(model) -> list[tuple]:
-    """The rock masses as the stack builder took them: surfaces, and regions as triangulations."""
-    rocks, first = [], 0
-    for number, rock in enumerate(model.project.rocks):
-        surfaces = [model.surface(first + k) for k in range(len(rock.surfaces))]
-        if model.rock_inputs:
-            region = model.rock_inputs[number].region
-        else:  # a model that was put together from arrays
-            region = triangulate_rings([rock.region, *rock.holes]) if rock.region is not None else None
-        rocks.append((surfaces, region, rock.base_elevation, [surface.rule for surface in rock.surfaces]))
-        first += len(rock.surfaces)
-    return rocks
 
 
 def _block_of_surface(model) -> np.ndarray:

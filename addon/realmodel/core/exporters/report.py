@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..erosion import Erosion
 from ..surface_heights import used_vertices
 from ..validation import PLACES_OF_REPORT, ValidationReport
 from ..work import native_module
@@ -17,15 +18,21 @@ from ..work import native_module
 SCHEMA = 1
 
 
-def model_report(model, stage: int | None = None, validation: ValidationReport | None = None) -> dict:
+def model_report(
+    model,
+    stage: int | None = None,
+    validation: ValidationReport | None = None,
+    erosion: Erosion | None = None,
+) -> dict:
     """The report's content. Volumes are in model units cubed, times in seconds, memory in bytes.
 
-    validation: what Model.validate found; it is asked now where none is given.
+    validation: what Model.validate found; it is asked now where none is given. erosion: what Model.eroded
+    found; without it the report says nothing of that.
     """
     validation = validation or model.validate(PLACES_OF_REPORT, threads=model.threads)
     total = model.volume
     library = model.project.library
-    return {
+    report = {
         "schema": SCHEMA,
         "project": {
             "name": model.project.name,
@@ -57,6 +64,36 @@ def model_report(model, stage: int | None = None, validation: ValidationReport |
         "peak_memory": _peak_memory(),
         "versions": versions(),
     }
+    if erosion is not None:
+        report["erosion"] = _erosion(model, erosion)
+    return report
+
+
+def _erosion(model, erosion: Erosion) -> dict:
+    """What each surface removed of which blocks, and for each block what was laid down, removed and left."""
+    names = [block.name for block in model.blocks]
+    rock_of = [rock.name for rock in model.project.rocks for _ in rock.surfaces]
+    return {
+        "total": erosion.total,
+        "blocks": [
+            {"name": name, "deposited": float(laid), "eroded": float(gone), "remaining": float(left)}
+            for name, laid, gone, left in zip(
+                names, erosion.deposited, erosion.by_block, erosion.remaining, strict=True
+            )
+        ],
+        "surfaces": [
+            {
+                "name": surface,
+                "rock": rock_of[k],
+                "eroded": float(erosion.by_surface[k]),
+                "blocks": [
+                    {"block": names[b], "eroded": float(erosion.volume[k, b])}
+                    for b in np.flatnonzero(erosion.volume[k])
+                ],
+            }
+            for k, surface in enumerate(model.surface_names)
+        ],
+    }
 
 
 def _block(model, number: int, total: float) -> dict:
@@ -72,6 +109,7 @@ def _block(model, number: int, total: float) -> dict:
         "share": block.volume / total if total else 0.0,
         "cells": block.cells,
         "components": block.components,
+        "component_volumes": model.component_volumes[number].tolist(),
     }
 
 
@@ -125,8 +163,13 @@ def _peak_memory() -> int | None:
 
 
 def write_report(
-    model, path: str | Path, file, stage: int | None = None, validation: ValidationReport | None = None
+    model,
+    path: str | Path,
+    file,
+    stage: int | None = None,
+    validation: ValidationReport | None = None,
+    erosion: Erosion | None = None,
 ) -> None:
     """Writes the report as UTF-8 JSON to an open binary file."""
-    text = json.dumps(model_report(model, stage, validation), indent=2, ensure_ascii=False, allow_nan=False)
-    file.write(f"{text}\n".encode())
+    report = model_report(model, stage, validation, erosion)
+    file.write(f"{json.dumps(report, indent=2, ensure_ascii=False, allow_nan=False)}\n".encode())

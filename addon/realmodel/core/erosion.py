@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What each surface removed of each block when it came."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .native_rocks import native_rocks
+from .work import Cancel, Progress, Work, native_module, run
+
+_CUT = ("erosional", "discontinuous")
+_RELATIVE = 1e-12  # how far sums of cells may be off
+
+
+@dataclass(frozen=True, eq=False)
+class Erosion:
+    """Eroded volumes, model units cubed.
+
+    volume: (S, B) float64, what surface k (global index) removed of block j: the volume of the block just
+    before the surface came, less that just after. remaining: (B,) what is left, the model's own volumes.
+    """
+
+    volume: np.ndarray
+    remaining: np.ndarray
+
+    @property
+    def by_surface(self) -> np.ndarray:
+        """(S,) what each surface removed in all."""
+        return self.volume.sum(axis=1)
+
+    @property
+    def by_block(self) -> np.ndarray:
+        """(B,) what was removed of each block in all."""
+        return self.volume.sum(axis=0)
+
+    @property
+    def deposited(self) -> np.ndarray:
+        """(B,) what was laid down of each block: what is left and what was removed since."""
+        return self.remaining + self.by_block
+
+    @property
+    def total(self) -> float:
+        return float(self.volume.sum())
+
+
+def eroded(
+    model, threads: int = 0, progress: Progress | None = None, cancel: Cancel | None = None
+) -> Erosion:
+    """Model.eroded."""
+    return run(lambda work: _eroded(work, model, threads), progress, cancel)
+
+
+def _eroded(work: Work, model, threads: int) -> Erosion:
+    """Goes back in time from the model itself: to just before each surface that cuts anything."""
+    stages = [m for m in range(_most_surfaces(model) - 1) if any(_cut_at(model, m + 1))]
+    remaining = np.array([block.volume for block in model.blocks], np.float64)
+    volume = np.zeros((len(model.surface_names), len(model.blocks)))
+    after, done, total = remaining, 0, sum(m + 1 for m in stages)
+    for m in reversed(stages):
+        with work.phase(done / total, (done + m + 1) / total, f"building stage {m}"):
+            before = _stage_volumes(work, model, m, threads)
+        done += m + 1
+        for surface, older in _cut_at(model, m + 1):
+            removed = before[older] - after[older]
+            volume[surface, older] = np.where(removed > _rounding(model, before[older]), removed, 0.0)
+        # from here back to the next stage nothing cuts, so that these are its volumes just after, too
+        after = np.where(np.isnan(before), after, before)
+    return Erosion(volume, remaining)
+
+
+def _most_surfaces(model) -> int:
+    return max(len(rock.surfaces) for rock in model.project.rocks)
+
+
+def _first_surfaces(model) -> np.ndarray:
+    """(R + 1,) the global index of each rock mass's oldest surface."""
+    return np.cumsum([0, *(len(rock.surfaces) for rock in model.project.rocks)])
+
+
+def _cut_at(model, k: int) -> list[tuple[int, np.ndarray]]:
+    """Of each rock mass whose surface k cuts what is older: its global index, and which blocks are."""
+    found = []
+    first_surfaces = _first_surfaces(model)
+    for rock, first in zip(model.project.rocks, first_surfaces[:-1], strict=True):
+        if k < len(rock.surfaces) and rock.surfaces[k].rule in _CUT:
+            older = [b for b, block in enumerate(model.blocks) if first <= block.surface < first + k]
+            if older:
+                found.append((int(first + k), np.array(older)))
+    return found
+
+
+def _stage_volumes(work: Work, model, m: int, threads: int) -> np.ndarray:
+    """(B,) volumes of the blocks just after surface m; NaN for those that come later."""
+    built = work.native(
+        native_module().build_rock_masses, native_rocks(model, m), cells="blocks", threads=threads
+    )
+    kept = [min(len(rock.surfaces), m + 1) for rock in model.project.rocks]
+    first_kept, first = np.cumsum([0, *kept]), _first_surfaces(model)
+    volumes = np.full(len(model.blocks), np.nan)
+    for b, block in enumerate(model.blocks):
+        own = block.surface - first[block.rock]
+        if own < kept[block.rock]:
+            volumes[b] = built["volumes"][first_kept[block.rock] + own]
+    return volumes
+
+
+def _rounding(model, volumes: np.ndarray) -> np.ndarray:
+    """How far volumes may be off: their sums, and the coordinates of their corners, each by some units in
+    the last place."""
+    vertices = model.surface_vertices
+    bases = [rock.base_elevation for rock in model.project.rocks if rock.base_elevation is not None]
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    low[2] = min(low[2], *bases) if bases else low[2]
+    step = 16 * np.spacing(np.maximum(np.abs(low), np.abs(high)))
+    x, y, z = high - low
+    return _RELATIVE * volumes + step[0] * y * z + step[1] * x * z + step[2] * x * y

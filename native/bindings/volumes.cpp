@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// cell_volumes.
+#include <pybind11/pybind11.h>
+
+#include <vector>
+
+#include "arrays.hpp"
+#include "realmodel/base/progress.hpp"
+#include "realmodel/strata/cell_volumes.hpp"
+#include "rock_arrays.hpp"
+
+namespace py = pybind11;
+
+namespace realmodel::bindings {
+
+namespace {
+
+template <std::size_t N, class T>
+std::span<const std::array<T, N>> rows(const Array<T>& array, const char* argument) {
+    require_columns(array, N, argument);
+    static_assert(sizeof(std::array<T, N>) == N * sizeof(T));
+    return {reinterpret_cast<const std::array<T, N>*>(array.data()),
+            static_cast<std::size_t>(array.shape(0))};
+}
+
+Array<double> cell_volumes(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
+                           const Indices& face_vertices, const Indices& face_cells,
+                           std::size_t cells, int threads, const Progress* control) {
+    const auto positions = rows<3, double>(vertices, "vertices");
+    const auto sides = rows<2, std::int32_t>(face_cells, "face_cells");
+    std::vector<double> volumes;
+    {
+        const py::gil_scoped_release release;
+        volumes = strata::cell_volumes(positions, view(face_offsets), view(face_vertices), sides,
+                                       cells, threads, control);
+    }
+    return to_array(std::move(volumes));
+}
+
+}  // namespace
+
+void bind_volumes(py::module_& module) {
+    module.def("cell_volumes", &cell_volumes, py::arg("vertices"), py::arg("face_offsets"),
+               py::arg("face_vertices"), py::arg("face_cells"), py::arg("cells"),
+               py::arg("threads") = 0, py::arg("control") = nullptr,
+               R"(Volume of every cell.
+
+vertices: (V, 3) float64; face_offsets: (F + 1,) int64; face_vertices: int32; face_cells: (F, 2) int32, the
+cells on both sides of each face, -1 outside; cells: how many there are. Returns (cells,) float64.
+Raises InputError kind "bad_index" (items: the face); Cancelled.)");
+}
+
+}  // namespace realmodel::bindings
