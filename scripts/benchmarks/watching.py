@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import copy
 import gc
+import threading
 import time
 from contextlib import contextmanager
 
@@ -73,13 +74,14 @@ def progress(spec: dict, cells: str, threads: int) -> dict:
 def cancelling(spec: dict, cells: str, threads: int, moments: int, seconds: float) -> dict:
     """Cancels a build at random moments of its `seconds`.
 
-    Returns `latency` [seconds from cancel() saying so to Cancelled, ...] with `at` [share of the time], and
-    `kept`, bytes that the process holds more than before the first build, after each.
+    Returns `latency` [seconds from cancel() saying so to Cancelled, ...] with `at` [share of the time], `gone`
+    [seconds until the stopped work had ended], and `kept`, bytes that the process then holds more than
+    before the first build, after each.
     """
     given = project(StackSpec(**spec))
     random = np.random.default_rng(moments)
     before = resident()
-    at, latency, kept = [], [], []
+    at, latency, gone, kept = [], [], [], []
     for moment in random.uniform(0.0, 1.0, moments):
         began = time.perf_counter()
         said = []
@@ -95,5 +97,9 @@ def cancelling(spec: dict, cells: str, threads: int, moments: int, seconds: floa
         except Cancelled:
             latency.append(time.perf_counter() - said[0])
             at.append(float(moment))
+        for thread in threading.enumerate():
+            if thread is not threading.current_thread():
+                thread.join()
+        gone.append(time.perf_counter() - (said[0] if said else time.perf_counter()))
         kept.append(_grown(before))
-    return {"at": at, "latency": latency, "kept": kept}
+    return {"at": at, "latency": latency, "gone": gone, "kept": kept}

@@ -18,7 +18,7 @@ PROGRESS = (
     "longest gap, s",
     "calls",
 )
-CANCELS = ("work", "cells are", "cancels", "slowest answer, s", "median, s", "kept afterwards, MB")
+CANCELS = ("work", "cells are", "cancels", "slowest answer, s", "median, s", "all gone after, s", "kept, MB")
 _CASES = (
     ("10 x 20,000", StackSpec(10, 100)),
     ("10 x 180,000", StackSpec(10, 300)),
@@ -86,5 +86,6 @@ def _cancel_row(work: str, cells: str, found: dict) -> list[str]:
         f"{len(latency)}",
         f"{latency[-1]:.3f}" if latency else "-",
         f"{latency[len(latency) // 2]:.3f}" if latency else "-",
+        f"{max(found['gone'], default=0.0):.2f}",
         f"{max(found['kept']) / 1e6:.0f}",
     ]
