@@ -74,9 +74,9 @@ def progress(spec: dict, cells: str, threads: int) -> dict:
 def cancelling(spec: dict, cells: str, threads: int, moments: int, seconds: float) -> dict:
     """Cancels a build at random moments of its `seconds`.
 
-    Returns `latency` [seconds from cancel() saying so to Cancelled, ...] with `at` [share of the time], `gone`
-    [seconds until the stopped work had ended], and `kept`, bytes that the process then holds more than
-    before the first build, after each.
+    Returns `latency` [seconds from cancel() saying so to Cancelled, ...] with `at` [share of the time],
+    `gone` [seconds until the stopped work had ended], and `kept`, bytes that the process then holds more
+    than before the first build, after each.
     """
     given = project(StackSpec(**spec))
     random = np.random.default_rng(moments)

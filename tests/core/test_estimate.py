@@ -28,7 +28,8 @@ FACTOR = 1.5
 def small_windows(monkeypatch):
     """Windows for surfaces small enough to be built here as well."""
     monkeypatch.setattr(sample_windows_module, "_WHOLE_BELOW", 10_000)
-    monkeypatch.setattr(sample_windows_module, "TRIANGLES_PER_WINDOW", 4_000)
+    monkeypatch.setattr(sample_windows_module, "TRIANGLES_PER_WINDOW", 800)
+    monkeypatch.setattr(sample_windows_module, "FEWEST_OF_A_SURFACE", 0)
 
 
 def jittered(random, n):
@@ -123,6 +124,15 @@ def test_surfaces_of_points_are_interpolated_in_the_sample_only():
     assert within_factor(told.faces, len(model.face_cells))
 
 
+def test_halves_that_differ_are_both_sampled():
+    """For x < 1/2 the surfaces coincide: half as many cells as elsewhere."""
+    plan, triangles = grid_surface(120, lambda x, y: 0 * x)
+    above = plan.copy()
+    above[:, 2] = np.maximum(0.0, plan[:, 0] - 0.5)
+    project = Project("half", [Rock("rock", [Surface("A", plan, triangles), Surface("B", above, triangles)])])
+    assert within_factor(estimate(project).cells, len(build(project).cell_block))
+
+
 def test_a_stage_is_told_as_a_stage():
     project = waves(4, 20)
     assert estimate(project, stage=1).cells == len(build(project, stage=1).cell_block)
@@ -200,13 +210,13 @@ def test_windows_hold_about_as_many_triangles_as_they_should():
     windows, used = sample_windows(plans, None)
     assert used == 3 * 2 * 80 * 80
     again, _ = sample_windows(plans, None)
-    assert len(windows) == 3
+    assert len(windows) == 8
     assert all(
         (a.low == b.low).all() and (a.high == b.high).all() for a, b in zip(windows, again, strict=True)
     )
     for window in windows:
         centres = np.concatenate([v[t][:, :, :2].mean(axis=1) for v, t in plans])
-        assert 2_000 < window.holds(centres).sum() < 8_000
+        assert 400 < window.holds(centres).sum() < 1_600
 
 
 def test_a_window_finds_triangles_larger_than_itself():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How the progress of a build is divided, and that it tells the share of the work done."""
 
+import json
 import time
 
 import numpy as np
@@ -49,6 +50,21 @@ def test_shares_of_arrays_leave_nothing_to_read():
     shares = expected_shares(waves(3, 40, True), "columns")
     assert shares.read < 0.05
     assert 0.95 < shares.intersect < 1.0
+
+
+def test_surfaces_of_points_are_mostly_interpolated(write):
+    """A large file of points is a small part of what follows, also where the region is in a file."""
+    points = "".join(f"{k % 100} {k // 100} {k % 7}\n" for k in range(10_000))
+    square = [[0, 0], [100, 0], [100, 100], [0, 100], [0, 0]]
+    region = write("region.geojson", json.dumps({"type": "Polygon", "coordinates": [square]}))
+    surfaces = [Surface("S0", points=write("points.txt", points))]
+    for given in (region, np.array(square[:4], float)):
+        project = Project("points", [Rock("rock", surfaces, region=given, edge_length=0.2)])
+        shares = expected_shares(project, "columns")
+        assert shares.read < 0.1
+        assert shares.read < shares.intersect < 1.0
+    missing = Project("points", [Rock("rock", surfaces, region=write("bad.geojson", "{"), edge_length=1.0)])
+    assert 0.0 < expected_shares(missing, "columns").read < 1.0
 
 
 @pytest.mark.parametrize("cells", ["columns", "blocks"])

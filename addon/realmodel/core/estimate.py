@@ -22,7 +22,6 @@ from .work import Cancel, Progress, Work, native_module, run
 
 _FEW_NODES = 16
 _SHAPE_NODES = 20_000  # show the shape of a surface without points
-_TIMES, _LONG_ENOUGH = 2, 0.3  # how often a window is built at most, and the seconds from which once will do
 
 
 @dataclass(frozen=True)
@@ -213,6 +212,8 @@ def sampled(work: Work, entry: RockInput, cells: str, threads: int, scaled: bool
         if not given[0]:
             continue
         try:
+            if not built_corners and len(windows) > 1:
+                _built(work, given, cells, threads)  # the first is slower: threads start, memory is got
             built, taken = _built(work, given, cells, threads)
         except native_module().InputError as error:
             raise _refused(error, entry, numbers) from error
@@ -233,15 +234,10 @@ def sampled(work: Work, entry: RockInput, cells: str, threads: int, scaled: bool
 
 
 def _built(work: Work, given, cells: str, threads: int) -> tuple[dict, float]:
-    """The native result of a window and its seconds; what is short is timed again, and the least counts."""
-    least = np.inf
-    for _ in range(_TIMES):
-        began = time.perf_counter()
-        built = work.native(native_module().build_rock_masses, [given], cells=cells, threads=threads)
-        least = min(least, time.perf_counter() - began)
-        if least > _LONG_ENOUGH:
-            break
-    return built, least
+    """The native result of a window and its seconds."""
+    began = time.perf_counter()
+    built = work.native(native_module().build_rock_masses, [given], cells=cells, threads=threads)
+    return built, time.perf_counter() - began
 
 
 def _plans(entry: RockInput) -> list[Plan]:

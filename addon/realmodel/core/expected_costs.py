@@ -6,14 +6,19 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
+from .errors import InputRefused
 from .measured_costs import COSTS
-from .project import Project
+from .methods import METHODS
+from .project import Project, Rock, Surface
+from .readers import read_region
 from .rock_input import RockInput
 
 _BYTES_PER_TRIANGLE = 40  # of a mesh as text
+_BYTES_PER_POINT = 30
 _MERGE = 0.01  # of the stack builder's time
 
 
@@ -36,17 +41,34 @@ def expected_costs(inputs: Sequence[RockInput], cells: str) -> list[Costs]:
     for entry in inputs:
         rock = entry.rock
         triangles = sum(len(shape[1]) for shape in entry.surfaces if shape is not None)
-        cost = Costs()
-        if rock.interpolates:
-            extent = np.ptp(np.concatenate([rock.region, *rock.holes]), axis=0)
-            per_surface = min(float(extent[0] * extent[1]) / (0.433 * rock.edge_length**2), 1e9)
-            interpolated = sum(surface.interpolated for surface in rock.surfaces)
-            cost.mesh = 1e-2 + COSTS["mesh"] * per_surface
-            cost.interpolate = interpolated * (1e-2 + COSTS["interpolate"] * per_surface)
-            triangles += interpolated * per_surface
-        cost.intersect = 0.01 + COSTS[cells]["seconds_per_triangle"] * triangles
-        costs.append(cost)
+        waiting = [surface for surface in rock.surfaces if surface.interpolated]
+        meshed = _meshed_triangles(rock, [rock.region, *rock.holes]) if waiting else 0.0
+        fitted = [len(surface.points) for surface in waiting if _fits_variogram(surface)]
+        costs.append(_costs(cells, triangles, meshed, len(waiting), fitted))
     return costs
+
+
+def _costs(cells: str, triangles: float, meshed: float, waiting: int, fitted: Sequence[float]) -> Costs:
+    """triangles: of ready meshes; meshed: of the region; waiting: surfaces to be interpolated; fitted: the
+    points of each that a variogram is fitted to, which takes time like the root of their number."""
+    cost = Costs()
+    if waiting:
+        cost.mesh = 1e-2 + COSTS["mesh"] * meshed
+        cost.interpolate = waiting * (1e-2 + COSTS["interpolate"] * meshed)
+        cost.interpolate += COSTS["variogram"] * sum(np.sqrt(points) for points in fitted)
+    cost.intersect = 0.01 + COSTS[cells]["seconds_per_triangle"] * (triangles + waiting * meshed)
+    return cost
+
+
+def _fits_variogram(surface: Surface) -> bool:
+    method, settings = surface.method_options()
+    return "variogram" in METHODS[method].options and settings["variogram"] is None
+
+
+def _meshed_triangles(rock: Rock, rings: Sequence[np.ndarray]) -> float:
+    """About how many triangles the mesh of a region will have."""
+    extent = np.ptp(np.concatenate(rings), axis=0)
+    return min(float(extent[0] * extent[1]) / (0.433 * rock.edge_length**2), 1e9)
 
 
 @dataclass(frozen=True)
@@ -58,17 +80,44 @@ class Shares:
 
 
 def expected_shares(project: Project, cells: str) -> Shares:
-    """From the sizes of files and arrays, before anything is read."""
-    size = sum(file.stat().st_size for file in project.input_files() if file.is_file())
-    triangles = size / _BYTES_PER_TRIANGLE + sum(
-        len(surface.triangles)
-        for rock in project.rocks
-        for surface in rock.surfaces
-        if surface.triangles is not None
-    )
-    read = 1e-3 + COSTS["read"] * size
-    rest = 0.01 + COSTS[cells]["seconds_per_triangle"] * triangles
-    return Shares(read / (read + rest), 1.0 - _MERGE * rest / (read + rest))
+    """From the sizes of files and arrays, before anything but outlines is read."""
+    read = 1e-3 + COSTS["read"] * sum(_size(file) for file in project.input_files())
+    rest = Costs()
+    for rock in project.rocks:
+        triangles, waiting, fitted = 0.0, 0, []
+        for surface in rock.surfaces:
+            size = _size(surface.input_file) if surface.input_file is not None else 0
+            if surface.interpolated:
+                waiting += 1
+                if _fits_variogram(surface):
+                    given = 0 if surface.points is None or size else len(surface.points)
+                    fitted.append(given + size / _BYTES_PER_POINT)
+            else:
+                given = 0 if surface.triangles is None else len(surface.triangles)
+                triangles += given + size / _BYTES_PER_TRIANGLE
+        meshed = _meshed_triangles(rock, _rings(rock)) if waiting else 0.0
+        cost = _costs(cells, triangles, meshed, waiting, fitted)
+        rest.mesh += cost.mesh
+        rest.interpolate += cost.interpolate
+        rest.intersect += cost.intersect
+    total = read + rest.total
+    return Shares(read / total, 1.0 - _MERGE * rest.intersect / total)
+
+
+def _size(file: Path) -> int:
+    try:
+        return file.stat().st_size
+    except OSError:  # reading it will say what is wrong
+        return 0
+
+
+def _rings(rock: Rock) -> Sequence[np.ndarray]:
+    if rock.region_file is None:
+        return [np.asarray(rock.region, float)]
+    try:
+        return read_region(rock.region_file)[0]
+    except InputRefused:  # told with its place when the region is read in its turn
+        return [np.zeros((1, 2))]
 
 
 def stack_pace(inputs: Sequence[RockInput], cells: str) -> Callable[[float], float]:

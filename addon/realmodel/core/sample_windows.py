@@ -13,8 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-TRIANGLES_PER_WINDOW = 12_000
-_WINDOWS = 3
+TRIANGLES_PER_WINDOW = 3_000
+FEWEST_OF_A_SURFACE = 150  # in a window
+_STRATA = (4, 2)  # one window in each of so many parts with equally many triangles, along x and then along y
 _WHOLE_BELOW = 60_000  # triangles: a rock mass so small is its own sample
 _CENTRES_LOOKED_AT = 100_000
 _PRODUCTS_AT_ONCE = 4_000_000
@@ -24,24 +25,27 @@ Plan = tuple[np.ndarray, np.ndarray]  # vertices (V, 2 or 3) float64, triangles 
 
 @dataclass(frozen=True)
 class Window:
-    """A rectangle in plan: low <= place < high."""
+    """A rectangle in plan: low <= place < high. What is built for it reaches further by a margin, so that the
+    sample's torn edge divides nothing that counts."""
 
     low: np.ndarray
     high: np.ndarray
+    margin: float = 0.0
 
     def holds(self, places: np.ndarray) -> np.ndarray:
         """(N,) bool: which places (N, 2) lie in it."""
         return ((places >= self.low) & (places < self.high)).all(axis=1)
 
     def overlapping(self, plan: Plan) -> np.ndarray:
-        """The numbers of the triangles whose bounding boxes meet the window."""
+        """The numbers of the triangles whose bounding boxes meet the window and its margin."""
         vertices, triangles = plan
+        low, high = self.low - self.margin, self.high + self.margin
         x, y = vertices[:, 0], vertices[:, 1]
         # outcodes as in Cohen and Sutherland's clipping: beyond which sides a vertex lies
-        code = (x < self.low[0]).astype(np.uint8)
-        code |= (x > self.high[0]).astype(np.uint8) << 1
-        code |= (y < self.low[1]).astype(np.uint8) << 2
-        code |= (y > self.high[1]).astype(np.uint8) << 3
+        code = (x < low[0]).astype(np.uint8)
+        code |= (x > high[0]).astype(np.uint8) << 1
+        code |= (y < low[1]).astype(np.uint8) << 2
+        code |= (y > high[1]).astype(np.uint8) << 3
         beyond = code[triangles[:, 0]] & code[triangles[:, 1]] & code[triangles[:, 2]]
         return np.flatnonzero(beyond == 0)
 
@@ -54,9 +58,9 @@ def sample_windows(plans: Sequence[Plan], rings: Sequence[np.ndarray] | None) ->
     """The windows of a rock mass, and how many triangles of its surfaces lie inside its region.
 
     plans: the triangulation of each surface. rings: the region's, counted even-odd, or None.
-    Windows stand round triangles drawn by lot, the same on every run, so they are where triangles are
-    dense; each holds about TRIANGLES_PER_WINDOW of all surfaces together. A small rock mass has one window,
-    which holds everything.
+    Windows stand round triangles drawn by lot, one in each of eight parts with equally many of them, the
+    same on every run; each holds about TRIANGLES_PER_WINDOW of all surfaces together. A small rock mass has
+    one window, which holds everything.
     """
     total = sum(len(triangles) for _, triangles in plans)
     random = np.random.default_rng(total)
@@ -72,13 +76,26 @@ def sample_windows(plans: Sequence[Plan], rings: Sequence[np.ndarray] | None) ->
     if used <= _WHOLE_BELOW:
         return [everything()], used
     centres = centres[inside]
+    wanted = max(TRIANGLES_PER_WINDOW, FEWEST_OF_A_SURFACE * len(plans))
     windows = []
-    for number in random.integers(0, len(centres), _WINDOWS):
+    for stratum in _strata(centres):
+        number = random.choice(stratum)
         distance = np.abs(centres - centres[number]).max(axis=1)
-        rank = min(len(centres) - 1, round(len(centres) * TRIANGLES_PER_WINDOW / used))
+        rank = min(len(centres) - 1, round(len(centres) * wanted / used))
         reach = np.partition(distance, rank)[rank]
-        windows.append(Window(centres[number] - reach, centres[number] + reach))
+        triangle = 2 * reach * np.sqrt(2 * len(plans) / wanted)  # its size, where all surfaces are alike
+        windows.append(Window(centres[number] - reach, centres[number] + reach, triangle))
     return windows, used
+
+
+def _strata(centres: np.ndarray) -> list[np.ndarray]:
+    """The numbers of the centres by parts of the plan that hold equally many."""
+    columns = np.array_split(np.argsort(centres[:, 0], kind="stable"), _STRATA[0])
+    return [
+        column[part]
+        for column in columns
+        for part in np.array_split(np.argsort(centres[column, 1], kind="stable"), _STRATA[1])
+    ]
 
 
 def _centres(plan: Plan, numbers) -> np.ndarray:

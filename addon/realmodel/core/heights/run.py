@@ -63,10 +63,11 @@ def few_points(points: np.ndarray, method: str) -> list[str]:
     """What to tell where points are too few for a surface that was to have a shape of its own."""
     if method in ("constant", "parallel"):
         return []
-    places = np.unique(points[:, :2], axis=0)
-    if len(places) == 1:
+    # no sorting of all places: it takes seconds of millions, and lets no other thread run meanwhile
+    elsewhere = points[(points[:, :2] != points[:1, :2]).any(axis=1), :2]
+    if len(points) and not len(elsewhere):
         return ["there is one point only: the surface is its height everywhere"]
-    if len(places) == 2:
+    if len(elsewhere) and (elsewhere == elsewhere[0]).all():
         return ["there are two points only: the surface is known along their line at best"]
     return []
 
