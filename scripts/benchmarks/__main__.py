@@ -101,8 +101,16 @@ def _cells(row: Row) -> list[str]:
         _ratio(row.goal),
         _megabytes(row.our_peak),
         _megabytes(row.their_peak),
-        "; ".join([*({True: ["met"], False: ["NOT met"], None: ["SKIPPED"]}[row.met]), *row.notes]),
+        "; ".join([_verdict(row), *row.notes]),
     ]
+
+
+def _verdict(row: Row) -> str:
+    if row.met is None:
+        return "SKIPPED"
+    if row.met:
+        return "met"
+    return "NOT met" if row.ratio > row.must else "NOT met: too much memory"
 
 
 def _ratio(value: float) -> str:
