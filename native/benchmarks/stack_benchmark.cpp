@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cells of a stack of crossing surfaces: seconds, cells and faces a second.
 //
-//   stack_benchmark [SURFACES [QUADS [THREADS [shared]]]]
+//   stack_benchmark [SURFACES [QUADS [THREADS [shared|own [blocks]]]]]
 //
 // Each surface has QUADS x QUADS x 2 triangles on jittered nodes of its own, or all the same plan
-// mesh with "shared".
+// mesh with "shared". With "blocks" each connected part of a block is one cell.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -57,6 +57,7 @@ int main(int count, char** arguments) {
     };
     const int surfaces = number(1, 10), quads = number(2, 60), threads = number(3, 0);
     const bool shared = count > 4 && std::string(arguments[4]) == "shared";
+    const bool blocks = count > 5 && std::string(arguments[5]) == "blocks";
     std::mt19937_64 random(1);
     std::vector<Surface> made;
     for (int k = 0; k < surfaces; ++k)
@@ -65,7 +66,9 @@ int main(int count, char** arguments) {
     for (const Surface& s : made)
         input.surfaces.push_back({s.vertices, s.triangles});
     const auto began = std::chrono::steady_clock::now();
-    const auto complex = realmodel::strata::build_stack(input, threads, nullptr);
+    const auto complex = realmodel::strata::build_stack(
+        input, threads, nullptr,
+        blocks ? realmodel::strata::CellKind::kBlocks : realmodel::strata::CellKind::kColumns);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     std::printf(

@@ -61,8 +61,9 @@ py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::stri
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;
-        complex = strata::build_rock_masses(input, threads, control);
-        if (cells == "blocks") complex = strata::merge_columns(complex, control);
+        complex = strata::build_rock_masses(
+            input, threads, control,
+            cells == "blocks" ? strata::CellKind::kBlocks : strata::CellKind::kColumns);
     }
     return to_dict(std::move(complex));
 }

@@ -53,6 +53,14 @@ struct Envelope {
         pending.push_back(block_beneath);
         face_offsets.push_back(face_offsets.back());
     }
+    /// Adds a facet of another envelope, with its faces.
+    void add_facet_of(const Envelope& other, std::size_t facet, std::int32_t block_beneath) {
+        add_facet(other.outlines[facet], other.plane[facet], other.layer[facet], block_beneath);
+        for (auto f = other.face_offsets[facet]; f < other.face_offsets[facet + 1]; ++f) {
+            const auto i = static_cast<std::size_t>(f);
+            add_face(other.face_polygons[i], other.face_above[i]);
+        }
+    }
     /// Adds a face to the facet added last.
     void add_face(PolygonView polygon, std::int32_t cell_above) {
         face_polygons.add(polygon);

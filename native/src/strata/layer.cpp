@@ -32,21 +32,6 @@ void add_empty(PlanGeometry& geometry, Layer& layer, const FrameTriangles& filli
     }
 }
 
-/// The frame and what a surface covers of it; nothing where the surface covers a place twice.
-std::optional<FrameTriangles> cover_frame(const PlanGeometry& geometry,
-                                          const std::vector<BorderEdge>& border,
-                                          const Frame& frame) {
-    try {
-        FrameTriangles filling = fill_frame(geometry, border, frame);
-        const auto [least, most] =
-            std::minmax_element(filling.covered.begin(), filling.covered.end());
-        if (*least < 0 || *most > 1) return std::nullopt;
-        return filling;
-    } catch (const InputError&) {
-        return std::nullopt;  // the border crosses itself
-    }
-}
-
 [[noreturn]] void refuse_pair(Scope& scope, const Layer& layer,
                               const std::vector<UsedTriangle>& triangles, std::size_t one,
                               std::size_t other, int index) {
@@ -96,6 +81,20 @@ std::optional<FrameTriangles> cover_frame(const PlanGeometry& geometry,
 void Layer::index(const PlanGeometry& geometry, const Progress* progress) {
     const Scope scope(geometry);
     grid = PlanGrid(scope, polygons, progress);
+}
+
+std::optional<FrameTriangles> cover_frame(const PlanGeometry& geometry,
+                                          const std::vector<BorderEdge>& border,
+                                          const Frame& frame) {
+    try {
+        FrameTriangles filling = fill_frame(geometry, border, frame);
+        const auto [least, most] =
+            std::minmax_element(filling.covered.begin(), filling.covered.end());
+        if (*least < 0 || *most > 1) return std::nullopt;
+        return filling;
+    } catch (const InputError&) {
+        return std::nullopt;  // the border crosses itself
+    }
 }
 
 Layer make_layer(PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "plan_grid.hpp"
@@ -41,6 +42,12 @@ struct UsedTriangle {
 std::vector<UsedTriangle> enter_surface(exact::PlanGeometry& geometry, const SurfaceView& surface,
                                         int index, const PlanSnapping& snapping,
                                         std::vector<Warning>& warnings, const Progress* progress);
+
+/// Where triangles that turn counter-clockwise lie in the frame; nothing where they cover a place
+/// twice.
+std::optional<FrameTriangles> cover_frame(const exact::PlanGeometry& geometry,
+                                          const std::vector<BorderEdge>& border,
+                                          const Frame& frame);
 
 /// The layer of a checked surface.
 /// @throws InputError kind double_valued, with the two triangles and a place in both

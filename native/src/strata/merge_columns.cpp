@@ -2,7 +2,6 @@
 #include "disjoint_parts.hpp"
 #include "parallel_chunks.hpp"
 #include "realmodel/strata/stack.hpp"
-#include "volumes.hpp"
 
 namespace realmodel::strata {
 
@@ -51,7 +50,7 @@ CellComplex merge_columns(const CellComplex& columns, const Progress* progress) 
              cells[1] < 0 ? -1 : part_of[static_cast<std::size_t>(cells[1])]});
         merged.face_surface.push_back(columns.face_surface[f]);
     }
-    merged.volumes = block_volumes(merged, columns.volumes.size(), 1, progress);
+    merged.volumes = columns.volumes;
     merged.warnings = columns.warnings;
     merged.decisions = columns.decisions;
     merged.exact_decisions = columns.exact_decisions;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "block_cells.hpp"
+#include "block_layers.hpp"
 #include "border_joining.hpp"
 #include "conforming.hpp"
 #include "distinct_positions.hpp"
@@ -142,8 +144,8 @@ private:
     std::vector<Layer> replayed_;
 };
 
-void check_base(const PlanGeometry& geometry, const Envelope& envelope, double base,
-                std::int32_t oldest_surface) {
+/// The lowest place of the envelope.
+std::array<double, 3> lowest_place(const PlanGeometry& geometry, const Envelope& envelope) {
     Scope scope(geometry);
     std::array<double, 3> lowest{0, 0, HUGE_VAL};
     for (std::size_t f = 0; f < envelope.size(); ++f) {
@@ -156,6 +158,10 @@ void check_base(const PlanGeometry& geometry, const Envelope& envelope, double b
             }
         }
     }
+    return lowest;
+}
+
+void check_base(const std::array<double, 3>& lowest, double base, std::int32_t oldest_surface) {
     if (lowest[2] <= base) {
         throw InputError("base_not_below",
                          "base_elevation " + std::to_string(base) +
@@ -250,11 +256,50 @@ void build_rock(Site& site, EnteredRock& rock, double start, double share) {
                                         : overlay(site.geometry, envelope, layer, k,
                                                   site.construction, site.threads, site.progress);
     }
-    if (rock.base) check_base(site.geometry, envelope, *rock.base_elevation, rock.first_surface);
+    if (rock.base)
+        check_base(lowest_place(site.geometry, envelope), *rock.base_elevation, rock.first_surface);
     finish(envelope, rock.base, site.construction);
     auto& block = site.construction.cell_block;
     for (std::size_t c = first_cell; c < block.size(); ++c)
         block[c] += rock.first_surface;
+}
+
+/// Whether blocks of these rock masses can be built without columns.
+bool is_plain(const std::vector<EnteredRock>& rocks) {
+    return rocks.size() == 1 && std::all_of(rocks[0].rules.begin(), rocks[0].rules.end(),
+                                            [](Rule r) { return r == Rule::kErosional; });
+}
+
+/// The blocks of a single rock mass whose surfaces are all erosional.
+CellComplex build_plain_blocks(Site& site, EnteredRock& rock) {
+    std::vector<BlockLayer> layers;
+    for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
+        if (site.progress != nullptr) site.progress->check();
+        layers.push_back(make_block_layer(site.geometry, rock.surfaces[k], site.frame,
+                                          static_cast<std::int32_t>(k), site.threads,
+                                          site.progress));
+        site.surface_of_plane.resize(site.geometry.plane_count(), static_cast<std::int32_t>(k));
+        rock.surfaces[k] = {};
+    }
+    std::optional<BlockRegion> region;
+    if (rock.region) {
+        region = make_block_region(site.geometry, *rock.region, site.frame, site.progress);
+        rock.region.reset();
+    }
+    BlockOverlay overlay =
+        make_block_overlay(site.geometry, layers, region, site.threads, site.progress);
+    const auto count = static_cast<std::int32_t>(layers.size());
+    for (std::int32_t k = count - 1; k >= 0; --k) {
+        begin(site.progress,
+              kEnterShare + kOverlayShare * static_cast<double>(count - 1 - k) / count,
+              kOverlayShare / count, "intersecting the surfaces");
+        overlay.add(k);
+    }
+    if (rock.base) check_base(overlay.lowest(), *rock.base_elevation, rock.first_surface);
+    overlay.finish(rock.base);
+    begin(site.progress, kEnterShare + kOverlayShare, kConformShare, "joining blocks");
+    return assemble_blocks(site.geometry, overlay, site.surface_of_plane, rock.base,
+                           rock.first_surface, site.threads, site.progress);
 }
 
 /// What was done to the input before it was built.
@@ -274,7 +319,7 @@ Warning joined_by_rounding(const PlanSnapping& snapping, const JoinedBorders& bo
 }
 
 CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping& snapping,
-                          int threads, Progress* progress) {
+                          CellKind cells, int threads, Progress* progress) {
     begin(progress, 0.0, kEnterShare, "checking the surfaces");
     Site site;
     site.threads = threads;
@@ -292,6 +337,12 @@ CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping&
         for (EnteredRock& rock : entered)
             enter_base(site, rock);
         site.geometry.freeze_vertices();
+    }
+    if (site.geometry.point_count() == 0) {
+        result.face_offsets.push_back(0);
+    } else if (cells == CellKind::kBlocks && is_plain(entered)) {
+        result = build_plain_blocks(site, entered[0]);
+    } else {
         RockFootprints footprints;
         double start = kEnterShare;
         for (EnteredRock& rock : entered) {
@@ -306,10 +357,9 @@ CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping&
         }
         result =
             conform(site.geometry, site.construction, site.surface_of_plane, threads, progress);
-    } else {
-        result.face_offsets.push_back(0);
     }
     result.volumes = block_volumes(result, static_cast<std::size_t>(surfaces), threads, progress);
+    if (cells == CellKind::kBlocks && !is_plain(entered)) result = merge_columns(result, progress);
     result.warnings = std::move(warnings);
     result.decisions = site.geometry.all_decisions();
     result.exact_decisions = site.geometry.exact_decisions();
@@ -319,26 +369,27 @@ CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping&
 
 }  // namespace
 
-CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress) {
-    if (share_one_plan(rocks)) return build_snapped(rocks, {}, threads, progress);
+CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
+                              CellKind cells) {
+    if (share_one_plan(rocks)) return build_snapped(rocks, {}, cells, threads, progress);
     const PlanSnapping snapping = find_snapping(rocks, threads, progress);
     const JoinedBorders joined = join_borders(rocks, snapping, progress);
     if (!snapping.empty() || joined.divided > 0) {
         try {
             CellComplex result = joined.divided > 0
-                                     ? build_snapped(joined.rocks, {}, threads, progress)
-                                     : build_snapped(rocks, snapping, threads, progress);
+                                     ? build_snapped(joined.rocks, {}, cells, threads, progress)
+                                     : build_snapped(rocks, snapping, cells, threads, progress);
             result.warnings.push_back(joined_by_rounding(snapping, joined));
             return result;
         } catch (const InputError&) {
             // Whatever is wrong, what the user hears is about the input as given.
         }
     }
-    return build_snapped(rocks, {}, threads, progress);
+    return build_snapped(rocks, {}, cells, threads, progress);
 }
 
-CellComplex build_stack(const StackInput& input, int threads, Progress* progress) {
-    return build_rock_masses({&input, 1}, threads, progress);
+CellComplex build_stack(const StackInput& input, int threads, Progress* progress, CellKind cells) {
+    return build_rock_masses({&input, 1}, threads, progress, cells);
 }
 
 }  // namespace realmodel::strata

@@ -143,6 +143,7 @@ public:
     PointId add_point(const Point& point);
 
     VertexId vertex_count() const { return static_cast<VertexId>(vertex_count_); }
+    std::size_t space_count() const { return space_.size(); }
     std::size_t plane_count() const { return planes_.size(); }
     std::size_t line_count() const { return lines_.size(); }
     std::size_t point_count() const { return points_.size(); }

@@ -66,6 +66,12 @@ struct CellComplex {
     std::uint64_t exact_decisions = 0;  ///< how many of them needed exact arithmetic
 };
 
+/// What a cell is.
+enum class CellKind {
+    kColumns,  ///< what lies under one facet of the surface above it
+    kBlocks    ///< a connected part of a block
+};
+
 inline constexpr std::int32_t kWall = -1;
 inline constexpr std::int32_t kBase = -2;
 
@@ -78,10 +84,12 @@ inline constexpr std::int32_t kBase = -2;
 ///         rocks_overlap (items: the two rock masses), too_large; surfaces are counted through all
 ///         rock masses
 /// @throws Cancelled
-CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress);
+CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
+                              CellKind cells = CellKind::kColumns);
 
 /// The same of one rock mass.
-CellComplex build_stack(const StackInput& input, int threads, Progress* progress);
+CellComplex build_stack(const StackInput& input, int threads, Progress* progress,
+                        CellKind cells = CellKind::kColumns);
 
 /// The same model with each connected part of a block as one cell: walls between cells of one block
 /// are left out.

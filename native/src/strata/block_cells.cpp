@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "block_cells.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "block_walls.hpp"
+#include "conforming.hpp"
+#include "disjoint_parts.hpp"
+#include "distinct_positions.hpp"
+#include "parallel_chunks.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanGeometry;
+using exact::SpaceId;
+
+namespace {
+
+class BlockAssembly {
+public:
+    BlockAssembly(PlanGeometry& geometry, BlockOverlay& overlay,
+                  const std::vector<std::int32_t>& surface_of_plane, std::optional<PlaneId> base,
+                  std::int32_t first_block, int threads, const Progress* progress)
+        : geometry_(geometry),
+          overlay_(overlay),
+          made_(overlay.construction()),
+          surface_of_plane_(surface_of_plane),
+          base_(base),
+          first_block_(first_block),
+          threads_(threads),
+          progress_(progress) {}
+
+    CellComplex assemble() {
+        add_touched_triangles();
+        link_whole_triangles();
+        conform();
+        add_parts();
+        add_walls();
+        add_whole_triangles();
+        return std::move(complex_);
+    }
+
+private:
+    WholeFace& whole(PlaneId plane) { return made_.whole[static_cast<std::size_t>(plane)]; }
+
+    /// Whole triangles on whose edges vertices may lie: those looked at exactly, and the neighbours
+    /// of divided ones. The others are touched by nothing.
+    void add_touched_triangles() {
+        is_touched_.assign(made_.whole.size(), 0);
+        for (std::size_t p = 0; p < made_.whole.size(); ++p) {
+            poll(progress_, p);
+            const auto plane = static_cast<PlaneId>(p);
+            if (made_.whole[p].below == WholeFace::kUnset) continue;
+            bool touched = made_.is_exact[p] != 0;
+            for (const PlaneId n : overlay_.neighbours_of(plane))
+                touched |= n >= 0 && made_.is_in_parts[static_cast<std::size_t>(n)] != 0;
+            if (!touched) continue;
+            is_touched_[p] = 1;
+            if (!made_.whole[p].is_face()) continue;
+            made_.faces.add(overlay_.outline_of(plane), plane, overlay_.layer_of(plane),
+                            made_.whole[p].above, made_.whole[p].below);
+        }
+        for (const auto& [plane, node] : made_.on_base) {
+            if (is_touched_[static_cast<std::size_t>(plane)] != 0)
+                made_.faces.add(overlay_.outline_of(plane), *base_, -1, node, kOutsideCell);
+        }
+    }
+
+    /// What bounds told about is thick along every edge.
+    void link_whole_triangles() {
+        for (std::size_t p = 0; p < made_.whole.size(); ++p) {
+            poll(progress_, p);
+            const WholeFace& face = made_.whole[p];
+            if (face.below == WholeFace::kUnset) continue;
+            for (const PlaneId n : overlay_.neighbours_of(static_cast<PlaneId>(p))) {
+                if (n <= static_cast<PlaneId>(p)) continue;
+                const WholeFace& other = whole(n);
+                if (other.below == WholeFace::kUnset) continue;
+                if (made_.is_exact[p] != 0 && made_.is_exact[static_cast<std::size_t>(n)] != 0)
+                    continue;  // compared on the track of their edge
+                link(face.above, other.above);
+                link(face.below, other.below);
+            }
+        }
+    }
+    void link(std::int32_t a, std::int32_t b) {
+        if (a >= 0 && b >= 0 && block(a) == block(b)) made_.links.emplace_back(a, b);
+    }
+    std::int32_t block(std::int32_t node) const {
+        return made_.node_block[static_cast<std::size_t>(node)];
+    }
+
+    void conform() {
+        const FaceList& faces = made_.faces;
+        std::vector<ExtraPoint> extra;
+        for (;;) {
+            const Places places = find_places(geometry_, faces, extra, threads_, progress_);
+            Tracks tracks = find_tracks(geometry_, faces, places, extra, threads_, progress_);
+            loops_ = find_loops(geometry_, faces, places, tracks, threads_, progress_);
+            TrackContacts contacts =
+                find_contacts(geometry_, faces, made_.node_block, tracks, loops_, overlay_.tiles(),
+                              overlay_.on_border(), threads_, progress_);
+            if (!contacts.missing.empty()) {
+                extra.insert(extra.end(), contacts.missing.begin(), contacts.missing.end());
+                continue;
+            }
+            made_.links.insert(made_.links.end(), contacts.links.begin(), contacts.links.end());
+            number_cells();
+            for (WallStretch& stretch : contacts.walls) {
+                stretch.left = cell(stretch.left);
+                stretch.right = cell(stretch.right);
+            }
+            is_needed_.assign(loops_.positions.size(), 0);
+            for (const std::uint32_t entry : loops_.edge_begin)
+                is_needed_[static_cast<std::size_t>(loops_.vertices[entry])] = 1;
+            std::vector<std::uint8_t> may_bend(loops_.positions.size(), 0);
+            for (const ExtraPoint& e : extra) {
+                const auto place =
+                    static_cast<std::size_t>(places.of_point[static_cast<std::size_t>(e.point)]);
+                std::fill(may_bend.begin() + loops_.place_offsets[place],
+                          may_bend.begin() + loops_.place_offsets[place + 1], std::uint8_t{1});
+            }
+            walls_ = join_walls(contacts.walls, may_bend, is_needed_);
+            make_distinct(geometry_, faces, places, loops_, threads_, progress_);
+            return;
+        }
+    }
+
+    /// Joins linked nodes to cells, numbered in order of their first node; faces know their cells
+    /// from here on.
+    void number_cells() {
+        DisjointParts sets(made_.node_block.size());
+        for (const auto& [a, b] : made_.links)
+            sets.join(a, b);
+        cell_of_node_.assign(made_.node_block.size(), -1);
+        for (std::size_t n = 0; n < cell_of_node_.size(); ++n) {
+            poll(progress_, n);
+            const auto root = static_cast<std::size_t>(sets.find(static_cast<std::int32_t>(n)));
+            if (root == n) {
+                cell_of_node_[n] = static_cast<std::int32_t>(complex_.cell_block.size());
+                complex_.cell_block.push_back(made_.node_block[n] + first_block_);
+            } else {
+                cell_of_node_[n] = cell_of_node_[root];
+            }
+        }
+        for (std::int32_t& node : made_.faces.above)
+            node = cell(node);
+        for (std::int32_t& node : made_.faces.below)
+            node = cell(node);
+    }
+    std::int32_t cell(std::int32_t node) const {
+        return node < 0 ? kOutsideCell : cell_of_node_[static_cast<std::size_t>(node)];
+    }
+
+    /// Ends a face whose vertices were added from `begin` on, counter-clockwise seen from above (a
+    /// wall: from its right).
+    void end_face(std::size_t begin, std::int32_t above, std::int32_t below, std::int32_t surface) {
+        auto& loop = complex_.face_vertices;
+        if (below < 0) {
+            std::reverse(loop.begin() + static_cast<std::ptrdiff_t>(begin), loop.end());
+            std::swap(above, below);
+        }
+        complex_.face_offsets.push_back(static_cast<std::int64_t>(loop.size()));
+        complex_.face_cells.push_back({below, above});
+        complex_.face_surface.push_back(surface);
+    }
+
+    void add_parts() {
+        complex_.face_offsets.push_back(0);
+        number_.assign(is_needed_.size(), -1);
+        for (std::size_t v = 0; v < is_needed_.size(); ++v) {
+            if (is_needed_[v] == 0) continue;
+            number_[v] = static_cast<std::int32_t>(complex_.vertices.size());
+            complex_.vertices.push_back(loops_.positions[v]);
+        }
+        const FaceList& faces = made_.faces;
+        for (std::size_t f = 0; f < faces.size(); ++f) {
+            poll(progress_, f);
+            const std::size_t begin = complex_.face_vertices.size();
+            for (auto i = loops_.face_offsets[f]; i < loops_.face_offsets[f + 1]; ++i)
+                add_vertex(loops_.vertices[i]);
+            end_face(begin, faces.above[f], faces.below[f],
+                     surface_of_plane_[static_cast<std::size_t>(faces.plane[f])]);
+        }
+    }
+    void add_vertex(std::int32_t v) {
+        const std::int32_t number = number_[static_cast<std::size_t>(v)];
+        if (number >= 0) complex_.face_vertices.push_back(number);
+    }
+
+    void add_walls() {
+        for (std::size_t w = 0; w < walls_.cells.size(); ++w) {
+            const std::size_t begin = complex_.face_vertices.size();
+            for (auto i = walls_.offsets[w]; i < walls_.offsets[w + 1]; ++i)
+                add_vertex(walls_.vertices[static_cast<std::size_t>(i)]);
+            end_face(begin, walls_.cells[w][1], walls_.cells[w][0], kWall);
+        }
+    }
+
+    void add_whole_triangles() {
+        // input vertices that parts have already, under the same numbers
+        std::vector<std::int32_t> of_space(geometry_.space_count(), -1);
+        std::vector<std::int32_t> of_base(
+            base_ ? static_cast<std::size_t>(geometry_.vertex_count()) : 0, -1);
+        const FaceList& faces = made_.faces;
+        for (std::size_t f = 0; f < faces.size(); ++f) {
+            const auto first = faces.polygons.offsets[f];
+            for (auto c = first; c < faces.polygons.offsets[f + 1]; ++c) {
+                const auto corner = static_cast<std::size_t>(c);
+                const PointId point = faces.polygons.corners[corner].point;
+                if (point >= geometry_.vertex_count()) continue;
+                const std::int32_t number =
+                    number_[static_cast<std::size_t>(loops_.vertices[loops_.edge_begin[corner]])];
+                if (base_ && faces.plane[f] == *base_) {
+                    of_base[static_cast<std::size_t>(point)] = number;
+                    continue;
+                }
+                const SpaceId s = geometry_.corner_above(faces.plane[f], point);
+                if (s >= 0) of_space[static_cast<std::size_t>(s)] = number;
+            }
+        }
+        const auto vertex = [&](std::int32_t& number, const std::array<double, 3>& position) {
+            if (number < 0) {
+                number = static_cast<std::int32_t>(complex_.vertices.size());
+                complex_.vertices.push_back(position);
+            }
+            complex_.face_vertices.push_back(number);
+        };
+        for (std::size_t p = 0; p < made_.whole.size(); ++p) {
+            poll(progress_, p);
+            if (is_touched_[p] != 0 || !made_.whole[p].is_face()) continue;
+            const std::size_t begin = complex_.face_vertices.size();
+            for (const SpaceId s : geometry_.plane(static_cast<PlaneId>(p)).corner) {
+                const auto& space = geometry_.space(s);
+                const auto& at = geometry_.point(space.plan);
+                vertex(of_space[static_cast<std::size_t>(s)], {at.x, at.y, space.z});
+            }
+            end_face(begin, cell(made_.whole[p].above), cell(made_.whole[p].below),
+                     surface_of_plane_[p]);
+        }
+        for (const auto& [plane, node] : made_.on_base) {
+            if (is_touched_[static_cast<std::size_t>(plane)] != 0) continue;
+            const std::size_t begin = complex_.face_vertices.size();
+            const double z = geometry_.space(geometry_.plane(*base_).corner[0]).z;
+            for (const SpaceId s : geometry_.plane(plane).corner) {
+                const auto v = geometry_.space(s).plan;
+                vertex(of_base[static_cast<std::size_t>(v)],
+                       {geometry_.point(v).x, geometry_.point(v).y, z});
+            }
+            end_face(begin, cell(node), kOutsideCell, kBase);
+        }
+    }
+
+    PlanGeometry& geometry_;
+    BlockOverlay& overlay_;
+    BlockConstruction& made_;
+    const std::vector<std::int32_t>& surface_of_plane_;
+    std::optional<PlaneId> base_;
+    std::int32_t first_block_;
+    int threads_;
+    const Progress* progress_;
+    CellComplex complex_;
+    std::vector<std::uint8_t> is_touched_;  ///< for each plane
+    Loops loops_;
+    Walls walls_;
+    std::vector<std::uint8_t> is_needed_;  ///< for each vertex of the loops
+    std::vector<std::int32_t> number_;     ///< of each vertex of the loops, -1 where not needed
+    std::vector<std::int32_t> cell_of_node_;
+};
+
+}  // namespace
+
+CellComplex assemble_blocks(PlanGeometry& geometry, BlockOverlay& overlay,
+                            const std::vector<std::int32_t>& surface_of_plane,
+                            std::optional<PlaneId> base, std::int32_t first_block, int threads,
+                            const Progress* progress) {
+    return BlockAssembly(geometry, overlay, surface_of_plane, base, first_block, threads, progress)
+        .assemble();
+}
+
+}  // namespace realmodel::strata

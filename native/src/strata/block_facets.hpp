@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "block_overlay.hpp"
+
+namespace realmodel::strata {
+
+/// A piece of the surface that becomes part of the envelope.
+struct LoweredPiece {
+    std::int32_t polygon;  ///< of the layer
+    std::int32_t node;     ///< above it, or kOutsideCell
+    bool is_strict;        ///< nowhere as high as the facet above it
+};
+
+/// Facets to be overlaid exactly: first `whole` triangles with one face each, then parts.
+struct ExactFacets {
+    Envelope facets;
+    std::size_t whole = 0;
+    /// Of each part: whether the layer has everything that it meets. Only the sky and the outside
+    /// may lack what bounds tell about.
+    std::vector<std::uint8_t> is_complete;
+    /// Of each facet: whether what lies under it may be one node, however the surface runs there.
+    std::vector<std::uint8_t> may_close;
+};
+
+/// What a chunk of facets became. Lines and points are the scope's, nodes are counted from 0.
+struct OverlaidChunk {
+    struct ClosedWhole {
+        PlaneId plane;
+        std::int32_t above, below;
+    };
+    explicit OverlaidChunk(const exact::PlanGeometry& geometry) : scope(geometry) {}
+
+    Scope scope;
+    std::vector<std::int32_t> node_block;
+    FaceList faces;  ///< above is a shared node, below one of the chunk's
+    std::vector<ClosedWhole> closed_whole;
+    std::vector<PlaneId> divided_whole;
+    std::vector<WholeFacet> kept_whole;
+    Envelope kept;
+    PolygonPool lowered_outlines;
+    std::vector<LoweredPiece> lowered;
+};
+
+/// Overlays facets with part of surface `number`; marks polygons of it that do not lie below as a
+/// whole.
+std::vector<std::unique_ptr<OverlaidChunk>> overlay_facets(const exact::PlanGeometry& geometry,
+                                                           const ExactFacets& exact,
+                                                           const Layer& layer, std::int32_t number,
+                                                           std::vector<std::uint8_t>& is_divided,
+                                                           int threads, const Progress* progress);
+
+}  // namespace realmodel::strata

@@ -1,0 +1,670 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "block_overlay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "block_facets.hpp"
+#include "disjoint_parts.hpp"
+#include "parallel_chunks.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanGeometry;
+using exact::VertexId;
+
+namespace {
+
+/// What the envelope is all over a tile that no border crosses.
+enum Cover : std::uint8_t { kRock, kSkyOnly, kOutsideOnly };
+
+constexpr std::int32_t kNoLabel = -4, kSeveral = -3, kSkyLabel = -1;
+
+std::int32_t merged_label(std::int32_t a, std::int32_t b) {
+    if (a == kNoLabel || a == b) return b;
+    return b == kNoLabel ? a : kSeveral;
+}
+
+std::array<std::array<double, 2>, 3> corners_of(const PlanGeometry& geometry,
+                                                const PlanTriangle& triangle) {
+    std::array<std::array<double, 2>, 3> p;
+    for (std::size_t i = 0; i < 3; ++i)
+        p[i] = {geometry.point(triangle[i]).x, geometry.point(triangle[i]).y};
+    return p;
+}
+
+/// Heights in every tile.
+struct TileHeights {
+    std::vector<double> low, high;
+    explicit TileHeights(std::size_t tiles) : low(tiles, HUGE_VAL), high(tiles, -HUGE_VAL) {}
+    void include(std::size_t tile, double from, double to) {
+        low[tile] = std::min(low[tile], from);
+        high[tile] = std::max(high[tile], to);
+    }
+};
+
+}  // namespace
+
+TriangleBounds bounds_of(const PlanGeometry& geometry, PlaneId plane) {
+    TriangleBounds b{{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, HUGE_VAL, -HUGE_VAL};
+    for (const exact::SpaceId s : geometry.plane(plane).corner) {
+        const auto& vertex = geometry.space(s);
+        const auto& p = geometry.point(vertex.plan);
+        b.box = {std::min(b.box.low_x, p.x), std::min(b.box.low_y, p.y),
+                 std::max(b.box.high_x, p.x), std::max(b.box.high_y, p.y)};
+        b.low = std::min(b.low, vertex.z);
+        b.high = std::max(b.high, vertex.z);
+    }
+    return b;
+}
+
+/// Heights of a surface in every tile, and where there is none.
+struct BlockOverlay::SurfaceTiles : TileHeights {
+    explicit SurfaceTiles(std::size_t tiles) : TileHeights(tiles), is_empty(tiles, 0) {}
+    std::vector<std::uint8_t> is_empty;  ///< of tiles without a border
+};
+
+/// Heights and blocks beneath the envelope in every tile.
+struct BlockOverlay::EnvelopeTiles : TileHeights {
+    explicit EnvelopeTiles(std::size_t tiles) : TileHeights(tiles), label(tiles, kNoLabel) {}
+    std::vector<std::int32_t> label;  ///< the block beneath, or kSeveral
+};
+
+/// What bounds tell of a surface and the envelope above it.
+struct BlockOverlay::Classified {
+    enum Surface : std::uint8_t { kBelow, kGone, kUnclear };
+    enum Facet : std::uint8_t { kClosed, kKept, kKeptBare, kExact };
+    std::vector<Surface> surface;       ///< of each triangle
+    std::vector<std::int32_t> label;    ///< of each triangle below: the block above it
+    std::vector<std::int32_t> node;     ///< of each triangle below: the node above it
+    std::vector<Facet> whole, part;     ///< of each facet
+    std::vector<std::int32_t> polygon;  ///< of each triangle: in the part overlaid exactly, or -1
+    std::vector<std::uint8_t> is_divided;  ///< of each polygon of that part
+    std::vector<LoweredPiece> lowered;
+    PolygonPool lowered_outlines;
+    std::int32_t first_closed = 0;  ///< node beneath the first of these, one after another
+    std::vector<PlaneId> closed_whole;
+    std::vector<std::size_t> closed_parts;
+};
+
+BlockOverlay::BlockOverlay(PlanGeometry& geometry, std::span<const BlockLayer> layers,
+                           PlanTiles tiles, std::vector<std::uint8_t> on_border,
+                           double largest_height, int threads, const Progress* progress)
+    : geometry_(geometry),
+      layers_(layers),
+      tiles_(tiles),
+      on_border_(std::move(on_border)),
+      // Well above what rounding moves vertices by: what bounds tell apart stays apart.
+      margin_(largest_height * 0x1p-40),
+      threads_(threads),
+      progress_(progress),
+      cover_(tiles_.size(), kRock) {
+    made_.whole.resize(geometry.plane_count());
+    made_.is_exact.resize(geometry.plane_count(), 0);
+    made_.is_in_parts.resize(geometry.plane_count(), 0);
+}
+
+std::int32_t BlockOverlay::layer_of(PlaneId plane) const {
+    const auto after =
+        std::upper_bound(layers_.begin(), layers_.end(), plane,
+                         [](PlaneId p, const BlockLayer& layer) { return p < layer.first_plane; });
+    return static_cast<std::int32_t>(after - layers_.begin()) - 1;
+}
+
+std::array<PlaneId, 3> BlockOverlay::neighbours_of(PlaneId plane) const {
+    const BlockLayer& layer = layers_[static_cast<std::size_t>(layer_of(plane))];
+    auto result = layer.neighbour[static_cast<std::size_t>(plane - layer.first_plane)];
+    for (PlaneId& p : result) {
+        if (p >= 0) p += layer.first_plane;
+    }
+    return result;
+}
+
+Polygon BlockOverlay::outline_of(PlaneId plane) {
+    Polygon outline;
+    const auto& corner = geometry_.plane(plane).corner;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const VertexId from = geometry_.space(corner[i]).plan;
+        const VertexId to = geometry_.space(corner[(i + 1) % 3]).plan;
+        outline.push_back({from, geometry_.add_edge(from, to)});
+    }
+    return outline;
+}
+
+TriangleBounds BlockOverlay::part_bounds(std::size_t part) const {
+    const Scope scope(geometry_);
+    const TriangleBounds triangle = bounds_of(geometry_, parts_.plane[part]);
+    return {box_of(scope, parts_.outlines[part]), triangle.low, triangle.high};
+}
+
+void BlockOverlay::start_region(const std::vector<PlanTriangle>& region,
+                                const std::vector<PlanTriangle>& outside) {
+    started_ = true;
+    for (const auto& [triangles, plane] :
+         {std::pair(&region, kSky), std::pair(&outside, kOutside)}) {
+        for (const PlanTriangle& t : *triangles) {
+            Polygon outline;
+            for (std::size_t i = 0; i < 3; ++i)
+                outline.push_back({t[i], geometry_.add_edge(t[i], t[(i + 1) % 3])});
+            parts_.add_facet(outline, plane, -1, kSkyLabel);
+            tiles_.for_each_centre_in(corners_of(geometry_, t),
+                                      [&, kind = plane](std::size_t tile) {
+                                          cover_[tile] = kind == kSky ? kSkyOnly : kOutsideOnly;
+                                      });
+        }
+    }
+}
+
+void BlockOverlay::start_sky(const BlockLayer& layer) {
+    started_ = true;
+    for (const PlanTriangle& t : layer.empty) {
+        Polygon outline;
+        for (std::size_t i = 0; i < 3; ++i)
+            outline.push_back({t[i], geometry_.add_edge(t[i], t[(i + 1) % 3])});
+        parts_.add_facet(outline, kSky, -1, kSkyLabel);
+        tiles_.for_each_centre_in(corners_of(geometry_, t),
+                                  [&](std::size_t tile) { cover_[tile] = kSkyOnly; });
+    }
+    for (std::size_t t = 0; t < layer.size(); ++t) {
+        poll(progress_, t);
+        const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
+        made_.is_exact[static_cast<std::size_t>(plane)] =
+            beside_border(bounds_of(geometry_, plane).box) ? 1 : 0;
+        whole_.push_back({plane, layer.number, kOutsideCell});
+    }
+}
+
+BlockOverlay::SurfaceTiles BlockOverlay::surface_tiles(const BlockLayer& layer) const {
+    SurfaceTiles surface(tiles_.size());
+    for (std::size_t t = 0; t < layer.size(); ++t) {
+        poll(progress_, t);
+        const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
+        tiles_.for_each(tiles_.span(b.box),
+                        [&](std::size_t tile) { surface.include(tile, b.low, b.high); });
+    }
+    for (const PlanTriangle& t : layer.empty) {
+        tiles_.for_each_centre_in(corners_of(geometry_, t),
+                                  [&](std::size_t tile) { surface.is_empty[tile] = 1; });
+    }
+    for (std::size_t tile = 0; tile < surface.low.size(); ++tile) {
+        if (surface.low[tile] > surface.high[tile]) surface.is_empty[tile] = 1;
+    }
+    return surface;
+}
+
+BlockOverlay::EnvelopeTiles BlockOverlay::envelope_tiles() const {
+    EnvelopeTiles envelope(tiles_.size());
+    const auto include = [&](const TriangleBounds& b, std::int32_t pending) {
+        tiles_.for_each(tiles_.span(b.box), [&](std::size_t tile) {
+            envelope.include(tile, b.low, b.high);
+            envelope.label[tile] = merged_label(envelope.label[tile], pending);
+        });
+    };
+    for (std::size_t f = 0; f < whole_.size(); ++f) {
+        poll(progress_, f);
+        include(bounds_of(geometry_, whole_[f].plane), whole_[f].pending);
+    }
+    for (std::size_t f = 0; f < parts_.size(); ++f) {
+        if (parts_.plane[f] >= 0) include(part_bounds(f), parts_.pending[f]);
+    }
+    return envelope;
+}
+
+void BlockOverlay::classify_surface(const BlockLayer& layer, const EnvelopeTiles& envelope,
+                                    Classified& c) {
+    c.surface.assign(layer.size(), Classified::kUnclear);
+    c.label.assign(layer.size(), kSkyLabel);
+    c.node.assign(layer.size(), kOutsideCell);
+    constexpr std::size_t kChunk = 4096;
+    parallel_chunks((layer.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
+        for (std::size_t t = k * kChunk; t < std::min(layer.size(), (k + 1) * kChunk); ++t) {
+            const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
+            double low = HUGE_VAL, high = -HUGE_VAL;
+            std::int32_t label = kNoLabel;
+            const bool crossed = tiles_.any(tiles_.span(b.box), [&](std::size_t tile) {
+                if (on_border_[tile] != 0 || cover_[tile] == kOutsideOnly) {
+                    if (on_border_[tile] != 0) return true;
+                    low = -HUGE_VAL;
+                    label = merged_label(label, kSkyLabel - 1);
+                } else if (cover_[tile] == kSkyOnly) {
+                    high = HUGE_VAL;
+                    label = merged_label(label, kSkyLabel);
+                } else {
+                    low = std::min(low, envelope.low[tile]);
+                    high = std::max(high, envelope.high[tile]);
+                    label = merged_label(label, envelope.label[tile]);
+                }
+                return label == kSeveral;
+            });
+            if (crossed || label == kSeveral || label == kNoLabel) continue;
+            if (b.high + margin_ < low) {
+                c.surface[t] = Classified::kBelow;
+                c.label[t] = label;
+            } else if (b.low > high + margin_) {
+                c.surface[t] = Classified::kGone;
+            }
+        }
+    });
+}
+
+void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& surface,
+                                   Classified& c) {
+    // A facet must be looked at exactly where a triangle must be, for the triangle's parts to be
+    // complete.
+    std::vector<std::uint8_t> is_unclear(tiles_.size(), 0);
+    for (std::size_t t = 0; t < layer.size(); ++t) {
+        if (c.surface[t] != Classified::kUnclear) continue;
+        const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
+        tiles_.for_each(tiles_.span(b.box), [&](std::size_t tile) { is_unclear[tile] = 1; });
+    }
+    const auto classify = [&](const TriangleBounds& b) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        bool any_empty = false, any_rock = false;
+        const bool unclear = tiles_.any(tiles_.span(b.box), [&](std::size_t tile) {
+            if (on_border_[tile] != 0 || is_unclear[tile] != 0) return true;
+            if (surface.is_empty[tile] != 0) {
+                any_empty = true;
+            } else {
+                any_rock = true;
+                low = std::min(low, surface.low[tile]);
+                high = std::max(high, surface.high[tile]);
+            }
+            return any_empty && any_rock;
+        });
+        if (unclear) return Classified::kExact;
+        if (any_empty) return Classified::kKeptBare;
+        if (high + margin_ < b.low) return Classified::kClosed;
+        return b.high + margin_ < low ? Classified::kKept : Classified::kExact;
+    };
+    constexpr std::size_t kChunk = 4096;
+    c.whole.resize(whole_.size());
+    parallel_chunks((whole_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
+        for (std::size_t f = k * kChunk; f < std::min(whole_.size(), (k + 1) * kChunk); ++f)
+            c.whole[f] = classify(bounds_of(geometry_, whole_[f].plane));
+    });
+    for (std::size_t f = 0; f < parts_.size(); ++f) {
+        c.part.push_back(parts_.plane[f] < 0 ? Classified::kExact : classify(part_bounds(f)));
+    }
+}
+
+/// The triangles that may meet a facet looked at exactly, and where there are none at all.
+Layer BlockOverlay::needed_part(const BlockLayer& layer, Classified& c) {
+    std::vector<std::uint8_t> is_needed(tiles_.size(), 0);
+    const auto need = [&](const PlanBox& box) {
+        tiles_.for_each(tiles_.span(box), [&](std::size_t tile) { is_needed[tile] = 1; });
+    };
+    for (std::size_t f = 0; f < whole_.size(); ++f) {
+        if (c.whole[f] == Classified::kExact) need(bounds_of(geometry_, whole_[f].plane).box);
+    }
+    for (std::size_t f = 0; f < parts_.size(); ++f) {
+        if (c.part[f] == Classified::kExact && parts_.plane[f] >= 0) need(part_bounds(f).box);
+    }
+    Layer part;
+    c.polygon.assign(layer.size(), -1);
+    for (std::size_t t = 0; t < layer.size(); ++t) {
+        poll(progress_, t);
+        const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
+        const auto b = bounds_of(geometry_, plane);
+        if (c.surface[t] != Classified::kUnclear &&
+            !tiles_.any(tiles_.span(b.box), [&](std::size_t tile) { return is_needed[tile] != 0; }))
+            continue;
+        c.polygon[t] = static_cast<std::int32_t>(part.plane.size());
+        part.polygons.add(outline_of(plane));
+        part.plane.push_back(plane);
+    }
+    for (const PlanTriangle& t : layer.empty) {
+        Polygon outline;
+        for (std::size_t i = 0; i < 3; ++i)
+            outline.push_back({t[i], geometry_.add_edge(t[i], t[(i + 1) % 3])});
+        part.polygons.add(outline);
+        part.plane.push_back(kVoid);
+    }
+    part.index(geometry_, progress_);
+    return part;
+}
+
+void BlockOverlay::overlay_exactly(const BlockLayer& layer, const Layer& part,
+                                   const SurfaceTiles& surface, Classified& c) {
+    ExactFacets exact;
+    for (std::size_t f = 0; f < whole_.size(); ++f) {
+        if (c.whole[f] != Classified::kExact) continue;
+        const WholeFacet& facet = whole_[f];
+        made_.is_exact[static_cast<std::size_t>(facet.plane)] = 1;
+        const Polygon outline = outline_of(facet.plane);
+        exact.facets.add_facet(outline, facet.plane, layer_of(facet.plane), facet.pending);
+        exact.facets.add_face(outline, facet.above);
+        exact.may_close.push_back(beside_border(bounds_of(geometry_, facet.plane).box) ? 0 : 1);
+    }
+    exact.whole = exact.facets.size();
+    for (std::size_t f = 0; f < parts_.size(); ++f) {
+        if (c.part[f] != Classified::kExact) continue;
+        exact.facets.add_facet_of(parts_, f, parts_.pending[f]);
+        bool complete = true;
+        if (parts_.plane[f] < 0) {
+            const Scope scope(geometry_);
+            complete =
+                !tiles_.any(tiles_.span(box_of(scope, parts_.outlines[f])), [&](std::size_t tile) {
+                    return on_border_[tile] == 0 && surface.is_empty[tile] == 0;
+                });
+        }
+        exact.is_complete.push_back(complete ? 1 : 0);
+        exact.may_close.push_back(parts_.plane[f] >= 0 && !beside_border(part_bounds(f).box) ? 1
+                                                                                             : 0);
+    }
+    c.is_divided.assign(part.plane.size(), 0);
+    const auto overlaid =
+        overlay_facets(geometry_, exact, part, layer.number, c.is_divided, threads_, progress_);
+    for (const auto& chunk : overlaid) {
+        chunk->scope.hand_over(geometry_);
+        const auto first = static_cast<std::int32_t>(made_.node_block.size());
+        const auto shared_node = [&](std::int32_t node) {
+            return node == kOutsideCell ? node : node + first;
+        };
+        const auto shared = [&](PolygonView polygon) {
+            Polygon result(polygon.begin(), polygon.end());
+            for (Corner& corner : result) {
+                corner = {chunk->scope.shared_point(corner.point),
+                          chunk->scope.shared_directed(corner.line)};
+            }
+            return result;
+        };
+        made_.node_block.insert(made_.node_block.end(), chunk->node_block.begin(),
+                                chunk->node_block.end());
+        for (std::size_t f = 0; f < chunk->faces.size(); ++f) {
+            made_.faces.add(shared(chunk->faces.polygons[f]), chunk->faces.plane[f],
+                            chunk->faces.layer[f], chunk->faces.above[f],
+                            shared_node(chunk->faces.below[f]));
+        }
+        for (const auto& closed : chunk->closed_whole) {
+            made_.whole[static_cast<std::size_t>(closed.plane)] = {closed.above,
+                                                                   shared_node(closed.below)};
+        }
+        for (const PlaneId plane : chunk->divided_whole)
+            made_.is_in_parts[static_cast<std::size_t>(plane)] = 1;
+        next_whole_.insert(next_whole_.end(), chunk->kept_whole.begin(), chunk->kept_whole.end());
+        for (std::size_t i = 0; i < chunk->lowered.size(); ++i) {
+            LoweredPiece piece = chunk->lowered[i];
+            piece.node = shared_node(piece.node);
+            c.lowered.push_back(piece);
+            c.lowered_outlines.add(shared(chunk->lowered_outlines[i]));
+        }
+        for (std::size_t f = 0; f < chunk->kept.size(); ++f) {
+            const Envelope& kept = chunk->kept;
+            next_parts_.add_facet(shared(kept.outlines[f]), kept.plane[f], kept.layer[f],
+                                  kept.pending[f]);
+            for (auto g = kept.face_offsets[f]; g < kept.face_offsets[f + 1]; ++g) {
+                const auto face = static_cast<std::size_t>(g);
+                next_parts_.add_face(shared(kept.face_polygons[face]), kept.face_above[face]);
+            }
+        }
+    }
+}
+
+/// Facets that bounds tell about.
+void BlockOverlay::rest_facets(const BlockLayer& layer, Classified& c) {
+    c.first_closed = static_cast<std::int32_t>(made_.node_block.size());
+    for (std::size_t f = 0; f < whole_.size(); ++f) {
+        WholeFacet facet = whole_[f];
+        if (c.whole[f] == Classified::kClosed) {
+            made_.whole[static_cast<std::size_t>(facet.plane)] = {facet.above,
+                                                                  new_node(facet.pending)};
+            c.closed_whole.push_back(facet.plane);
+        } else if (c.whole[f] != Classified::kExact) {
+            if (c.whole[f] == Classified::kKept) facet.pending = layer.number;
+            next_whole_.push_back(facet);
+        }
+    }
+    for (std::size_t f = 0; f < parts_.size(); ++f) {
+        if (c.part[f] == Classified::kClosed) {
+            const std::int32_t node = new_node(parts_.pending[f]);
+            c.closed_parts.push_back(f);
+            for (auto g = parts_.face_offsets[f]; g < parts_.face_offsets[f + 1]; ++g) {
+                const auto face = static_cast<std::size_t>(g);
+                made_.faces.add(parts_.face_polygons[face], parts_.plane[f], parts_.layer[f],
+                                parts_.face_above[face], node);
+            }
+        } else if (c.part[f] != Classified::kExact) {
+            next_parts_.add_facet_of(
+                parts_, f, c.part[f] == Classified::kKept ? layer.number : parts_.pending[f]);
+        }
+    }
+}
+
+/// The surface's own facets.
+void BlockOverlay::add_surface(const BlockLayer& layer, const Layer& part, Classified& c) {
+    for (std::size_t t = 0; t < layer.size(); ++t) {
+        poll(progress_, t);
+        if (c.surface[t] != Classified::kBelow) continue;
+        c.node[t] = c.label[t] == kSkyLabel ? kOutsideCell : new_node(c.label[t]);
+        next_whole_.push_back(
+            {layer.first_plane + static_cast<PlaneId>(t), layer.number, c.node[t]});
+    }
+    std::vector<std::int64_t> offsets(part.plane.size() + 1, 0);
+    for (const LoweredPiece& piece : c.lowered)
+        ++offsets[static_cast<std::size_t>(piece.polygon) + 1];
+    for (std::size_t p = 0; p < part.plane.size(); ++p)
+        offsets[p + 1] += offsets[p];
+    std::vector<std::size_t> of_polygon(c.lowered.size());
+    {
+        auto free = offsets;
+        for (std::size_t i = 0; i < c.lowered.size(); ++i) {
+            of_polygon[static_cast<std::size_t>(
+                free[static_cast<std::size_t>(c.lowered[i].polygon)]++)] = i;
+        }
+    }
+    for (std::size_t t = 0; t < layer.size(); ++t) {
+        if (c.polygon[t] < 0) continue;
+        const auto p = static_cast<std::size_t>(c.polygon[t]);
+        const auto begin = of_polygon.begin() + offsets[p],
+                   end = of_polygon.begin() + offsets[p + 1];
+        if (c.surface[t] == Classified::kBelow) {
+            for (auto i = begin; i != end; ++i) {
+                if (c.lowered[*i].node >= 0)
+                    made_.links.emplace_back(c.node[t], c.lowered[*i].node);
+            }
+            continue;
+        }
+        if (begin == end || c.surface[t] == Classified::kGone) continue;
+        const PlaneId plane = part.plane[p];
+        made_.is_exact[static_cast<std::size_t>(plane)] = 1;
+        const auto block_above = [&](std::size_t i) {
+            const std::int32_t node = c.lowered[i].node;
+            return node < 0 ? kSkyLabel : made_.node_block[static_cast<std::size_t>(node)];
+        };
+        // Beside a border the pieces stay apart, so that what stands there finds its foot.
+        const bool alike =
+            !beside_border(bounds_of(geometry_, plane).box) &&
+            std::all_of(begin, end, [&](std::size_t i) {
+                return c.lowered[i].is_strict && block_above(i) == block_above(*begin);
+            });
+        if (c.is_divided[p] == 0 && alike) {
+            const std::int32_t above = c.lowered[*begin].node;
+            for (auto i = begin + 1; i != end && above >= 0; ++i)
+                made_.links.emplace_back(above, c.lowered[*i].node);
+            next_whole_.push_back({plane, layer.number, above});
+            continue;
+        }
+        made_.is_in_parts[static_cast<std::size_t>(plane)] = 1;
+        if (c.is_divided[p] == 0)
+            next_parts_.add_facet(part.polygons[p], plane, layer.number, layer.number);
+        for (auto i = begin; i != end; ++i) {
+            if (c.is_divided[p] != 0)
+                next_parts_.add_facet(c.lowered_outlines[*i], plane, layer.number, layer.number);
+            next_parts_.add_face(c.lowered_outlines[*i], c.lowered[*i].node);
+        }
+    }
+}
+
+void BlockOverlay::add(std::int32_t number) {
+    const BlockLayer& layer = layers_[static_cast<std::size_t>(number)];
+    if (!started_) {
+        start_sky(layer);
+        return;
+    }
+    Classified c;
+    SurfaceTiles surface = surface_tiles(layer);
+    classify_surface(layer, envelope_tiles(), c);
+    classify_facets(layer, surface, c);
+    next_whole_.clear();
+    next_parts_ = {};
+    const Layer part = needed_part(layer, c);
+    overlay_exactly(layer, part, surface, c);
+    rest_facets(layer, c);
+    add_surface(layer, part, c);
+    link_closed(layer, c);
+    for (std::size_t tile = 0; tile < cover_.size(); ++tile) {
+        if (cover_[tile] == kSkyOnly && surface.is_empty[tile] == 0) cover_[tile] = kRock;
+    }
+    std::swap(whole_, next_whole_);
+    std::swap(parts_, next_parts_);
+}
+
+namespace {
+
+/// Somewhere inside a convex outline, up to rounding.
+std::array<double, 2> middle_of(const PlanGeometry& geometry, PolygonView outline) {
+    std::array<double, 2> middle{0, 0};
+    const double share = 1.0 / static_cast<double>(outline.size());
+    for (const Corner& corner : outline) {
+        const auto& p = geometry.point(corner.point);
+        middle[0] += p.x * share;
+        middle[1] += p.y * share;
+    }
+    return middle;
+}
+
+}  // namespace
+
+/// Links closed facets with what closes them. Neighbouring whole facets hang together, and so do
+/// the triangles beneath them: one link for each connected part of them is enough.
+void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
+    const auto first_node = c.first_closed;
+    const auto whole_count = c.closed_whole.size();
+    DisjointParts sets(whole_count);
+    for (std::size_t i = 0; i < whole_count; ++i) {
+        poll(progress_, i);
+        const PlaneId plane = c.closed_whole[i];
+        for (const PlaneId other : neighbours_of(plane)) {
+            if (other <= plane) continue;
+            const std::int32_t node = made_.whole[static_cast<std::size_t>(other)].below;
+            const std::int32_t j = node - first_node;
+            const bool closed_now = node >= first_node &&
+                                    j < static_cast<std::int32_t>(whole_count) &&
+                                    c.closed_whole[static_cast<std::size_t>(j)] == other;
+            if (closed_now && block_of(node) == block_of(first_node + static_cast<std::int32_t>(i)))
+                sets.join(static_cast<std::int32_t>(i), j);
+        }
+    }
+    struct Waiting {
+        std::size_t tile;  ///< of a place within
+        Polygon outline;
+        std::int32_t node;
+    };
+    std::vector<Waiting> waiting;
+    const auto wait = [&](Polygon outline, std::int32_t node) {
+        const auto [x, y] = middle_of(geometry_, outline);
+        const TileSpan span = tiles_.span({x, y, x, y});
+        waiting.push_back({tiles_.tile(span.left, span.low), std::move(outline), node});
+    };
+    for (std::size_t i = 0; i < whole_count; ++i) {
+        const auto k = static_cast<std::int32_t>(i);
+        if (sets.find(k) == k) wait(outline_of(c.closed_whole[i]), first_node + k);
+    }
+    for (std::size_t i = 0; i < c.closed_parts.size(); ++i) {
+        const PolygonView outline = parts_.outlines[c.closed_parts[i]];
+        wait({outline.begin(), outline.end()},
+             first_node + static_cast<std::int32_t>(whole_count + i));
+    }
+    if (waiting.empty()) return;
+    std::stable_sort(waiting.begin(), waiting.end(),
+                     [](const Waiting& a, const Waiting& b) { return a.tile < b.tile; });
+    std::vector<std::uint8_t> is_awaited(tiles_.size(), 0);
+    for (const Waiting& w : waiting)
+        is_awaited[w.tile] = 1;
+    std::vector<std::uint8_t> linked(waiting.size(), 0);
+    std::size_t left = waiting.size();
+    Scope scope(geometry_);
+    Clipper clipper(scope);
+    const auto link = [&](std::size_t t, std::size_t begin, std::size_t end) {
+        Polygon triangle;
+        for (std::size_t w = begin; w < end; ++w) {
+            if (linked[w] != 0) continue;
+            if (triangle.empty())
+                triangle = outline_of(layer.first_plane + static_cast<PlaneId>(t));
+            if (!clipper.overlap(waiting[w].outline, triangle)) continue;
+            made_.links.emplace_back(waiting[w].node, c.node[t]);
+            linked[w] = 1;
+            --left;
+        }
+    };
+    for (std::size_t t = 0; t < layer.size() && left > 0; ++t) {
+        poll(progress_, t);
+        if (c.surface[t] != Classified::kBelow) continue;
+        const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
+        tiles_.for_each(tiles_.span(b.box), [&](std::size_t tile) {
+            if (is_awaited[tile] == 0) return;
+            const auto range = std::equal_range(
+                waiting.begin(), waiting.end(), Waiting{tile, {}, 0},
+                [](const Waiting& a, const Waiting& d) { return a.tile < d.tile; });
+            link(t, static_cast<std::size_t>(range.first - waiting.begin()),
+                 static_cast<std::size_t>(range.second - waiting.begin()));
+        });
+    }
+    // where rounding put a middle into another tile
+    for (std::size_t t = 0; t < layer.size() && left > 0; ++t) {
+        if (c.surface[t] == Classified::kBelow) link(t, 0, waiting.size());
+    }
+}
+
+void BlockOverlay::finish(std::optional<PlaneId> base) {
+    for (const WholeFacet& facet : whole_) {
+        std::int32_t node = kOutsideCell;
+        if (base && facet.pending == 0) {
+            node = new_node(0);
+            made_.on_base.emplace_back(facet.plane, node);
+        }
+        made_.whole[static_cast<std::size_t>(facet.plane)] = {facet.above, node};
+    }
+    for (std::size_t f = 0; f < parts_.size(); ++f) {
+        std::int32_t node = kOutsideCell;
+        if (base && parts_.pending[f] == 0) {
+            node = new_node(0);
+            made_.faces.add(parts_.outlines[f], *base, -1, node, kOutsideCell);
+        }
+        for (auto g = parts_.face_offsets[f]; g < parts_.face_offsets[f + 1]; ++g) {
+            const auto face = static_cast<std::size_t>(g);
+            if (node == kOutsideCell && parts_.face_above[face] == kOutsideCell) continue;
+            made_.faces.add(parts_.face_polygons[face], parts_.plane[f], parts_.layer[f],
+                            parts_.face_above[face], node);
+        }
+    }
+    whole_ = {};
+    parts_ = {};
+    next_whole_ = {};
+    next_parts_ = {};
+}
+
+std::array<double, 3> BlockOverlay::lowest() const {
+    std::array<double, 3> lowest{0, 0, HUGE_VAL};
+    const auto include = [&](double x, double y, double z) {
+        if (z < lowest[2]) lowest = {x, y, z};
+    };
+    for (const WholeFacet& facet : whole_) {
+        for (const exact::SpaceId s : geometry_.plane(facet.plane).corner) {
+            const auto& vertex = geometry_.space(s);
+            include(geometry_.point(vertex.plan).x, geometry_.point(vertex.plan).y, vertex.z);
+        }
+    }
+    Scope scope(geometry_);
+    for (std::size_t f = 0; f < parts_.size(); ++f) {
+        if (parts_.plane[f] < 0) continue;
+        for (const Corner& corner : parts_.outlines[f]) {
+            const auto [x, y] = scope.rounded(corner.point);
+            include(x, y, scope.rounded_height(parts_.plane[f], corner.point));
+        }
+    }
+    return lowest;
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "block_layers.hpp"
+#include "envelope.hpp"
+#include "layer.hpp"
+#include "plan_tiles.hpp"
+
+namespace realmodel::strata {
+
+/// Plan box and heights of a triangle.
+struct TriangleBounds {
+    PlanBox box;
+    double low, high;
+};
+TriangleBounds bounds_of(const exact::PlanGeometry& geometry, PlaneId plane);
+
+/// A triangle that is a facet of the envelope as a whole, with one face above it.
+struct WholeFacet {
+    PlaneId plane;
+    std::int32_t pending;  ///< the block beneath
+    std::int32_t above;    ///< node, or kOutsideCell
+};
+
+/// A face at rest: a whole triangle between two nodes.
+struct WholeFace {
+    std::int32_t above = kUnset, below = kUnset;  ///< nodes, or kOutsideCell
+    static constexpr std::int32_t kUnset = -2;
+    bool is_face() const { return below != kUnset && (above >= 0 || below >= 0); }
+};
+
+/// What the overlay leaves of the triangles. Nodes are pieces of blocks, of which `links` and later
+/// steps join what hangs together.
+struct BlockConstruction {
+    FaceList faces;                        ///< faces that are parts of triangles, between nodes
+    std::vector<std::int32_t> node_block;  ///< of each node
+    std::vector<std::pair<std::int32_t, std::int32_t>> links;
+    std::vector<WholeFace> whole;        ///< for each plane
+    std::vector<std::uint8_t> is_exact;  ///< for each plane: looked at more closely than by bounds
+    std::vector<std::uint8_t> is_in_parts;  ///< for each plane: divided into several faces
+    std::vector<std::pair<PlaneId, std::int32_t>>
+        on_base;  ///< facets over the base, and their nodes
+};
+
+/// Builds blocks without columns: the overlay of overlay.hpp, but triangles that bounds tell to lie
+/// wholly above or below what they meet are neither cut nor named anywhere; they stay whole, and
+/// what they bound is told by propagation. Only what really meets is overlaid, exactly.
+///
+/// Tiles that a border crosses (an edge where the neighbouring triangle is missing or at another
+/// height) are marked: there walls may stand, so everything is overlaid there.
+class BlockOverlay {
+public:
+    /// layers: oldest first, their planes one after another; on_border: of each tile.
+    BlockOverlay(exact::PlanGeometry& geometry, std::span<const BlockLayer> layers, PlanTiles tiles,
+                 std::vector<std::uint8_t> on_border, double largest_height, int threads,
+                 const Progress* progress);
+
+    /// Begins under the sky over a region (in triangles), with `outside` around it.
+    void start_region(const std::vector<PlanTriangle>& region,
+                      const std::vector<PlanTriangle>& outside);
+    /// Lays the next older surface under the envelope; the first one, without a region, is it.
+    void add(std::int32_t number);
+    /// The lowest place of the envelope.
+    std::array<double, 3> lowest() const;
+    /// Closes what is left, down to a flat base where there is one.
+    void finish(std::optional<PlaneId> base);
+
+    std::int32_t layer_of(PlaneId plane) const;
+    /// Planes of the neighbouring triangles, -1 where there is none.
+    std::array<PlaneId, 3> neighbours_of(PlaneId plane) const;
+    /// A triangle's outline, its lines made where they are new.
+    Polygon outline_of(PlaneId plane);
+
+    BlockConstruction& construction() { return made_; }
+    const PlanTiles& tiles() const { return tiles_; }
+    const std::vector<std::uint8_t>& on_border() const { return on_border_; }
+
+private:
+    struct SurfaceTiles;
+    struct EnvelopeTiles;
+    struct Classified;
+
+    SurfaceTiles surface_tiles(const BlockLayer& layer) const;
+    EnvelopeTiles envelope_tiles() const;
+    void start_sky(const BlockLayer& layer);
+    void classify_surface(const BlockLayer& layer, const EnvelopeTiles& envelope, Classified& c);
+    void classify_facets(const BlockLayer& layer, const SurfaceTiles& surface, Classified& c);
+    Layer needed_part(const BlockLayer& layer, Classified& c);
+    void overlay_exactly(const BlockLayer& layer, const Layer& part, const SurfaceTiles& surface,
+                         Classified& c);
+    void rest_facets(const BlockLayer& layer, Classified& c);
+    void link_closed(const BlockLayer& layer, const Classified& c);
+    void add_surface(const BlockLayer& layer, const Layer& part, Classified& c);
+
+    std::int32_t new_node(std::int32_t block) {
+        made_.node_block.push_back(block);
+        return static_cast<std::int32_t>(made_.node_block.size()) - 1;
+    }
+    TriangleBounds part_bounds(std::size_t part) const;
+    bool beside_border(const PlanBox& box) const {
+        return tiles_.any(tiles_.span(box),
+                          [&](std::size_t tile) { return on_border_[tile] != 0; });
+    }
+    std::int32_t block_of(std::int32_t node) const {
+        return made_.node_block[static_cast<std::size_t>(node)];
+    }
+
+    exact::PlanGeometry& geometry_;
+    std::span<const BlockLayer> layers_;
+    PlanTiles tiles_;
+    std::vector<std::uint8_t> on_border_;
+    double margin_;
+    int threads_;
+    const Progress* progress_;
+    BlockConstruction made_;
+    bool started_ = false;
+    std::vector<WholeFacet> whole_, next_whole_;
+    Envelope parts_, next_parts_;  ///< facets that are parts of triangles; the sky, the outside
+    std::vector<std::uint8_t>
+        cover_;  ///< of each tile without a border: what the envelope is there
+};
+
+}  // namespace realmodel::strata

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "block_walls.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <tuple>
+
+#include "parallel_chunks.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanGeometry;
+
+namespace {
+
+/// A face edge over one interval of a track: a straight line in height between two verticals.
+struct Curve {
+    std::int32_t interval;
+    bool left;                  ///< the face lies left of the track
+    std::int32_t start, end;    ///< vertices on the two verticals; ascending means rising
+    std::int32_t layer;         ///< of equal curves on one side the younger is the upper
+    std::int32_t above, below;  ///< nodes
+    PlaneId plane;
+
+    std::pair<std::int32_t, std::int32_t> height() const { return {start, end}; }
+};
+
+struct ContactBatch {
+    explicit ContactBatch(const PlanGeometry& geometry) : scope(geometry) {}
+    Scope scope;
+    TrackContacts found;
+};
+
+/// What touches on one track after another.
+class TrackComparison {
+public:
+    TrackComparison(const FaceList& faces, const std::vector<std::int32_t>& node_block,
+                    const Tracks& tracks, const Loops& loops, const PlanTiles& tiles,
+                    const std::vector<std::uint8_t>& on_border, ContactBatch& batch)
+        : faces_(faces),
+          node_block_(node_block),
+          tracks_(tracks),
+          loops_(loops),
+          tiles_(tiles),
+          on_border_(on_border),
+          batch_(batch) {}
+
+    void process(std::size_t track) {
+        collect(track);
+        for (std::size_t i = 0; i < curves_.size();) {
+            std::size_t end = i + 1;
+            while (end < curves_.size() && curves_[end].interval == curves_[i].interval)
+                ++end;
+            if (may_have_walls(curves_[i])) {
+                compare_columns(track, i, end);
+            } else {
+                continue_faces(i, end);
+            }
+            i = end;
+        }
+    }
+
+private:
+    void collect(std::size_t track) {
+        curves_.clear();
+        for (auto i = tracks_.edge_offsets[track]; i < tracks_.edge_offsets[track + 1]; ++i) {
+            const TrackEdge& edge = tracks_.edges[i];
+            const auto face = static_cast<std::size_t>(edge.face);
+            const bool left = edge.from < edge.to;
+            const std::int32_t steps = std::abs(edge.to - edge.from);
+            std::uint32_t entry = loops_.edge_begin[edge.corner];
+            std::int32_t vertex = loops_.vertices[entry];
+            for (std::int32_t s = 0; s < steps; ++s) {
+                ++entry;
+                if (entry == loops_.face_offsets[face + 1]) entry = loops_.face_offsets[face];
+                const std::int32_t next = loops_.vertices[entry];
+                curves_.push_back({left ? edge.from + s : edge.from - s - 1, left,
+                                   left ? vertex : next, left ? next : vertex, faces_.layer[face],
+                                   faces_.above[face], faces_.below[face], faces_.plane[face]});
+                vertex = next;
+            }
+        }
+        std::sort(curves_.begin(), curves_.end(), [](const Curve& a, const Curve& b) {
+            return std::tuple(a.interval, a.start, a.end, a.left, a.layer) <
+                   std::tuple(b.interval, b.start, b.end, b.left, b.layer);
+        });
+    }
+
+    bool may_have_walls(const Curve& curve) const {
+        const auto& p = loops_.positions[static_cast<std::size_t>(curve.start)];
+        const auto& q = loops_.positions[static_cast<std::size_t>(curve.end)];
+        const PlanBox box{std::min(p[0], q[0]), std::min(p[1], q[1]), std::max(p[0], q[0]),
+                          std::max(p[1], q[1])};
+        return tiles_.any(tiles_.span(box),
+                          [&](std::size_t tile) { return on_border_[tile] != 0; });
+    }
+
+    void link(std::int32_t a, std::int32_t b) {
+        if (a != b && a >= 0 && b >= 0 && block(a) == block(b))
+            batch_.found.links.emplace_back(a, b);
+    }
+    std::int32_t block(std::int32_t node) const {
+        return node < 0 ? kOutsideCell : node_block_[static_cast<std::size_t>(node)];
+    }
+
+    /// No wall: what is above the uppermost face at a height, and what is below the lowest one,
+    /// goes on beyond the track.
+    void continue_faces(std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end;) {
+            std::size_t right = i;  // the first curve to the left of the track at this height
+            while (right < end && curves_[right].height() == curves_[i].height() &&
+                   !curves_[right].left)
+                ++right;
+            std::size_t level = right;
+            while (level < end && curves_[level].height() == curves_[i].height())
+                ++level;
+            if (i < right && right < level) {
+                link(curves_[right - 1].above, curves_[level - 1].above);
+                link(curves_[i].below, curves_[right].below);
+            }
+            i = level;
+        }
+    }
+
+    void compare_columns(std::size_t track, std::size_t begin, std::size_t end) {
+        bool crossed = false;
+        for (std::size_t i = begin; i < end; ++i) {
+            for (std::size_t j = i + 1; j < end; ++j) {
+                if (curves_[i].start < curves_[j].start && curves_[i].end > curves_[j].end) {
+                    const LineId line = tracks_.representative[track];
+                    const LineId trace =
+                        exact::line_of(batch_.scope.trace(curves_[i].plane, curves_[j].plane));
+                    batch_.found.missing.push_back({line, batch_.scope.crossing(line, trace)});
+                    crossed = true;
+                }
+            }
+        }
+        if (crossed) return;
+        std::int32_t left = below_all(begin, end, true), right = below_all(begin, end, false);
+        for (std::size_t i = begin; i < end;) {
+            std::size_t level = i;  // past the curves at this height
+            for (; level < end && curves_[level].height() == curves_[i].height(); ++level) {
+                (curves_[level].left ? left : right) = curves_[level].above;
+            }
+            if (level == end) break;
+            if (block(left) != block(right)) {
+                batch_.found.walls.push_back({static_cast<std::int32_t>(track),
+                                              curves_[i].interval,
+                                              {curves_[i].start, curves_[i].end},
+                                              {curves_[level].start, curves_[level].end},
+                                              left,
+                                              right});
+            } else {
+                link(left, right);
+            }
+            i = level;
+        }
+    }
+
+    std::int32_t below_all(std::size_t begin, std::size_t end, bool left) const {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (curves_[i].left == left) return curves_[i].below;
+        }
+        return kOutsideCell;
+    }
+
+    const FaceList& faces_;
+    const std::vector<std::int32_t>& node_block_;
+    const Tracks& tracks_;
+    const Loops& loops_;
+    const PlanTiles& tiles_;
+    const std::vector<std::uint8_t>& on_border_;
+    ContactBatch& batch_;
+    std::vector<Curve> curves_;
+};
+
+}  // namespace
+
+TrackContacts find_contacts(PlanGeometry& geometry, const FaceList& faces,
+                            const std::vector<std::int32_t>& node_block, const Tracks& tracks,
+                            const Loops& loops, const PlanTiles& tiles,
+                            const std::vector<std::uint8_t>& on_border, int threads,
+                            const Progress* progress) {
+    constexpr std::size_t kChunk = 2048;
+    const std::size_t chunks = (tracks.size() + kChunk - 1) / kChunk;
+    std::vector<std::unique_ptr<ContactBatch>> batches(chunks);
+    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+        batches[chunk] = std::make_unique<ContactBatch>(geometry);
+        TrackComparison comparison(faces, node_block, tracks, loops, tiles, on_border,
+                                   *batches[chunk]);
+        for (std::size_t t = chunk * kChunk; t < std::min(tracks.size(), (chunk + 1) * kChunk); ++t)
+            comparison.process(t);
+    });
+    TrackContacts contacts;
+    for (auto& batch : batches) {
+        batch->scope.hand_over(geometry);
+        const TrackContacts& found = batch->found;
+        for (const ExtraPoint& e : found.missing) {
+            contacts.missing.push_back({e.line, batch->scope.shared_point(e.point)});
+        }
+        contacts.links.insert(contacts.links.end(), found.links.begin(), found.links.end());
+        contacts.walls.insert(contacts.walls.end(), found.walls.begin(), found.walls.end());
+        batch.reset();
+    }
+    return contacts;
+}
+
+namespace {
+
+/// A wall that may go on in the next interval.
+struct OpenWall {
+    std::int32_t left, right;
+    std::vector<std::int32_t> lower, upper;  ///< vertices along the track
+};
+
+std::vector<OpenWall> joined(const std::vector<WallStretch>& stretches) {
+    std::vector<OpenWall> walls;
+    std::vector<std::size_t> open, growing;  // of the interval before, of this one
+    for (std::size_t i = 0; i < stretches.size();) {
+        std::size_t end = i;
+        while (end < stretches.size() && stretches[end].track == stretches[i].track &&
+               stretches[end].interval == stretches[i].interval)
+            ++end;
+        const bool goes_on = i > 0 && stretches[i - 1].track == stretches[i].track &&
+                             stretches[i - 1].interval + 1 == stretches[i].interval;
+        if (!goes_on) open.clear();
+        growing.clear();
+        for (; i < end; ++i) {
+            const WallStretch& s = stretches[i];
+            const auto before = std::find_if(open.begin(), open.end(), [&](std::size_t w) {
+                return walls[w].left == s.left && walls[w].right == s.right &&
+                       walls[w].lower.back() == s.lower[0] && walls[w].upper.back() == s.upper[0] &&
+                       s.lower[0] != s.upper[0];
+            });
+            if (before == open.end()) {
+                growing.push_back(walls.size());
+                walls.push_back(
+                    {s.left, s.right, {s.lower[0], s.lower[1]}, {s.upper[0], s.upper[1]}});
+                continue;
+            }
+            walls[*before].lower.push_back(s.lower[1]);
+            walls[*before].upper.push_back(s.upper[1]);
+            growing.push_back(*before);
+            open.erase(before);
+        }
+        std::swap(open, growing);
+    }
+    return walls;
+}
+
+}  // namespace
+
+Walls join_walls(const std::vector<WallStretch>& stretches,
+                 const std::vector<std::uint8_t>& may_bend, std::vector<std::uint8_t>& is_needed) {
+    const std::vector<OpenWall> open = joined(stretches);
+    for (const WallStretch& s : stretches) {
+        for (const std::int32_t v : {s.lower[0], s.lower[1], s.upper[0], s.upper[1]})
+            is_needed[static_cast<std::size_t>(v)] |= may_bend[static_cast<std::size_t>(v)];
+    }
+    for (const OpenWall& wall : open) {
+        for (const std::int32_t v :
+             {wall.lower.front(), wall.lower.back(), wall.upper.front(), wall.upper.back()})
+            is_needed[static_cast<std::size_t>(v)] = 1;
+    }
+    Walls walls;
+    for (const OpenWall& wall : open) {
+        const auto add = [&](std::int32_t v) {
+            if (is_needed[static_cast<std::size_t>(v)] != 0) walls.vertices.push_back(v);
+        };
+        std::for_each(wall.lower.begin(), wall.lower.end(), add);
+        // up the far vertical and down the near one, through every vertex on them
+        for (std::int32_t v = wall.lower.back() + 1; v < wall.upper.back(); ++v)
+            add(v);
+        const std::ptrdiff_t skip = wall.upper.back() == wall.lower.back() ? 1 : 0;
+        const std::ptrdiff_t keep = wall.upper.front() == wall.lower.front() ? 1 : 0;
+        std::for_each(wall.upper.rbegin() + skip, wall.upper.rend() - keep, add);
+        for (std::int32_t v = wall.upper.front() - 1; v > wall.lower.front(); --v)
+            add(v);
+        walls.offsets.push_back(static_cast<std::int64_t>(walls.vertices.size()));
+        walls.cells.push_back({wall.left, wall.right});
+    }
+    return walls;
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "plan_grid.hpp"
+
+namespace realmodel::strata {
+
+/// Tiles from column `left` to `right` and row `low` to `high`, both included.
+struct TileSpan {
+    std::int32_t left, right, low, high;
+};
+
+/// A uniform grid of tiles over all surfaces. A place lies in the tiles of every box around it: the
+/// way to columns and rows is monotone, whatever it rounds.
+class PlanTiles {
+public:
+    PlanTiles() = default;
+    /// About `count` tiles, as square as the frame allows.
+    PlanTiles(const PlanBox& frame, std::size_t count);
+
+    std::size_t size() const { return static_cast<std::size_t>(columns_) * rows(); }
+    std::size_t columns() const { return static_cast<std::size_t>(columns_); }
+    std::size_t rows() const { return static_cast<std::size_t>(rows_); }
+    TileSpan span(const PlanBox& box) const {
+        return {column(box.low_x), column(box.high_x), row(box.low_y), row(box.high_y)};
+    }
+    std::size_t tile(std::int32_t column, std::int32_t row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+               static_cast<std::size_t>(column);
+    }
+    template <class Visit>
+    void for_each(const TileSpan& span, const Visit& visit) const {
+        for (std::int32_t r = span.low; r <= span.high; ++r) {
+            for (std::int32_t c = span.left; c <= span.right; ++c)
+                visit(tile(c, r));
+        }
+    }
+    /// Whether `holds` is true of any tile.
+    template <class Holds>
+    bool any(const TileSpan& span, const Holds& holds) const {
+        for (std::int32_t r = span.low; r <= span.high; ++r) {
+            for (std::int32_t c = span.left; c <= span.right; ++c) {
+                if (holds(tile(c, r))) return true;
+            }
+        }
+        return false;
+    }
+    /// Calls visit(tile) for every tile whose centre lies in a triangle, or as good as on its edge.
+    template <class Visit>
+    void for_each_centre_in(const std::array<std::array<double, 2>, 3>& triangle,
+                            const Visit& visit) const;
+
+private:
+    std::int32_t column(double x) const { return index((x - frame_.low_x) / step_x_, columns_); }
+    std::int32_t row(double y) const { return index((y - frame_.low_y) / step_y_, rows_); }
+    static std::int32_t index(double at, std::int32_t count) {
+        if (!(at > 0.0)) return 0;
+        return at >= static_cast<double>(count) ? count - 1 : static_cast<std::int32_t>(at);
+    }
+
+    PlanBox frame_;
+    double step_x_ = 1, step_y_ = 1;
+    std::int32_t columns_ = 0, rows_ = 0;
+};
+
+template <class Visit>
+void PlanTiles::for_each_centre_in(const std::array<std::array<double, 2>, 3>& triangle,
+                                   const Visit& visit) const {
+    PlanBox box{triangle[0][0], triangle[0][1], triangle[0][0], triangle[0][1]};
+    for (const auto& p : triangle) {
+        box = {std::min(box.low_x, p[0]), std::min(box.low_y, p[1]), std::max(box.high_x, p[0]),
+               std::max(box.high_y, p[1])};
+    }
+    if (!box.meets(frame_)) return;
+    const TileSpan rows = span(box);
+    const double slack = 1e-3 * step_x_;
+    for (std::int32_t r = rows.low; r <= rows.high; ++r) {
+        const double y = frame_.low_y + (r + 0.5) * step_y_;
+        double from = HUGE_VAL, to = -HUGE_VAL;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto &p = triangle[i], &q = triangle[(i + 1) % 3];
+            if (std::min(p[1], q[1]) > y || std::max(p[1], q[1]) < y) continue;
+            const double share = p[1] == q[1] ? 0.0 : (y - p[1]) / (q[1] - p[1]);
+            for (const double x : {p[0] + share * (q[0] - p[0]),
+                                   p[1] == q[1] ? q[0] : p[0] + share * (q[0] - p[0])}) {
+                from = std::min(from, x);
+                to = std::max(to, x);
+            }
+        }
+        if (from > to || to < frame_.low_x - step_x_ || from > frame_.high_x + step_x_) continue;
+        const std::int32_t last = column(to + slack);
+        for (std::int32_t c = column(from - slack); c <= last; ++c) {
+            const double x = frame_.low_x + (c + 0.5) * step_x_;
+            if (x >= from - slack && x <= to + slack) visit(tile(c, r));
+        }
+    }
+}
+
+}  // namespace realmodel::strata
