@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "block_classification.hpp"
 #include "block_facets.hpp"
 #include "disjoint_parts.hpp"
 #include "parallel_chunks.hpp"
@@ -13,80 +14,6 @@ namespace realmodel::strata {
 
 using exact::PlanGeometry;
 using exact::VertexId;
-
-namespace {
-
-/// What the envelope is all over a tile that no border crosses.
-enum Cover : std::uint8_t { kRock, kSkyOnly, kOutsideOnly };
-
-constexpr std::int32_t kNoLabel = -4, kSeveral = -3, kSkyLabel = -1;
-
-std::int32_t merged_label(std::int32_t a, std::int32_t b) {
-    if (a == kNoLabel || a == b) return b;
-    return b == kNoLabel ? a : kSeveral;
-}
-
-std::array<std::array<double, 2>, 3> corners_of(const PlanGeometry& geometry,
-                                                const PlanTriangle& triangle) {
-    std::array<std::array<double, 2>, 3> p;
-    for (std::size_t i = 0; i < 3; ++i)
-        p[i] = {geometry.point(triangle[i]).x, geometry.point(triangle[i]).y};
-    return p;
-}
-
-/// Heights in every tile.
-struct TileHeights {
-    std::vector<double> low, high;
-    explicit TileHeights(std::size_t tiles) : low(tiles, HUGE_VAL), high(tiles, -HUGE_VAL) {}
-    void include(std::size_t tile, double from, double to) {
-        low[tile] = std::min(low[tile], from);
-        high[tile] = std::max(high[tile], to);
-    }
-};
-
-}  // namespace
-
-TriangleBounds bounds_of(const PlanGeometry& geometry, PlaneId plane) {
-    TriangleBounds b{{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, HUGE_VAL, -HUGE_VAL};
-    for (const exact::SpaceId s : geometry.plane(plane).corner) {
-        const auto& vertex = geometry.space(s);
-        const auto& p = geometry.point(vertex.plan);
-        b.box = {std::min(b.box.low_x, p.x), std::min(b.box.low_y, p.y),
-                 std::max(b.box.high_x, p.x), std::max(b.box.high_y, p.y)};
-        b.low = std::min(b.low, vertex.z);
-        b.high = std::max(b.high, vertex.z);
-    }
-    return b;
-}
-
-/// Heights of a surface in every tile, and where there is none.
-struct BlockOverlay::SurfaceTiles : TileHeights {
-    explicit SurfaceTiles(std::size_t tiles) : TileHeights(tiles), is_empty(tiles, 0) {}
-    std::vector<std::uint8_t> is_empty;  ///< of tiles without a border
-};
-
-/// Heights and blocks beneath the envelope in every tile.
-struct BlockOverlay::EnvelopeTiles : TileHeights {
-    explicit EnvelopeTiles(std::size_t tiles) : TileHeights(tiles), label(tiles, kNoLabel) {}
-    std::vector<std::int32_t> label;  ///< the block beneath, or kSeveral
-};
-
-/// What bounds tell of a surface and the envelope above it.
-struct BlockOverlay::Classified {
-    enum Surface : std::uint8_t { kBelow, kGone, kUnclear };
-    enum Facet : std::uint8_t { kClosed, kKept, kKeptBare, kExact };
-    std::vector<Surface> surface;       ///< of each triangle
-    std::vector<std::int32_t> label;    ///< of each triangle below: the block above it
-    std::vector<std::int32_t> node;     ///< of each triangle below: the node above it
-    std::vector<Facet> whole, part;     ///< of each facet
-    std::vector<std::int32_t> polygon;  ///< of each triangle: in the part overlaid exactly, or -1
-    std::vector<std::uint8_t> is_divided;  ///< of each polygon of that part
-    std::vector<LoweredPiece> lowered;
-    PolygonPool lowered_outlines;
-    std::int32_t first_closed = 0;  ///< node beneath the first of these, one after another
-    std::vector<PlaneId> closed_whole;
-    std::vector<std::size_t> closed_parts;
-};
 
 BlockOverlay::BlockOverlay(PlanGeometry& geometry, std::span<const BlockLayer> layers,
                            PlanTiles tiles, std::vector<std::uint8_t> on_border,
@@ -172,119 +99,6 @@ void BlockOverlay::start_sky(const BlockLayer& layer) {
         made_.is_exact[static_cast<std::size_t>(plane)] =
             beside_border(bounds_of(geometry_, plane).box) ? 1 : 0;
         whole_.push_back({plane, layer.number, kOutsideCell});
-    }
-}
-
-BlockOverlay::SurfaceTiles BlockOverlay::surface_tiles(const BlockLayer& layer) const {
-    SurfaceTiles surface(tiles_.size());
-    for (std::size_t t = 0; t < layer.size(); ++t) {
-        poll(progress_, t);
-        const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
-        tiles_.for_each(tiles_.span(b.box),
-                        [&](std::size_t tile) { surface.include(tile, b.low, b.high); });
-    }
-    for (const PlanTriangle& t : layer.empty) {
-        tiles_.for_each_centre_in(corners_of(geometry_, t),
-                                  [&](std::size_t tile) { surface.is_empty[tile] = 1; });
-    }
-    for (std::size_t tile = 0; tile < surface.low.size(); ++tile) {
-        if (surface.low[tile] > surface.high[tile]) surface.is_empty[tile] = 1;
-    }
-    return surface;
-}
-
-BlockOverlay::EnvelopeTiles BlockOverlay::envelope_tiles() const {
-    EnvelopeTiles envelope(tiles_.size());
-    const auto include = [&](const TriangleBounds& b, std::int32_t pending) {
-        tiles_.for_each(tiles_.span(b.box), [&](std::size_t tile) {
-            envelope.include(tile, b.low, b.high);
-            envelope.label[tile] = merged_label(envelope.label[tile], pending);
-        });
-    };
-    for (std::size_t f = 0; f < whole_.size(); ++f) {
-        poll(progress_, f);
-        include(bounds_of(geometry_, whole_[f].plane), whole_[f].pending);
-    }
-    for (std::size_t f = 0; f < parts_.size(); ++f) {
-        if (parts_.plane[f] >= 0) include(part_bounds(f), parts_.pending[f]);
-    }
-    return envelope;
-}
-
-void BlockOverlay::classify_surface(const BlockLayer& layer, const EnvelopeTiles& envelope,
-                                    Classified& c) {
-    c.surface.assign(layer.size(), Classified::kUnclear);
-    c.label.assign(layer.size(), kSkyLabel);
-    c.node.assign(layer.size(), kOutsideCell);
-    constexpr std::size_t kChunk = 4096;
-    parallel_chunks((layer.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
-        for (std::size_t t = k * kChunk; t < std::min(layer.size(), (k + 1) * kChunk); ++t) {
-            const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
-            double low = HUGE_VAL, high = -HUGE_VAL;
-            std::int32_t label = kNoLabel;
-            const bool crossed = tiles_.any(tiles_.span(b.box), [&](std::size_t tile) {
-                if (on_border_[tile] != 0 || cover_[tile] == kOutsideOnly) {
-                    if (on_border_[tile] != 0) return true;
-                    low = -HUGE_VAL;
-                    label = merged_label(label, kSkyLabel - 1);
-                } else if (cover_[tile] == kSkyOnly) {
-                    high = HUGE_VAL;
-                    label = merged_label(label, kSkyLabel);
-                } else {
-                    low = std::min(low, envelope.low[tile]);
-                    high = std::max(high, envelope.high[tile]);
-                    label = merged_label(label, envelope.label[tile]);
-                }
-                return label == kSeveral;
-            });
-            if (crossed || label == kSeveral || label == kNoLabel) continue;
-            if (b.high + margin_ < low) {
-                c.surface[t] = Classified::kBelow;
-                c.label[t] = label;
-            } else if (b.low > high + margin_) {
-                c.surface[t] = Classified::kGone;
-            }
-        }
-    });
-}
-
-void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& surface,
-                                   Classified& c) {
-    // A facet must be looked at exactly where a triangle must be, for the triangle's parts to be
-    // complete.
-    std::vector<std::uint8_t> is_unclear(tiles_.size(), 0);
-    for (std::size_t t = 0; t < layer.size(); ++t) {
-        if (c.surface[t] != Classified::kUnclear) continue;
-        const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
-        tiles_.for_each(tiles_.span(b.box), [&](std::size_t tile) { is_unclear[tile] = 1; });
-    }
-    const auto classify = [&](const TriangleBounds& b) {
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        bool any_empty = false, any_rock = false;
-        const bool unclear = tiles_.any(tiles_.span(b.box), [&](std::size_t tile) {
-            if (on_border_[tile] != 0 || is_unclear[tile] != 0) return true;
-            if (surface.is_empty[tile] != 0) {
-                any_empty = true;
-            } else {
-                any_rock = true;
-                low = std::min(low, surface.low[tile]);
-                high = std::max(high, surface.high[tile]);
-            }
-            return any_empty && any_rock;
-        });
-        if (unclear) return Classified::kExact;
-        if (any_empty) return Classified::kKeptBare;
-        if (high + margin_ < b.low) return Classified::kClosed;
-        return b.high + margin_ < low ? Classified::kKept : Classified::kExact;
-    };
-    constexpr std::size_t kChunk = 4096;
-    c.whole.resize(whole_.size());
-    parallel_chunks((whole_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
-        for (std::size_t f = k * kChunk; f < std::min(whole_.size(), (k + 1) * kChunk); ++f)
-            c.whole[f] = classify(bounds_of(geometry_, whole_[f].plane));
-    });
-    for (std::size_t f = 0; f < parts_.size(); ++f) {
-        c.part.push_back(parts_.plane[f] < 0 ? Classified::kExact : classify(part_bounds(f)));
     }
 }
 

@@ -90,7 +90,9 @@ private:
     EnvelopeTiles envelope_tiles() const;
     void start_sky(const BlockLayer& layer);
     void classify_surface(const BlockLayer& layer, const EnvelopeTiles& envelope, Classified& c);
+    void compare_surface(const BlockLayer& layer, Classified& c);
     void classify_facets(const BlockLayer& layer, const SurfaceTiles& surface, Classified& c);
+    void compare_facets(const BlockLayer& layer, Classified& c);
     Layer needed_part(const BlockLayer& layer, Classified& c);
     void overlay_exactly(const BlockLayer& layer, const Layer& part, const SurfaceTiles& surface,
                          Classified& c);

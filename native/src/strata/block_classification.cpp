@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "block_classification.hpp"
+
+#include <algorithm>
+
+#include "parallel_chunks.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanGeometry;
+
+namespace {
+
+constexpr std::size_t kChunk = 4096;
+
+std::int32_t merged_label(std::int32_t a, std::int32_t b) {
+    if (a == kNoLabel || a == b) return b;
+    return b == kNoLabel ? a : kSeveral;
+}
+
+/// What a pair of planes is to each other over a box.
+enum class Standing { kBelow, kAbove, kUnclear };
+
+/// Where plane `lower` stands against plane `upper` all over the common part of two boxes.
+Standing compare_over(const PlanGeometry& geometry, PlaneId lower, PlaneId upper, const PlanBox& a,
+                      const PlanBox& b, double margin) {
+    const exact::LineFilter d = geometry.trace_filter(lower, upper);  // lower less upper
+    const double low_x = std::max(a.low_x, b.low_x), high_x = std::min(a.high_x, b.high_x);
+    const double low_y = std::max(a.low_y, b.low_y), high_y = std::min(a.high_y, b.high_y);
+    const double x = 0.5 * (low_x + high_x) - d.x0, y = 0.5 * (low_y + high_y) - d.y0;
+    const double half_x = 0.5 * (high_x - low_x), half_y = 0.5 * (high_y - low_y);
+    const double middle = d.a * x + d.b * y + d.c;
+    const double reach_x = std::abs(x) + half_x, reach_y = std::abs(y) + half_y;
+    const double error =
+        d.error_a * reach_x + d.error_b * reach_y + d.error_c +
+        0x1p-48 * (std::abs(d.a) * reach_x + std::abs(d.b) * reach_y + std::abs(d.c));
+    const double room = std::abs(d.a) * half_x + std::abs(d.b) * half_y + error + margin;
+    if (middle + room < 0) return Standing::kBelow;
+    if (middle - room > 0) return Standing::kAbove;
+    return Standing::kUnclear;
+}
+
+/// Numbers of things by the tiles that their boxes meet.
+class TileBins {
+public:
+    /// `visit(add)` calls add(number, span) for every thing, and does so twice.
+    template <class Visit>
+    TileBins(const PlanTiles& tiles, const std::vector<std::uint8_t>& is_wanted, const Visit& visit)
+        : offsets_(tiles.size() + 1, 0) {
+        visit([&](std::int32_t, const TileSpan& span) {
+            tiles.for_each(span, [&](std::size_t tile) { offsets_[tile + 1] += is_wanted[tile]; });
+        });
+        for (std::size_t tile = 0; tile < tiles.size(); ++tile)
+            offsets_[tile + 1] += offsets_[tile];
+        items_.resize(static_cast<std::size_t>(offsets_.back()));
+        std::vector<std::int64_t> free(offsets_.begin(), offsets_.end() - 1);
+        visit([&](std::int32_t number, const TileSpan& span) {
+            tiles.for_each(span, [&](std::size_t tile) {
+                if (is_wanted[tile] != 0) items_[static_cast<std::size_t>(free[tile]++)] = number;
+            });
+        });
+    }
+    /// Calls test(number) for the things in a tile until it is false; whether it never was.
+    template <class Test>
+    bool all(std::size_t tile, const Test& test) const {
+        return std::all_of(items_.begin() + offsets_[tile], items_.begin() + offsets_[tile + 1],
+                           test);
+    }
+
+private:
+    std::vector<std::int64_t> offsets_;
+    std::vector<std::int32_t> items_;
+};
+
+}  // namespace
+
+TriangleBounds bounds_of(const PlanGeometry& geometry, PlaneId plane) {
+    TriangleBounds b{{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, HUGE_VAL, -HUGE_VAL};
+    for (const exact::SpaceId s : geometry.plane(plane).corner) {
+        const auto& vertex = geometry.space(s);
+        const auto& p = geometry.point(vertex.plan);
+        b.box = {std::min(b.box.low_x, p.x), std::min(b.box.low_y, p.y),
+                 std::max(b.box.high_x, p.x), std::max(b.box.high_y, p.y)};
+        b.low = std::min(b.low, vertex.z);
+        b.high = std::max(b.high, vertex.z);
+    }
+    return b;
+}
+
+BlockOverlay::SurfaceTiles BlockOverlay::surface_tiles(const BlockLayer& layer) const {
+    SurfaceTiles surface(tiles_.size());
+    for (std::size_t t = 0; t < layer.size(); ++t) {
+        poll(progress_, t);
+        const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
+        tiles_.for_each(tiles_.span(b.box),
+                        [&](std::size_t tile) { surface.include(tile, b.low, b.high); });
+    }
+    for (const PlanTriangle& t : layer.empty) {
+        tiles_.for_each_centre_in(corners_of(geometry_, t),
+                                  [&](std::size_t tile) { surface.is_empty[tile] = 1; });
+    }
+    for (std::size_t tile = 0; tile < surface.low.size(); ++tile) {
+        if (surface.low[tile] > surface.high[tile]) surface.is_empty[tile] = 1;
+    }
+    return surface;
+}
+
+BlockOverlay::EnvelopeTiles BlockOverlay::envelope_tiles() const {
+    EnvelopeTiles envelope(tiles_.size());
+    const auto include = [&](const TriangleBounds& b, std::int32_t pending) {
+        tiles_.for_each(tiles_.span(b.box), [&](std::size_t tile) {
+            envelope.include(tile, b.low, b.high);
+            envelope.label[tile] = merged_label(envelope.label[tile], pending);
+        });
+    };
+    for (std::size_t f = 0; f < whole_.size(); ++f) {
+        poll(progress_, f);
+        include(bounds_of(geometry_, whole_[f].plane), whole_[f].pending);
+    }
+    for (std::size_t f = 0; f < parts_.size(); ++f) {
+        if (parts_.plane[f] >= 0) include(part_bounds(f), parts_.pending[f]);
+    }
+    return envelope;
+}
+
+void BlockOverlay::classify_surface(const BlockLayer& layer, const EnvelopeTiles& envelope,
+                                    Classified& c) {
+    c.surface.assign(layer.size(), Classified::kUnclear);
+    c.label.assign(layer.size(), kSeveral);
+    c.node.assign(layer.size(), kOutsideCell);
+    parallel_chunks((layer.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
+        for (std::size_t t = k * kChunk; t < std::min(layer.size(), (k + 1) * kChunk); ++t) {
+            const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
+            double low = HUGE_VAL, high = -HUGE_VAL;
+            std::int32_t label = kNoLabel;
+            const bool mixed = tiles_.any(tiles_.span(b.box), [&](std::size_t tile) {
+                if (on_border_[tile] != 0) return true;
+                if (cover_[tile] == kOutsideOnly) {
+                    low = -HUGE_VAL;
+                    label = merged_label(label, kOutsideLabel);
+                } else if (cover_[tile] == kSkyOnly) {
+                    high = HUGE_VAL;
+                    label = merged_label(label, kSkyLabel);
+                } else {
+                    low = std::min(low, envelope.low[tile]);
+                    high = std::max(high, envelope.high[tile]);
+                    label = merged_label(label, envelope.label[tile]);
+                }
+                return label == kSeveral;
+            });
+            if (mixed || label == kNoLabel) continue;
+            c.label[t] = label;
+            if (b.high + margin_ < low) {
+                c.surface[t] = Classified::kBelow;
+            } else if (b.low > high + margin_) {
+                c.surface[t] = Classified::kGone;
+            }
+        }
+    });
+    compare_surface(layer, c);
+}
+
+/// Compares triangles that heights alone do not tell about with the facets near them, plane by
+/// plane.
+void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
+    std::vector<std::int32_t> unclear;
+    std::vector<std::uint8_t> is_wanted(tiles_.size(), 0);
+    for (std::size_t t = 0; t < layer.size(); ++t) {
+        poll(progress_, t);
+        if (c.surface[t] != Classified::kUnclear || c.label[t] < 0) continue;
+        unclear.push_back(static_cast<std::int32_t>(t));
+        const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
+        tiles_.for_each(tiles_.span(b.box), [&](std::size_t tile) { is_wanted[tile] = 1; });
+    }
+    if (unclear.empty()) return;
+    // whole facets first, then parts
+    const TileBins bins(tiles_, is_wanted, [&](const auto& add) {
+        for (std::size_t f = 0; f < whole_.size(); ++f)
+            add(static_cast<std::int32_t>(f),
+                tiles_.span(bounds_of(geometry_, whole_[f].plane).box));
+        for (std::size_t f = 0; f < parts_.size(); ++f) {
+            if (parts_.plane[f] >= 0)
+                add(static_cast<std::int32_t>(whole_.size() + f), tiles_.span(part_bounds(f).box));
+        }
+    });
+    parallel_chunks(
+        (unclear.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
+            for (std::size_t i = k * kChunk; i < std::min(unclear.size(), (k + 1) * kChunk); ++i) {
+                const auto t = static_cast<std::size_t>(unclear[i]);
+                const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
+                const PlanBox box = bounds_of(geometry_, plane).box;
+                bool below = true, above = true;
+                tiles_.any(tiles_.span(box), [&](std::size_t tile) {
+                    return !bins.all(tile, [&](std::int32_t number) {
+                        const auto f = static_cast<std::size_t>(number);
+                        const bool is_whole = f < whole_.size();
+                        const PlaneId facet =
+                            is_whole ? whole_[f].plane : parts_.plane[f - whole_.size()];
+                        const PlanBox facet_box = is_whole ? bounds_of(geometry_, facet).box
+                                                           : part_bounds(f - whole_.size()).box;
+                        if (!box.meets(facet_box)) return true;
+                        const Standing standing =
+                            compare_over(geometry_, plane, facet, box, facet_box, margin_);
+                        below &= standing == Standing::kBelow;
+                        above &= standing == Standing::kAbove;
+                        return below || above;
+                    });
+                });
+                if (below != above) c.surface[t] = below ? Classified::kBelow : Classified::kGone;
+            }
+        });
+}
+
+void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& surface,
+                                   Classified& c) {
+    std::vector<std::uint8_t> is_unclear(tiles_.size(), 0);
+    for (std::size_t t = 0; t < layer.size(); ++t) {
+        poll(progress_, t);
+        if (c.surface[t] != Classified::kUnclear) continue;
+        const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
+        tiles_.for_each(tiles_.span(b.box), [&](std::size_t tile) { is_unclear[tile] = 1; });
+    }
+    const auto classify = [&](const TriangleBounds& b) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        bool any_empty = false, any_rock = false, near_unclear = false;
+        const bool mixed = tiles_.any(tiles_.span(b.box), [&](std::size_t tile) {
+            if (on_border_[tile] != 0) return true;
+            near_unclear |= is_unclear[tile] != 0;
+            if (surface.is_empty[tile] != 0) {
+                any_empty = true;
+            } else {
+                any_rock = true;
+                low = std::min(low, surface.low[tile]);
+                high = std::max(high, surface.high[tile]);
+            }
+            return any_empty && any_rock;
+        });
+        if (mixed) return Classified::kExact;
+        if (any_empty) return near_unclear ? Classified::kExact : Classified::kKeptBare;
+        if (near_unclear) return Classified::kToCompare;
+        if (high + margin_ < b.low) return Classified::kClosed;
+        return b.high + margin_ < low ? Classified::kKept : Classified::kToCompare;
+    };
+    c.whole.resize(whole_.size());
+    parallel_chunks((whole_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
+        for (std::size_t f = k * kChunk; f < std::min(whole_.size(), (k + 1) * kChunk); ++f)
+            c.whole[f] = classify(bounds_of(geometry_, whole_[f].plane));
+    });
+    c.part.resize(parts_.size());
+    parallel_chunks((parts_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
+        for (std::size_t f = k * kChunk; f < std::min(parts_.size(), (k + 1) * kChunk); ++f)
+            c.part[f] = parts_.plane[f] < 0 ? Classified::kExact : classify(part_bounds(f));
+    });
+    compare_facets(layer, c);
+}
+
+/// Compares facets that heights alone do not tell about with the triangles near them. A facet has
+/// to be looked at exactly where a triangle has to be, for the triangle's parts to be complete.
+void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
+    std::vector<std::uint8_t> is_wanted(tiles_.size(), 0);
+    bool any = false;
+    const auto want = [&](const PlanBox& box) {
+        any = true;
+        tiles_.for_each(tiles_.span(box), [&](std::size_t tile) { is_wanted[tile] = 1; });
+    };
+    for (std::size_t f = 0; f < whole_.size(); ++f) {
+        if (c.whole[f] == Classified::kToCompare) want(bounds_of(geometry_, whole_[f].plane).box);
+    }
+    for (std::size_t f = 0; f < parts_.size(); ++f) {
+        if (c.part[f] == Classified::kToCompare) want(part_bounds(f).box);
+    }
+    if (!any) return;
+    const TileBins bins(tiles_, is_wanted, [&](const auto& add) {
+        for (std::size_t t = 0; t < layer.size(); ++t) {
+            add(static_cast<std::int32_t>(t),
+                tiles_.span(bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t)).box));
+        }
+    });
+    const auto compare = [&](PlaneId facet, const PlanBox& box) {
+        bool below = true, above = true;
+        const bool unclear = tiles_.any(tiles_.span(box), [&](std::size_t tile) {
+            return !bins.all(tile, [&](std::int32_t t) {
+                const PlaneId plane = layer.first_plane + t;
+                const PlanBox other = bounds_of(geometry_, plane).box;
+                if (!box.meets(other)) return true;
+                if (c.surface[static_cast<std::size_t>(t)] == Classified::kUnclear) return false;
+                const Standing standing =
+                    compare_over(geometry_, plane, facet, box, other, margin_);
+                below &= standing == Standing::kBelow;
+                above &= standing == Standing::kAbove;
+                return below || above;
+            });
+        });
+        if (unclear || below == above) return Classified::kExact;
+        return below ? Classified::kClosed : Classified::kKept;
+    };
+    parallel_chunks((whole_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
+        for (std::size_t f = k * kChunk; f < std::min(whole_.size(), (k + 1) * kChunk); ++f) {
+            if (c.whole[f] == Classified::kToCompare)
+                c.whole[f] = compare(whole_[f].plane, bounds_of(geometry_, whole_[f].plane).box);
+        }
+    });
+    parallel_chunks((parts_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
+        for (std::size_t f = k * kChunk; f < std::min(parts_.size(), (k + 1) * kChunk); ++f) {
+            if (c.part[f] == Classified::kToCompare)
+                c.part[f] = compare(parts_.plane[f], part_bounds(f).box);
+        }
+    });
+}
+
+}  // namespace realmodel::strata
