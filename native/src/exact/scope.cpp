@@ -39,6 +39,13 @@ int Scope::filtered_side(const LineFilter& line, const Point& point) const {
     return 2;
 }
 
+// Whether an input vertex lies on an input edge because both products of the determinant vanish, as
+// they do along borders parallel to an axis: a difference of doubles is 0 only where they are
+// equal.
+bool Scope::vanishes(const LineFilter& edge, const Point& vertex) const {
+    return (vertex.x == edge.x0 || edge.a == 0.0) && (vertex.y == edge.y0 || edge.b == 0.0);
+}
+
 int Scope::exact_side(const Line& line, PointId point) {
     ++exact_;
     const IntegerArithmetic in{shared_};
@@ -71,6 +78,8 @@ int Scope::side(DirectedLine directed_line, PointId id) {
     }
     ++decisions_;
     if (result == 2) result = filtered_side(filter(line_id), p);
+    if (result == 2 && l.kind == Line::Kind::kEdge && is_vertex(id) && vanishes(filter(line_id), p))
+        return 0;
     if (result == 2) result = exact_side(l, id);
     return is_reversed(directed_line) ? -result : result;
 }

@@ -35,15 +35,8 @@ PlanBox box_of_edge(const PlanGeometry& geometry, VertexId from, VertexId to) {
 }  // namespace
 
 BlockLayer make_block_layer(PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
-                            const Frame& frame, std::int32_t number, int threads,
+                            PlanLinks links, const Frame& frame, std::int32_t number, int threads,
                             const Progress* progress) {
-    const auto corners = [&](std::size_t t) {
-        PlanTriangle v;
-        for (std::size_t i = 0; i < 3; ++i)
-            v[i] = geometry.space(triangles[t].corner[i]).plan;
-        return v;
-    };
-    PlanLinks links = link_triangles(triangles.size(), corners, progress);
     const auto filling = cover_frame(geometry, links.border, frame);
     if (!filling) make_layer(geometry, triangles, frame, number, threads, progress);  // refuses
     BlockLayer layer;

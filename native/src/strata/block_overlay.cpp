@@ -134,7 +134,7 @@ Layer BlockOverlay::needed_part(const BlockLayer& layer, Classified& c) {
         part.polygons.add(outline);
         part.plane.push_back(kVoid);
     }
-    part.index(geometry_, progress_);
+    part.index(geometry_, progress_, std::max(tiles_.size(), part.plane.size()));
     return part;
 }
 
@@ -317,8 +317,16 @@ void BlockOverlay::add(std::int32_t number) {
         return;
     }
     Classified c;
-    SurfaceTiles surface = surface_tiles(layer);
-    classify_surface(layer, envelope_tiles(), c);
+    SurfaceTiles surface(0);
+    EnvelopeTiles envelope(0);
+    parallel_chunks(2, threads_, progress_, [&](std::size_t which) {
+        if (which == 0) {
+            surface = surface_tiles(layer);
+        } else {
+            envelope = envelope_tiles();
+        }
+    });
+    classify_surface(layer, envelope, c);
     classify_facets(layer, surface, c);
     next_whole_.clear();
     next_parts_ = {};

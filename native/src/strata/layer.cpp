@@ -23,6 +23,13 @@ void add_triangle(PlanGeometry& geometry, PolygonPool& pool, const std::array<Ve
     pool.add(corners);
 }
 
+PlanTriangle plan_of(const PlanGeometry& geometry, const UsedTriangle& triangle) {
+    PlanTriangle v;
+    for (std::size_t i = 0; i < 3; ++i)
+        v[i] = geometry.space(triangle.corner[i]).plan;
+    return v;
+}
+
 /// Void triangles (plane `empty`) where nothing is covered.
 void add_empty(PlanGeometry& geometry, Layer& layer, const FrameTriangles& filling, PlaneId empty) {
     for (std::size_t t = 0; t < filling.triangles.size(); ++t) {
@@ -78,9 +85,12 @@ void add_empty(PlanGeometry& geometry, Layer& layer, const FrameTriangles& filli
 
 }  // namespace
 
-void Layer::index(const PlanGeometry& geometry, const Progress* progress) {
+void Layer::index(const PlanGeometry& geometry, const Progress* progress, std::size_t cells) {
     const Scope scope(geometry);
-    grid = PlanGrid(scope, polygons, progress);
+    std::vector<std::uint8_t> is_surface(plane.size());
+    std::transform(plane.begin(), plane.end(), is_surface.begin(),
+                   [](PlaneId p) { return static_cast<std::uint8_t>(p == kVoid ? 0 : 1); });
+    grid = PlanGrid(scope, polygons, is_surface, cells, progress);
 }
 
 std::optional<FrameTriangles> cover_frame(const PlanGeometry& geometry,
@@ -97,22 +107,22 @@ std::optional<FrameTriangles> cover_frame(const PlanGeometry& geometry,
     }
 }
 
+PlanLinks link_triangles(const PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
+                         const Progress* progress) {
+    return link_triangles(
+        triangles.size(), [&](std::size_t t) { return plan_of(geometry, triangles[t]); }, progress);
+}
+
 Layer make_layer(PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
                  const Frame& frame, int index, int threads, const Progress* progress) {
     Layer layer;
-    const auto corners = [&](std::size_t t) {
-        PlanTriangle v;
-        for (std::size_t i = 0; i < 3; ++i)
-            v[i] = geometry.space(triangles[t].corner[i]).plan;
-        return v;
-    };
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         poll(progress, t);
-        add_triangle(geometry, layer.polygons, corners(t));
+        add_triangle(geometry, layer.polygons, plan_of(geometry, triangles[t]));
         layer.plane.push_back(geometry.add_plane(triangles[t].corner));
     }
     const auto filling =
-        cover_frame(geometry, link_triangles(triangles.size(), corners, progress).border, frame);
+        cover_frame(geometry, link_triangles(geometry, triangles, progress).border, frame);
     if (!filling) {
         layer.index(geometry, progress);
         refuse_overlap(geometry, layer, triangles, index, threads, progress);

@@ -28,7 +28,8 @@ struct Layer {
     PlanGrid grid;
 
     /// Makes the grid of the polygons as they are now.
-    void index(const exact::PlanGeometry& geometry, const Progress* progress);
+    void index(const exact::PlanGeometry& geometry, const Progress* progress,
+               std::size_t cells = 0);
 };
 
 /// A triangle of the input as it is used: its number there and its plan vertices.
@@ -42,6 +43,9 @@ struct UsedTriangle {
 std::vector<UsedTriangle> enter_surface(exact::PlanGeometry& geometry, const SurfaceView& surface,
                                         int index, const PlanSnapping& snapping,
                                         std::vector<Warning>& warnings, const Progress* progress);
+
+PlanLinks link_triangles(const exact::PlanGeometry& geometry,
+                         const std::vector<UsedTriangle>& triangles, const Progress* progress);
 
 /// Where triangles that turn counter-clockwise lie in the frame; nothing where they cover a place
 /// twice.

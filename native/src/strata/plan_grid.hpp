@@ -22,21 +22,18 @@ struct PlanBox {
 
 PlanBox box_of(const Scope& scope, PolygonView polygon);
 
-/// Finds the polygons of a set that may share an area with another polygon: a uniform grid, each
-/// polygon entered in the cells that it crosses row by row, so that needles and giants stay cheap.
-class PlanGrid {
+/// Some polygons of a set by the cells of a uniform grid, each entered in the cells that it crosses
+/// row by row, so that needles and giants stay cheap.
+class PolygonCells {
 public:
-    PlanGrid() = default;
-    PlanGrid(const Scope& scope, const PolygonPool& polygons, const Progress* progress);
-
-    /// Numbers of all polygons whose cells and boxes meet those of `polygon`, ascending.
-    void candidates(const Scope& scope, PolygonView polygon,
-                    std::vector<std::int32_t>& found) const;
+    /// chosen: the polygons to enter; boxes: of all polygons; cells: about so many.
+    void fill(const Scope& scope, const PolygonPool& polygons, const std::vector<PlanBox>& boxes,
+              const std::vector<std::int32_t>& chosen, std::size_t cells, const Progress* progress);
+    /// Appends the polygons whose cells and boxes meet those of `polygon`, some of them repeatedly.
+    void append(const Scope& scope, PolygonView polygon, const PlanBox& box,
+                const std::vector<PlanBox>& boxes, std::vector<std::int32_t>& found) const;
 
 private:
-    struct RowSpan {
-        std::int64_t first, last;
-    };
     std::int64_t column(double x) const;
     std::int64_t row(double y) const;
     /// Calls visit(cell) for each cell that the polygon crosses.
@@ -49,7 +46,26 @@ private:
     std::int64_t columns_ = 0, rows_ = 0;
     std::vector<std::int64_t> offsets_;
     std::vector<std::int32_t> items_;
+};
+
+/// Finds the polygons of a set that may share an area with another polygon. What fills the frame
+/// around a surface has cells of its own: it would make those of the surface coarse.
+class PlanGrid {
+public:
+    PlanGrid() = default;
+    /// is_inner: of each polygon, whether it is the surface's; cells: at
+    /// least so many of either kind.
+    PlanGrid(const Scope& scope, const PolygonPool& polygons,
+             const std::vector<std::uint8_t>& is_inner, std::size_t cells,
+             const Progress* progress);
+
+    /// Numbers of all polygons whose cells and boxes meet those of `polygon`, ascending.
+    void candidates(const Scope& scope, PolygonView polygon,
+                    std::vector<std::int32_t>& found) const;
+
+private:
     std::vector<PlanBox> boxes_;
+    PolygonCells inner_, outer_;
 };
 
 }  // namespace realmodel::strata

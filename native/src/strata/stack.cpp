@@ -272,11 +272,15 @@ bool is_plain(const std::vector<EnteredRock>& rocks) {
 
 /// The blocks of a single rock mass whose surfaces are all erosional.
 CellComplex build_plain_blocks(Site& site, EnteredRock& rock) {
+    std::vector<PlanLinks> links(rock.surfaces.size());
+    parallel_chunks(links.size(), site.threads, site.progress, [&](std::size_t k) {
+        links[k] = link_triangles(site.geometry, rock.surfaces[k], site.progress);
+    });
     std::vector<BlockLayer> layers;
     for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
         if (site.progress != nullptr) site.progress->check();
-        layers.push_back(make_block_layer(site.geometry, rock.surfaces[k], site.frame,
-                                          static_cast<std::int32_t>(k), site.threads,
+        layers.push_back(make_block_layer(site.geometry, rock.surfaces[k], std::move(links[k]),
+                                          site.frame, static_cast<std::int32_t>(k), site.threads,
                                           site.progress));
         site.surface_of_plane.resize(site.geometry.plane_count(), static_cast<std::int32_t>(k));
         rock.surfaces[k] = {};

@@ -264,6 +264,7 @@ public:
 
 private:
     int filtered_side(const LineFilter& line, const Point& point) const;
+    bool vanishes(const LineFilter& edge, const Point& vertex) const;
     int exact_side(const Line& line, PointId point);
     bool on_trace_by_name(PlaneId a, PlaneId b, const Point& point) const;
     NearPoint near(const Point& point) const;
