@@ -210,8 +210,10 @@ std::vector<Defect> defects_of(const StackCase& stack, const JudgeOptions& optio
             add(named(second_opinion(blocks, stack, Cells::kBlocks), "blocks"));
             compare_kinds(stack, columns, blocks, defects);
         }
-        if (const auto exact = exact_volumes(stack, options.most_polygons))
-            compare_volumes(stack, columns, *exact, defects);
+        if (triangle_count(stack) <= options.most_triangles) {
+            if (const auto exact = exact_volumes(stack, options.most_polygons))
+                compare_volumes(stack, columns, *exact, defects);
+        }
         for (const int threads : options.threads) {
             if (digest(columns_of(stack, threads)) != digest(columns))
                 defects.push_back(

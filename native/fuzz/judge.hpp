@@ -10,7 +10,8 @@
 namespace realmodel::fuzz {
 
 struct JudgeOptions {
-    std::size_t most_polygons = 3000;  ///< of the exact volumes; beyond, a case goes without
+    std::size_t most_triangles = 250;  ///< of a case whose exact volumes are asked for
+    std::size_t most_polygons = 3000;  ///< in plan, of the exact volumes; beyond, it goes without
     std::vector<int> threads{2};       ///< numbers of threads whose bytes are compared with one's
 };
 

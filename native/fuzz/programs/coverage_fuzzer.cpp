@@ -36,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Chance chance(std::span<const std::uint8_t>(data, size));
     StackCase stack = make_case(chance, corpus());
     if (triangle_count(stack) > 400) return -1;  // slow, and no more telling
-    const Examination found = examine(std::move(stack), {300, {}});
+    const Examination found = examine(std::move(stack), {100, 300, {}});
     if (found.defects.empty()) return found.usable ? 0 : -1;
     const std::string kind = least_kind(found.defects);
     const auto file = std::filesystem::path(folder("REALMODEL_FUZZ_INTO", ".")) /

@@ -33,7 +33,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
     std::uint64_t cases = UINT64_MAX, seed = 1, first = 0;
-    double seconds = 1e9, patience = 60;  // of one case, seconds
+    double seconds = 1e9, patience = 120;  // of one case, seconds
     std::filesystem::path corpus, into = ".";
     int most = 20;  // findings
     JudgeOptions judge;
@@ -160,7 +160,7 @@ private:
         const auto fails = [&](const StackCase& candidate) {
             return least_kind(examine_apart(candidate, options_.judge, options_.patience)) == kind;
         };
-        const StackCase small = minimised(std::move(stack), fails, 1500);
+        const StackCase small = minimised(std::move(stack), fails, kind == "hang" ? 30 : 1500);
         std::string why;
         for (const Defect& defect : examine_apart(small, options_.judge, options_.patience))
             why += (why.empty() ? "" : "; ") + defect.kind + ": " + defect.sentence;
