@@ -70,6 +70,12 @@ const std::vector<Family>& all_families() {
          .heights = {H::kMagnitudes, H::kMagnitudes, H::kIntegers, H::kRandom},
          .partial = 0.2},
         {.name = "giant over tiny", .plans = {G, T, G, S}, .shared = 0, .partial = 0.1},
+        {.name = "level over rough",
+         .plans = {G, T, T},
+         .shared = 0,
+         .heights = {H::kLevel, H::kIntegers, H::kIntegers},
+         .fewest = 2,
+         .most = 4},
         {.name = "T-junctions", .plans = {B, B, L}, .partial = 0.2, .jumps = 0.2},
         {.name = "disorder", .partial = 0.3, .jumps = 0.3, .flat = 0.6, .disorder = 1},
         {.name = "regions", .partial = 0.2, .region = 1, .base = 0.5},
@@ -253,7 +259,7 @@ StackCase make_stack(Chance& chance, std::size_t family, int smallest, int large
 
 StackCase make_rock_masses(Chance& chance, int largest) {
     // families that stay on the lattice
-    constexpr std::size_t kStacks[] = {1, 2, 3, 4, 11, 13, 16};
+    constexpr std::size_t kStacks[] = {1, 2, 3, 4, 12, 14, 17};
     const int size = chance.between(1, largest);
     StackCase stack{{}, "rock masses"};
     const auto rock = [&] {

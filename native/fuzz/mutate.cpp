@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "generate.hpp"
 #include "heights.hpp"
@@ -85,20 +86,41 @@ void vertex_aside_by_an_ulp(Chance& chance, StackCase& stack) {
     }
 }
 
+/// Height of the plane of three corners at a place; nothing where they have no area in plan.
+std::optional<double> plane_height(const std::array<Point, 3>& corners, const Point& p) {
+    const auto& [a, b, c] = corners;
+    const double area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    if (area == 0) return std::nullopt;
+    const double u = ((p[0] - a[0]) * (c[1] - a[1]) - (p[1] - a[1]) * (c[0] - a[0])) / area;
+    const double v = ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])) / area;
+    return a[2] + u * (b[2] - a[2]) + v * (c[2] - a[2]);
+}
+
 /// Heights of some vertices become those of the plane of another surface's triangle.
 void onto_a_plane(Chance& chance, StackCase& stack) {
-    const auto [a, b, c] = some_triangle(chance, some_surface(chance, stack));
+    const auto corners = some_triangle(chance, some_surface(chance, stack));
     Mesh& mesh = some_surface(chance, stack);
-    const double area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    if (area == 0) return;
     const double share = chance.one_of({0.3, 1.01});
     const bool nudge = chance.with(0.3);
     for (Point& p : mesh.vertices) {
         if (!chance.with(share)) continue;
-        const double u = ((p[0] - a[0]) * (c[1] - a[1]) - (p[1] - a[1]) * (c[0] - a[0])) / area;
-        const double v = ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])) / area;
-        p[2] = a[2] + u * (b[2] - a[2]) + v * (c[2] - a[2]);
+        p[2] = plane_height(corners, p).value_or(p[2]);
         if (nudge) p[2] = nudged(chance, p[2]);
+    }
+}
+
+/// A surface stays to one side of a plane of another and touches it along an edge or in a vertex.
+void touch_a_plane(Chance& chance, StackCase& stack) {
+    const auto corners = some_triangle(chance, some_surface(chance, stack));
+    Mesh& mesh = some_surface(chance, stack);
+    const auto edge = some_triangle(chance, mesh);
+    const auto is_at = [](const Point& p, const Point& q) { return p[0] == q[0] && p[1] == q[1]; };
+    const bool along = chance.with(0.7);
+    const int side = chance.with(0.7) ? -1 : 1;
+    for (Point& p : mesh.vertices) {
+        const bool touches = is_at(p, edge[0]) || (along && is_at(p, edge[1]));
+        p[2] =
+            plane_height(corners, p).value_or(p[2]) + (touches ? 0 : side * chance.between(1, 2));
     }
 }
 
@@ -274,6 +296,8 @@ constexpr void (*kWays[])(Chance&, StackCase&) = {vertex_onto_another,
                                                   vertex_aside_by_an_ulp,
                                                   vertex_aside_by_an_ulp,
                                                   onto_a_plane,
+                                                  touch_a_plane,
+                                                  touch_a_plane,
                                                   onto_a_plane,
                                                   copy_a_patch,
                                                   copy_a_patch,

@@ -178,7 +178,7 @@ PlanMesh make_plan(Chance& chance, Plan plan, int n) {
         case Plan::kNeedles:
             return needles(chance, n);
         case Plan::kTiny:
-            return lattice_of_size(chance, std::min(4, 2 * n), n);
+            return lattice_of_size(chance, std::min(6, 2 * n), n);
     }
     return {};
 }

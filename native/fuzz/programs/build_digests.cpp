@@ -55,7 +55,7 @@ void print_stacks() {
     }
     for (std::uint64_t number = 0; number < 60; ++number)
         print_stack("case " + std::to_string(number), fuzz::case_number(11, number, {}));
-    for (const std::size_t family : {0U, 1U, 7U, 8U, 15U, 17U}) {  // several chunks of work
+    for (const std::size_t family : {0U, 1U, 7U, 8U, 16U, 18U}) {  // several chunks of work
         fuzz::Chance chance(family);
         print_stack("large " + families[family], fuzz::make_stack(chance, family, 20, 24));
     }

@@ -158,7 +158,8 @@ private:
 
     void keep(StackCase stack, const std::string& kind, const std::string& name) {
         const auto fails = [&](const StackCase& candidate) {
-            return least_kind(examine_apart(candidate, options_.judge, options_.patience)) == kind;
+            return interrupted == 0 &&
+                   least_kind(examine_apart(candidate, options_.judge, options_.patience)) == kind;
         };
         const StackCase small = minimised(std::move(stack), fails, kind == "hang" ? 30 : 1500);
         std::string why;
