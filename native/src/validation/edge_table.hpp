@@ -57,7 +57,7 @@ public:
                 all &= (uses_[i] >> 32) == (uses_[i] & kAheadMask);
         } else {
             for (std::size_t i = 0; i <= mask_; ++i)
-                all &= (uses_[i] == 0) | (uses_[i] == (kAhead | kBack));
+                all &= uses_[i] == 0 || uses_[i] == (kAhead | kBack);
         }
         return all;
     }
