@@ -255,6 +255,11 @@ void check_faces(const View& view, Findings& findings) {
 
 }  // namespace
 
+bool were_borders_joined(const CellComplex& complex) {
+    return std::any_of(complex.warnings.begin(), complex.warnings.end(),
+                       [](const strata::Warning& warning) { return warning.kind == "joined"; });
+}
+
 std::vector<double> cell_volumes(const CellComplex& c) {
     const View view(c);
     std::vector<std::int32_t> anchor(c.cell_block.size(), -1);

@@ -25,6 +25,10 @@ std::vector<Defect> complex_defects(const strata::CellComplex& complex, Cells ce
 /// name.
 std::vector<Defect> surface_defects(const strata::CellComplex& complex, const StackCase& stack);
 
+/// Whether the builder made borders one that differ by rounding: what lay between them is gone
+/// then.
+bool were_borders_joined(const strata::CellComplex& complex);
+
 /// Volumes of the cells by the divergence theorem, each about one of its own vertices.
 std::vector<double> cell_volumes(const strata::CellComplex& complex);
 

@@ -30,13 +30,6 @@ CellComplex blocks_of(const CellComplex& columns) {
     return strata::merge_columns(columns);
 }
 
-/// Whether the builder made borders one that differ by rounding: what lay between them is gone
-/// then.
-bool were_borders_joined(const CellComplex& complex) {
-    return std::any_of(complex.warnings.begin(), complex.warnings.end(),
-                       [](const strata::Warning& warning) { return warning.kind == "joined"; });
-}
-
 /// Which surfaces have a block beneath them.
 std::vector<bool> possible_blocks(const StackCase& stack) {
     std::vector<bool> possible;

@@ -122,7 +122,7 @@ Findings check_distinct(const ComplexView& model, int threads, const Progress* p
     std::sort(all.begin(), all.end());
     Findings found;
     for (const auto& [v, earlier] : all) {
-        found.fail([&] {
+        found.fail([&, v = v, earlier = earlier] {
             return Offender{.text = "vertex " + std::to_string(v) + " is in the place of vertex " +
                                     std::to_string(earlier),
                             .vertex = v,
