@@ -230,14 +230,20 @@ void check_faces(const View& view, Findings& findings) {
         largest = std::max({largest, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
     const double small = 1e6 * spacing(largest);
     for (std::size_t f = 0; f < view.faces(); ++f) {
+        const auto v = view.corners(f);
         const Point normal = view.normal(f);
         const double area = std::sqrt(dot(normal, normal)) / 2;
         if (view.c.face_surface[f] == strata::kWall) {
-            if (area > small * small && std::abs(normal[2]) / 2 > 1e-6 * area)
+            // corners of a wall over several places lie in one line up to the rounding of these
+            double length = 0;
+            for (const std::int32_t i : v) {
+                const Point across = minus(view.at(i), view.at(v[0]));
+                length = std::max(length, std::hypot(across[0], across[1]));
+            }
+            if (area > small * small && std::abs(normal[2]) / 2 > 1e-6 * area + 16 * step * length)
                 findings.add("leaning wall", "face " + std::to_string(f));
             continue;
         }
-        const auto v = view.corners(f);
         const double way = normal[2] < 0 ? -1 : 1;
         for (std::size_t i = 0; i < v.size(); ++i) {
             const Point &p = view.at(v[i]), &q = view.at(v[(i + 1) % v.size()]),

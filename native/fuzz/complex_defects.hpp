@@ -14,7 +14,7 @@ struct Defect {
     std::string kind, sentence;
 };
 
-enum class Cells { kColumns, kBlocks };
+using Cells = strata::CellKind;
 
 /// Tests 1 to 4 of docs/geometry.md on the arrays alone: shapes, vertices distinct and in use, no
 /// face repeats a vertex, cells closed (blocks: edges balanced), with positive volume up to

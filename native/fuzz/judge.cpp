@@ -16,18 +16,15 @@ namespace realmodel::fuzz {
 namespace {
 
 using strata::CellComplex;
+using strata::CellKind;
 
 double spacing(double value) {
     value = std::abs(value);
     return std::nextafter(value, HUGE_VAL) - value;
 }
 
-CellComplex columns_of(const StackCase& stack, int threads) {
-    return strata::build_rock_masses(views_of(stack), threads, nullptr);
-}
-
-CellComplex blocks_of(const CellComplex& columns) {
-    return strata::merge_columns(columns);
+CellComplex built(const StackCase& stack, int threads, strata::CellKind cells) {
+    return strata::build_rock_masses(views_of(stack), threads, nullptr, cells);
 }
 
 /// Which surfaces have a block beneath them.
@@ -173,7 +170,7 @@ std::vector<Defect> make_valid(StackCase& stack, bool& usable) {
     }
     for (std::size_t round = 0; round < 200 && !stack.rocks.empty(); ++round) {
         try {
-            columns_of(stack, 1);
+            built(stack, 1, CellKind::kColumns);
             usable = true;
             return {};
         } catch (const InputError& refusal) {
@@ -192,9 +189,9 @@ std::vector<Defect> defects_of(const StackCase& stack, const JudgeOptions& optio
         defects.insert(defects.end(), more.begin(), more.end());
     };
     try {
-        const CellComplex columns = columns_of(stack, 1);
+        const CellComplex columns = built(stack, 1, CellKind::kColumns);
         add(named(complex_defects(columns, Cells::kColumns), "columns"));
-        const CellComplex blocks = blocks_of(columns);
+        const CellComplex blocks = built(stack, 1, CellKind::kBlocks);
         add(named(complex_defects(blocks, Cells::kBlocks), "blocks"));
         if (defects.empty()) {
             add(named(surface_defects(columns, stack), "columns"));
@@ -205,12 +202,15 @@ std::vector<Defect> defects_of(const StackCase& stack, const JudgeOptions& optio
         }
         if (triangle_count(stack) <= options.most_triangles) {
             if (const auto exact = exact_volumes(stack, options.most_polygons))
-                compare_volumes(stack, columns, *exact, defects);
+                for (const CellComplex* complex : {&columns, &blocks})
+                    compare_volumes(stack, *complex, *exact, defects);
         }
         for (const int threads : options.threads) {
-            if (digest(columns_of(stack, threads)) != digest(columns))
+            if (digest(built(stack, threads, CellKind::kColumns)) != digest(columns) ||
+                digest(built(stack, threads, CellKind::kBlocks)) != digest(blocks)) {
                 defects.push_back(
                     {"threads", std::to_string(threads) + " threads give other bytes"});
+            }
         }
     } catch (const InputError& refusal) {
         defects.push_back({"refused", refusal.what()});

@@ -35,9 +35,11 @@ void print_stack(const std::string& name, fuzz::StackCase stack) {
         print(name + ", not built", 0);
         return;
     }
-    const auto columns = strata::build_rock_masses(fuzz::views_of(stack), threads, nullptr);
-    print(name + ", columns", fuzz::digest(columns));
-    print(name + ", blocks", fuzz::digest(strata::merge_columns(columns)));
+    const auto built = [&](strata::CellKind cells) {
+        return strata::build_rock_masses(fuzz::views_of(stack), threads, nullptr, cells);
+    };
+    print(name + ", columns", fuzz::digest(built(strata::CellKind::kColumns)));
+    print(name + ", blocks", fuzz::digest(built(strata::CellKind::kBlocks)));
 }
 
 void print_stacks() {
