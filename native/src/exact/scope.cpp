@@ -231,15 +231,30 @@ PointId Scope::crossing(LineId a, LineId b) {
 }
 
 void Scope::hand_over(PlanGeometry& geometry) {
-    line_ids_.clear();
-    point_ids_.clear();
-    for (const Line& l : lines_)
-        line_ids_.push_back(geometry.add_line(l));
-    for (Point p : points_) {
+    receiver_ = &geometry;
+    line_ids_.assign(lines_.size(), -1);
+    point_ids_.assign(points_.size(), -1);
+}
+
+LineId Scope::shared_line(LineId id) {
+    if (id < kLocal) return id;
+    const auto local = static_cast<std::size_t>(id - kLocal);
+    LineId& shared = line_ids_[local];
+    if (shared < 0) shared = receiver_->add_line(lines_[local]);
+    return shared;
+}
+
+PointId Scope::shared_point(PointId id) {
+    if (id < kLocal) return id;
+    const auto local = static_cast<std::size_t>(id - kLocal);
+    PointId& shared = point_ids_[local];
+    if (shared < 0) {
+        Point p = points_[local];
         p.first = shared_line(p.first);
         p.second = shared_line(p.second);
-        point_ids_.push_back(geometry.add_point(p));
+        shared = receiver_->add_point(p);
     }
+    return shared;
 }
 
 }  // namespace realmodel::exact

@@ -18,15 +18,6 @@ namespace {
 /// So many triangles of a surface in a tile, on average.
 constexpr std::size_t kTrianglesInTile = 2;
 
-/// Whether two triangles meet along edge i of the first at the same heights.
-bool meet(const PlanGeometry& geometry, PlaneId plane, std::size_t i, PlaneId other) {
-    const auto& corner = geometry.plane(plane).corner;
-    for (const SpaceId s : {corner[i], corner[(i + 1) % 3]}) {
-        if (geometry.corner_above(other, geometry.space(s).plan) != s) return false;
-    }
-    return true;
-}
-
 PlanBox box_of_edge(const PlanGeometry& geometry, VertexId from, VertexId to) {
     const auto &p = geometry.point(from), &q = geometry.point(to);
     return {std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x), std::max(p.y, q.y)};
@@ -51,8 +42,8 @@ BlockLayer make_block_layer(PlanGeometry& geometry, const std::vector<UsedTriang
         poll(progress, t);
         for (std::size_t i = 0; i < 3; ++i) {
             std::int32_t& n = layer.neighbour[t][i];
-            if (n >= 0 && !meet(geometry, layer.first_plane + static_cast<PlaneId>(t), i,
-                                layer.first_plane + n))
+            if (n >= 0 && !meet_in_height(geometry, layer.first_plane + static_cast<PlaneId>(t), i,
+                                          layer.first_plane + n))
                 n = -1;
         }
     }

@@ -90,6 +90,7 @@ void Layer::index(const PlanGeometry& geometry, const Progress* progress, std::s
     std::vector<std::uint8_t> is_surface(plane.size());
     std::transform(plane.begin(), plane.end(), is_surface.begin(),
                    [](PlaneId p) { return static_cast<std::uint8_t>(p == kVoid ? 0 : 1); });
+    runs_on.assign(plane.size(), 0);
     grid = PlanGrid(scope, polygons, is_surface, cells, progress);
 }
 
@@ -107,6 +108,14 @@ std::optional<FrameTriangles> cover_frame(const PlanGeometry& geometry,
     }
 }
 
+bool meet_in_height(const PlanGeometry& geometry, PlaneId plane, std::size_t i, PlaneId other) {
+    const auto& corner = geometry.plane(plane).corner;
+    for (const exact::SpaceId s : {corner[i], corner[(i + 1) % 3]}) {
+        if (geometry.corner_above(other, geometry.space(s).plan) != s) return false;
+    }
+    return true;
+}
+
 PlanLinks link_triangles(const PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
                          const Progress* progress) {
     return link_triangles(
@@ -121,14 +130,24 @@ Layer make_layer(PlanGeometry& geometry, const std::vector<UsedTriangle>& triang
         add_triangle(geometry, layer.polygons, plan_of(geometry, triangles[t]));
         layer.plane.push_back(geometry.add_plane(triangles[t].corner));
     }
-    const auto filling =
-        cover_frame(geometry, link_triangles(geometry, triangles, progress).border, frame);
+    const PlanLinks links = link_triangles(geometry, triangles, progress);
+    const auto filling = cover_frame(geometry, links.border, frame);
     if (!filling) {
         layer.index(geometry, progress);
         refuse_overlap(geometry, layer, triangles, index, threads, progress);
     }
     add_empty(geometry, layer, *filling, kVoid);
     layer.index(geometry, progress);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        poll(progress, t);
+        bool runs_on = true;
+        for (std::size_t i = 0; i < 3 && runs_on; ++i) {
+            const std::int32_t n = links.neighbour[t][i];
+            runs_on = n >= 0 && meet_in_height(geometry, layer.plane[t], i,
+                                               layer.plane[static_cast<std::size_t>(n)]);
+        }
+        layer.runs_on[t] = runs_on ? 1 : 0;
+    }
     return layer;
 }
 

@@ -25,9 +25,12 @@ inline constexpr PlaneId kOutside = -3;
 struct Layer {
     PolygonPool polygons;
     std::vector<PlaneId> plane;  ///< of each polygon, kVoid where there is no surface
+    /// Of each polygon: 1 where the surface is known to go on at the same heights across all of its
+    /// edges, with one polygon beyond each.
+    std::vector<std::uint8_t> runs_on;
     PlanGrid grid;
 
-    /// Makes the grid of the polygons as they are now.
+    /// Makes the grid of the polygons as they are now; nothing more is known of how they run on.
     void index(const exact::PlanGeometry& geometry, const Progress* progress,
                std::size_t cells = 0);
 };
@@ -43,6 +46,10 @@ struct UsedTriangle {
 std::vector<UsedTriangle> enter_surface(exact::PlanGeometry& geometry, const SurfaceView& surface,
                                         int index, const PlanSnapping& snapping,
                                         std::vector<Warning>& warnings, const Progress* progress);
+
+/// Whether two triangles meet along edge i of the first at the same heights.
+bool meet_in_height(const exact::PlanGeometry& geometry, PlaneId plane, std::size_t i,
+                    PlaneId other);
 
 PlanLinks link_triangles(const exact::PlanGeometry& geometry,
                          const std::vector<UsedTriangle>& triangles, const Progress* progress);

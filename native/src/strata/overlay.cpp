@@ -41,6 +41,7 @@ public:
     FacetOverlay(const Envelope& envelope, const Layer& layer, std::int32_t number,
                  std::vector<std::uint8_t>& whole, ChunkResult& result)
         : envelope_(envelope),
+          layer_(layer),
           number_(number),
           whole_(whole),
           result_(result),
@@ -71,12 +72,27 @@ public:
         } else if (plane == kSky) {
             split_sky(facet, pieces);
         } else {
+            const bool all_below = below == pieces.list.size();
+            if (all_below && is_one_cell(pieces)) {
+                split(facet, pieces, 1, true);
+                return;
+            }
             const std::int32_t cells = below == 0 ? 0 : grouping_.group(outline, pieces, group_);
-            split(facet, pieces, cells, below == pieces.list.size() && cells == 1);
+            split(facet, pieces, cells, all_below && cells == 1);
         }
     }
 
 private:
+    /// Whether pieces below make one cell without looking at their edges: nowhere as high as the
+    /// facet, of triangles that go on in others all around.
+    bool is_one_cell(const Pieces& pieces) const {
+        return std::all_of(pieces.list.begin(), pieces.list.end(),
+                           [&](const Piece& piece) {
+                               return layer_.runs_on[static_cast<std::size_t>(piece.polygon)] != 0;
+                           }) &&
+               std::find(pieces.touches.begin(), pieces.touches.end(), 1) == pieces.touches.end();
+    }
+
     // Several threads may say so of one polygon at once; they all write the same.
     void leave_in_parts(std::int32_t polygon) {
         std::atomic_ref<std::uint8_t>(whole_[static_cast<std::size_t>(polygon)])
@@ -153,6 +169,7 @@ private:
     }
 
     const Envelope& envelope_;
+    const Layer& layer_;
     std::int32_t number_;
     std::vector<std::uint8_t>& whole_;
     ChunkResult& result_;
@@ -162,7 +179,7 @@ private:
     std::vector<std::int32_t> group_;
 };
 
-Polygon shared_polygon(const Scope& scope, PolygonView polygon) {
+Polygon shared_polygon(Scope& scope, PolygonView polygon) {
     Polygon result(polygon.begin(), polygon.end());
     for (Corner& corner : result) {
         corner = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};

@@ -33,7 +33,7 @@ struct FoundFacets {
         polygon;  ///< of the surface that was laid over, -1 for the older layer
 };
 
-void append(const FoundFacets& found, std::size_t i, Layer& layer) {
+void append(FoundFacets& found, std::size_t i, Layer& layer) {
     Polygon outline(found.outlines[i].begin(), found.outlines[i].end());
     for (Corner& corner : outline) {
         corner = {found.scope.shared_point(corner.point), found.scope.shared_directed(corner.line)};

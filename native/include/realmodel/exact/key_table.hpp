@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -29,11 +30,18 @@ public:
                 keys_.push_back(key);
                 return {slots_[slot], true};
             }
-            if (keys_[static_cast<std::size_t>(slots_[slot])] == key) return {slots_[slot], false};
+            if (same(keys_[static_cast<std::size_t>(slots_[slot])], key))
+                return {slots_[slot], false};
         }
     }
 
 private:
+    // two words rather than a call that compares bytes
+    static bool same(const Key& a, const Key& b) {
+        using Words = std::array<std::uint64_t, 2>;
+        const auto p = std::bit_cast<Words>(a), q = std::bit_cast<Words>(b);
+        return p[0] == q[0] && p[1] == q[1];
+    }
     static std::size_t hash(const Key& key) {
         const auto word = [](std::int32_t a, std::int32_t b) {
             return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)) << 32) |

@@ -249,18 +249,15 @@ public:
     /// How many decisions of this scope floating point left to exact arithmetic.
     std::uint64_t exact_decisions() const { return exact_; }
 
-    /// Hands all local lines and points over to the geometry; afterwards `line_ids()[i]` and
-    /// `point_ids()[i]` are the shared ids of the local i-th.
+    /// Begins to hand local lines and points over to the geometry, where they are asked for: what
+    /// nobody asks for stays behind. Nothing new may be found afterwards.
     void hand_over(PlanGeometry& geometry);
-    LineId shared_line(LineId id) const {
-        return id < kLocal ? id : line_ids_[static_cast<std::size_t>(id - kLocal)];
-    }
-    DirectedLine shared_directed(DirectedLine id) const {
+    /// The shared id of a line or point, which may be local.
+    LineId shared_line(LineId id);
+    DirectedLine shared_directed(DirectedLine id) {
         return directed(shared_line(line_of(id)), is_reversed(id));
     }
-    PointId shared_point(PointId id) const {
-        return id < kLocal ? id : point_ids_[static_cast<std::size_t>(id - kLocal)];
-    }
+    PointId shared_point(PointId id);
 
 private:
     int filtered_side(const LineFilter& line, const Point& point) const;
@@ -275,7 +272,8 @@ private:
     std::vector<LineFilter> filters_;
     std::vector<Point> points_;
     KeyTable line_table_, point_table_;
-    std::vector<LineId> line_ids_;
+    PlanGeometry* receiver_ = nullptr;
+    std::vector<LineId> line_ids_;  ///< -1 for what was not handed over
     std::vector<PointId> point_ids_;
     std::uint64_t decisions_ = 0, exact_ = 0;
 };
