@@ -179,12 +179,10 @@ private:
     std::vector<std::int32_t> group_;
 };
 
-Polygon shared_polygon(Scope& scope, PolygonView polygon) {
-    Polygon result(polygon.begin(), polygon.end());
-    for (Corner& corner : result) {
+/// Gives a chunk's polygons shared lines and points.
+void share(Scope& scope, PolygonPool& pool) {
+    for (Corner& corner : pool.corners)
         corner = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};
-    }
-    return result;
 }
 
 /// The lowered pieces of all chunks, under shared ids.
@@ -194,41 +192,127 @@ struct LoweredPieces {
     std::vector<std::int32_t> cell_above;
 };
 
-void append(PlanGeometry& geometry, ChunkResult& chunk, Construction& construction, Envelope& next,
-            LoweredPieces& lowered) {
-    chunk.scope.hand_over(geometry);
-    const auto cell_count = static_cast<std::int64_t>(construction.cell_block.size());
-    if (cell_count + static_cast<std::int64_t>(chunk.cell_block.size()) > INT32_MAX) {
-        throw InputError("too_large",
-                         "the model has more than 2147 million cells; use coarser surfaces");
+/// Polygons and corners counted up to a chunk.
+struct PoolStart {
+    std::size_t polygon = 0, corner = 0;
+    void pass(const PolygonPool& pool) {
+        polygon += pool.size();
+        corner += pool.corners.size();
     }
-    const auto first_cell = static_cast<std::int32_t>(cell_count);
-    construction.cell_block.insert(construction.cell_block.end(), chunk.cell_block.begin(),
-                                   chunk.cell_block.end());
-    const auto shared_cell = [&](std::int32_t cell) {
-        return cell == kOutsideCell ? cell : cell + first_cell;
-    };
-    for (std::size_t f = 0; f < chunk.faces.size(); ++f) {
-        construction.faces.add(shared_polygon(chunk.scope, chunk.faces.polygons[f]),
-                               chunk.faces.plane[f], chunk.faces.layer[f], chunk.faces.above[f],
-                               shared_cell(chunk.faces.below[f]));
+    void make_room(PolygonPool& pool) const {
+        pool.offsets.resize(polygon + 1);
+        pool.corners.resize(corner);
     }
-    for (std::size_t i = 0; i < chunk.lowered.size(); ++i) {
-        lowered.outlines.add(shared_polygon(chunk.scope, chunk.lowered_outlines[i]));
-        lowered.polygon.push_back(chunk.lowered[i].polygon);
-        lowered.cell_above.push_back(shared_cell(chunk.lowered[i].cell_above));
+};
+
+/// Where the elements of a chunk go.
+struct ChunkStart {
+    std::int64_t cell = 0;
+    PoolStart face, lowered, facet, facet_face;
+
+    void pass(const ChunkResult& chunk) {
+        cell += static_cast<std::int64_t>(chunk.cell_block.size());
+        face.pass(chunk.faces.polygons);
+        lowered.pass(chunk.lowered_outlines);
+        facet.pass(chunk.kept.outlines);
+        facet_face.pass(chunk.kept.face_polygons);
     }
-    const Envelope& kept = chunk.kept;
-    for (std::size_t f = 0; f < kept.size(); ++f) {
-        next.add_facet(shared_polygon(chunk.scope, kept.outlines[f]), kept.plane[f], kept.layer[f],
-                       kept.pending[f]);
-        for (auto g = kept.face_offsets[f]; g < kept.face_offsets[f + 1]; ++g) {
-            const auto face = static_cast<std::size_t>(g);
-            next.add_face(shared_polygon(chunk.scope, kept.face_polygons[face]),
-                          kept.face_above[face]);
+};
+
+template <class Element, class From>
+void put(std::vector<Element>& to, std::size_t at, const From& from) {
+    std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+void put(PolygonPool& to, const PoolStart& at, const PolygonPool& from) {
+    put(to.corners, at.corner, from.corners);
+    for (std::size_t i = 1; i < from.offsets.size(); ++i)
+        to.offsets[at.polygon + i] = static_cast<std::int64_t>(at.corner) + from.offsets[i];
+}
+
+/// Puts what the chunks became behind what is there already, in order of chunks.
+class ChunkJoining {
+public:
+    ChunkJoining(PlanGeometry& geometry, std::vector<std::unique_ptr<ChunkResult>>& chunks,
+                 Construction& construction, const Progress* progress)
+        : chunks_(chunks), construction_(construction) {
+        ChunkStart at;
+        at.cell = static_cast<std::int64_t>(construction.cell_block.size());
+        at.face.pass(construction.faces.polygons);
+        for (auto& chunk : chunks) {
+            if (progress != nullptr) progress->check();
+            chunk->scope.hand_over(geometry);
+            for (PolygonPool* pool : {&chunk->faces.polygons, &chunk->lowered_outlines,
+                                      &chunk->kept.outlines, &chunk->kept.face_polygons})
+                share(chunk->scope, *pool);
+            start_.push_back(at);
+            at.pass(*chunk);
+        }
+        end_ = at;
+        if (at.cell > INT32_MAX) {
+            throw InputError("too_large",
+                             "the model has more than 2147 million cells; use coarser surfaces");
         }
     }
-}
+
+    void join(Envelope& next, LoweredPieces& lowered, int threads, const Progress* progress) {
+        FaceList& faces = construction_.faces;
+        construction_.cell_block.resize(static_cast<std::size_t>(end_.cell));
+        end_.face.make_room(faces.polygons);
+        for (auto* list : {&faces.plane, &faces.layer, &faces.above, &faces.below})
+            list->resize(end_.face.polygon);
+        end_.lowered.make_room(lowered.outlines);
+        lowered.polygon.resize(end_.lowered.polygon);
+        lowered.cell_above.resize(end_.lowered.polygon);
+        end_.facet.make_room(next.outlines);
+        for (auto* list : {&next.plane, &next.layer, &next.pending})
+            list->resize(end_.facet.polygon);
+        next.face_offsets.resize(end_.facet.polygon + 1);
+        end_.facet_face.make_room(next.face_polygons);
+        next.face_above.resize(end_.facet_face.polygon);
+        parallel_chunks(chunks_.size(), threads, progress, [&](std::size_t c) {
+            put_chunk(*chunks_[c], start_[c], next, lowered);
+            chunks_[c].reset();
+        });
+    }
+
+private:
+    void put_chunk(const ChunkResult& chunk, const ChunkStart& at, Envelope& next,
+                   LoweredPieces& lowered) {
+        const auto shared_cell = [&](std::int32_t cell) {
+            return cell == kOutsideCell ? cell : cell + static_cast<std::int32_t>(at.cell);
+        };
+        FaceList& faces = construction_.faces;
+        put(construction_.cell_block, static_cast<std::size_t>(at.cell), chunk.cell_block);
+        put(faces.polygons, at.face, chunk.faces.polygons);
+        put(faces.plane, at.face.polygon, chunk.faces.plane);
+        put(faces.layer, at.face.polygon, chunk.faces.layer);
+        put(faces.above, at.face.polygon, chunk.faces.above);
+        std::transform(chunk.faces.below.begin(), chunk.faces.below.end(),
+                       faces.below.begin() + static_cast<std::ptrdiff_t>(at.face.polygon),
+                       shared_cell);
+        put(lowered.outlines, at.lowered, chunk.lowered_outlines);
+        for (std::size_t i = 0; i < chunk.lowered.size(); ++i) {
+            lowered.polygon[at.lowered.polygon + i] = chunk.lowered[i].polygon;
+            lowered.cell_above[at.lowered.polygon + i] = shared_cell(chunk.lowered[i].cell_above);
+        }
+        put(next.outlines, at.facet, chunk.kept.outlines);
+        put(next.plane, at.facet.polygon, chunk.kept.plane);
+        put(next.layer, at.facet.polygon, chunk.kept.layer);
+        put(next.pending, at.facet.polygon, chunk.kept.pending);
+        for (std::size_t f = 1; f < chunk.kept.face_offsets.size(); ++f) {
+            next.face_offsets[at.facet.polygon + f] =
+                static_cast<std::int64_t>(at.facet_face.polygon) + chunk.kept.face_offsets[f];
+        }
+        put(next.face_polygons, at.facet_face, chunk.kept.face_polygons);
+        put(next.face_above, at.facet_face.polygon, chunk.kept.face_above);
+    }
+
+    std::vector<std::unique_ptr<ChunkResult>>& chunks_;
+    Construction& construction_;
+    std::vector<ChunkStart> start_;
+    ChunkStart end_;
+};
 
 /// The surface's own facets: a polygon that lies below the envelope all over becomes one facet
 /// again, so that the overlay does not compound; of others each piece is a facet.
@@ -299,11 +383,7 @@ Envelope overlay(PlanGeometry& geometry, const Envelope& envelope, const Layer& 
     });
     Envelope next;
     LoweredPieces lowered;
-    for (auto& chunk : results) {
-        if (progress != nullptr) progress->check();
-        append(geometry, *chunk, construction, next, lowered);
-        chunk.reset();
-    }
+    ChunkJoining(geometry, results, construction, progress).join(next, lowered, threads, progress);
     add_surface_facets(layer, whole, lowered, number, next, progress);
     return next;
 }
