@@ -122,7 +122,7 @@ private:
                 std::fill(may_bend.begin() + loops_.place_offsets[place],
                           may_bend.begin() + loops_.place_offsets[place + 1], std::uint8_t{1});
             }
-            walls_ = join_walls(contacts.walls, may_bend, is_needed_);
+            walls_ = join_walls(contacts.walls, loops_.positions, may_bend, is_needed_);
             make_distinct(geometry_, faces, places, loops_, threads_, progress_);
             return;
         }

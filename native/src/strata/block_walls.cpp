@@ -2,6 +2,7 @@
 #include "block_walls.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <tuple>
@@ -214,7 +215,17 @@ struct OpenWall {
     std::vector<std::int32_t> lower, upper;  ///< vertices along the track
 };
 
-std::vector<OpenWall> joined(const std::vector<WallStretch>& stretches) {
+/// Whether walls beside each other at a vertical edge make one face: where the edge is much longer
+/// than what rounding moves places by, for rounded places are not quite on one line.
+bool is_high(const std::vector<std::array<double, 3>>& positions, std::int32_t lower,
+             std::int32_t upper) {
+    const auto& p = positions[static_cast<std::size_t>(lower)];
+    const auto& q = positions[static_cast<std::size_t>(upper)];
+    return q[2] - p[2] > 0x1p-26 * std::max(std::abs(p[0]), std::abs(p[1]));
+}
+
+std::vector<OpenWall> joined(const std::vector<WallStretch>& stretches,
+                             const std::vector<std::array<double, 3>>& positions) {
     std::vector<OpenWall> walls;
     std::vector<std::size_t> open, growing;  // of the interval before, of this one
     for (std::size_t i = 0; i < stretches.size();) {
@@ -231,7 +242,7 @@ std::vector<OpenWall> joined(const std::vector<WallStretch>& stretches) {
             const auto before = std::find_if(open.begin(), open.end(), [&](std::size_t w) {
                 return walls[w].left == s.left && walls[w].right == s.right &&
                        walls[w].lower.back() == s.lower[0] && walls[w].upper.back() == s.upper[0] &&
-                       s.lower[0] != s.upper[0];
+                       is_high(positions, s.lower[0], s.upper[0]);
             });
             if (before == open.end()) {
                 growing.push_back(walls.size());
@@ -252,8 +263,9 @@ std::vector<OpenWall> joined(const std::vector<WallStretch>& stretches) {
 }  // namespace
 
 Walls join_walls(const std::vector<WallStretch>& stretches,
+                 const std::vector<std::array<double, 3>>& positions,
                  const std::vector<std::uint8_t>& may_bend, std::vector<std::uint8_t>& is_needed) {
-    const std::vector<OpenWall> open = joined(stretches);
+    const std::vector<OpenWall> open = joined(stretches, positions);
     for (const WallStretch& s : stretches) {
         for (const std::int32_t v : {s.lower[0], s.lower[1], s.upper[0], s.upper[1]})
             is_needed[static_cast<std::size_t>(v)] |= may_bend[static_cast<std::size_t>(v)];
