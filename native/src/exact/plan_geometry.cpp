@@ -29,6 +29,13 @@ void check_room(std::size_t count, const char* what) {
 
 }  // namespace
 
+void PlanGeometry::expect_vertices(std::size_t count) {
+    points_.reserve(count);
+    space_.reserve(count);
+    vertex_table_.reserve(count);
+    space_table_.reserve(count);
+}
+
 VertexId PlanGeometry::add_vertex(double x, double y) {
     const auto hx = halves(x), hy = halves(y);
     const auto found = vertex_table_.insert({hx[0], hx[1], hy[0], hy[1]});

@@ -257,7 +257,7 @@ private:
 }  // namespace
 
 JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping& snapping,
-                           const Progress* progress) {
+                           int threads, const Progress* progress) {
     std::vector<Mesh> meshes;
     for (const StackInput& rock : rocks) {
         for (const SurfaceView& s : rock.surfaces)
@@ -266,10 +266,11 @@ JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping
             meshes.push_back({rock.region->vertices, rock.region->triangles, 2, &snapping});
     }
     std::vector<PlanEdge> edges;
-    for (const Mesh& mesh : meshes) {
-        const auto border = border_of(mesh, progress);
+    std::vector<std::vector<PlanEdge>> borders(meshes.size());
+    parallel_chunks(meshes.size(), threads, progress,
+                    [&](std::size_t m) { borders[m] = border_of(meshes[m], progress); });
+    for (const auto& border : borders)
         edges.insert(edges.end(), border.begin(), border.end());
-    }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     if (edges.empty()) return {};

@@ -37,6 +37,6 @@ struct JoinedBorders {
 /// number, the others come after all. Passes over what the builder refuses later.
 /// @throws Cancelled
 JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping& snapping,
-                           const Progress* progress = nullptr);
+                           int threads = 1, const Progress* progress = nullptr);
 
 }  // namespace realmodel::strata

@@ -33,8 +33,9 @@ using PlanTriangle = std::array<exact::VertexId, 3>;
 PlanLinks link_triangles(std::size_t count, const std::function<PlanTriangle(std::size_t)>& corners,
                          const Progress* progress);
 
-/// Four plan vertices, counter-clockwise, around everything.
-using Frame = std::array<exact::VertexId, 4>;
+/// Plan vertices around everything: the four corners of a rectangle, counter-clockwise, then others
+/// on its sides.
+using Frame = std::vector<exact::VertexId>;
 
 /// A constrained Delaunay triangulation of the frame by a border.
 struct FrameTriangles {

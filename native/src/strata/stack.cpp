@@ -84,8 +84,18 @@ Frame enter_frame(PlanGeometry& geometry) {
     const auto down = [&](double v) { return (std::floor(v / step) - 1.0) * step; };
     const auto up = [&](double v) { return (std::ceil(v / step) + 1.0) * step; };
     const double x0 = down(low[0]), y0 = down(low[1]), x1 = up(high[0]), y1 = up(high[1]);
-    return {geometry.add_vertex(x0, y0), geometry.add_vertex(x1, y0), geometry.add_vertex(x1, y1),
-            geometry.add_vertex(x0, y1)};
+    Frame frame{geometry.add_vertex(x0, y0), geometry.add_vertex(x1, y0),
+                geometry.add_vertex(x1, y1), geometry.add_vertex(x0, y1)};
+    // What fills the frame around long borders would all run to its corners and be near everything
+    // there, were there not more vertices along its sides. Halves of halves are exact.
+    const double wanted = std::sqrt(static_cast<double>(geometry.point_count())) / 8;
+    const double parts = std::exp2(std::floor(std::log2(std::clamp(wanted, 1.0, 256.0))));
+    for (double i = 1; i < parts; ++i) {
+        const double x = x0 + (x1 - x0) * (i / parts), y = y0 + (y1 - y0) * (i / parts);
+        for (const auto& p : {std::array{x, y0}, {x1, y}, {x, y1}, {x0, y}})
+            frame.push_back(geometry.add_vertex(p[0], p[1]));
+    }
+    return frame;
 }
 
 /// A rock mass whose vertices are entered.
@@ -101,7 +111,7 @@ struct EnteredRock {
 /// What all rock masses share while they are built.
 struct Site {
     PlanGeometry geometry;
-    Frame frame{};
+    Frame frame;
     std::vector<std::int32_t> surface_of_plane;  ///< kBase for the flat bases
     Construction construction;
     int threads = 0;
@@ -330,6 +340,12 @@ CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping&
     site.progress = progress;
     std::vector<Warning> warnings;
     std::vector<EnteredRock> entered;
+    std::size_t vertices = 0;
+    for (const StackInput& rock : rocks) {
+        for (const SurfaceView& surface : rock.surfaces)
+            vertices += surface.vertices.size() / 3;
+    }
+    site.geometry.expect_vertices(vertices);
     std::int32_t surfaces = 0;
     for (const StackInput& rock : rocks) {
         entered.push_back(enter_rock(site.geometry, rock, surfaces, snapping, warnings, progress));
@@ -377,7 +393,7 @@ CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Pr
                               CellKind cells) {
     if (share_one_plan(rocks)) return build_snapped(rocks, {}, cells, threads, progress);
     const PlanSnapping snapping = find_snapping(rocks, threads, progress);
-    const JoinedBorders joined = join_borders(rocks, snapping, progress);
+    const JoinedBorders joined = join_borders(rocks, snapping, threads, progress);
     if (!snapping.empty() || joined.divided > 0) {
         try {
             CellComplex result = joined.divided > 0

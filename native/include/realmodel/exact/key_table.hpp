@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -35,6 +36,13 @@ public:
         }
     }
 
+    /// Makes room for so many keys at once.
+    void reserve(std::size_t count) {
+        keys_.reserve(count);
+        const std::size_t slots = std::bit_ceil(std::max<std::size_t>(64, count + count / 2 + 2));
+        if (slots > slots_.size()) resize(slots);
+    }
+
 private:
     // two words rather than a call that compares bytes
     static bool same(const Key& a, const Key& b) {
@@ -55,8 +63,9 @@ private:
         return static_cast<std::size_t>(h ^ (h >> 31));
     }
 
-    void grow() {
-        slots_.assign(slots_.empty() ? 64 : slots_.size() * 2, -1);
+    void grow() { resize(slots_.empty() ? 64 : slots_.size() * 2); }
+    void resize(std::size_t slots) {
+        slots_.assign(slots, -1);
         mask_ = slots_.size() - 1;
         for (std::size_t i = 0; i < keys_.size(); ++i) {
             std::size_t slot = hash(keys_[i]) & mask_;

@@ -127,6 +127,8 @@ public:
     PlanGeometry(const PlanGeometry&) = delete;
     PlanGeometry& operator=(const PlanGeometry&) = delete;
 
+    /// Makes room for so many vertices.
+    void expect_vertices(std::size_t count);
     /// The vertex at (x, y), made where it is new. All vertices come before the first crossing.
     VertexId add_vertex(double x, double y);
     /// The space vertex at a plan vertex and a height, made where it is new.
