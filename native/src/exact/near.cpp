@@ -11,6 +11,9 @@ namespace {
 
 using Extended = long double;
 
+// What is small is always inlined: to pass extended numbers through memory costs more than to
+// calculate with them.
+
 /// Bound on the relative error of one operation: 2^-64, and a little for what bounds lose to their
 /// own rounding. The exponents of extended numbers are so wide that nothing made of a few doubles
 /// leaves them; where a bound itself overflows nothing is known.
@@ -29,21 +32,22 @@ bool is_extended() {
 const bool kExtended = is_extended();
 
 /// The size of a number as far as bounds need it.
-double size(Extended value) {
+[[gnu::always_inline]] inline double size(Extended value) {
     return std::abs(static_cast<double>(value));
 }
 
-Near sum(const Near& a, const Near& b) {
+[[gnu::always_inline]] inline Near sum(const Near& a, const Near& b) {
     const Extended value = a.value + b.value;
     return {value, a.error + b.error + kUnit * size(value)};
 }
 
-Near operator-(const Near& a) {
+[[gnu::always_inline]] inline Near operator-(const Near& a) {
     return {-a.value, a.error};
 }
 
 /// s * t - u * v of numbers with errors.
-Near determinant(const Near& s, const Near& t, const Near& u, const Near& v) {
+[[gnu::always_inline]] inline Near determinant(const Near& s, const Near& t, const Near& u,
+                                               const Near& v) {
     const Extended st = s.value * t.value, uv = u.value * v.value;
     const double error = size(s.value) * t.error + (size(t.value) + t.error) * s.error +
                          size(u.value) * v.error + (size(v.value) + v.error) * u.error +
@@ -52,12 +56,12 @@ Near determinant(const Near& s, const Near& t, const Near& u, const Near& v) {
 }
 
 /// The same of differences of doubles, each of which errs by one unit: three for a product.
-Near determinant(Extended s, Extended t, Extended u, Extended v) {
+[[gnu::always_inline]] inline Near determinant(Extended s, Extended t, Extended u, Extended v) {
     const Extended st = s * t, uv = u * v;
     return {st - uv, st == 0 && uv == 0 ? 0 : 5 * kUnit * (size(st) + size(uv)) + kTiny};
 }
 
-Near quotient(const Near& numerator, const Near& denominator) {
+[[gnu::always_inline]] inline Near quotient(const Near& numerator, const Near& denominator) {
     const double least = size(denominator.value) * (1 - 0x1p-50) - denominator.error;
     if (!(least > 0)) return {0, HUGE_VAL};
     const Extended value = numerator.value / denominator.value;
@@ -80,7 +84,7 @@ std::optional<double> nearest(Extended value, double error) {
 struct NearNormal {
     Near a, b, c;
 };
-NearNormal near_normal(const PlanGeometry& g, PlaneId plane) {
+[[gnu::always_inline]] inline NearNormal near_normal(const PlanGeometry& g, PlaneId plane) {
     const auto& [corner, plan] = g.plane(plane);
     const SpaceVertex &s0 = g.space(corner[0]), &s1 = g.space(corner[1]), &s2 = g.space(corner[2]);
     const Point &p0 = g.point(plan[0]), &p1 = g.point(plan[1]), &p2 = g.point(plan[2]);
@@ -100,7 +104,7 @@ NearGradient near_gradient(const PlanGeometry& g, PlaneId plane) {
 }
 
 /// b - a of doubles.
-Near difference(double a, double b) {
+[[gnu::always_inline]] inline Near difference(double a, double b) {
     const Extended value = Extended(b) - a;
     return {value, kUnit * size(value)};
 }

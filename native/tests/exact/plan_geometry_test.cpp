@@ -100,6 +100,7 @@ void fill(Trial& trial, std::mt19937_64& random, const std::function<double()>& 
 }
 
 struct Tally {
+    std::uint64_t named = 0;  // pairs of planes known to be equally high
     std::uint64_t sides = 0, exact_sides = 0, zeros = 0;  // exact_sides: of answers that are not 0
 };
 
@@ -154,8 +155,12 @@ Tally compare(std::uint64_t seed, int rounds, const std::function<double(std::mt
                     EXPECT_EQ(scope.rounded_height(a, point),
                               nearest_double(z.get_num(), z.get_den(), 0));
                     for (const PlaneId b : trial.planes) {
-                        EXPECT_EQ(scope.compare_heights(a, b, point),
-                                  sgn(mpq_class(z - reference.height(b, at))));
+                        const int sign = sgn(mpq_class(z - reference.height(b, at)));
+                        EXPECT_EQ(scope.compare_heights(a, b, point), sign);
+                        if (scope.height_name(a, point) == scope.height_name(b, point)) {
+                            EXPECT_EQ(sign, 0);
+                            tally.named += a != b;
+                        }
                     }
                 }
                 EXPECT_EQ(scope.rounded(point)[0],
@@ -215,6 +220,7 @@ TEST(PlanGeometry, LatticesWhereMostAnswersAreTies) {
     const auto lattice = [](auto& r) { return std::floor(uniform(r, 0, 4)); };
     const Tally tally = compare(2, 20, lattice, lattice);
     EXPECT_GT(tally.zeros, 500u);
+    EXPECT_GT(tally.named, 100u);
 }
 
 TEST(PlanGeometry, OneUnitInTheLastPlace) {

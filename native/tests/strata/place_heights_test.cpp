@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/place_heights.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace realmodel::strata {
+namespace {
+
+using exact::PlanGeometry;
+using exact::SpaceId;
+using exact::VertexId;
+
+/// Triangles over a lattice of 4 x 4 vertices, whose heights come from a source.
+template <class Height>
+std::vector<PlaneId> random_planes(PlanGeometry& geometry, std::mt19937& random, int count,
+                                   const Height& height) {
+    std::vector<std::array<SpaceId, 3>> corners;
+    while (corners.size() < static_cast<std::size_t>(count)) {
+        std::array<std::array<int, 2>, 3> p;
+        for (auto& c : p)
+            c = {static_cast<int>(random() % 4), static_cast<int>(random() % 4)};
+        const int turn =
+            (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[1][1] - p[0][1]) * (p[2][0] - p[0][0]);
+        if (turn == 0) continue;
+        if (turn < 0) std::swap(p[1], p[2]);
+        std::array<SpaceId, 3> corner;
+        for (std::size_t i = 0; i < 3; ++i)
+            corner[i] = geometry.add_space_vertex(geometry.add_vertex(p[i][0], p[i][1]), height());
+        corners.push_back(corner);
+    }
+    geometry.freeze_vertices();
+    std::vector<PlaneId> planes;
+    for (const auto& corner : corners)
+        planes.push_back(geometry.add_plane(corner));
+    return planes;
+}
+
+/// Compares ranks and heights with what Scope says of each pair of planes.
+void check(const PlanGeometry& geometry, Scope& scope, PointId point,
+           const std::vector<PlaneId>& planes) {
+    PlaceHeights of_place(geometry);
+    std::vector<std::int32_t> ranks = planes;
+    of_place.find(point, ranks);
+    const auto& heights = of_place.heights();
+    EXPECT_TRUE(std::is_sorted(heights.begin(), heights.end()));
+    EXPECT_EQ(static_cast<std::size_t>(*std::max_element(ranks.begin(), ranks.end())) + 1,
+              heights.size());
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        EXPECT_EQ(heights[static_cast<std::size_t>(ranks[i])],
+                  scope.rounded_height(planes[i], point));
+        for (std::size_t j = 0; j < planes.size(); ++j) {
+            const int sign = ranks[i] < ranks[j] ? -1 : ranks[i] > ranks[j];
+            EXPECT_EQ(sign, scope.compare_heights(planes[i], planes[j], point));
+        }
+    }
+}
+
+class PlaceHeightsOf : public testing::TestWithParam<int> {};
+
+// Few planes are looked through, many are sorted; whole heights make ties, others hardly any.
+TEST_P(PlaceHeightsOf, AgreesWithEachPairOfPlanes) {
+    for (const bool whole : {true, false}) {
+        std::mt19937 random(7);
+        PlanGeometry geometry;
+        auto planes = random_planes(geometry, random, GetParam(), [&]() -> double {
+            return whole ? static_cast<double>(random() % 3) : std::ldexp(random(), -32);
+        });
+        planes.insert(planes.end(), planes.begin(), planes.begin() + GetParam() / 2);  // again
+        std::shuffle(planes.begin(), planes.end(), random);
+        std::vector<LineId> edges;
+        for (int i = 0; i < 8; ++i) {
+            const auto a = static_cast<VertexId>(random() % 4),
+                       b = static_cast<VertexId>(random() % 4);
+            if (a != b) edges.push_back(exact::line_of(geometry.add_edge(a, b)));
+        }
+        Scope scope(geometry);
+        for (VertexId v = 0; v < geometry.vertex_count(); ++v)
+            check(geometry, scope, v, planes);
+        // crossings belong to the geometry before others may ask for them
+        Scope maker(geometry);
+        std::vector<PointId> points;
+        for (const PlaneId a : {planes[0], planes[1]}) {
+            for (const PlaneId b : {planes[2], planes[3]}) {
+                if (a == b) continue;
+                const auto& p = geometry.plane_filter(a);
+                const auto& q = geometry.plane_filter(b);
+                for (const LineId edge : edges) {
+                    const auto& f = geometry.filter(edge);
+                    // clearly not parallel
+                    const double turn = f.a * (p.gy - q.gy) - f.b * (p.gx - q.gx);
+                    if (std::abs(turn) < 1e-9) continue;
+                    points.push_back(maker.crossing(edge, exact::line_of(maker.trace(a, b))));
+                }
+            }
+        }
+        maker.hand_over(geometry);
+        ASSERT_FALSE(points.empty());
+        for (const PointId point : points)
+            check(geometry, scope, maker.shared_point(point), planes);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Numbers, PlaceHeightsOf, testing::Values(4, 12, 60));
+
+}  // namespace
+}  // namespace realmodel::strata
