@@ -5,6 +5,7 @@
 
 #include "realmodel/exact/ball.hpp"
 #include "realmodel/exact/plan_geometry.hpp"
+#include "short_integer.hpp"
 
 namespace realmodel::exact {
 
@@ -32,7 +33,28 @@ struct IntegerArithmetic {
         return whole_number(g.space(s).z, g.height_exponent()) -
                whole_number(g.space(t).z, g.height_exponent());
     }
+    mpz_class plan(double value) const { return whole_number(value, g.plan_exponent()); }
+    mpz_class height(double value) const { return whole_number(value, g.height_exponent()); }
 };
+
+inline bool is_known(const mpz_class&) {
+    return true;
+}
+inline int sign_of(const mpz_class& number) {
+    return sgn(number);
+}
+inline double nearest_double(const ShortInteger& num, const ShortInteger& den, int exponent) {
+    return nearest_double(num.to_mpz(), den.to_mpz(), exponent);
+}
+
+/// The answer to a question of whole numbers.
+/// @param ask  ask(in, number) gives the answer in the arithmetic `in` and the kind of number, or
+///             nothing where the numbers it comes from are not known: they are short ones first
+template <class Ask>
+auto exactly(const PlanGeometry& geometry, const Ask& ask) {
+    if (const auto answer = ask(ShortArithmetic(geometry), ShortInteger())) return *answer;
+    return *ask(IntegerArithmetic{geometry}, mpz_class());
+}
 
 /// Input differences to twice the precision of doubles.
 struct BallArithmetic {

@@ -29,12 +29,21 @@ void Scope::locate(Point& p) {
         y = (h.y / h.w + Ball(o.y)).rounded();
         if (!x || !y) {
             ++exact_;
-            const IntegerArithmetic exact{shared_};
-            const auto e = cross(line_coefficients<mpz_class>(exact, shared_, l, origin),
-                                 line_coefficients<mpz_class>(exact, shared_, m, origin));
-            const int unit = shared_.plan_exponent();
-            x = nearest_double(e.x + whole_number(o.x, unit) * e.w, e.w, unit);
-            y = nearest_double(e.y + whole_number(o.y, unit) * e.w, e.w, unit);
+            const auto whole = exactly(
+                shared_,
+                [&](const auto& exact, auto number) -> std::optional<std::array<double, 2>> {
+                    using Number = decltype(number);
+                    const auto e = cross(line_coefficients<Number>(exact, shared_, l, origin),
+                                         line_coefficients<Number>(exact, shared_, m, origin));
+                    const Number to_x = e.x + exact.plan(o.x) * e.w;
+                    const Number to_y = e.y + exact.plan(o.y) * e.w;
+                    if (!is_known(to_x) || !is_known(to_y)) return std::nullopt;
+                    const int unit = shared_.plan_exponent();
+                    return std::array{nearest_double(to_x, e.w, unit),
+                                      nearest_double(to_y, e.w, unit)};
+                });
+            x = whole[0];
+            y = whole[1];
         }
     }
     p.x = *x;
@@ -65,12 +74,15 @@ double Scope::rounded_height(PlaneId plane_id, PointId id, const NearPoint& clos
         if (z) return *z;
     }
     ++exact_;
-    const IntegerArithmetic in{shared_};
-    const auto n = plane_normal<mpz_class>(in, shared_, plane_id);
-    const auto h = place<mpz_class>(in, *this, id, corner.plan);
-    const mpz_class w = n.c * h.w;
-    const int unit = shared_.height_exponent();
-    return nearest_double(whole_number(corner.z, unit) * w - n.a * h.x - n.b * h.y, w, unit);
+    return exactly(shared_, [&](const auto& in, auto number) -> std::optional<double> {
+        using Number = decltype(number);
+        const auto n = plane_normal<Number>(in, shared_, plane_id);
+        const auto h = place<Number>(in, *this, id, corner.plan);
+        const Number w = n.c * h.w;
+        const Number z = in.height(corner.z) * w - n.a * h.x - n.b * h.y;
+        if (!is_known(z)) return std::nullopt;
+        return nearest_double(z, w, shared_.height_exponent());
+    });
 }
 
 std::array<double, 3> Scope::line_key(LineId id) {
@@ -91,12 +103,19 @@ std::array<double, 3> Scope::line_key(LineId id) {
         }
     }
     ++exact_;
-    const auto e = line_coefficients<mpz_class>(IntegerArithmetic{shared_}, shared_, l, kOrigin);
-    const bool steep = mpz_cmpabs(e.a.get_mpz_t(), e.b.get_mpz_t()) > 0;
-    const mpz_class& divisor = steep ? e.a : e.b;
-    // a and b are lengths over lengths; c is a length in units of 2^plan_exponent
-    return {steep ? 1.0 : 0.0, nearest_double(steep ? e.b : e.a, divisor, 0),
-            nearest_double(e.c, divisor, shared_.plan_exponent())};
+    return exactly(
+        shared_, [&](const auto& in, auto number) -> std::optional<std::array<double, 3>> {
+            using Number = decltype(number);
+            const auto e = line_coefficients<Number>(in, shared_, l, kOrigin);
+            const Number longer =
+                (sign_of(e.a) < 0 ? Number(-e.a) : e.a) - (sign_of(e.b) < 0 ? Number(-e.b) : e.b);
+            if (!is_known(longer) || !is_known(e.c)) return std::nullopt;
+            const bool steep = sign_of(longer) > 0;
+            const Number& divisor = steep ? e.a : e.b;
+            // a and b are lengths over lengths; c is a length in units of 2^plan_exponent
+            return std::array{steep ? 1.0 : 0.0, nearest_double(steep ? e.b : e.a, divisor, 0),
+                              nearest_double(e.c, divisor, shared_.plan_exponent())};
+        });
 }
 
 }  // namespace realmodel::exact

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "arithmetic.hpp"
 #include "formulas.hpp"
@@ -48,15 +49,18 @@ bool Scope::vanishes(const LineFilter& edge, const Point& vertex) const {
 
 int Scope::exact_side(const Line& line, PointId point) {
     ++exact_;
-    const IntegerArithmetic in{shared_};
-    if (is_vertex(point)) {
-        return sgn(line_coefficients<mpz_class>(in, shared_, line, point).c);
-    }
-    const VertexId origin = anchor(shared_, line);
-    const auto l = line_coefficients<mpz_class>(in, shared_, line, origin);
-    const auto h = place<mpz_class>(in, *this, point, origin);
-    const mpz_class value = l.a * h.x + l.b * h.y + l.c * h.w;
-    return sgn(value) * sgn(h.w);
+    return exactly(shared_, [&](const auto& in, auto number) -> std::optional<int> {
+        using Number = decltype(number);
+        if (is_vertex(point)) {
+            const auto c = line_coefficients<Number>(in, shared_, line, point).c;
+            return is_known(c) ? std::optional(sign_of(c)) : std::nullopt;
+        }
+        const VertexId origin = anchor(shared_, line);
+        const auto l = line_coefficients<Number>(in, shared_, line, origin);
+        const auto h = place<Number>(in, *this, point, origin);
+        const Number value = l.a * h.x + l.b * h.y + l.c * h.w;
+        return is_known(value) ? std::optional(sign_of(value) * sign_of(h.w)) : std::nullopt;
+    });
 }
 
 int Scope::side(DirectedLine directed_line, PointId id) {
@@ -146,11 +150,16 @@ bool Scope::same_line(LineId a, LineId b) {
         return side(directed(b, false), l.first) == 0 && side(directed(b, false), l.second) == 0;
     }
     ++exact_;
-    const IntegerArithmetic in{shared_};
-    const VertexId origin = anchor(shared_, l);
-    const auto p = line_coefficients<mpz_class>(in, shared_, l, origin);
-    const auto q = line_coefficients<mpz_class>(in, shared_, m, origin);
-    return p.a * q.b == p.b * q.a && p.a * q.c == p.c * q.a && p.b * q.c == p.c * q.b;
+    return exactly(shared_, [&](const auto& in, auto number) -> std::optional<bool> {
+        using Number = decltype(number);
+        const VertexId origin = anchor(shared_, l);
+        const auto p = line_coefficients<Number>(in, shared_, l, origin);
+        const auto q = line_coefficients<Number>(in, shared_, m, origin);
+        const Number ab = p.a * q.b - p.b * q.a, ac = p.a * q.c - p.c * q.a,
+                     bc = p.b * q.c - p.c * q.b;
+        if (!is_known(ab) || !is_known(ac) || !is_known(bc)) return std::nullopt;
+        return sign_of(ab) == 0 && sign_of(ac) == 0 && sign_of(bc) == 0;
+    });
 }
 
 std::array<int, 2> Scope::direction_signs(LineId id) {
@@ -165,8 +174,11 @@ std::array<int, 2> Scope::direction_signs(LineId id) {
     const auto a = c.a.sign(), b = c.b.sign();
     if (a && b) return {*b, -*a};
     ++exact_;
-    const auto e = line_coefficients<mpz_class>(IntegerArithmetic{shared_}, shared_, l, origin);
-    return {sgn(e.b), -sgn(e.a)};
+    return exactly(shared_, [&](const auto& in, auto number) -> std::optional<std::array<int, 2>> {
+        const auto e = line_coefficients<decltype(number)>(in, shared_, l, origin);
+        if (!is_known(e.a) || !is_known(e.b)) return std::nullopt;
+        return std::array{sign_of(e.b), -sign_of(e.a)};
+    });
 }
 
 int Scope::compare(int axis, PointId a, PointId b) {
@@ -174,12 +186,16 @@ int Scope::compare(int axis, PointId a, PointId b) {
     if (rounded_one(a) != rounded_one(b)) return rounded_one(a) < rounded_one(b) ? 1 : -1;
     if (a == b || (is_vertex(a) && is_vertex(b))) return 0;
     ++exact_;
-    const VertexId origin = origin_of(*this, a);
-    const IntegerArithmetic in{shared_};
-    const auto p = place<mpz_class>(in, *this, a, origin);
-    const auto q = place<mpz_class>(in, *this, b, origin);
-    const mpz_class &from = axis == 0 ? p.x : p.y, &to = axis == 0 ? q.x : q.y;
-    return sgn(mpz_class(to * p.w - from * q.w)) * sgn(p.w) * sgn(q.w);
+    return exactly(shared_, [&](const auto& in, auto number) -> std::optional<int> {
+        using Number = decltype(number);
+        const VertexId origin = origin_of(*this, a);
+        const auto p = place<Number>(in, *this, a, origin);
+        const auto q = place<Number>(in, *this, b, origin);
+        const Number &from = axis == 0 ? p.x : p.y, &to = axis == 0 ? q.x : q.y;
+        const Number difference = to * p.w - from * q.w;
+        if (!is_known(difference)) return std::nullopt;
+        return sign_of(difference) * sign_of(p.w) * sign_of(q.w);
+    });
 }
 
 DirectedLine Scope::trace(PlaneId upper, PlaneId lower) {
