@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// outside_hull, tin, natural_neighbour, surface_heights.
+// outside_hull, tin, natural_neighbour, surface_heights, dsi.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
@@ -7,6 +7,7 @@
 
 #include "realmodel/base/progress.hpp"
 #include "realmodel/interpolation/convex_hull.hpp"
+#include "realmodel/interpolation/dsi.hpp"
 #include "realmodel/interpolation/mesh_locator.hpp"
 #include "realmodel/interpolation/triangulated.hpp"
 #include "rows.hpp"
@@ -55,6 +56,32 @@ Array<double> surface_heights(const Array<double>& vertices, const Array<std::in
     return to_array(std::move(z));
 }
 
+py::dict dsi(const Array<double>& points, const Array<double>& nodes,
+             const Array<std::int32_t>& triangles, const Array<double>& equal,
+             const Array<double>& least, const Array<double>& most, double weight, int threads,
+             Progress* control) {
+    const auto from = rows<3>(points, "points");
+    const auto to = rows<2>(nodes, "nodes");
+    const auto faces = rows<3>(triangles, "triangles");
+    const auto heights = [](const Array<double>& array) {
+        return std::span<const double>(array.data(), static_cast<std::size_t>(array.size()));
+    };
+    const interpolation::NodeConstraints constraints{heights(equal), heights(least), heights(most)};
+    interpolation::DsiHeights found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = interpolation::dsi(from, to, faces, constraints, {weight, threads}, control);
+    }
+    py::dict out;
+    out["z"] = to_array(std::move(found.z));
+    out["outside"] = found.outside;
+    out["missed"] = found.missed;
+    out["misfit"] = found.misfit;
+    out["iterations"] = found.iterations;
+    out["converged"] = found.converged;
+    return out;
+}
+
 }  // namespace
 
 void bind_surfaces(py::module_& module) {
@@ -78,6 +105,20 @@ Raises InputError: kind "no_points", "not_finite", "contradicting_points"; Cance
         R"(Heights of a triangulated surface, vertices (V, 3), triangles (T, 3), at nodes (N, 2).
 
 Returns z (N,), NaN where the surface has none. Raises InputError: kind "not_finite", "bad_index".)");
+    module.def(
+        "dsi", &dsi, arg("points"), arg("nodes"), arg("triangles"), arg("equal") = Array<double>(0),
+        arg("least") = Array<double>(0), arg("most") = Array<double>(0), arg("weight") = 0.0,
+        arg("threads") = 0, arg("control") = py::none(),
+        R"(Discrete smooth interpolation of points (P, 3) on a mesh: nodes (N, 2), triangles (T, 3).
+
+equal, least, most  (N,) heights that nodes have, are not below, are not above; NaN: none; empty: none
+weight              of a point's misfit against the roughness of one node; 0: points hold
+
+Returns a dict: z (N,); outside, the number of points in no triangle, which did not count; missed, the
+number of points that could not all be met, and misfit, the largest of theirs; iterations;
+converged, whether they ended because nothing was left to improve.
+Raises InputError: kind "no_points", "not_finite", "contradicting_points", "bad_index", "option";
+Cancelled.)");
 }
 
 }  // namespace realmodel::bindings

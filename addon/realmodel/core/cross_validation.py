@@ -10,12 +10,12 @@ import numpy as np
 from .errors import InputRefused, UsageError
 from .heights import left_out_heights
 from .heights.run import LEAVE_ONE_OUT, heights
-from .interpolation import checked_points, method_settings
+from .interpolation import checked_nodes, checked_points, checked_triangles, method_settings
 from .method_options import check_threads
-from .methods import DEFAULT_NEIGHBOURS
+from .methods import DEFAULT_NEIGHBOURS, METHODS
 from .mis_ties import without_mis_ties
 from .variogram import Variogram
-from .work import Cancel, Progress, Work, run
+from .work import Cancel, Progress, Work, native_module, run
 
 DEFAULT_FOLDS = 10
 
@@ -54,6 +54,7 @@ def cross_validate(
     threads: int = 0,
     folds: int = DEFAULT_FOLDS,
     *,
+    mesh=None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     **options,
@@ -63,7 +64,8 @@ def cross_validate(
     points: (P, 3), at least 2 places; points at one place count once. Kriging and inverse distance leave the
     points out one by one (with all points as neighbours by the identities of Dubrule 1983, Mathematical
     Geology 15, from one factor), with the variogram fitted to all of them. The other methods are run `folds`
-    times, each time without every folds-th point. options: as `interpolate` takes them.
+    times, each time without every folds-th point; a method that works on a mesh on `mesh`, (nodes (N, 2),
+    triangles (T, 3)). options: as `interpolate` takes them.
 
     Raises InputRefused, UsageError, Cancelled.
     """
@@ -72,15 +74,23 @@ def cross_validate(
     threads = check_threads(threads)
     if isinstance(folds, bool) or not hasattr(folds, "__index__") or int(folds) < 2:
         raise UsageError(f"folds must be a whole number from 2, not {folds!r}")
+    if (mesh is None) == METHODS[method].on_mesh:
+        needs = "needs mesh = (nodes, triangles)" if mesh is None else "works on no mesh"
+        raise UsageError(f"method '{method}' {needs}")
+    if mesh is not None:
+        nodes = checked_nodes(mesh[0])
+        mesh = nodes, checked_triangles(mesh[1], len(nodes))
 
     def task(work: Work) -> CrossValidation:
         with work.phase(0.0, 1.0, "cross-validating"):
-            return validate(work, points, method, settings, threads, int(folds))
+            return validate(work, points, method, settings, threads, int(folds), mesh)
 
     return run(task, progress, cancel)
 
 
-def validate(work: Work, points, method: str, settings: dict, threads: int, folds: int) -> CrossValidation:
+def validate(
+    work: Work, points, method: str, settings: dict, threads: int, folds: int, mesh=None
+) -> CrossValidation:
     """cross_validate within a work that is already running, from checked arrays and settings."""
     points = distinct_points(points)
     if len(points) < 2:
@@ -90,7 +100,7 @@ def validate(work: Work, points, method: str, settings: dict, threads: int, fold
         result = left_out_heights(work, points, method, settings, threads)
         z, variance, variogram = result.z, result.variance, result.variogram
     else:
-        z = _in_folds(work, points, method, settings, threads, min(folds, len(points)))
+        z = _in_folds(work, points, method, settings, threads, min(folds, len(points)), mesh)
     errors = z - points[:, 2]
     standardised = None
     if variance is not None:
@@ -108,12 +118,20 @@ def distinct_points(points: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(points[np.sort(first)])
 
 
-def _in_folds(work: Work, points, method: str, settings: dict, threads: int, folds: int) -> np.ndarray:
+def _in_folds(work: Work, points, method: str, settings: dict, threads: int, folds: int, mesh) -> np.ndarray:
     z = np.empty(len(points))
     for fold in range(folds):
         work.step(fold / folds)
         out = np.zeros(len(points), bool)
         out[fold::folds] = True
-        nodes = np.ascontiguousarray(points[out, :2])
-        z[out] = heights(work, np.ascontiguousarray(points[~out]), nodes, method, settings, threads).z
+        places, others = np.ascontiguousarray(points[out, :2]), np.ascontiguousarray(points[~out])
+        if mesh is None:
+            z[out] = heights(work, others, places, method, settings, threads).z
+        else:
+            nodes, triangles = mesh
+            shape = np.column_stack(
+                [nodes, heights(work, others, nodes, method, settings, threads, triangles).z]
+            )
+            surface_heights = native_module().surface_heights
+            z[out] = work.native(surface_heights, shape, triangles, places, threads=threads)
     return z

@@ -41,9 +41,7 @@ def interpolate(
         points = checked_points(points)
     else:
         points = np.empty((0, 3))
-    nodes = np.ascontiguousarray(_array(nodes, 2, "nodes"))
-    if not np.isfinite(nodes).all():
-        raise InputRefused(f"node {_first_bad(nodes)} is not finite", item="nodes")
+    nodes = checked_nodes(nodes)
     threads = check_threads(threads)
     triangles = checked_triangles(triangles, len(nodes))
 
@@ -85,6 +83,14 @@ def checked_points(points, item: str = "points") -> np.ndarray:
         bad = _first_bad(points)
         raise InputRefused(f"point {bad} is {place_text(points[bad])}, not finite", item=item)
     return points
+
+
+def checked_nodes(nodes) -> np.ndarray:
+    """(N, 2) float64 nodes, all finite. Raises InputRefused."""
+    nodes = np.ascontiguousarray(_array(nodes, 2, "nodes"))
+    if not np.isfinite(nodes).all():
+        raise InputRefused(f"node {_first_bad(nodes)} is not finite", item="nodes")
+    return nodes
 
 
 def _array(values, columns: int, item: str) -> np.ndarray:

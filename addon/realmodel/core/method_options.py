@@ -87,6 +87,10 @@ def dip(option: str, value) -> float | None:
     return checked
 
 
+def optional_surface(option: str, value):
+    return None if value is None else surface(option, value)
+
+
 def surface(option: str, value):
     """Another surface: a height, its name in a project, heights at the nodes (N,), or a triangulated surface
     (vertices (V, 3), triangles (T, 3))."""

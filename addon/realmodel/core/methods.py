@@ -30,10 +30,12 @@ class Option:
 
 @dataclass(frozen=True)
 class Method:
-    """options: by name. instead_of_points: the option that tells what points would, where there is one."""
+    """options: by name. instead_of_points: the option that tells what points would, where there is one.
+    on_mesh: whether it needs the triangles of the nodes."""
 
     options: Mapping[str, Option]
     instead_of_points: str | None = None
+    on_mesh: bool = False
 
     def needs_points(self, settings: Mapping) -> bool:
         """Whether there is nothing without points, with these settings."""
@@ -59,6 +61,16 @@ METHODS: dict[str, Method] = {
         }
     ),
     "idw": Method({**_NEIGHBOURHOOD, "power": Option(2.0, check.positive), **_EXTRAPOLATE}),
+    "dsi": Method(
+        {
+            "weight": Option(None, check.optional_positive),
+            "border": Option(None, check.optional_surface),
+            "above": Option(None, check.optional_surface),
+            "below": Option(None, check.optional_surface),
+            **_EXTRAPOLATE,
+        },
+        on_mesh=True,
+    ),
     "natural_neighbour": Method(_EXTRAPOLATE),
     "tin": Method(_EXTRAPOLATE),
     "grid": Method(_EXTRAPOLATE),
@@ -79,8 +91,8 @@ METHODS: dict[str, Method] = {
         instead_of_points="thickness",
     ),
 }
-LATER_METHODS = ("dsi", "auto")
-SURFACE_OPTIONS = ("to",)  # that may name another surface
+LATER_METHODS = ("auto",)
+SURFACE_OPTIONS = ("to", "border", "above", "below")  # that may name another surface
 
 ALL_OPTIONS = tuple(dict.fromkeys(option for method in METHODS.values() for option in method.options))
 

@@ -12,7 +12,7 @@ from ..errors import InputRefused
 from ..methods import METHODS, checked_options
 from ..mis_ties import without_mis_ties
 from ..work import Work, native_module
-from . import from_neighbours, from_triangulation, plain, regular_grid
+from . import from_neighbours, from_triangulation, on_mesh, plain, regular_grid
 from .extrapolation import outside_hull, replace_extrapolated
 from .interpolation import Interpolation, Result, Task
 
@@ -20,6 +20,7 @@ RUNS: dict[str, Callable[[Task], Result]] = {
     "kriging": from_neighbours.krige,
     "universal_kriging": from_neighbours.krige,
     "idw": from_neighbours.inverse_distance,
+    "dsi": on_mesh.dsi,
     "natural_neighbour": from_triangulation.natural_neighbour,
     "tin": from_triangulation.linear,
     "grid": regular_grid.bilinear,
