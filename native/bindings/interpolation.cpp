@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// krige, krige_left_out, fit_variogram, idw, idw_left_out.
+// krige, krige_left_out, fit_variogram, idw, idw_left_out, spline.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -12,6 +12,7 @@
 #include "realmodel/base/progress.hpp"
 #include "realmodel/interpolation/inverse_distance.hpp"
 #include "realmodel/interpolation/kriging.hpp"
+#include "realmodel/interpolation/thin_plate.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
 #include "rows.hpp"
 
@@ -106,6 +107,19 @@ Array<double> idw_left_out(const Array<double>& points, double power, int neighb
     return to_array(std::move(z));
 }
 
+Array<double> spline(const Array<double>& points, const Array<double>& nodes, double smoothing,
+                     int neighbours, int octants, double radius, int threads, Progress* control) {
+    const auto from = rows<3>(points, "points");
+    const auto to = rows<2>(nodes, "nodes");
+    std::vector<double> z;
+    {
+        const py::gil_scoped_release unlocked;
+        z = interpolation::thin_plate(from, to, {smoothing, neighbours, threads, octants, radius},
+                                      control);
+    }
+    return to_array(std::move(z));
+}
+
 py::dict fit_variogram(const Array<double>& points, double ratio, double azimuth,
                        const std::string& drift, Progress* control) {
     const auto from = rows<3>(points, "points");
@@ -179,6 +193,17 @@ Raises InputError as krige does; Cancelled.)");
                arg("neighbours") = 16, arg("octants") = 0, arg("radius") = 0.0, arg("threads") = 0,
                arg("control") = py::none(),
                R"(idw at each of the points, from all the others. Returns z (P,).)");
+    module.def("spline", &spline, arg("points"), arg("nodes"), arg("smoothing") = 0.0,
+               arg("neighbours") = 16, arg("octants") = 0, arg("radius") = 0.0, arg("threads") = 0,
+               arg("control") = py::none(),
+               R"(Thin plate splines through the nearest points of each node.
+
+points      (P, 3) float64: x, y, z
+nodes       (N, 2) float64: x, y
+smoothing   added to the diagonal where distances count in the points' mean spacing; 0: points hold
+neighbours, octants, radius  as krige
+
+Returns z (N,) float64. Raises InputError as krige does; Cancelled.)");
     module.def("fit_variogram", &fit_variogram, arg("points"), arg("anisotropy_ratio") = 1.0,
                arg("anisotropy_azimuth") = 0.0, arg("drift") = "constant",
                arg("control") = py::none(),

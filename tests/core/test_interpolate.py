@@ -79,7 +79,6 @@ def test_the_number_of_threads_changes_no_bit():
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ({"method": "auto"}, "later version"),
         ({"method": "magic"}, "unknown method"),
         ({"power": 2}, "'power' belongs to idw, not to kriging"),
         ({"method": "idw", "variogram": SETTINGS}, "'variogram' belongs to kriging"),

@@ -61,6 +61,13 @@ METHODS: dict[str, Method] = {
         }
     ),
     "idw": Method({**_NEIGHBOURHOOD, "power": Option(2.0, check.positive), **_EXTRAPOLATE}),
+    "spline": Method(
+        {
+            **_NEIGHBOURHOOD,
+            "smoothing": Option(0.0, check.not_negative),
+            **_EXTRAPOLATE,
+        }
+    ),
     "dsi": Method(
         {
             "weight": Option(None, check.optional_positive),
@@ -90,8 +97,8 @@ METHODS: dict[str, Method] = {
         },
         instead_of_points="thickness",
     ),
+    "auto": Method(_EXTRAPOLATE),
 }
-LATER_METHODS = ("auto",)
 SURFACE_OPTIONS = ("to", "border", "above", "below")  # that may name another surface
 
 ALL_OPTIONS = tuple(dict.fromkeys(option for method in METHODS.values() for option in method.options))
@@ -101,13 +108,9 @@ def check_method(method: str) -> None:
     """Refuses a method that this version does not have."""
     if method in METHODS:
         return
-    if method in LATER_METHODS:
-        what = f"method '{method}' comes with a later version"
-    else:
-        what = f"unknown method '{method}'"
     near = difflib.get_close_matches(str(method), METHODS, n=1)
     advice = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(METHODS)}"
-    raise OptionRefused(what, option="method", advice=advice)
+    raise OptionRefused(f"unknown method '{method}'", option="method", advice=advice)
 
 
 def checked_options(method: str, options: Mapping) -> dict:

@@ -56,6 +56,8 @@ public:
         return basis_.leftCols(kept_).transpose() * v;
     }
 
+    double orthonormal(Eigen::Index row, Eigen::Index term) const { return basis_(row, term); }
+
     /// Q a.
     Eigen::VectorXd expand(const Coefficients& a) const { return basis_.leftCols(kept_) * a; }
 

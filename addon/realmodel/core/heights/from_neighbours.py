@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Methods whose height at a node comes from the points near it: kriging, inverse distance."""
+"""Methods whose height at a node comes from the points near it: kriging, inverse distance, splines."""
 
 from __future__ import annotations
 
@@ -61,3 +61,8 @@ def inverse_distance(task: Task) -> Result:
     if task.left_out:
         return Result(task.run(native.idw_left_out, task.points, **arguments))
     return Result(task.run(native.idw, task.points, task.nodes, **arguments))
+
+
+def thin_plate(task: Task) -> Result:
+    arguments = {**_neighbourhood(task.settings), "smoothing": task.settings["smoothing"]}
+    return Result(task.run(native_module().spline, task.points, task.nodes, **arguments))

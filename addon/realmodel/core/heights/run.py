@@ -12,7 +12,7 @@ from ..errors import InputRefused
 from ..methods import METHODS, checked_options
 from ..mis_ties import without_mis_ties
 from ..work import Work, native_module
-from . import from_neighbours, from_triangulation, on_mesh, plain, regular_grid
+from . import automatic, from_neighbours, from_triangulation, on_mesh, plain, regular_grid
 from .extrapolation import outside_hull, replace_extrapolated
 from .interpolation import Interpolation, Result, Task
 
@@ -20,6 +20,7 @@ RUNS: dict[str, Callable[[Task], Result]] = {
     "kriging": from_neighbours.krige,
     "universal_kriging": from_neighbours.krige,
     "idw": from_neighbours.inverse_distance,
+    "spline": from_neighbours.thin_plate,
     "dsi": on_mesh.dsi,
     "natural_neighbour": from_triangulation.natural_neighbour,
     "tin": from_triangulation.linear,
@@ -32,9 +33,9 @@ RUNS: dict[str, Callable[[Task], Result]] = {
 LEAVE_ONE_OUT = ("kriging", "universal_kriging", "idw")
 
 
-def settings_of(method: str) -> dict:
-    """The settings of a method all of whose options are left at their defaults."""
-    return checked_options(method, {})
+def settings_of(method: str, options: dict | None = None) -> dict:
+    """The settings of a method, options that are not given at their defaults."""
+    return checked_options(method, options or {})
 
 
 def heights(
@@ -49,15 +50,21 @@ def heights(
         raise InputRefused("there are no points", item="points")
     points, mis_ties = without_mis_ties(points)
     task = Task(work, points, nodes, settings, threads, triangles, surfaces=surfaces or {})
+    reason = ""
     try:
-        result = RUNS[method](task)
+        if method == "auto":
+            method, reason, result = automatic.automatic(task)
+            settings = {**settings_of(method), "extrapolate": settings["extrapolate"]}
+            task = replace(task, settings=settings)
+        else:
+            result = RUNS[method](task)
         outside = result.outside if result.outside is not None else outside_hull(task)
         result = replace_extrapolated(task, result, outside)
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error
     warnings = [*([mis_ties] if mis_ties else []), *few_points(points, method), *result.warnings]
     share = float(outside.mean()) if len(outside) else 0.0
-    return Interpolation(result.z, result.variance, method, result.variogram, tuple(warnings), share)
+    return Interpolation(result.z, result.variance, method, result.variogram, tuple(warnings), share, reason)
 
 
 def few_points(points: np.ndarray, method: str) -> list[str]:
