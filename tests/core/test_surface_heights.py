@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, Project, Rock, Surface, build, estimate, load_project
+from realmodel.core import InputRefused, Project, Rock, Surface, build, estimate, interpolate, load_project
 from realmodel.core.exporters.report import model_report
 
 SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]]
@@ -160,3 +160,18 @@ def test_surfaces_without_points_can_be_estimated():
         for stage in (None, 2):
             told, model = estimate(project, cells, stage=stage), build(project, cells, stage=stage)
             assert told.cells == pytest.approx(len(model.cell_block), rel=0.1)
+
+
+def test_a_smooth_surface_that_keeps_off_another():
+    low = Surface("low", points=points(0, 0, 4, 4), method="plane")
+    wells = np.array([[3, 3, 4.0], [7, 3, 1.5], [5, 8, 4.0]])
+    high = Surface("high", points=wells, method="dsi", options={"above": "low", "border": 6})
+    model = build(rock(low, high))
+    vertices, triangles = model.surface(1)
+    assert model.interpolations[1].method == "dsi"
+    assert (vertices[:, 2] >= model.surface(0)[0][:, 2]).all()
+    on_border = (vertices[:, :2] == 0).any(axis=1) | (vertices[:, :2] == 10).any(axis=1)
+    assert set(vertices[on_border, 2]) == {6.0}
+    told = interpolate(None, wells[:, :2], "parallel", to=(vertices, triangles), thickness=0).z
+    assert told == pytest.approx(wells[:, 2], abs=1e-5)
+    assert estimate(rock(low, high)).cells == pytest.approx(len(model.cell_block), rel=0.5)
