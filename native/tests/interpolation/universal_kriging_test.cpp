@@ -157,7 +157,7 @@ TEST(LeftOut, AsKrigingWithoutThePoint) {
     points.push_back(points[5]);  // repeats one: the two leave together
     for (const Drift drift : {Drift::constant, Drift::linear, Drift::quadratic}) {
         for (const int neighbours : {0, 12}) {
-            const KrigingOptions options = with(drift, neighbours);
+            const KrigingOptions options = with(drift, neighbours, 1);
             const Kriged told = krige_left_out(points, spherical, options);
             ASSERT_EQ(told.z.size(), points.size());
             EXPECT_EQ(told.z[5], told.z.back());
