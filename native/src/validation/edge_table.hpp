@@ -22,8 +22,8 @@ public:
     /// Ready for up to `uses` calls of use(). several: an edge may be used more than once each way.
     void reset(std::size_t uses, bool several) {
         several_ = several;
-        int bits = 3;
-        while ((std::size_t{1} << bits) <= uses)
+        int bits = 3;  // sparse, since looking twice costs more than room
+        while ((std::size_t{1} << bits) <= 2 * uses)
             ++bits;
         shift_ = 64 - bits;
         mask_ = (std::size_t{1} << bits) - 1;

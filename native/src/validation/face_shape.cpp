@@ -163,6 +163,7 @@ double FaceShape::turn_allowance(const PlanPosition& u, const PlanPosition& v) c
 // Rounding keeps the order of coordinates on each axis. So a convex polygon still turns one way (up
 // to rounding), and rises and falls once along either axis.
 bool FaceShape::is_convex() const {
+    if (flat_.size() == 3) return true;
     return turns_one_way() && rises_and_falls_once(0) && rises_and_falls_once(1);
 }
 
@@ -182,6 +183,19 @@ bool FaceShape::turns_one_way() const {
 
 bool FaceShape::rises_and_falls_once(std::size_t axis) const {
     const std::size_t n = flat_.size();
+    int changes = 0, way = 0, first_way = 0;
+    double last = flat_[n - 1][axis];
+    for (const PlanPosition& p : flat_) {
+        const int now = (p[axis] > last) - (p[axis] < last);
+        last = p[axis];
+        if (now == 0) continue;
+        changes += way != 0 && now != way ? 1 : 0;
+        if (way == 0) first_way = now;
+        way = now;
+    }
+    changes += way != first_way ? 1 : 0;
+    if (changes <= 2) return true;
+    // corners that were moved apart may be out of order by a little
     std::size_t lowest = 0, highest = 0;
     for (std::size_t i = 1; i < n; ++i) {
         if (flat_[i][axis] < flat_[lowest][axis]) lowest = i;
@@ -202,6 +216,7 @@ bool FaceShape::rises_and_falls_once(std::size_t axis) const {
 }
 
 bool FaceShape::crosses_itself() const {
+    if (flat_.size() == 3) return false;
     if (rises_and_falls_once(0) && !chains_cross()) return false;
     const std::size_t n = flat_.size();
     const auto at = [&](std::size_t i) -> const PlanPosition& { return flat_[i < n ? i : i - n]; };
