@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The documents keep what they promise: their Python examples print what stands below them, their links lead
-somewhere, and the drawing is what its script draws."""
+somewhere, and the drawings are what their scripts draw."""
 
 import os
 import re
@@ -48,7 +48,17 @@ def test_links_lead_somewhere(document):
             assert (document.parent / target).exists(), f"{document.name} links to {target}"
 
 
-def test_drawing_is_what_its_script_draws():
+def test_drawing_is_what_its_script_draws(monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "scripts")
     drawn = runpy.run_path(str(ROOT / "scripts" / "draw_architecture.py"))["drawing"]().svg()
     committed = (ROOT / "docs" / "images" / "architecture.svg").read_text(encoding="utf-8")
     assert drawn == committed, "run scripts/draw_architecture.py"
+
+
+def test_pictures_of_the_algorithm_are_what_their_script_draws(monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "scripts")
+    drawn = runpy.run_path(str(ROOT / "scripts" / "draw_algorithm.py"))["drawings"]()
+    images = ROOT / "docs" / "images"
+    assert sorted(drawn) == sorted(path.name for path in images.glob("algorithm_*.svg"))
+    for name, svg in drawn.items():
+        assert (images / name).read_bytes() == svg.encode(), f"{name}: run scripts/draw_algorithm.py"
