@@ -234,13 +234,7 @@ void check_faces(const View& view, Findings& findings) {
         const Point normal = view.normal(f);
         const double area = std::sqrt(dot(normal, normal)) / 2;
         if (view.c.face_surface[f] == strata::kWall) {
-            // corners of a wall over several places lie in one line up to the rounding of these
-            double length = 0;
-            for (const std::int32_t i : v) {
-                const Point across = minus(view.at(i), view.at(v[0]));
-                length = std::max(length, std::hypot(across[0], across[1]));
-            }
-            if (area > small * small && std::abs(normal[2]) / 2 > 1e-6 * area + 16 * step * length)
+            if (area > small * small && std::abs(normal[2]) / 2 > 1e-6 * area)
                 findings.add("leaning wall", "face " + std::to_string(f));
             continue;
         }

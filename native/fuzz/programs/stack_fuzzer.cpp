@@ -157,11 +157,13 @@ private:
     }
 
     void keep(StackCase stack, const std::string& kind, const std::string& name) {
+        constexpr double kSecondsToMinimise = 300;
+        const auto start = Clock::now();
         const auto fails = [&](const StackCase& candidate) {
-            return interrupted == 0 &&
+            return interrupted == 0 && seconds_since(start) < kSecondsToMinimise &&
                    least_kind(examine_apart(candidate, options_.judge, options_.patience)) == kind;
         };
-        const StackCase small = minimised(std::move(stack), fails, kind == "hang" ? 30 : 1500);
+        const StackCase small = minimised(std::move(stack), fails, 1500);
         std::string why;
         for (const Defect& defect : examine_apart(small, options_.judge, options_.patience))
             why += (why.empty() ? "" : "; ") + defect.kind + ": " + defect.sentence;
