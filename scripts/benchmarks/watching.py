@@ -44,26 +44,30 @@ def _grown(before: int) -> int:
 def progress(spec: dict, cells: str, threads: int) -> dict:
     """Builds once and compares each fraction that was told with the share of the time that had passed.
 
-    Returns `seconds`, `deviation` (the greatest difference, 0 .. 1), `halfway` (the fraction told at half of
-    the time), `gap` (the longest time without a call), `calls`, `told` [[share of the time, fraction], ...].
+    Returns `seconds`, `deviation` (the greatest difference, 0 .. 1), `worked` (the same for processor time of
+    the process, which other processes do not change), `halfway` (the fraction told at half of the
+    time), `gap` (the longest time without a call), `calls`, `told` [[share of the time, fraction, text], ...].
     """
     given = project(StackSpec(**spec))
-    told = []
+    told, spent = [], []
 
     def tell(share: float, text: str) -> None:
         told.append((time.perf_counter() - began, share, text))
+        spent.append(time.process_time())
 
-    began = time.perf_counter()
+    began, before = time.perf_counter(), time.process_time()
     model = build(given, cells, threads, progress=tell)
     seconds = time.perf_counter() - began
     times = np.array([at for at, _, _ in told])
     shares = np.array([share for _, share, _ in told])
     passed = times / seconds
+    worked = (np.array(spent) - before) / (spent[-1] - before)
     return {
         "seconds": seconds,
         "cells": len(model.cell_block),
         "timings": model.timings,
         "deviation": float(np.abs(shares - passed).max()),
+        "worked": float(np.abs(shares - worked).max()),
         "halfway": float(np.interp(0.5, passed, shares)),
         "gap": float(np.diff(times, prepend=0.0, append=seconds).max()),
         "calls": len(told),

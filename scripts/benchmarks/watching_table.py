@@ -15,6 +15,7 @@ PROGRESS = (
     "s",
     "told at half of the time",
     "largest deviation",
+    "of processor time",
     "longest gap, s",
     "calls",
 )
@@ -73,6 +74,7 @@ def _progress_row(work: str, cells: str, told: dict) -> list[str]:
         f"{told['seconds']:.2f}",
         f"{100 * told['halfway']:.0f} %",
         f"{100 * told['deviation']:.0f} %",
+        f"{100 * told['worked']:.0f} %",
         f"{told['gap']:.3f}",
         f"{told['calls']}",
     ]
