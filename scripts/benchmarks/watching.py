@@ -45,8 +45,8 @@ def progress(spec: dict, cells: str, threads: int) -> dict:
     """Builds once and compares each fraction that was told with the share of the time that had passed.
 
     Returns `seconds`, `deviation` (the greatest difference, 0 .. 1), `worked` (the same for processor time of
-    the process, which other processes do not change), `halfway` (the fraction told at half of the
-    time), `gap` (the longest time without a call), `calls`, `told` [[share of the time, fraction, text], ...].
+    the process, which other processes do not change), `halfway` (the fraction told at half of the time),
+    `gap` (the longest time without a call), `calls`, `told` [[share of the time, fraction, text], ...].
     """
     given = project(StackSpec(**spec))
     told, spent = [], []

@@ -203,7 +203,7 @@ def sampled(work: Work, entry: RockInput, cells: str, threads: int, scaled: bool
     rock = entry.rock
     plans = _plans(entry)
     rings = None if rock.region is None else [rock.region, *rock.holes]
-    windows, used = sample_windows(plans, rings)
+    windows, used = sample_windows(plans, rings, cells)
     found, in_windows, built_corners, seconds = Counts(), 0, 0, 0.0
     interpolating = _Interpolating(work, entry, threads)
     for window in windows:

@@ -16,6 +16,7 @@ import numpy as np
 TRIANGLES_PER_WINDOW = 3_000
 FEWEST_OF_A_SURFACE = 150  # in a window
 _STRATA = (4, 2)  # one window in each of so many parts with equally many triangles, along x and then along y
+_MARGIN = {"columns": 1.0, "blocks": 2.0}  # triangles wide: blocks tell apart by tiles what crosses
 _WHOLE_BELOW = 60_000  # triangles: a rock mass so small is its own sample
 _CENTRES_LOOKED_AT = 100_000
 _PRODUCTS_AT_ONCE = 4_000_000
@@ -54,7 +55,9 @@ def everything() -> Window:
     return Window(np.full(2, -np.inf), np.full(2, np.inf))
 
 
-def sample_windows(plans: Sequence[Plan], rings: Sequence[np.ndarray] | None) -> tuple[list[Window], float]:
+def sample_windows(
+    plans: Sequence[Plan], rings: Sequence[np.ndarray] | None, cells: str = "columns"
+) -> tuple[list[Window], float]:
     """The windows of a rock mass, and how many triangles of its surfaces lie inside its region.
 
     plans: the triangulation of each surface. rings: the region's, counted even-odd, or None.
@@ -84,7 +87,8 @@ def sample_windows(plans: Sequence[Plan], rings: Sequence[np.ndarray] | None) ->
         rank = min(len(centres) - 1, round(len(centres) * wanted / used))
         reach = np.partition(distance, rank)[rank]
         triangle = 2 * reach * np.sqrt(2 * len(plans) / wanted)  # its size, where all surfaces are alike
-        windows.append(Window(centres[number] - reach, centres[number] + reach, triangle))
+        margin = _MARGIN[cells] * triangle
+        windows.append(Window(centres[number] - reach, centres[number] + reach, margin))
     return windows, used
 
 

@@ -27,7 +27,7 @@ inline void poll(const Progress* progress, std::size_t round) {
 /// `share` is how much of what is left of its present part this loop is expected to take.
 template <class Work>
 void parallel_chunks(std::size_t count, int threads, const Progress* progress, const Work& work,
-                     double share = 0.5) {
+                     double share = 0.2) {
     CountedLoop counted(progress, count, share);
     std::atomic<bool> stop{false};
     std::exception_ptr failure;

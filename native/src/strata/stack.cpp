@@ -28,7 +28,7 @@ using exact::VertexId;
 namespace {
 
 /// Shares of the work, measured on stacks of ten surfaces.
-constexpr double kEnterShare = 0.05, kOverlayShare = 0.6, kConformShare = 0.35;
+constexpr double kBorderShare = 0.02, kEnterShare = 0.05, kOverlayShare = 0.6, kConformShare = 0.35;
 
 /// Begins a part of the work, counted as `share` of it.
 void begin(Progress* progress, double start, double share, const char* text) {
@@ -311,7 +311,8 @@ CellComplex build_plain_blocks(Site& site, EnteredRock& rock) {
     }
     if (rock.base) check_base(overlay.lowest(), *rock.base_elevation, rock.first_surface);
     overlay.finish(rock.base);
-    begin(site.progress, kEnterShare + kOverlayShare, kConformShare, "joining blocks");
+    // what counts no rounds comes last: it has the other half
+    begin(site.progress, kEnterShare + kOverlayShare, kConformShare / 2, "joining blocks");
     return assemble_blocks(site.geometry, overlay, site.surface_of_plane, rock.base,
                            rock.first_surface, site.threads, site.progress);
 }
@@ -334,7 +335,7 @@ Warning joined_by_rounding(const PlanSnapping& snapping, const JoinedBorders& bo
 
 CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping& snapping,
                           CellKind cells, int threads, Progress* progress) {
-    begin(progress, 0.0, kEnterShare, "checking the surfaces");
+    begin(progress, kBorderShare, kEnterShare - kBorderShare, "checking the surfaces");
     Site site;
     site.threads = threads;
     site.progress = progress;
@@ -392,6 +393,7 @@ CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping&
 CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
                               CellKind cells) {
     if (share_one_plan(rocks)) return build_snapped(rocks, {}, cells, threads, progress);
+    begin(progress, 0.0, kBorderShare, "comparing the borders");
     const PlanSnapping snapping = find_snapping(rocks, threads, progress);
     const JoinedBorders joined = join_borders(rocks, snapping, threads, progress);
     if (!snapping.empty() || joined.divided > 0) {
