@@ -4,6 +4,7 @@
 from .build import build
 from .build_warning import BuildWarning
 from .cross_validation import CrossValidation, cross_validate
+from .cutting import Cut
 from .erosion import Erosion
 from .errors import (
     BuildFailed,
@@ -22,6 +23,7 @@ from .model import Block, BlockBoundary, Model
 from .planar_mesh import mesh_region
 from .project import Project, Rock, Surface
 from .project_file import load_project
+from .section import Fence, Section
 from .validation import ValidationReport
 from .variogram import Structure, Variogram
 
@@ -32,8 +34,10 @@ __all__ = [
     "BuildWarning",
     "Cancelled",
     "CrossValidation",
+    "Cut",
     "Erosion",
     "Estimate",
+    "Fence",
     "InputRefused",
     "Interpolation",
     "Library",
@@ -44,6 +48,7 @@ __all__ = [
     "Property",
     "RealModelError",
     "Rock",
+    "Section",
     "Structure",
     "Surface",
     "UsageError",

@@ -7,16 +7,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .build_warning import BuildWarning
 from .erosion import Erosion, eroded
+from .errors import UsageError
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
 from .validation import PLACES_OF_CHECK, ValidationReport, validate
 from .work import Cancel, Progress, native_module
+
+if TYPE_CHECKING:
+    from .cutting import Cut
+    from .section import Fence, Section
 
 
 @dataclass(frozen=True)
@@ -56,6 +62,7 @@ class Model:
     `cell_kind` is "columns" or "blocks". `surface_names` go with the global indices of the surfaces.
     `project` holds the arrays that the model was built from, so that nothing is read again.
     `rock_inputs` are what the stack builder took, by rock mass. `timings` are seconds by phase.
+    `is_cut`: it is a half of another model (docs/geometry.md, "Cutting").
     """
 
     vertices: np.ndarray
@@ -76,6 +83,7 @@ class Model:
     warnings: list[BuildWarning] = field(default_factory=list)
     timings: dict[str, float] = field(default_factory=dict)
     threads: int = 0
+    is_cut: bool = False
 
     @property
     def volume(self) -> float:
@@ -106,8 +114,12 @@ class Model:
 
     def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
         """The model as it was just after surface m (from 0) of each rock mass. Raises UsageError where no
-        rock mass has a surface m. It is built anew from the surfaces up to m."""
+        rock mass has a surface m, or the model is a half: cut the stage instead. It is built anew from the
+        surfaces up to m."""
         from .build import build_stage
+
+        if self.is_cut:
+            raise UsageError("a half has no stages: take the stage of the whole model, then cut it")
 
         return build_stage(self, m, progress, cancel)
 
@@ -129,13 +141,89 @@ class Model:
         cancel: Cancel | None = None,
     ) -> ValidationReport:
         """Tests the model as docs/geometry.md says: every cell, face and vertex of it; and whether at about
-        `places` plan places it is what the closed form says. 0 places: only the first.
+        `places` plan places it is what the closed form says. 0 places, or a half: only the first.
 
         seed draws the places. threads: 0 for all that there are; the findings are the same for any number.
         A model that fails is no error here: the report says what is wrong and where.
         Raises UsageError, Cancelled.
         """
         return validate(self, places, seed, threads, progress, cancel)
+
+    def cut_by_plane(
+        self,
+        point,
+        normal,
+        threads: int = 0,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Cut:
+        """Both halves of the model, above (where the normal points) and below a plane, and the section.
+
+        point, normal: three numbers each; the normal may have any length. This model stays as it is.
+        Raises UsageError for a plane that is none, BuildFailed, Cancelled.
+        """
+        from .cutting import cut_by_plane
+
+        return cut_by_plane(self, point, normal, threads, progress, cancel)
+
+    def cut_by_surface(
+        self,
+        vertices,
+        triangles,
+        threads: int = 0,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Cut:
+        """What lies above and below a triangulated surface in any position, or outside and inside of a closed
+        one. vertices: (V, 3) float64; triangles: (T, 3) whole numbers, either way round.
+
+        Raises InputRefused for a surface that does not part the model, branches, has no two sides or crosses
+        itself; BuildFailed, Cancelled.
+        """
+        from .cutting import cut_by_surface
+
+        return cut_by_surface(self, vertices, triangles, threads, progress, cancel)
+
+    def cut_by_block(
+        self,
+        other: Model,
+        block: int | str,
+        threads: int = 0,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Cut:
+        """What lies inside and outside of a block (number or name) of another model, or of this one.
+
+        Raises UsageError for a block that is not there, InputRefused, BuildFailed, Cancelled.
+        """
+        from .cutting import cut_by_block
+
+        return cut_by_block(self, other, block, threads, progress, cancel)
+
+    def section(
+        self,
+        point,
+        normal,
+        threads: int = 0,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Section:
+        """The section by a plane alone, in a fraction of the time of cut_by_plane."""
+        from .cutting import section
+
+        return section(self, point, normal, threads, progress, cancel)
+
+    def fence(
+        self,
+        polyline,
+        threads: int = 0,
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Fence:
+        """Vertical sections along a polyline in plan, (N, 2), each between its two ends."""
+        from .cutting import fence
+
+        return fence(self, polyline, threads, progress, cancel)
 
     @cached_property
     def face_blocks(self) -> np.ndarray:

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "chunked.hpp"
+#include "realmodel/strata/stack.hpp"
 
 namespace realmodel::validation {
 
@@ -67,7 +68,7 @@ void check_face(const ComplexView& m, std::size_t f, std::vector<std::uint8_t>& 
         std::atomic_ref<std::uint8_t>(has_face[static_cast<std::size_t>(cell)])
             .store(1, std::memory_order_relaxed);
     }
-    if (m.face_surface[f] < -2 || m.face_surface[f] >= m.surfaces) {
+    if (m.face_surface[f] < strata::kCutFace || m.face_surface[f] >= m.surfaces) {
         fail(
             [&] { return "face " + number(face) + " names surface " + number(m.face_surface[f]); });
     }

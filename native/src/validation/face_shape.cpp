@@ -38,7 +38,13 @@ std::optional<std::string> FaceShape::fault() {
         if (auto text = fault_of_base()) return text;
     }
     if (!is_flat()) return "is bent: its corners lie in no plane";
-    project(0, 1);
+    // all but the caps of a cut have an extent in plan
+    const auto steepest = static_cast<std::size_t>(
+        std::max_element(area_.begin(), area_.end(),
+                         [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+        area_.begin());
+    const std::size_t across = surface == strata::kCutFace ? steepest : 2;
+    project((across + 1) % 3, (across + 2) % 3);
     if (is_convex()) return std::nullopt;
     return crosses_itself() ? "crosses itself" : "is not convex";
 }

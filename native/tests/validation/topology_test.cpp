@@ -298,7 +298,7 @@ TEST(Topology, ReadsNothingOutOfRange) {
     EXPECT_EQ(spoilt([](auto& c) { c.cells[3] = {0, 2}; }), "face 3 lies between cells 0 and 2");
     EXPECT_EQ(spoilt([](auto& c) { c.cells[3] = {0, 0}; }), "face 3 lies between cells 0 and 0");
     EXPECT_EQ(spoilt([](auto& c) { c.surface[3] = 2; }), "face 3 names surface 2");
-    EXPECT_EQ(spoilt([](auto& c) { c.surface[3] = -3; }), "face 3 names surface -3");
+    EXPECT_EQ(spoilt([](auto& c) { c.surface[3] = -4; }), "face 3 names surface -4");
     EXPECT_EQ(spoilt([](auto& c) { c.block[1] = 2; }), "cell 1 names block 2");
     EXPECT_EQ(spoilt([](auto& c) { c.block.push_back(0); }), "cell 2 has no faces");
     EXPECT_EQ(spoilt([](auto& c) { c.vertices[4][1] = HUGE_VAL; }), "vertex 4 is not finite");

@@ -46,8 +46,14 @@ def _texts(texts) -> np.ndarray:
 
 
 def write_npz(model, file: BinaryIO, step: Callable[[float], None]) -> None:
-    """Writes the arrays uncompressed, as numpy.savez does, with a fixed date in the place of the clock's."""
-    arrays = model_arrays(model)
+    """Writes the model's arrays."""
+    write_arrays(model_arrays(model), file, step)
+
+
+def write_arrays(
+    arrays: dict[str, np.ndarray], file: BinaryIO, step: Callable[[float], None] | None = None
+) -> None:
+    """Writes arrays uncompressed, as numpy.savez does, with a fixed date in the place of the clock's."""
     total = sum(array.nbytes for array in arrays.values()) or 1
     done = 0
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
@@ -61,4 +67,5 @@ def write_npz(model, file: BinaryIO, step: Callable[[float], None]) -> None:
                     member, np.ascontiguousarray(array).reshape(array.shape), version=(1, 0)
                 )
             done += array.nbytes
-            step(done / total)
+            if step is not None:
+                step(done / total)

@@ -74,6 +74,8 @@ enum class CellKind {
 
 inline constexpr std::int32_t kWall = -1;
 inline constexpr std::int32_t kBase = -2;
+/// What a cut laid bare (realmodel/cutting): it lies between the two halves.
+inline constexpr std::int32_t kCutFace = -3;
 
 /// Replays deposition and erosion: all blocks of rock masses, cell by cell, going down from the
 /// youngest surface of each (docs/architecture.md). Where rock masses share a stretch of border the

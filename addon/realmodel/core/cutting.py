@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A finished model cut: halves that are models again, and sections."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .errors import InputRefused, UsageError, number_list, place_text
+from .method_options import check_threads
+from .model import Model, count_blocks
+from .rock_input import checked_triangulation
+from .section import Fence, Section
+from .work import Cancel, Progress, Work, native_module, run
+
+_CUT_SHARE = 0.9
+_ARRAYS = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
+
+
+@dataclass(eq=False)
+class Cut:
+    """Both halves of a model, each a model with the same blocks, surfaces and project.
+
+    above is where the plane's normal points, above the surface, or outside of a closed surface or block;
+    inside and outside are other names of below and above. Their caps have face_surface -3 and are the
+    polygons of `section`. above_cells, below_cells: (C,) int32, the cell of the model that was cut that each
+    cell of a half is, or is part of.
+    """
+
+    above: Model
+    below: Model
+    section: Section
+    above_cells: np.ndarray
+    below_cells: np.ndarray
+
+    @property
+    def inside(self) -> Model:
+        return self.below
+
+    @property
+    def outside(self) -> Model:
+        return self.above
+
+
+def cut_by_plane(
+    model: Model,
+    point,
+    normal,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Cut:
+    """Model.cut_by_plane."""
+    point, normal = _plane(point, normal)
+    return _cut(model, lambda native: (native.cut_by_plane, point, normal), threads, progress, cancel)
+
+
+def cut_by_surface(
+    model: Model,
+    vertices,
+    triangles,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Cut:
+    """Model.cut_by_surface."""
+    vertices, triangles = checked_triangulation(vertices, triangles)
+    return _cut(model, lambda native: (native.cut_by_surface, vertices, triangles), threads, progress, cancel)
+
+
+def cut_by_block(
+    model: Model,
+    other: Model,
+    block: int | str,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Cut:
+    """Model.cut_by_block."""
+    number = _block_number(other, block)
+    return _cut(
+        model,
+        lambda native: (native.cut_by_block, _native_arrays(other), number),
+        threads,
+        progress,
+        cancel,
+    )
+
+
+def _block_number(model: Model, block: int | str) -> int:
+    names = [entry.name for entry in model.blocks]
+    if isinstance(block, str):
+        if names.count(block) != 1:
+            known = "no block" if block not in names else "more than one block"
+            raise UsageError(f"the model has {known} named '{block}'; give its number")
+        return names.index(block)
+    if isinstance(block, bool) or not hasattr(block, "__index__") or not 0 <= int(block) < len(names):
+        raise UsageError(f"there is no block {block}: they count from 0 to {len(names) - 1}")
+    return int(block)
+
+
+def _cut(model: Model, call, threads: int, progress: Progress | None, cancel: Cancel | None) -> Cut:
+    """The cut that call(native), a native function and what follows the model, makes."""
+    threads = check_threads(threads)
+    native = native_module()
+
+    def task(work: Work) -> Cut:
+        began = time.perf_counter()
+        function, *cutter = call(native)
+        with work.phase(0.0, _CUT_SHARE, "cutting"):
+            try:
+                halves = work.native(function, _native_arrays(model), *cutter, threads=threads)
+            except native.InputError as error:
+                raise _refused(error) from error
+        return _assembled(work, model, halves, began)
+
+    return run(task, progress, cancel)
+
+
+_ADVICE = {
+    "ends_inside": "extend it beyond the model, or close it",
+    "branching": "leave the triangles out that make it branch",
+    "one_sided": "leave triangles out until it has an upper and a lower side",
+    "unresolved": "mend the surface where it crosses itself",
+    "no_block": "choose one that has cells",
+}
+
+
+def _refused(error) -> InputRefused:
+    place = tuple(error.place) if error.place is not None else None
+    near = f" near {place_text(place)}" if place else ""
+    triangles = tuple(int(i) for i in error.items) if error.kind in ("branching", "one_sided") else ()
+    named = f": triangles {number_list(triangles)}" if triangles else ""
+    return InputRefused(
+        f"{error}{named}{near}",
+        item="the cut",
+        advice=_ADVICE.get(error.kind),
+        triangles=triangles,
+        place=place,
+    )
+
+
+def section(
+    model: Model,
+    point,
+    normal,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Section:
+    """Model.section."""
+    point, normal = _plane(point, normal)
+    threads = check_threads(threads)
+    native_module()
+
+    def task(work: Work) -> Section:
+        with work.phase(0.0, 1.0, "cutting"):
+            found = work.native(
+                native_module().section_by_plane, _native_arrays(model), point, normal, threads=threads
+            )
+        return Section(**_section_arrays(model, found))
+
+    return run(task, progress, cancel)
+
+
+def fence(
+    model: Model,
+    polyline,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Fence:
+    """Model.fence."""
+    try:
+        polyline = np.ascontiguousarray(polyline, np.float64)
+    except (TypeError, ValueError) as error:
+        raise UsageError("polyline must be an array (N, 2) of numbers") from error
+    if polyline.ndim != 2 or polyline.shape[1] != 2 or len(polyline) < 2:
+        raise UsageError(f"polyline must be an array (N, 2) with N > 1, not {polyline.shape}")
+    if not np.isfinite(polyline).all():
+        raise UsageError("polyline must be finite")
+    if not np.diff(polyline, axis=0).any(axis=1).all():
+        raise UsageError("polyline has two equal points one after the other; leave one out")
+    threads = check_threads(threads)
+    native_module()
+
+    def task(work: Work) -> Fence:
+        panels = []
+        for number, (start, end) in enumerate(itertools.pairwise(polyline)):
+            with work.phase(number / (len(polyline) - 1), (number + 1) / (len(polyline) - 1), "cutting"):
+                panels.append(
+                    work.native(
+                        native_module().fence_panel,
+                        _native_arrays(model),
+                        tuple(start),
+                        tuple(end),
+                        threads=threads,
+                    )
+                )
+        numbers = [np.full(len(panel["cells"]), k, np.int32) for k, panel in enumerate(panels)]
+        return Fence(
+            **_section_arrays(model, _joined(panels)), polyline=polyline, panel=np.concatenate(numbers)
+        )
+
+    return run(task, progress, cancel)
+
+
+def _joined(panels: list[dict]) -> dict:
+    """Sections one after another."""
+    vertices = np.cumsum([0, *(len(panel["vertices"]) for panel in panels)])
+    corners = np.cumsum([0, *(len(panel["polygon_vertices"]) for panel in panels)])
+    polygons = [p["polygon_vertices"] + v for p, v in zip(panels, vertices, strict=False)]
+    offsets = [p["offsets"][:-1] + c for p, c in zip(panels, corners, strict=False)]
+    return {
+        "vertices": np.concatenate([panel["vertices"] for panel in panels]),
+        "offsets": np.concatenate([*offsets, corners[-1:]]).astype(np.int64),
+        "polygon_vertices": np.concatenate(polygons).astype(np.int32),
+        "cells": np.concatenate([panel["cells"] for panel in panels]),
+    }
+
+
+def _plane(point, normal) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    found = []
+    for name, given in (("point", point), ("normal", normal)):
+        try:
+            numbers = np.asarray(given, np.float64)
+        except (TypeError, ValueError) as error:
+            raise UsageError(f"{name} must be three numbers") from error
+        if numbers.shape != (3,) or not np.isfinite(numbers).all():
+            raise UsageError(f"{name} must be three finite numbers, not {given!r}")
+        found.append(tuple(numbers.tolist()))
+    if not any(found[1]):
+        raise UsageError("normal must not be zero: it tells how the plane lies and which side is above")
+    return found[0], found[1]
+
+
+def _native_arrays(model: Model) -> dict:
+    arrays = {name: getattr(model, name) for name in _ARRAYS}
+    return arrays | {"blocks": len(model.blocks), "cell_kind": model.cell_kind}
+
+
+def _section_arrays(model: Model, found: dict) -> dict:
+    """What a Section is made of."""
+    cells = found["cells"]
+    blocks = np.append(model.cell_block, np.int32(-1))[cells].astype(np.int32, copy=False)
+    block = np.where(blocks[:, 0] >= 0, blocks[:, 0], blocks[:, 1])
+    library_ids = np.array([entry.property for entry in model.blocks], np.int32)
+    return {
+        "vertices": found["vertices"],
+        "offsets": found["offsets"],
+        "polygon_vertices": found["polygon_vertices"],
+        "cells": cells,
+        "blocks": blocks,
+        "block": block,
+        "property": library_ids[block] if len(block) else np.empty(0, np.int32),
+        "block_names": [entry.name for entry in model.blocks],
+    }
+
+
+def _assembled(work: Work, model: Model, halves: dict, began: float) -> Cut:
+    with work.phase(_CUT_SHARE, 1.0, "putting the halves together"):
+        found = Section(**_section_arrays(model, halves["section"]))
+        above = _half(work, model, halves["above"], halves["above_touches"])
+        work.step(0.5)
+        below = _half(work, model, halves["below"], halves["below_touches"])
+    for half in (above, below):
+        half.timings["cut"] = time.perf_counter() - began
+    return Cut(above, below, found, halves["above"]["cells"], halves["below"]["cells"])
+
+
+def _half(work: Work, model: Model, arrays: dict, touches: bool) -> Model:
+    component = work.native(native_module().cell_components, arrays["face_cells"], arrays["cell_block"])
+    cells, components = count_blocks(arrays["cell_block"], component, len(model.blocks))
+    blocks = [
+        replace(
+            block,
+            volume=float(arrays["volumes"][number]),
+            cells=int(cells[number]),
+            components=int(components[number]),
+        )
+        for number, block in enumerate(model.blocks)
+    ]
+    half = replace(
+        model,
+        **{name: arrays[name] for name in _ARRAYS},
+        blocks=blocks,
+        cell_kind="blocks" if touches else model.cell_kind,
+        is_cut=True,
+        warnings=list(model.warnings),
+        timings={},
+    )
+    half.cell_component = component
+    return half

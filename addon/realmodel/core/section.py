@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What lies on a cutter: polygons that know their block and its property."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from .atomic import Outputs
+from .errors import UsageError
+
+
+@dataclass(eq=False)
+class Section:
+    """Convex polygons on a cutter, counter-clockwise seen from above it (from outside of a closed one).
+
+    vertices: (V, 3) float64. Polygon k has the corners polygon_vertices[offsets[k] : offsets[k + 1]];
+    offsets (K + 1,) int64, polygon_vertices int32. cells: (K, 2) int32, the model's cells below and above
+    (inside and outside): the same where a cell is cut, two where the cutter runs between cells, -1 where
+    one side is outside of the model. blocks: (K, 2) int32, their blocks. block, property: (K,) int32, the
+    block below, or above where there is none below, and its library id. block_names: (B,) of the model's.
+    """
+
+    vertices: np.ndarray
+    offsets: np.ndarray
+    polygon_vertices: np.ndarray
+    cells: np.ndarray
+    blocks: np.ndarray
+    block: np.ndarray
+    property: np.ndarray
+    block_names: list[str]
+
+    def __len__(self) -> int:
+        return len(self.block)
+
+    def polygon(self, k: int) -> np.ndarray:
+        """(N, 3) corners of polygon k."""
+        return self.vertices[self.polygon_vertices[self.offsets[k] : self.offsets[k + 1]]]
+
+    @cached_property
+    def polygon_areas(self) -> np.ndarray:
+        """(K,) float64, model units squared."""
+        if not len(self):
+            return np.zeros(0)
+        first = np.repeat(self.offsets[:-1], np.diff(self.offsets))
+        following = np.arange(1, len(self.polygon_vertices) + 1)
+        following[self.offsets[1:] - 1] = self.offsets[:-1]
+        corners = self.vertices[self.polygon_vertices]
+        spokes = corners - corners[first]
+        doubled = np.add.reduceat(np.cross(spokes, spokes[following]), self.offsets[:-1], axis=0)
+        return np.linalg.norm(doubled, axis=1) / 2
+
+    @property
+    def area(self) -> float:
+        """Of all polygons, model units squared."""
+        return float(self.polygon_areas.sum())
+
+    def area_by_block(self) -> np.ndarray:
+        """(B,) float64: the area that each block of the model has in the section."""
+        return np.bincount(self.block, weights=self.polygon_areas, minlength=len(self.block_names))
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """All arrays by name, as save writes them."""
+        names = ("vertices", "offsets", "polygon_vertices", "cells", "blocks", "block", "property")
+        return {name: getattr(self, name) for name in names} | {"block_names": np.array(self.block_names)}
+
+    def save(self, path: str | Path) -> None:
+        """Writes the arrays to an .npz, which appears whole or not at all. Raises UsageError,
+        OutputFailed."""
+        from .exporters.npz import write_arrays
+
+        if Path(path).suffix.lower() != ".npz":
+            raise UsageError(f"{path}: a section is written as .npz")
+        with Outputs() as outputs, outputs.file(path) as file:
+            write_arrays(self.arrays(), file)
+
+
+@dataclass(eq=False)
+class Fence(Section):
+    """Vertical sections along a polyline in plan.
+
+    polyline: (N, 2) float64. panel: (K,) int32, the polyline's segment that each polygon stands on, from 0.
+    Above is to the right of the polyline: polygons turn counter-clockwise in the unrolled picture.
+    """
+
+    polyline: np.ndarray
+    panel: np.ndarray
+
+    def unrolled(self) -> np.ndarray:
+        """(V, 2) float64: distance along the polyline and height of each vertex, as fences are drawn."""
+        steps = np.diff(self.polyline, axis=0)
+        lengths = np.hypot(*steps.T)
+        begins = np.concatenate([[0.0], np.cumsum(lengths)])
+        panel = np.zeros(len(self.vertices), np.int64)
+        panel[self.polygon_vertices] = np.repeat(self.panel, np.diff(self.offsets))
+        away = self.vertices[:, :2] - self.polyline[panel]
+        along = begins[panel] + (away * steps[panel]).sum(axis=1) / lengths[panel]
+        return np.column_stack([along, self.vertices[:, 2]])

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// cut_by_plane, cut_by_surface, cut_by_block, section_by_plane, fence_panel.
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <utility>
+
+#include "arrays.hpp"
+#include "realmodel/base/progress.hpp"
+#include "realmodel/cutting/cut.hpp"
+
+namespace py = pybind11;
+
+namespace realmodel::bindings {
+
+namespace {
+
+template <class T>
+std::span<const T> view(const Array<T>& array) {
+    return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+/// The arrays of a model, kept alive while a view of them is in use.
+struct ModelArrays {
+    Array<double> vertices;
+    Array<std::int64_t> face_offsets;
+    Array<std::int32_t> face_vertices, face_cells, face_surface, cell_block;
+    cutting::ComplexView view_of;
+
+    explicit ModelArrays(const py::dict& arrays)
+        : vertices(take<double>(arrays, "vertices")),
+          face_offsets(take<std::int64_t>(arrays, "face_offsets")),
+          face_vertices(take<std::int32_t>(arrays, "face_vertices")),
+          face_cells(take<std::int32_t>(arrays, "face_cells")),
+          face_surface(take<std::int32_t>(arrays, "face_surface")),
+          cell_block(take<std::int32_t>(arrays, "cell_block")) {
+        require_columns(vertices, 3, "vertices");
+        require_columns(face_cells, 2, "face_cells");
+        view_of.vertices = view(vertices);
+        view_of.face_offsets = view(face_offsets);
+        view_of.face_vertices = view(face_vertices);
+        view_of.face_cells = view(face_cells);
+        view_of.face_surface = view(face_surface);
+        view_of.cell_block = view(cell_block);
+        view_of.blocks = arrays["blocks"].cast<std::size_t>();
+        view_of.cells_are_blocks = arrays["cell_kind"].cast<std::string>() == "blocks";
+    }
+
+private:
+    template <class T>
+    static Array<T> take(const py::dict& arrays, const char* name) {
+        return arrays[name].cast<Array<T>>();
+    }
+};
+
+py::dict to_dict(strata::CellComplex&& complex, std::vector<std::int32_t>&& origin) {
+    py::dict result;
+    result["vertices"] = to_array(std::move(complex.vertices));
+    result["face_offsets"] = to_array(std::move(complex.face_offsets));
+    result["face_vertices"] = to_array(std::move(complex.face_vertices));
+    result["face_cells"] = to_array(std::move(complex.face_cells));
+    result["face_surface"] = to_array(std::move(complex.face_surface));
+    result["cell_block"] = to_array(std::move(complex.cell_block));
+    result["volumes"] = to_array(std::move(complex.volumes));
+    result["cells"] = to_array(std::move(origin));
+    return result;
+}
+
+py::dict to_dict(cutting::Section&& section) {
+    py::dict result;
+    result["vertices"] = to_array(std::move(section.vertices));
+    result["offsets"] = to_array(std::move(section.offsets));
+    result["polygon_vertices"] = to_array(std::move(section.polygon_vertices));
+    result["cells"] = to_array(std::move(section.cells));
+    return result;
+}
+
+py::dict to_dict(cutting::Cut&& cut) {
+    py::dict result;
+    result["below"] = to_dict(std::move(cut.below), std::move(cut.below_cells));
+    result["above"] = to_dict(std::move(cut.above), std::move(cut.above_cells));
+    result["section"] = to_dict(std::move(cut.section));
+    result["below_touches"] = cut.below_touches;
+    result["above_touches"] = cut.above_touches;
+    return result;
+}
+
+py::dict cut_by_plane(const py::dict& model, const std::array<double, 3>& point,
+                      const std::array<double, 3>& normal, int threads, Progress* control) {
+    const ModelArrays arrays(model);
+    cutting::Cut cut;
+    {
+        const py::gil_scoped_release release;
+        cut = cutting::cut_by_plane(arrays.view_of, {point, normal}, threads, control);
+    }
+    return to_dict(std::move(cut));
+}
+
+py::dict cut_by_surface(const py::dict& model, const Array<double>& vertices,
+                        const Array<std::int32_t>& triangles, int threads, Progress* control) {
+    require_columns(vertices, 3, "vertices of the surface");
+    require_columns(triangles, 3, "triangles of the surface");
+    const ModelArrays arrays(model);
+    cutting::Cut cut;
+    {
+        const py::gil_scoped_release release;
+        cut = cutting::cut_by_surface(arrays.view_of, {view(vertices), view(triangles)}, threads,
+                                      control);
+    }
+    return to_dict(std::move(cut));
+}
+
+py::dict cut_by_block(const py::dict& model, const py::dict& other, std::int32_t block, int threads,
+                      Progress* control) {
+    const ModelArrays arrays(model), others(other);
+    cutting::Cut cut;
+    {
+        const py::gil_scoped_release release;
+        cut = cutting::cut_by_block(arrays.view_of, others.view_of, block, threads, control);
+    }
+    return to_dict(std::move(cut));
+}
+
+py::dict section_by_plane(const py::dict& model, const std::array<double, 3>& point,
+                          const std::array<double, 3>& normal, int threads, Progress* control) {
+    const ModelArrays arrays(model);
+    cutting::Section section;
+    {
+        const py::gil_scoped_release release;
+        section = cutting::section_by_plane(arrays.view_of, {point, normal}, threads, control);
+    }
+    return to_dict(std::move(section));
+}
+
+py::dict fence_panel(const py::dict& model, const std::array<double, 2>& start,
+                     const std::array<double, 2>& end, int threads, Progress* control) {
+    const ModelArrays arrays(model);
+    cutting::Section section;
+    {
+        const py::gil_scoped_release release;
+        section = cutting::fence_panel(arrays.view_of, start, end, threads, control);
+    }
+    return to_dict(std::move(section));
+}
+
+}  // namespace
+
+void bind_cutting(py::module_& module) {
+    module.def(
+        "cut_by_plane", &cut_by_plane, py::arg("model"), py::arg("point"), py::arg("normal"),
+        py::arg("threads") = 0, py::arg("control") = nullptr,
+        R"(A model cut by a plane into what lies below and above it (where the normal points).
+
+model: dict of the arrays of docs/geometry.md, and "blocks" (number of blocks) and "cell_kind".
+Returns a dict: "below" and "above", each with the arrays of a model, "volumes" (B,) and "cells"
+(C,) int32, the model's cell that each is part of; "section" as of section_by_plane; "below_touches",
+"above_touches": whether cells of a half use an edge more than twice though the model's do not. Raises
+InputError kinds not_finite, bad_plane, bad_model, and Cancelled.)");
+    module.def(
+        "cut_by_surface", &cut_by_surface, py::arg("model"), py::arg("vertices"),
+        py::arg("triangles"), py::arg("threads") = 0, py::arg("control") = nullptr,
+        R"(A model cut by a triangulated surface, vertices (N, 3) float64, triangles (T, 3) int32, that
+parts it; as cut_by_plane. Above is the surface's upper side, or the outside of a closed one. Raises
+InputError kinds not_finite, bad_index, no_triangles, branching, one_sided, ends_inside, unresolved,
+bad_model, and Cancelled.)");
+    module.def(
+        "cut_by_block", &cut_by_block, py::arg("model"), py::arg("other"), py::arg("block"),
+        py::arg("threads") = 0, py::arg("control") = nullptr,
+        R"(A model cut by the boundary of a block of another model, or of itself; as cut_by_plane,
+"below" is what is inside. Raises InputError kinds no_block, unresolved, bad_model, and Cancelled.)");
+    module.def(
+        "section_by_plane", &section_by_plane, py::arg("model"), py::arg("point"),
+        py::arg("normal"), py::arg("threads") = 0, py::arg("control") = nullptr,
+        R"(The section alone: vertices (V, 3) float64, offsets (K + 1,) int64, polygon_vertices
+int32, convex polygons counter-clockwise seen from above; cells (K, 2) int32, the cells below and
+above, -1 outside.)");
+    module.def("fence_panel", &fence_panel, py::arg("model"), py::arg("start"), py::arg("end"),
+               py::arg("threads") = 0, py::arg("control") = nullptr,
+               "The vertical section over the stretch from start to end, (x, y) each; as of "
+               "section_by_plane, above is to its right.");
+}
+
+}  // namespace realmodel::bindings

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "realmodel/base/progress.hpp"
+#include "realmodel/strata/stack.hpp"
+
+namespace realmodel::cutting {
+
+/// A finished model: the arrays of docs/geometry.md, wherever they come from.
+struct ComplexView {
+    std::span<const double> vertices;             ///< 3 V numbers
+    std::span<const std::int64_t> face_offsets;   ///< F + 1
+    std::span<const std::int32_t> face_vertices;  ///< counter-clockwise from outside the first cell
+    std::span<const std::int32_t> face_cells;     ///< 2 F; -1 is outside
+    std::span<const std::int32_t> face_surface;   ///< F
+    std::span<const std::int32_t> cell_block;     ///< C
+    std::size_t blocks = 0;                       ///< cell_block counts below this
+    bool cells_are_blocks = false;  ///< a cell may use an edge more than twice, as often either way
+
+    std::size_t vertex_count() const { return vertices.size() / 3; }
+    std::size_t face_count() const { return face_surface.size(); }
+    std::array<double, 3> vertex(std::int32_t v) const {
+        const auto i = 3 * static_cast<std::size_t>(v);
+        return {vertices[i], vertices[i + 1], vertices[i + 2]};
+    }
+    std::span<const std::int32_t> face(std::size_t f) const {
+        const auto begin = static_cast<std::size_t>(face_offsets[f]);
+        return face_vertices.subspan(begin, static_cast<std::size_t>(face_offsets[f + 1]) - begin);
+    }
+    std::int32_t cell(std::size_t f, std::size_t side) const { return face_cells[2 * f + side]; }
+    std::int32_t block(std::int32_t cell_number) const {
+        return cell_number < 0 ? -1 : cell_block[static_cast<std::size_t>(cell_number)];
+    }
+};
+
+/// A plane through `point`; "above" is where `normal` points. The normal may have any length.
+struct Plane {
+    std::array<double, 3> point, normal;
+};
+
+/// What lies on the cutter: convex polygons, counter-clockwise seen from above (or outside).
+struct Section {
+    std::vector<std::array<double, 3>> vertices;
+    std::vector<std::int64_t> offsets{0};
+    std::vector<std::int32_t> polygon_vertices;
+    /// The model's cells below (inside) and above (outside): twice the same where a cell is cut,
+    /// two where the cutter runs between cells, -1 where one side is outside of the model.
+    std::vector<std::array<std::int32_t, 2>> cells;
+};
+
+/// Both halves of a model, and what lies between them. Their caps are the section's polygons, the
+/// half above has them turned over. Cells that fall apart become several.
+struct Cut {
+    strata::CellComplex below, above;
+    /// The model's cell that each cell of a half is, or is part of.
+    std::vector<std::int32_t> below_cells, above_cells;
+    /// Whether cells of a half use an edge more than twice, though the model's do not: a surface
+    /// may touch itself, or a face, along an edge.
+    bool below_touches = false, above_touches = false;
+    Section section;
+};
+
+/// Cuts a model by a plane. A vertex lies on the plane where it is no farther from it than the
+/// rounding of its own coordinates (four units in the last place on each axis), above or below
+/// otherwise; that is decided beyond doubt. All else follows from these sides: an edge is cut once
+/// where its ends lie on different sides, a face along the straight lines between such places.
+/// @throws InputError kinds not_finite, bad_plane (the normal is zero), bad_model
+/// @throws Cancelled
+Cut cut_by_plane(const ComplexView& model, const Plane& plane, int threads, Progress* progress);
+
+/// The section alone, in a fraction of the time.
+Section section_by_plane(const ComplexView& model, const Plane& plane, int threads,
+                         Progress* progress);
+
+/// Triangles in any position, either orientation.
+struct TriangleView {
+    std::span<const double> vertices;         ///< 3 V numbers
+    std::span<const std::int32_t> triangles;  ///< 3 T indices into the vertices
+};
+
+/// Cuts a model by a triangulated surface that parts it: open, and ending outside of the model or
+/// on its outside, or closed. Above is where it turns its upper side (on the whole), or outside of
+/// a closed one. Where surface and faces meet is decided exactly, on the model's coordinates and
+/// the surface's; vertices of the model within their own rounding of the surface are taken to lie
+/// on it.
+/// @throws InputError kinds not_finite, bad_index, no_triangles, branching, one_sided, bad_model;
+///         ends_inside (it does not part the model; the place), unresolved (it crosses itself)
+/// @throws Cancelled
+Cut cut_by_surface(const ComplexView& model, const TriangleView& surface, int threads,
+                   Progress* progress);
+
+/// Cuts a model by the boundary of a block of another, or of its own: below is what is inside.
+/// @throws InputError kinds no_block, bad_model, unresolved
+/// @throws Cancelled
+Cut cut_by_block(const ComplexView& model, const ComplexView& other, std::int32_t block,
+                 int threads, Progress* progress);
+
+/// The vertical section over a stretch in plan, from `start` to `end`: one panel of a fence
+/// diagram. Above is to its right, so that polygons turn counter-clockwise where distance runs to
+/// the right and height upward.
+/// @throws InputError kinds not_finite, bad_plane (both ends are the same), bad_model
+/// @throws Cancelled
+Section fence_panel(const ComplexView& model, const std::array<double, 2>& start,
+                    const std::array<double, 2>& end, int threads, Progress* progress);
+
+}  // namespace realmodel::cutting

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cell_cut.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "realmodel/exact/turn.hpp"
+
+namespace realmodel::cutting {
+
+namespace {
+
+using exact::Ball;
+
+/// The sign of the volume of the tetrahedron a, b, c, d; 0 where twice the precision of doubles
+/// cannot tell.
+int tetrahedron_sign(const Position& a, const Position& b, const Position& c, const Position& d) {
+    const auto difference = [&a](const Position& p, std::size_t k) {
+        return Ball::difference(p[k], a[k]);
+    };
+    Ball sum;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+        sum = sum + difference(b, k) *
+                        (difference(c, l) * difference(d, m) - difference(c, m) * difference(d, l));
+    }
+    return sum.sign().value_or(0);
+}
+
+}  // namespace
+
+Position CellCutter::position(NodeId node) const {
+    return crossings_.is_crossing(node) ? crossings_.position(index(node - crossings_.first_node()))
+                                        : model_.vertex(node);
+}
+
+void CellCutter::cap(std::span<const PieceRef> refs, CellCut& result) {
+    collect_uses(refs, true);
+    close(refs, result);
+}
+
+void CellCutter::close(std::span<const PieceRef> refs, CellCut& result) {
+    collect_open_edges(refs);
+    trace_loops();
+    result.caps.clear();
+    if (whole_loops_) {
+        take_whole_loops(result.caps);
+    } else if (!loops_.empty()) {
+        divide_convex(loops_, rounding_, slits_, result.caps);
+    }
+}
+
+/// Each loop as one polygon, several where it passes a node twice.
+void CellCutter::take_whole_loops(Polygons& caps) const {
+    std::vector<NodeId> path;
+    for (const Loop& loop : loops_) {
+        path.clear();
+        for (const LoopCorner& corner : loop) {
+            const auto met = std::find(path.begin(), path.end(), corner.node);
+            if (path.end() - met >= 3) caps.add({met, path.end()});
+            path.erase(met, path.end());
+            path.push_back(corner.node);
+        }
+        if (path.size() >= 3) caps.add(path);
+    }
+}
+
+void CellCutter::cut(std::span<const PieceRef> refs, CellCut& result) {
+    do {
+        collect_uses(refs, false);
+        close(refs, result);
+    } while (!find_parts(refs, result));
+    dissolved_.clear();
+    whole_loops_ = false;
+}
+
+void CellCutter::collect_uses(std::span<const PieceRef> refs, bool in_plane_only) {
+    uses_.clear();
+    for (std::size_t i = 0; i < refs.size(); ++i) {
+        const auto piece = index(refs[i].piece);
+        const auto nodes = pieces_.polygons[piece];
+        const std::int8_t side = pieces_.sides[piece][index(refs[i].which)];
+        const bool level = pieces_.level[piece] != 0;
+        for (std::size_t k = 0; k < nodes.size(); ++k) {
+            const NodeId a = nodes[k], b = nodes[k + 1 < nodes.size() ? k + 1 : 0];
+            if (in_plane_only && !(in_plane(a) && in_plane(b))) continue;
+            const bool ahead = (a < b) == (refs[i].which == 0);
+            uses_.push_back({{std::min(a, b), std::max(a, b)},
+                             static_cast<std::int32_t>(i),
+                             static_cast<std::int8_t>(ahead ? 1 : -1),
+                             side,
+                             level});
+        }
+    }
+    std::sort(uses_.begin(), uses_.end(), [](const Use& a, const Use& b) {
+        return std::pair(a.edge, a.local) < std::pair(b.edge, b.local);
+    });
+}
+
+/// A node of a piece that is not in the plane.
+NodeId CellCutter::far_node(const Use& use, std::span<const PieceRef> refs) const {
+    for (const NodeId node : pieces_.polygons[index(refs[index(use.local)].piece)]) {
+        if (!in_plane(node)) return node;
+    }
+    return use.edge[0];
+}
+
+/// Of an edge in the plane whose faces all rise from it, or all fall: whether the cell lies on both
+/// sides of it. It does where the lowest of the rising faces, going round from the right side of
+/// the edge, is one that the cell ends at.
+bool CellCutter::caps_on_both_sides(std::span<const Use> uses,
+                                    std::span<const PieceRef> refs) const {
+    for (const std::int8_t side : {kAbove, kBelow}) {
+        const Use* flattest = nullptr;
+        for (const Use& use : uses) {
+            if (use.side != side) continue;
+            if (flattest == nullptr) {
+                flattest = &use;
+                continue;
+            }
+            // seen along the edge, angles are counted from the right over the top to the left
+            const int turned = tetrahedron_sign(position(use.edge[0]), position(use.edge[1]),
+                                                position(far_node(*flattest, refs)),
+                                                position(far_node(use, refs)));
+            if (turned * side > 0) flattest = &use;
+        }
+        if (flattest == nullptr) continue;
+        return flattest->direction == (side == kAbove ? -1 : 1);
+    }
+    return false;
+}
+
+void CellCutter::collect_open_edges(std::span<const PieceRef> refs) {
+    open_.clear();
+    slits_.clear();
+    for (std::size_t begin = 0; begin < uses_.size();) {
+        std::size_t end = begin + 1;
+        while (end < uses_.size() && uses_[end].edge == uses_[begin].edge)
+            ++end;
+        const auto edge = uses_[begin].edge;
+        if (in_plane(edge[0]) && in_plane(edge[1])) {
+            int net = 0, above = 0, below = 0;
+            bool level = false;
+            for (std::size_t i = begin; i < end; ++i) {
+                if (uses_[i].side == kAbove) net += uses_[i].direction;
+                (uses_[i].side == kAbove ? above : below) += 1;
+                level = level || uses_[i].level;
+            }
+            for (int i = 0; i < std::abs(net); ++i) {
+                open_.push_back(net > 0 ? DirectedEdge{edge[0], edge[1]}
+                                        : DirectedEdge{edge[1], edge[0]});
+            }
+            const bool may_pass = net == 0 && !level && (above > 1 || below > 1);
+            if (may_pass && !std::binary_search(dissolved_.begin(), dissolved_.end(), edge) &&
+                caps_on_both_sides({uses_.data() + begin, end - begin}, refs)) {
+                slits_.push_back(edge);
+                open_.push_back({edge[0], edge[1]});
+                open_.push_back({edge[1], edge[0]});
+            }
+        }
+        begin = end;
+    }
+}
+
+/// Of the edges that leave the node where one arrives, the first clockwise from the way back: the
+/// one that bounds the same piece of the region, which lies to the left.
+std::size_t CellCutter::next_edge(const DirectedEdge& arriving,
+                                  const std::vector<bool>& taken) const {
+    const auto begin = static_cast<std::size_t>(
+        std::lower_bound(open_.begin(), open_.end(), arriving.to,
+                         [](const DirectedEdge& e, NodeId node) { return e.from < node; }) -
+        open_.begin());
+    std::size_t best = open_.size();
+    PlanePosition at{}, back{};
+    const auto half = [&](const PlanePosition& p) {
+        const int turned = exact::turn(at, back, p);
+        if (turned != 0) return turned < 0 ? 0 : 2;
+        const double along =
+            (p[0] - at[0]) * (back[0] - at[0]) + (p[1] - at[1]) * (back[1] - at[1]);
+        return along < 0 ? 1 : 3;
+    };
+    for (std::size_t e = begin; e < open_.size() && open_[e].from == arriving.to; ++e) {
+        if (taken[e]) continue;
+        if (best == open_.size()) {
+            best = e;
+            continue;
+        }
+        at = view_(position(arriving.to));
+        back = view_(position(arriving.from));
+        const PlanePosition p = view_(position(open_[best].to)), q = view_(position(open_[e].to));
+        const int first = half(p), second = half(q);
+        if (second < first || (second == first && exact::turn(at, q, p) < 0)) best = e;
+    }
+    return best;
+}
+
+void CellCutter::trace_loops() {
+    loops_.clear();
+    std::sort(open_.begin(), open_.end(), [](const DirectedEdge& a, const DirectedEdge& b) {
+        return std::pair(a.from, a.to) < std::pair(b.from, b.to);
+    });
+    std::vector<bool> taken(open_.size(), false);
+    std::vector<Position> positions;
+    for (std::size_t start = 0; start < open_.size(); ++start) {
+        if (taken[start]) continue;
+        Loop& loop = loops_.emplace_back();
+        // As many edges arrive at each node as leave it: a walk can only end where it began.
+        for (std::size_t e = start; e < open_.size(); e = next_edge(open_[e], taken)) {
+            if (taken[e]) break;
+            taken[e] = true;
+            positions.push_back(position(open_[e].from));
+            loop.push_back({open_[e].from, view_(positions.back())});
+            if (open_[e].to == open_[start].from) {
+                // further on only where the region goes on round this node
+                const bool tied = std::count_if(open_.begin(), open_.end(), [&](const auto& o) {
+                                      return o.from == open_[start].from;
+                                  }) > 1;
+                if (!tied) break;
+                taken[start] = false;
+                const std::size_t next = next_edge(open_[e], taken);
+                taken[start] = true;
+                if (next == start) break;
+            }
+        }
+    }
+    rounding_ = rounding_of(positions);
+}
+
+}  // namespace realmodel::cutting

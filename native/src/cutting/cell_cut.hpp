@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "pieces.hpp"
+#include "triangulate.hpp"
+
+namespace realmodel::cutting {
+
+/// How a plane divides one cell.
+struct CellCut {
+    Polygons caps;  ///< counter-clockwise seen from above
+    /// The part of the cell that each of its pieces belongs to, then, cap after cap, the part below
+    /// it and the part above it. Parts are counted in the order of their first piece.
+    std::vector<std::int32_t> part;
+    std::vector<std::int8_t> part_side;
+};
+
+/// Closes the parts of cells where a plane has cut them.
+///
+/// The edges in the plane that the pieces above it leave open bound the caps. Along an edge of the
+/// cell that only touches the plane nothing is open; whether the caps pass on both of its sides or
+/// on neither is told by which of the two faces there is steeper.
+class CellCutter {
+public:
+    CellCutter(const ComplexView& model, const std::vector<std::int8_t>& sides,
+               const Crossings& crossings, const Pieces& pieces, const Position& normal)
+        : model_(model), sides_(sides), crossings_(crossings), pieces_(pieces), view_(normal) {}
+
+    /// The caps alone.
+    void cap(std::span<const PieceRef> refs, CellCut& result);
+    /// Caps and parts.
+    void cut(std::span<const PieceRef> refs, CellCut& result);
+
+private:
+    /// One edge of one piece, as its cell sees it.
+    struct Use {
+        std::array<NodeId, 2> edge;  ///< lesser, greater node
+        std::int32_t local;          ///< number among the cell's pieces
+        std::int8_t direction;       ///< 1 from lesser to greater, -1 back
+        std::int8_t side;
+        bool level;  ///< the piece lies in the plane
+    };
+    struct DirectedEdge {
+        NodeId from, to;
+    };
+
+    Position position(NodeId node) const;
+    bool in_plane(NodeId node) const {
+        return crossings_.is_crossing(node) || sides_[index(node)] == kOn;
+    }
+    void collect_uses(std::span<const PieceRef> refs, bool in_plane_only);
+    void close(std::span<const PieceRef> refs, CellCut& result);
+    void collect_open_edges(std::span<const PieceRef> refs);
+    bool caps_on_both_sides(std::span<const Use> uses, std::span<const PieceRef> refs) const;
+    NodeId far_node(const Use& use, std::span<const PieceRef> refs) const;
+    void trace_loops();
+    void take_whole_loops(Polygons& caps) const;
+    std::size_t next_edge(const DirectedEdge& arriving, const std::vector<bool>& taken) const;
+    bool find_parts(std::span<const PieceRef> refs, CellCut& result);
+    bool use_edges_twice(const std::vector<std::int32_t>& root, std::int32_t pieces);
+    void attach_shells(std::span<const PieceRef> refs, CellCut& result,
+                       std::vector<std::int32_t>& root);
+
+    const ComplexView& model_;
+    const std::vector<std::int8_t>& sides_;
+    const Crossings& crossings_;
+    const Pieces& pieces_;
+    View view_;
+
+    std::vector<Use> uses_;
+    std::vector<DirectedEdge> open_;
+    std::vector<std::array<NodeId, 2>> slits_, dissolved_;
+    std::vector<Loop> loops_;
+    bool whole_loops_ = false;
+    double rounding_ = 0;
+};
+
+}  // namespace realmodel::cutting

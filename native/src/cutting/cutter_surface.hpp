@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "box_tree.hpp"
+#include "realmodel/cutting/cut.hpp"
+
+namespace realmodel::cutting {
+
+/// Triangles that cut a model. They turn counter-clockwise seen from above (or outside).
+struct CutterSurface {
+    std::vector<Position> vertices;
+    std::vector<std::array<std::int32_t, 3>> triangles;
+};
+
+/// A surface as a user gives it: checked, and each connected part turned one way: upward on the
+/// whole, outward where it is closed.
+/// @throws InputError kinds not_finite, bad_index, no_triangles, branching (an edge of three or
+///         more triangles; items: they), one_sided (items: two neighbours)
+CutterSurface oriented_surface(const TriangleView& surface);
+
+/// The boundary of a block, turned outward.
+/// @throws InputError kind no_block where the model has no cell of it
+CutterSurface block_boundary(const ComplexView& model, std::int32_t block);
+
+/// On which side of a surface a place lies that is not on it: the side of its nearest triangle.
+std::int8_t side_of_nearest(const CutterSurface& surface, const Position& p);
+
+/// A face divided into triangles, always the same ones for the same face: numbers of its corners.
+void triangulate_face(const ComplexView& model, std::size_t face,
+                      std::vector<std::array<std::int32_t, 3>>& triangles);
+
+}  // namespace realmodel::cutting

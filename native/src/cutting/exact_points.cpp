@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exact_points.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "exact/arithmetic.hpp"
+
+namespace realmodel::cutting {
+
+namespace {
+
+using Fractions = ExactPoints::Fractions;
+
+Fractions minus(const Fractions& a, const Fractions& b) {
+    return {mpq_class(a[0] - b[0]), mpq_class(a[1] - b[1]), mpq_class(a[2] - b[2])};
+}
+
+mpq_class determinant(const Fractions& u, const Fractions& v, const Fractions& w) {
+    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
+           u[2] * (v[0] * w[1] - v[1] * w[0]);
+}
+
+mpq_class cross(const Fractions& u, const Fractions& v, std::size_t axis) {
+    const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
+    return u[k] * v[l] - u[l] * v[k];
+}
+
+}  // namespace
+
+std::size_t ExactPoints::Hash::operator()(const Position& p) const {
+    std::uint64_t hash = 0;
+    for (const double x : p) {
+        hash ^= std::bit_cast<std::uint64_t>(x + 0.0);  // both zeros alike
+        hash *= 0x9e3779b97f4a7c15ULL;
+        hash ^= hash >> 29;
+    }
+    return static_cast<std::size_t>(hash);
+}
+
+NodeId ExactPoints::enter(const Position& rounded, std::unique_ptr<Fractions> exact) {
+    const auto [begin, end] = known_.equal_range(rounded);
+    for (auto found = begin; found != end; ++found) {
+        const auto& other = exact_[index(found->second)];
+        if (exact == nullptr ? other == nullptr : other != nullptr && *other == *exact)
+            return found->second;
+    }
+    const auto number = static_cast<NodeId>(rounded_.size());
+    rounded_.push_back(rounded);
+    exact_.push_back(std::move(exact));
+    known_.emplace(rounded, number);
+    return number;
+}
+
+NodeId ExactPoints::add(const Position& p) {
+    return enter({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0}, nullptr);
+}
+
+NodeId ExactPoints::add(Fractions&& p) {
+    Position rounded;
+    bool doubles = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        p[k].canonicalize();
+        rounded[k] = exact::nearest_double(p[k].get_num(), p[k].get_den(), 0);
+        doubles = doubles && mpq_class(rounded[k]) == p[k];
+    }
+    return enter(rounded, doubles ? nullptr : std::make_unique<Fractions>(std::move(p)));
+}
+
+Fractions ExactPoints::exact(NodeId p) const {
+    if (!is_double(p)) return *exact_[index(p)];
+    const Position& r = rounded(p);
+    return {mpq_class(r[0]), mpq_class(r[1]), mpq_class(r[2])};
+}
+
+/// A bound of how far the rounded differences of these points may be from the true ones.
+double ExactPoints::slack(NodeId a, NodeId b, NodeId c, NodeId d) const {
+    double largest = 0;
+    for (const NodeId p : {a, b, c, d}) {
+        if (is_double(p)) continue;
+        for (const double x : rounded(p))
+            largest = std::max(largest, std::abs(x));
+    }
+    return 0x1p-51 * largest;
+}
+
+int ExactPoints::orientation(NodeId a, NodeId b, NodeId c, NodeId d) const {
+    if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;
+    const Position &o = rounded(a), &p = rounded(b), &q = rounded(c), &r = rounded(d);
+    Position u, v, w;
+    double largest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        u[k] = p[k] - o[k];
+        v[k] = q[k] - o[k];
+        w[k] = r[k] - o[k];
+        largest = std::max({largest, std::abs(u[k]), std::abs(v[k]), std::abs(w[k])});
+    }
+    const double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2],
+                 z = u[0] * v[1] - u[1] * v[0];
+    const double value = x * w[0] + y * w[1] + z * w[2];
+    const double size = (std::abs(u[1] * v[2]) + std::abs(u[2] * v[1])) * std::abs(w[0]) +
+                        (std::abs(u[2] * v[0]) + std::abs(u[0] * v[2])) * std::abs(w[1]) +
+                        (std::abs(u[0] * v[1]) + std::abs(u[1] * v[0])) * std::abs(w[2]);
+    // six products of three differences, each of which may be off by `off`
+    const double off = slack(a, b, c, d);
+    const double error = 0x1p-48 * size + 24 * off * (largest + off) * (largest + off) + 1e-280;
+    if (value > error) return 1;
+    if (value < -error) return -1;
+    const Fractions e = exact(a);
+    return sgn(determinant(minus(exact(b), e), minus(exact(c), e), minus(exact(d), e)));
+}
+
+int ExactPoints::turn(std::size_t axis, NodeId a, NodeId b, NodeId c) const {
+    if (a == b || a == c || b == c) return 0;
+    const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
+    const Position &o = rounded(a), &p = rounded(b), &q = rounded(c);
+    const double left = (p[k] - o[k]) * (q[l] - o[l]), right = (p[l] - o[l]) * (q[k] - o[k]);
+    const double largest = std::max({std::abs(p[k] - o[k]), std::abs(q[l] - o[l]),
+                                     std::abs(p[l] - o[l]), std::abs(q[k] - o[k])});
+    const double off = slack(a, b, c, a);
+    const double error =
+        0x1p-49 * (std::abs(left) + std::abs(right)) + 8 * off * (largest + off) + 1e-280;
+    if (left - right > error) return 1;
+    if (left - right < -error) return -1;
+    const Fractions e = exact(a);
+    return sgn(cross(minus(exact(b), e), minus(exact(c), e), axis));
+}
+
+int ExactPoints::compare(std::size_t axis, NodeId a, NodeId b) const {
+    if (a == b) return 0;
+    const double x = rounded(a)[axis], y = rounded(b)[axis];
+    if (x != y) return x < y ? -1 : 1;  // rounding keeps the order
+    if (is_double(a) && is_double(b)) return 0;
+    return cmp(exact(a)[axis], exact(b)[axis]);
+}
+
+int ExactPoints::compare(NodeId a, NodeId b) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int order = compare(axis, a, b);
+        if (order != 0) return order;
+    }
+    return 0;
+}
+
+NodeId ExactPoints::crossing(NodeId p, NodeId q, NodeId a, NodeId b, NodeId c) {
+    if (compare(p, q) > 0) std::swap(p, q);
+    const Fractions o = exact(a), u = minus(exact(b), o), v = minus(exact(c), o);
+    const Fractions start = exact(p), way = minus(exact(q), start);
+    const mpq_class from = determinant(u, v, minus(start, o)), change = determinant(u, v, way);
+    const mpq_class share = -from / change;
+    return add(Fractions{mpq_class(start[0] + share * way[0]), mpq_class(start[1] + share * way[1]),
+                         mpq_class(start[2] + share * way[2])});
+}
+
+NodeId ExactPoints::crossing(std::size_t axis, NodeId p, NodeId q, NodeId a, NodeId b) {
+    const Fractions o = exact(a), u = minus(exact(b), o);
+    const Fractions start = exact(p), way = minus(exact(q), start);
+    const mpq_class from = cross(u, minus(start, o), axis), change = cross(u, way, axis);
+    const mpq_class share = -from / change;
+    return add(Fractions{mpq_class(start[0] + share * way[0]), mpq_class(start[1] + share * way[1]),
+                         mpq_class(start[2] + share * way[2])});
+}
+
+NodeId ExactPoints::dropped(std::size_t axis, NodeId p, NodeId a, NodeId b, NodeId c) {
+    const Fractions o = exact(a), u = minus(exact(b), o), v = minus(exact(c), o);
+    Fractions at = exact(p);
+    const mpq_class off = determinant(u, v, minus(at, o)), normal = cross(u, v, axis);
+    at[axis] -= off / normal;
+    return add(std::move(at));
+}
+
+NodeId ExactPoints::dropped(std::size_t axis, NodeId p, NodeId a, NodeId b) {
+    const Fractions o = exact(a), u = minus(exact(b), o), at = exact(p);
+    const mpq_class share = (at[axis] - o[axis]) / u[axis];
+    return add(Fractions{mpq_class(o[0] + share * u[0]), mpq_class(o[1] + share * u[1]),
+                         mpq_class(o[2] + share * u[2])});
+}
+
+}  // namespace realmodel::cutting

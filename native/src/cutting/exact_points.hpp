@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <gmpxx.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "polygons.hpp"
+
+namespace realmodel::cutting {
+
+/// Points of space, each known exactly, equal ones once. Signs are told by floating point where its
+/// error bound allows it, else by fractions.
+class ExactPoints {
+public:
+    using Fractions = std::array<mpq_class, 3>;
+
+    /// The number of a point given by doubles.
+    NodeId add(const Position& p);
+    /// The number of a point given by fractions.
+    NodeId add(Fractions&& p);
+
+    std::size_t size() const { return rounded_.size(); }
+    /// The doubles nearest to the point.
+    const Position& rounded(NodeId p) const { return rounded_[index(p)]; }
+    Fractions exact(NodeId p) const;
+
+    /// Which side of the plane of a, b, c has d: 1 where a, b, c turn counter-clockwise seen from
+    /// d, -1 the other, 0 on it.
+    int orientation(NodeId a, NodeId b, NodeId c, NodeId d) const;
+    /// Which way a, b, c turn in the view along `axis` from above: 1 left, -1 right, 0 straight on.
+    int turn(std::size_t axis, NodeId a, NodeId b, NodeId c) const;
+    /// Points on a line are in this order along it, or against it.
+    int compare(NodeId a, NodeId b) const;
+    int compare(std::size_t axis, NodeId a, NodeId b) const;
+
+    /// Where the line through p and q passes through the plane of a, b and c, which it does.
+    NodeId crossing(NodeId p, NodeId q, NodeId a, NodeId b, NodeId c);
+    /// Where the line through p and q passes through the one through a and b, in the view along
+    /// `axis`; all four lie in one plane.
+    NodeId crossing(std::size_t axis, NodeId p, NodeId q, NodeId a, NodeId b);
+    /// The point of a plane straight below or above p, seen along `axis`.
+    NodeId dropped(std::size_t axis, NodeId p, NodeId a, NodeId b, NodeId c);
+    /// The point of the line through a and b that has p's coordinate `axis`.
+    NodeId dropped(std::size_t axis, NodeId p, NodeId a, NodeId b);
+
+private:
+    struct Hash {
+        std::size_t operator()(const Position& p) const;
+    };
+    NodeId enter(const Position& rounded, std::unique_ptr<Fractions> exact);
+    double slack(NodeId a, NodeId b, NodeId c, NodeId d) const;
+    bool is_double(NodeId p) const { return exact_[index(p)] == nullptr; }
+
+    std::vector<Position> rounded_;
+    std::vector<std::unique_ptr<Fractions>> exact_;  ///< none where the doubles are exact
+    std::unordered_multimap<Position, NodeId, Hash> known_;
+};
+
+}  // namespace realmodel::cutting

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "plane_sides.hpp"
+#include "polygons.hpp"
+#include "triangulate.hpp"
+
+namespace realmodel::cutting {
+
+/// Parts of one face, each on one side of the plane.
+struct FaceParts {
+    Polygons polygons;  ///< turning as the face does
+    std::vector<std::int8_t> sides;
+
+    void clear() {
+        polygons.clear();
+        sides.clear();
+    }
+};
+
+/// Divides faces that have corners on both sides of a plane.
+///
+/// Most faces change sides twice: the line between the two places divides them. Others (walls need
+/// not be convex) are divided as their triangulation is, and the parts of the triangles joined
+/// again: which places a cut joins follows from the triangles alone, so that the parts fit together
+/// whatever rounding did to the face.
+class FaceSplitter {
+public:
+    FaceSplitter(const ComplexView& model, const std::vector<std::int8_t>& sides,
+                 const Crossings& crossings)
+        : model_(model), sides_(sides), crossings_(crossings) {}
+
+    void split(std::span<const NodeId> face, FaceParts& parts);
+
+private:
+    bool split_in_two(std::span<const NodeId> face, FaceParts& parts);
+    void split_by_triangles(std::span<const NodeId> face, FaceParts& parts);
+    std::int8_t side(NodeId v) const { return sides_[index(v)]; }
+
+    const ComplexView& model_;
+    const std::vector<std::int8_t>& sides_;
+    const Crossings& crossings_;
+    std::vector<NodeId> cycle_;
+};
+
+}  // namespace realmodel::cutting

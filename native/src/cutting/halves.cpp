@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "halves.hpp"
+
+#include <algorithm>
+
+#include "strata/parallel_chunks.hpp"
+#include "strata/volumes.hpp"
+
+namespace realmodel::cutting {
+
+namespace {
+
+/// Numbers nodes anew in the order in which they come up.
+class Renumbering {
+public:
+    Renumbering(const ComplexView& model, const std::vector<Position>& new_positions,
+                std::vector<Position>& vertices)
+        : model_(model),
+          new_positions_(new_positions),
+          vertices_(vertices),
+          number_(model.vertex_count() + new_positions.size(), -1) {}
+
+    std::int32_t operator()(NodeId node) {
+        auto& number = number_[index(node)];
+        if (number < 0) {
+            number = static_cast<std::int32_t>(vertices_.size());
+            const std::size_t own = model_.vertex_count();
+            vertices_.push_back(index(node) < own ? model_.vertex(node)
+                                                  : new_positions_[index(node) - own]);
+        }
+        return number;
+    }
+
+private:
+    const ComplexView& model_;
+    const std::vector<Position>& new_positions_;
+    std::vector<Position>& vertices_;
+    std::vector<std::int32_t> number_;
+};
+
+void assemble(const ComplexView& model, const std::vector<Position>& new_positions,
+              const Pieces& pieces, const PieceParts& parts, const std::vector<HalfCell>& cells,
+              std::int8_t half, strata::CellComplex& complex, std::vector<std::int32_t>& origin,
+              const Progress* progress) {
+    std::vector<std::int32_t> number(cells.size(), -1);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (cells[i].side != half) continue;
+        number[i] = static_cast<std::int32_t>(origin.size());
+        origin.push_back(cells[i].cell);
+        complex.cell_block.push_back(model.block(cells[i].cell));
+    }
+    Renumbering renumbered(model, new_positions, complex.vertices);
+    complex.face_offsets.push_back(0);
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        strata::poll(progress, p);
+        std::array<std::int32_t, 2> own{-1, -1};
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (parts[p][k] >= 0) own[k] = number[index(parts[p][k])];
+        }
+        if (own[0] < 0 && own[1] < 0) continue;
+        const auto nodes = pieces.polygons[p];
+        const bool turned = own[0] < 0;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            complex.face_vertices.push_back(
+                renumbered(turned ? nodes[nodes.size() - 1 - i] : nodes[i]));
+        }
+        complex.face_offsets.push_back(static_cast<std::int64_t>(complex.face_vertices.size()));
+        complex.face_cells.push_back(turned ? std::array{own[1], -1} : own);
+        const bool laid_bare = (own[0] < 0 || own[1] < 0) && pieces.cells[p][1] >= 0;
+        complex.face_surface.push_back(laid_bare ? strata::kCutFace
+                                                 : model.face_surface[index(pieces.face[p])]);
+    }
+}
+
+}  // namespace
+
+Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
+                    const Pieces& pieces, const PieceParts& parts,
+                    const std::vector<HalfCell>& half_cells, int threads, Progress* progress) {
+    Cut cut;
+    strata::parallel_chunks(3, threads, progress, [&](std::size_t which) {
+        if (which == 0) {
+            assemble(model, new_positions, pieces, parts, half_cells, kBelow, cut.below,
+                     cut.below_cells, progress);
+        } else if (which == 1) {
+            assemble(model, new_positions, pieces, parts, half_cells, kAbove, cut.above,
+                     cut.above_cells, progress);
+        } else {
+            cut.section = assemble_section(model, new_positions, pieces);
+        }
+    });
+    for (strata::CellComplex* half : {&cut.below, &cut.above})
+        half->volumes = strata::block_volumes(*half, model.blocks, threads, progress);
+    return cut;
+}
+
+Section assemble_section(const ComplexView& model, const std::vector<Position>& new_positions,
+                         const Pieces& pieces) {
+    Section section;
+    Renumbering renumbered(model, new_positions, section.vertices);
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        if (!pieces.in_section(p)) continue;
+        const auto& sides = pieces.sides[p];
+        const bool turned = sides[0] == kAbove || sides[1] == kBelow;
+        const auto nodes = pieces.polygons[p];
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            section.polygon_vertices.push_back(
+                renumbered(turned ? nodes[nodes.size() - 1 - i] : nodes[i]));
+        }
+        section.offsets.push_back(static_cast<std::int64_t>(section.polygon_vertices.size()));
+        const auto& cells = pieces.cells[p];
+        section.cells.push_back(turned ? std::array{cells[1], cells[0]} : cells);
+    }
+    return section;
+}
+
+}  // namespace realmodel::cutting

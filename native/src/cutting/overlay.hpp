@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "exact_points.hpp"
+#include "realmodel/base/progress.hpp"
+
+namespace realmodel::cutting {
+
+/// A part of a triangle that nothing crosses. The outline turns as the triangle does, holes follow
+/// the other way round.
+struct Region {
+    std::int32_t triangle;
+    std::vector<std::vector<NodeId>> loops;
+};
+
+/// Triangles that cross each other, divided where they do so, exactly: every region's edges are
+/// edges of all regions that meet there, and every point of one triangle on another is a node of
+/// both, be the position as special as it may. The triangles of one group are taken not to cross
+/// each other.
+class Overlay {
+public:
+    explicit Overlay(ExactPoints& points) : points_(points) {}
+
+    /// The number of the triangle. One without area stays an edge that others share.
+    std::int32_t add(const std::array<NodeId, 3>& corners);
+    /// Finds where two triangles meet.
+    void meet(std::int32_t one, std::int32_t other);
+    /// Divides all triangles. With it no more can be added.
+    void divide(const Progress* progress);
+
+    const std::vector<Region>& regions() const { return regions_; }
+    const std::array<NodeId, 3>& corners(std::int32_t triangle) const {
+        return triangles_[index(triangle)].corners;
+    }
+    bool has_area(std::int32_t triangle) const { return triangles_[index(triangle)].turned != 0; }
+    /// A corner of a triangle to the left of a line in it.
+    NodeId left_corner(std::int32_t triangle, NodeId from, NodeId to) const;
+
+private:
+    struct Segment {
+        std::array<NodeId, 2> ends;  ///< in order
+        std::int32_t other;          ///< the triangle that it is shared with
+        auto operator<=>(const Segment&) const = default;
+    };
+    struct Triangle {
+        std::array<NodeId, 3> corners;
+        std::size_t axis = 0;
+        int turned = 0;  ///< which way it turns seen along its axis, 0: no area
+        std::set<NodeId> points;
+        std::set<Segment> segments;
+    };
+
+    int turn(const Triangle& t, NodeId a, NodeId b, NodeId c) const {
+        return t.turned * points_.turn(t.axis, a, b, c);
+    }
+    void share(std::int32_t one, std::int32_t other, NodeId p, NodeId q);
+    void meet_in_plane(std::int32_t one, std::int32_t other);
+    void clip_edges(std::int32_t edges_of, std::int32_t into);
+    bool on_segment(NodeId p, NodeId a, NodeId b) const;
+    std::vector<NodeId> nodes_on(const Triangle& t, NodeId a, NodeId b) const;
+    void spread_points(const Progress* progress);
+    void cross_segments(std::int32_t triangle);
+    void find_regions(std::int32_t triangle);
+
+    ExactPoints& points_;
+    std::vector<Triangle> triangles_;
+    std::map<std::array<NodeId, 2>, std::vector<std::int32_t>> of_edge_;
+    std::vector<Region> regions_;
+};
+
+}  // namespace realmodel::cutting

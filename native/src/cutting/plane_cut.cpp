@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A model cut by a plane: sides of vertices, places on edges, parts of faces, caps and parts of
+// cells, halves.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <utility>
+
+#include "cell_cut.hpp"
+#include "distinct.hpp"
+#include "face_splitting.hpp"
+#include "halves.hpp"
+#include "model_check.hpp"
+#include "strata/parallel_chunks.hpp"
+
+namespace realmodel::cutting {
+
+namespace {
+
+using strata::parallel_chunks;
+using strata::poll;
+
+constexpr std::size_t kFaces = 1 << 14;
+constexpr std::size_t kCells = 1 << 10;
+constexpr std::uint8_t kHasAbove = 1, kHasBelow = 2, kCut = kHasAbove | kHasBelow;
+/// Vertices this many times farther from the plane than they are precise may be taken to lie on it
+/// where otherwise a part would have no thickness in doubles.
+constexpr double kNear = 16;
+
+std::size_t chunks(std::size_t count, std::size_t size) {
+    return (count + size - 1) / size;
+}
+
+class PlaneCutter {
+public:
+    PlaneCutter(const ComplexView& model, const Plane& plane, int threads, Progress* progress)
+        : model_(model), distance_(plane), threads_(threads), progress_(progress) {
+        sides_ = vertex_sides(model, distance_, threads, progress);
+    }
+
+    Section section() {
+        divide_faces(false);
+        cut_cells(false);
+        return assemble_section(model_, positions(), pieces_);
+    }
+
+    Cut cut() {
+        do {
+            divide_faces(true);
+            report(0.4, "closing the parts");
+            cut_cells(true);
+        } while (settle());
+        make_distinct();
+        report(0.7, "putting the halves together");
+        PieceParts parts;
+        std::vector<HalfCell> half_cells;
+        number_cells(parts, half_cells);
+        return assemble_halves(model_, positions(), pieces_, parts, half_cells, threads_,
+                               progress_);
+    }
+
+private:
+    void report(double share, const char* text) {
+        if (progress_ == nullptr) return;
+        progress_->check();
+        progress_->report(share, text);
+    }
+    const std::vector<Position>& positions() {
+        new_positions_.clear();
+        for (std::size_t i = 0; i < crossings_->size(); ++i)
+            new_positions_.push_back(crossings_->position(i));
+        return new_positions_;
+    }
+
+    void mark_sides();
+    void find_crossings();
+    void divide_faces(bool all);
+    std::int8_t level_side(std::size_t face, std::size_t which, int turned) const;
+    void cut_cells(bool parts);
+    bool settle();
+    bool settle_part(std::int32_t part, const CellCut& cut, std::span<const PieceRef> refs);
+    void make_distinct();
+    void number_cells(PieceParts& parts, std::vector<HalfCell>& half_cells) const;
+    Position position(NodeId node) const {
+        return crossings_->is_crossing(node)
+                   ? crossings_->position(index(node - crossings_->first_node()))
+                   : model_.vertex(node);
+    }
+
+    const ComplexView& model_;
+    PlaneDistance distance_;
+    int threads_;
+    Progress* progress_;
+    std::vector<std::int8_t> sides_;
+    std::vector<std::uint8_t> face_sides_, cell_sides_;
+    std::unique_ptr<Crossings> crossings_;
+    std::vector<Position> new_positions_;
+    Pieces pieces_;
+    CellPieces cell_pieces_;
+    std::vector<CellCut> cell_cuts_;
+    std::size_t first_cap_ = 0;
+    std::set<std::pair<std::int32_t, std::size_t>> turned_;  ///< faces in the plane, and their cell
+};
+
+/// On which sides of the plane faces and cells have corners.
+void PlaneCutter::mark_sides() {
+    face_sides_.assign(model_.face_count(), 0);
+    parallel_chunks(chunks(face_sides_.size(), kFaces), threads_, progress_, [&](std::size_t c) {
+        for (std::size_t f = c * kFaces; f < std::min(face_sides_.size(), (c + 1) * kFaces); ++f) {
+            std::uint8_t found = 0;
+            for (const NodeId v : model_.face(f)) {
+                const std::int8_t side = sides_[index(v)];
+                found |= side == kAbove ? kHasAbove : side == kBelow ? kHasBelow : 0;
+            }
+            face_sides_[f] = found;
+        }
+    });
+    cell_sides_.assign(model_.cell_block.size(), 0);
+    for (std::size_t f = 0; f < face_sides_.size(); ++f) {
+        poll(progress_, f);
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (model_.cell(f, k) >= 0) cell_sides_[index(model_.cell(f, k))] |= face_sides_[f];
+        }
+    }
+}
+
+void PlaneCutter::find_crossings() {
+    for (;;) {
+        mark_sides();
+        std::vector<std::array<NodeId, 2>> edges;
+        for (std::size_t f = 0; f < face_sides_.size(); ++f) {
+            poll(progress_, f);
+            if (face_sides_[f] != kCut) continue;
+            const auto face = model_.face(f);
+            for (std::size_t i = 0; i < face.size(); ++i) {
+                const NodeId a = face[i], b = face[i + 1 < face.size() ? i + 1 : 0];
+                if (sides_[index(a)] * sides_[index(b)] < 0)
+                    edges.push_back({std::min(a, b), std::max(a, b)});
+            }
+        }
+        crossings_ = std::make_unique<Crossings>(model_, distance_, std::move(edges));
+        // An edge that ends just beside the plane may be cut in the very double where it ends.
+        bool moved = false;
+        for (std::size_t i = 0; i < crossings_->size(); ++i) {
+            for (const NodeId v : crossings_->edge(i)) {
+                const Position p = model_.vertex(v);
+                if (p != crossings_->position(i) ||
+                    std::abs(distance_.at(p).high) > kNear * distance_.rounding(p))
+                    continue;
+                sides_[index(v)] = kOn;
+                moved = true;
+            }
+        }
+        if (!moved) return;
+    }
+}
+
+/// The side of the part of a cell that a face in the plane bounds: the cell's, or where it has
+/// parts on both the one that the face turns to.
+std::int8_t PlaneCutter::level_side(std::size_t face, std::size_t which, int turned) const {
+    const std::int32_t cell = model_.cell(face, which);
+    if (cell < 0) return kOn;
+    const std::uint8_t sides = cell_sides_[index(cell)];
+    if (sides == kCut) {
+        const bool against = turned_.contains({static_cast<std::int32_t>(face), which});
+        return ((turned > 0) == (which == 0)) != against ? kBelow : kAbove;
+    }
+    return sides == kHasAbove ? kAbove : kBelow;
+}
+
+/// Divides the faces that the plane passes through. Where `all` is false, faces are left out that
+/// no section can need.
+void PlaneCutter::divide_faces(bool all) {
+    report(0.1, "finding where edges are cut");
+    find_crossings();
+    const std::size_t count = chunks(model_.face_count(), kFaces);
+    std::vector<Pieces> found(count);
+    const auto is_cut = [&](std::int32_t cell) {
+        return cell >= 0 && cell_sides_[index(cell)] == kCut;
+    };
+    parallel_chunks(count, threads_, progress_, [&](std::size_t c) {
+        FaceSplitter splitter(model_, sides_, *crossings_);
+        FaceParts parts;
+        std::vector<Position> corners;
+        Pieces& own = found[c];
+        for (std::size_t f = c * kFaces; f < std::min(model_.face_count(), (c + 1) * kFaces); ++f) {
+            const std::array cells{model_.cell(f, 0), model_.cell(f, 1)};
+            const auto face = model_.face(f);
+            if (!all && face_sides_[f] != 0 && face_sides_[f] != kCut) {
+                if (!is_cut(cells[0]) && !is_cut(cells[1])) continue;
+                const auto on = std::count_if(face.begin(), face.end(),
+                                              [&](NodeId v) { return sides_[index(v)] == kOn; });
+                if (on < 2) continue;
+            }
+            parts.clear();
+            if (face_sides_[f] == kCut) {
+                splitter.split(face, parts);
+            } else {
+                parts.polygons.add(face);
+                parts.sides.push_back(face_sides_[f] == kHasAbove   ? kAbove
+                                      : face_sides_[f] == kHasBelow ? kBelow
+                                                                    : kOn);
+            }
+            for (std::size_t p = 0; p < parts.sides.size(); ++p) {
+                if (parts.polygons[p].size() < 3) continue;
+                own.polygons.add(parts.polygons[p]);
+                own.face.push_back(static_cast<std::int32_t>(f));
+                own.cells.push_back(cells);
+                std::array<std::int8_t, 2> sides{parts.sides[p],
+                                                 cells[1] < 0 ? kOn : parts.sides[p]};
+                if (parts.sides[p] == kOn) {
+                    corners.clear();
+                    for (const NodeId node : parts.polygons[p])
+                        corners.push_back(position(node));
+                    const Position normal = polygon_normal(corners);
+                    double turned = 0;
+                    for (std::size_t k = 0; k < 3; ++k)
+                        turned += normal[k] * distance_.normal()[k];
+                    sides = {level_side(f, 0, turned > 0 ? 1 : -1),
+                             level_side(f, 1, turned > 0 ? 1 : -1)};
+                }
+                own.sides.push_back(sides);
+                own.level.push_back(parts.sides[p] == kOn ? 1 : 0);
+            }
+        }
+    });
+    pieces_ = {};
+    for (const Pieces& own : found) {
+        for (std::size_t p = 0; p < own.size(); ++p)
+            pieces_.polygons.add(own.polygons[p]);
+        pieces_.face.insert(pieces_.face.end(), own.face.begin(), own.face.end());
+        pieces_.cells.insert(pieces_.cells.end(), own.cells.begin(), own.cells.end());
+        pieces_.sides.insert(pieces_.sides.end(), own.sides.begin(), own.sides.end());
+        pieces_.level.insert(pieces_.level.end(), own.level.begin(), own.level.end());
+    }
+    first_cap_ = pieces_.size();
+}
+
+void PlaneCutter::cut_cells(bool parts) {
+    cell_pieces_ = {};
+    std::vector<std::int32_t> number(cell_sides_.size(), -1);
+    for (std::size_t c = 0; c < cell_sides_.size(); ++c) {
+        if (cell_sides_[c] != kCut) continue;
+        number[c] = static_cast<std::int32_t>(cell_pieces_.cells.size());
+        cell_pieces_.cells.push_back(static_cast<std::int32_t>(c));
+    }
+    const std::size_t count = cell_pieces_.cells.size();
+    const auto each = [&](const auto& visit) {
+        for (std::size_t p = 0; p < first_cap_; ++p) {
+            for (std::int32_t k = 0; k < 2; ++k) {
+                const std::int32_t cell = pieces_.cells[p][index(k)];
+                if (cell >= 0 && number[index(cell)] >= 0)
+                    visit(index(number[index(cell)]), PieceRef{static_cast<std::int32_t>(p), k});
+            }
+        }
+    };
+    auto& offsets = cell_pieces_.offsets;
+    offsets.assign(count + 1, 0);
+    each([&](std::size_t cell, PieceRef) { ++offsets[cell + 1]; });
+    for (std::size_t i = 0; i < count; ++i)
+        offsets[i + 1] += offsets[i];
+    cell_pieces_.refs.resize(static_cast<std::size_t>(offsets[count]));
+    std::vector<std::int64_t> at(offsets.begin(), offsets.end() - 1);
+    each([&](std::size_t cell, PieceRef ref) {
+        cell_pieces_.refs[static_cast<std::size_t>(at[cell]++)] = ref;
+    });
+
+    cell_cuts_.assign(count, {});
+    parallel_chunks(chunks(count, kCells), threads_, progress_, [&](std::size_t c) {
+        CellCutter cutter(model_, sides_, *crossings_, pieces_, distance_.normal());
+        for (std::size_t i = c * kCells; i < std::min(count, (c + 1) * kCells); ++i) {
+            if (parts) {
+                cutter.cut(cell_pieces_[i], cell_cuts_[i]);
+            } else {
+                cutter.cap(cell_pieces_[i], cell_cuts_[i]);
+            }
+        }
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+        const Polygons& caps = cell_cuts_[i].caps;
+        for (std::size_t c = 0; c < caps.size(); ++c) {
+            pieces_.polygons.add(caps[c]);
+            pieces_.face.push_back(-1);
+            pieces_.cells.push_back({cell_pieces_.cells[i], cell_pieces_.cells[i]});
+            pieces_.sides.push_back({kBelow, kAbove});
+            pieces_.level.push_back(1);
+        }
+    }
+}
+
+/// Where a part of a cell has no thickness in doubles: gives the faces in the plane that it
+/// consists of to the other side, or takes its vertices to lie on the plane, if they do but for
+/// some rounding (true: to be done again), else moves a corner of its cap by as little as possible.
+bool PlaneCutter::settle_part(std::int32_t part, const CellCut& cut,
+                              std::span<const PieceRef> refs) {
+    Position low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    NodeId last = -1;
+    std::vector<NodeId> vertices;
+    bool near = true;
+    for (std::size_t i = 0; i < refs.size(); ++i) {
+        if (cut.part[i] != part) continue;
+        for (const NodeId node : pieces_.polygons[index(refs[i].piece)]) {
+            const Position p = position(node);
+            for (std::size_t k = 0; k < 3; ++k) {
+                low[k] = std::min(low[k], p[k]);
+                high[k] = std::max(high[k], p[k]);
+            }
+            if (crossings_->is_crossing(node)) {
+                last = std::max(last, node);
+            } else if (sides_[index(node)] != kOn) {
+                vertices.push_back(node);
+                near = near && std::abs(distance_.at(p).high) <= kNear * distance_.rounding(p);
+            }
+        }
+    }
+    if (vertices.empty()) {
+        bool first_time = false;
+        for (std::size_t i = 0; i < refs.size(); ++i) {
+            if (cut.part[i] != part) continue;
+            const auto face = pieces_.face[index(refs[i].piece)];
+            first_time |= turned_.insert({face, index(refs[i].which)}).second;
+        }
+        return first_time;
+    }
+    std::vector<std::size_t> flat;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (low[k] == high[k]) flat.push_back(k);
+    }
+    if (flat.empty()) return false;
+    if (near) {
+        for (const NodeId v : vertices)
+            sides_[index(v)] = kOn;
+        return true;
+    }
+    if (last >= 0) {
+        Position& p = crossings_->position(index(last - crossings_->first_node()));
+        for (const std::size_t k : flat)
+            p[k] = std::nextafter(p[k], HUGE_VAL);
+    }
+    return false;
+}
+
+bool PlaneCutter::settle() {
+    bool moved = false;
+    for (std::size_t i = 0; i < cell_cuts_.size(); ++i) {
+        poll(progress_, i);
+        for (std::size_t part = 0; part < cell_cuts_[i].part_side.size(); ++part)
+            moved |= settle_part(static_cast<std::int32_t>(part), cell_cuts_[i], cell_pieces_[i]);
+    }
+    return moved;
+}
+
+/// Gives places that rounded to one position, or to that of a vertex, positions of their own.
+void PlaneCutter::make_distinct() {
+    std::vector<Position> taken;
+    for (std::size_t v = 0; v < sides_.size(); ++v) {
+        poll(progress_, v);
+        const Position p = model_.vertex(static_cast<NodeId>(v));
+        if (sides_[v] == kOn || distance_.is_near(p)) taken.push_back(p);
+    }
+    std::vector<std::size_t> order(crossings_->size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        order[i] = i;
+    std::sort(taken.begin(), taken.end());
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return std::pair(crossings_->position(a), a) < std::pair(crossings_->position(b), b);
+    });
+    std::vector<std::size_t> equal;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const Position& p = crossings_->position(order[i]);
+        if ((i > 0 && p == crossings_->position(order[i - 1])) ||
+            std::binary_search(taken.begin(), taken.end(), p))
+            equal.push_back(order[i]);
+    }
+    if (equal.empty()) return;
+    std::set<Position> all(taken.begin(), taken.end());
+    for (std::size_t i = 0; i < crossings_->size(); ++i)
+        all.insert(crossings_->position(i));
+    for (const std::size_t i : equal)
+        crossings_->position(i) = free_position_beside(crossings_->position(i), all);
+}
+
+void PlaneCutter::number_cells(PieceParts& parts, std::vector<HalfCell>& half_cells) const {
+    std::vector<std::int32_t> whole(cell_sides_.size(), -1);
+    std::size_t next_cut = 0;
+    std::vector<std::int32_t> first_part(cell_cuts_.size());
+    for (std::size_t c = 0; c < cell_sides_.size(); ++c) {
+        const auto cell = static_cast<std::int32_t>(c);
+        whole[c] = static_cast<std::int32_t>(half_cells.size());
+        if (cell_sides_[c] != kCut) {
+            half_cells.push_back({cell, cell_sides_[c] == kHasAbove ? kAbove : kBelow});
+            continue;
+        }
+        first_part[next_cut] = whole[c];
+        for (const std::int8_t side : cell_cuts_[next_cut].part_side)
+            half_cells.push_back({cell, side});
+        ++next_cut;
+    }
+    parts.resize(pieces_.size());
+    for (std::size_t p = 0; p < first_cap_; ++p) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::int32_t cell = pieces_.cells[p][k];
+            parts[p][k] = cell < 0 ? -1 : whole[index(cell)];
+        }
+    }
+    std::size_t cap = first_cap_;
+    for (std::size_t i = 0; i < cell_cuts_.size(); ++i) {
+        const CellCut& cut = cell_cuts_[i];
+        const auto refs = cell_pieces_[i];
+        for (std::size_t r = 0; r < refs.size(); ++r)
+            parts[index(refs[r].piece)][index(refs[r].which)] = first_part[i] + cut.part[r];
+        for (std::size_t c = 0; c < cut.caps.size(); ++c, ++cap) {
+            for (std::size_t k = 0; k < 2; ++k)
+                parts[cap][k] = first_part[i] + cut.part[refs.size() + 2 * c + k];
+        }
+    }
+}
+
+}  // namespace
+
+Cut cut_by_plane(const ComplexView& model, const Plane& plane, int threads, Progress* progress) {
+    check_model(model);
+    return PlaneCutter(model, plane, threads, progress).cut();
+}
+
+Section section_by_plane(const ComplexView& model, const Plane& plane, int threads,
+                         Progress* progress) {
+    check_model(model);
+    return PlaneCutter(model, plane, threads, progress).section();
+}
+
+}  // namespace realmodel::cutting

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "plane_sides.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "realmodel/base/errors.hpp"
+#include "strata/parallel_chunks.hpp"
+
+namespace realmodel::cutting {
+
+namespace {
+
+using exact::Ball;
+
+constexpr std::size_t kChunk = 1 << 14;
+/// Half a unit is the rounding of a coordinate; heights and planes that people compute with are
+/// themselves off by one or two.
+constexpr double kUnits = 4;
+
+double unit_in_last_place(double x) {
+    const double size = std::abs(x);
+    return std::nextafter(size, HUGE_VAL) - size;
+}
+
+}  // namespace
+
+PlaneDistance::PlaneDistance(const Plane& plane) : point_(plane.point), normal_(plane.normal) {
+    double largest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (!std::isfinite(point_[k]) || !std::isfinite(normal_[k])) {
+            throw InputError("not_finite", "the plane's point and normal must be finite numbers");
+        }
+        largest = std::max(largest, std::abs(normal_[k]));
+    }
+    if (largest == 0) throw InputError("bad_plane", "the plane's normal is zero");
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    for (double& n : normal_)
+        n = std::ldexp(n, -exponent);  // the same direction, and nothing overflows
+}
+
+double PlaneDistance::rounding(const Position& p) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        sum += std::abs(normal_[k]) * unit_in_last_place(p[k]);
+    return kUnits * sum;
+}
+
+Ball PlaneDistance::at(const Position& p) const {
+    Ball sum;
+    for (std::size_t k = 0; k < 3; ++k)
+        sum = sum + Ball(normal_[k]) * Ball::difference(p[k], point_[k]);
+    return sum;
+}
+
+Position PlaneDistance::crossing(const Position& p, const Position& q) const {
+    const Ball d = at(p), share = d / (d - at(q));
+    Position result;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Ball x = Ball(p[k]) + share * Ball::difference(q[k], p[k]);
+        result[k] = std::clamp(x.high, std::min(p[k], q[k]), std::max(p[k], q[k]));
+    }
+    return result;
+}
+
+std::int8_t PlaneDistance::side(const Position& p) const {
+    double sum = 0, size = 0, largest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double term = normal_[k] * (p[k] - point_[k]);
+        sum += term;
+        size += std::abs(term);
+        largest = std::max(largest, std::abs(p[k]));
+    }
+    // twice the rounding of the sum and of its terms, and more than rounding() can be
+    if (std::abs(sum) > 0x1p-50 * size + 0x1p-47 * largest) return sum > 0 ? kAbove : kBelow;
+    const Ball true_sum = at(p);
+    if (std::abs(true_sum.high) <= rounding(p)) return kOn;
+    return true_sum.high > 0 ? kAbove : kBelow;
+}
+
+bool PlaneDistance::is_near(const Position& p) const {
+    double sum = 0, size = 0, largest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double term = normal_[k] * (p[k] - point_[k]);
+        sum += term;
+        size += std::abs(term);
+        largest = std::max(largest, std::abs(p[k]));
+    }
+    return std::abs(sum) <= 0x1p-46 * (size + largest);
+}
+
+std::vector<std::int8_t> vertex_sides(const ComplexView& model, const PlaneDistance& distance,
+                                      int threads, const Progress* progress) {
+    const std::size_t count = model.vertex_count();
+    std::vector<std::int8_t> sides(count);
+    strata::parallel_chunks((count + kChunk - 1) / kChunk, threads, progress, [&](std::size_t c) {
+        for (std::size_t v = c * kChunk; v < std::min(count, (c + 1) * kChunk); ++v)
+            sides[v] = distance.side(model.vertex(static_cast<NodeId>(v)));
+    });
+    return sides;
+}
+
+Crossings::Crossings(const ComplexView& model, const PlaneDistance& distance,
+                     std::vector<std::array<NodeId, 2>> edges)
+    : first_(static_cast<NodeId>(model.vertex_count())), edges_(std::move(edges)) {
+    std::sort(edges_.begin(), edges_.end());
+    edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+    positions_.reserve(edges_.size());
+    for (const auto& [a, b] : edges_)
+        positions_.push_back(distance.crossing(model.vertex(a), model.vertex(b)));
+}
+
+NodeId Crossings::node(NodeId a, NodeId b) const {
+    const std::array<NodeId, 2> edge{std::min(a, b), std::max(a, b)};
+    const auto found = std::lower_bound(edges_.begin(), edges_.end(), edge);
+    return first_ + static_cast<NodeId>(found - edges_.begin());
+}
+
+}  // namespace realmodel::cutting

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "polygons.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace realmodel::cutting {
+
+View::View(const Position& normal) {
+    std::size_t axis = 0;
+    for (std::size_t k = 1; k < 3; ++k) {
+        if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
+    }
+    u_ = (axis + 1) % 3;
+    v_ = (axis + 2) % 3;
+    if (normal[axis] < 0) std::swap(u_, v_);
+}
+
+Position polygon_normal(std::span<const Position> corners) {
+    Position sum{0, 0, 0};
+    const Position& o = corners[0];
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+        Position a, b;
+        for (std::size_t k = 0; k < 3; ++k) {
+            a[k] = corners[i][k] - o[k];
+            b[k] = corners[i + 1][k] - o[k];
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+            sum[k] += a[l] * b[m] - a[m] * b[l];
+        }
+    }
+    return sum;
+}
+
+double rounding_of(std::span<const Position> positions) {
+    double largest = 0;
+    for (const Position& p : positions) {
+        for (const double x : p)
+            largest = std::max(largest, std::abs(x));
+    }
+    return 4 * (std::nextafter(largest, HUGE_VAL) - largest);
+}
+
+}  // namespace realmodel::cutting

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "../strata/complex_checks.hpp"
+#include "realmodel/base/errors.hpp"
+#include "realmodel/cutting/cut.hpp"
+
+namespace realmodel::cutting {
+namespace {
+
+using strata::CellComplex;
+using strata::grid;
+using strata::OwnedSurface;
+
+ComplexView view(const CellComplex& c, bool blocks = false) {
+    ComplexView v;
+    v.vertices = {c.vertices.data()->data(), 3 * c.vertices.size()};
+    v.face_offsets = c.face_offsets;
+    v.face_vertices = c.face_vertices;
+    v.face_cells = {c.face_cells.data()->data(), 2 * c.face_cells.size()};
+    v.face_surface = c.face_surface;
+    v.cell_block = c.cell_block;
+    v.blocks = c.volumes.size();
+    v.cells_are_blocks = blocks;
+    return v;
+}
+
+TriangleView view(const OwnedSurface& s) {
+    return {s.vertices, s.triangles};
+}
+
+CellComplex level_layers(const std::vector<double>& heights, double size = 2, int n = 2) {
+    std::vector<OwnedSurface> surfaces;
+    for (const double z : heights)
+        surfaces.push_back(grid(n, n, 0, 0, size, size, [z](double, double) { return z; }));
+    return strata::build(surfaces);
+}
+
+OwnedSurface box(std::array<double, 3> low, std::array<double, 3> high) {
+    OwnedSurface s;
+    for (int i = 0; i < 8; ++i) {
+        s.vertex((i & 4) != 0 ? high[0] : low[0], (i & 2) != 0 ? high[1] : low[1],
+                 (i & 1) != 0 ? high[2] : low[2]);
+    }
+    for (const auto& q : std::vector<std::array<int, 4>>{
+             {0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
+        s.triangle(q[0], q[1], q[2]);
+        s.triangle(q[0], q[2], q[3]);
+    }
+    return s;
+}
+
+double sum(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+Cut checked(const CellComplex& c, const Cut& cut) {
+    strata::expect_valid(cut.above, cut.above_touches);
+    strata::expect_valid(cut.below, cut.below_touches);
+    for (std::size_t b = 0; b < c.volumes.size(); ++b) {
+        EXPECT_NEAR(cut.above.volumes[b] + cut.below.volumes[b], c.volumes[b],
+                    1e-12 * (1 + c.volumes[b]));
+    }
+    return cut;
+}
+
+Cut checked_cut(const CellComplex& c, const OwnedSurface& s) {
+    return checked(c, cut_by_surface(view(c), view(s), 1, nullptr));
+}
+
+std::string refusal(const CellComplex& c, const OwnedSurface& s) {
+    try {
+        cut_by_surface(view(c), view(s), 1, nullptr);
+    } catch (const InputError& error) {
+        return error.kind;
+    }
+    return "";
+}
+
+TEST(SurfaceCut, ALevelSurfaceHalvesALayer) {
+    const CellComplex c = level_layers({0, 1});
+    const Cut cut = checked_cut(c, grid(3, 1, -1, -1, 4, 5, [](double, double) { return 0.25; }));
+    EXPECT_DOUBLE_EQ(sum(cut.below.volumes), 1.0);
+    EXPECT_DOUBLE_EQ(sum(cut.above.volumes), 3.0);
+}
+
+TEST(SurfaceCut, WhichWayTrianglesTurnDoesNotMatter) {
+    const CellComplex c = level_layers({0, 1});
+    OwnedSurface s = grid(2, 2, -1, -1, 4, 5, [](double x, double) { return 0.5 + x / 16; });
+    for (std::size_t t = 0; t < s.triangles.size(); t += 9)
+        std::swap(s.triangles[t], s.triangles[t + 1]);
+    const Cut cut = checked_cut(c, s);
+    EXPECT_NEAR(sum(cut.below.volumes), 4 * (0.5 + 1.0 / 16), 1e-14);
+}
+
+TEST(SurfaceCut, AFoldedSurfaceCutsWhereItPasses) {
+    const CellComplex c = level_layers({0, 1, 2}, 3, 3);
+    // a roof with its ridge at x = 1, height 1.75; eaves at x = -1 and 4
+    OwnedSurface roof;
+    for (const double y : {-1.0, 4.0}) {
+        roof.vertex(-1, y, -0.25);
+        roof.vertex(1, y, 1.75);
+        roof.vertex(4, y, 0.25);
+    }
+    for (std::int32_t i = 0; i < 2; ++i) {
+        roof.triangle(i, i + 1, i + 4);
+        roof.triangle(i, i + 4, i + 3);
+    }
+    const Cut cut = checked_cut(c, roof);
+    const double below = 3 * ((0.75 + 1.75) / 2 + 2 * (1.75 + 0.75) / 2);
+    EXPECT_NEAR(sum(cut.below.volumes), below, 1e-13);
+}
+
+TEST(SurfaceCut, AVerticalFaultPartsTheModel) {
+    const CellComplex c = level_layers({0, 1, 3});
+    OwnedSurface fault;
+    fault.vertex(0.5, -1, -1);
+    fault.vertex(0.5, 3, -1);
+    fault.vertex(0.5, 3, 4);
+    fault.vertex(0.5, -1, 4);
+    fault.triangle(0, 1, 2);
+    fault.triangle(0, 2, 3);
+    const Cut cut = checked_cut(c, fault);
+    const double smaller = std::min(sum(cut.above.volumes), sum(cut.below.volumes));
+    EXPECT_DOUBLE_EQ(smaller, 0.5 * 2 * 3);
+}
+
+TEST(SurfaceCut, AlongASurfaceOfTheModelNoCellIsCut) {
+    const CellComplex c = level_layers({0, 1, 3}, 2, 4);
+    const Cut cut = checked_cut(c, grid(
+                                       3, 3, 0, 0, 2, 2, [](double, double) { return 1.0; }, true));
+    EXPECT_EQ(cut.below.cell_block.size() + cut.above.cell_block.size(), c.cell_block.size());
+    EXPECT_DOUBLE_EQ(sum(cut.below.volumes), 4.0);
+    for (const auto& cells : cut.section.cells)
+        EXPECT_NE(cells[0], cells[1]);
+}
+
+TEST(SurfaceCut, AClosedSurfaceWithinACellLeavesAHollow) {
+    const CellComplex c = strata::merge_columns(level_layers({0, 3}, 3, 1));
+    const OwnedSurface s = box({1, 1, 1}, {2, 2, 2});
+    const Cut cut = checked(c, cut_by_surface(view(c, true), view(s), 1, nullptr));
+    EXPECT_EQ(cut.below.cell_block.size(), 1u);
+    EXPECT_EQ(cut.above.cell_block.size(), 1u);
+    EXPECT_DOUBLE_EQ(sum(cut.below.volumes), 1.0);
+    EXPECT_DOUBLE_EQ(sum(cut.above.volumes), 26.0);
+}
+
+TEST(SurfaceCut, ABoxAcrossCornersAndFaces) {
+    const CellComplex c = level_layers({0, 1, 2}, 2, 2);
+    EXPECT_DOUBLE_EQ(sum(checked_cut(c, box({1, 1, 1}, {2, 2, 2})).below.volumes), 1.0);
+    EXPECT_DOUBLE_EQ(sum(checked_cut(c, box({0.5, 0.5, 0.5}, {3, 3, 3})).below.volumes),
+                     1.5 * 1.5 * 1.5);
+    EXPECT_DOUBLE_EQ(sum(checked_cut(c, box({-1, -1, -1}, {3, 3, 3})).below.volumes), 8.0);
+    EXPECT_DOUBLE_EQ(sum(checked_cut(c, box({5, 5, 5}, {6, 6, 6})).below.volumes), 0.0);
+}
+
+TEST(SurfaceCut, BesideTheModelTheNearestSideCounts) {
+    const CellComplex c = level_layers({0, 1});
+    for (const double z : {-1.0, 2.0}) {
+        const Cut cut = checked_cut(c, grid(1, 1, -1, -1, 3, 3, [z](double, double) { return z; }));
+        EXPECT_DOUBLE_EQ(sum(z < 0 ? cut.above.volumes : cut.below.volumes), 4.0);
+    }
+}
+
+TEST(SurfaceCut, BlocksOfItsOwnAndOfAnotherModel) {
+    const CellComplex c = level_layers({0, 1, 3}, 2, 3);
+    const Cut own = checked(c, cut_by_block(view(c), view(c), 1, 1, nullptr));
+    EXPECT_EQ(own.below.volumes, (std::vector<double>{0, 4, 0}));
+    EXPECT_EQ(own.below.cell_block.size() + own.above.cell_block.size(), c.cell_block.size());
+    const CellComplex other = level_layers({0.5, 2}, 1, 2);
+    const Cut cut = checked(c, cut_by_block(view(c), view(other), 1, 1, nullptr));
+    EXPECT_DOUBLE_EQ(cut.below.volumes[1], 0.5);
+    EXPECT_DOUBLE_EQ(cut.below.volumes[2], 1.0);
+}
+
+TEST(SurfaceCut, RefusesWhatDoesNotPartTheModel) {
+    const CellComplex c = level_layers({0, 1});
+    EXPECT_EQ(refusal(c, grid(1, 1, -1, -1, 1, 3, [](double, double) { return 0.5; })),
+              "ends_inside");
+    OwnedSurface strip;  // a Moebius strip
+    for (int i = 0; i < 6; ++i) {
+        strip.vertex(std::cos(i), std::sin(i), i % 2);
+        strip.triangle(i, (i + 1) % 6, (i + 2) % 6);
+    }
+    strip.triangles.resize(9);
+    strip.triangles.insert(strip.triangles.end(), {3, 4, 0, 4, 0, 1, 0, 1, 2});
+    EXPECT_NE(refusal(c, strip), "");
+    OwnedSurface branching = grid(1, 1, -1, -1, 3, 3, [](double, double) { return 0.5; });
+    const std::int32_t top = branching.vertex(0, 0, 3);
+    branching.triangle(0, 2, top);
+    branching.triangle(0, 3, top);
+    EXPECT_EQ(refusal(c, branching), "branching");
+    EXPECT_EQ(refusal(c, OwnedSurface{}), "no_triangles");
+    OwnedSurface wrong = box({0, 0, 0}, {1, 1, 1});
+    wrong.triangles[0] = 9;
+    EXPECT_EQ(refusal(c, wrong), "bad_index");
+    wrong = box({0, 0, 0}, {1, 1, NAN});
+    EXPECT_EQ(refusal(c, wrong), "not_finite");
+}
+
+}  // namespace
+}  // namespace realmodel::cutting

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cutting/triangulate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace realmodel::cutting {
+namespace {
+
+class Corners {
+public:
+    Loop loop(const std::vector<PlanePosition>& positions) {
+        Loop result;
+        for (const PlanePosition& p : positions) {
+            auto found = std::find(known_.begin(), known_.end(), p);
+            if (found == known_.end()) found = known_.insert(known_.end(), p);
+            result.push_back({static_cast<NodeId>(found - known_.begin()), p});
+        }
+        return result;
+    }
+    const PlanePosition& at(NodeId node) const { return known_[index(node)]; }
+
+private:
+    std::vector<PlanePosition> known_;
+};
+
+double signed_area(const std::vector<PlanePosition>& p) {
+    double sum = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const auto &a = p[i], &b = p[(i + 1) % p.size()];
+        sum += a[0] * b[1] - a[1] * b[0];
+    }
+    return sum / 2;
+}
+
+/// The polygons tile the region: areas, convexity, and every loop edge once, others twice.
+void expect_tiles(const Corners& corners, const std::vector<Loop>& loops, double expected,
+                  std::span<const std::array<NodeId, 2>> slits = {}) {
+    Polygons polygons;
+    divide_convex(loops, 1e-12, slits, polygons);
+    double total = 0;
+    std::map<std::array<NodeId, 2>, int> edges;
+    for (const Loop& loop : loops) {
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            --edges[std::array{loop[i].node, loop[(i + 1) % loop.size()].node}];
+    }
+    for (std::size_t k = 0; k < polygons.size(); ++k) {
+        Loop loop;
+        std::vector<PlanePosition> positions;
+        for (const NodeId node : polygons[k]) {
+            loop.push_back({node, corners.at(node)});
+            positions.push_back(corners.at(node));
+        }
+        EXPECT_TRUE(is_convex(loop, 1e-12));
+        EXPECT_GT(signed_area(positions), 0);
+        total += signed_area(positions);
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            ++edges[std::array{loop[i].node, loop[(i + 1) % loop.size()].node}];
+    }
+    EXPECT_NEAR(total, expected, 1e-12 * std::abs(expected));
+    for (const auto& [edge, count] : edges)
+        EXPECT_EQ(count, (edges[std::array{edge[1], edge[0]}])) << edge[0] << "-" << edge[1];
+}
+
+TEST(Triangulate, AConvexLoopStaysWhole) {
+    Corners corners;
+    Polygons polygons;
+    const std::vector<Loop> loops{corners.loop({{0, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}})};
+    divide_convex(loops, 1e-12, {}, polygons);
+    EXPECT_EQ(polygons.size(), 1u);
+    EXPECT_EQ(polygons[0].size(), 5u);
+}
+
+TEST(Triangulate, AnLShape) {
+    Corners corners;
+    expect_tiles(corners, {corners.loop({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}})}, 3);
+}
+
+TEST(Triangulate, HolesAndAnotherOutline) {
+    Corners corners;
+    const std::vector<Loop> loops{corners.loop({{0, 0}, {9, 0}, {9, 9}, {0, 9}}),
+                                  corners.loop({{1, 1}, {1, 2}, {2, 2}, {2, 1}}),
+                                  corners.loop({{4, 1}, {4, 8}, {8, 8}, {8, 1}}),
+                                  corners.loop({{5, 2}, {7, 2}, {7, 7}, {5, 7}}),
+                                  corners.loop({{6, 3}, {6, 4}, {6.5, 4}})};
+    expect_tiles(corners, loops, 81 - 1 - 28 + 10 - 0.25);
+}
+
+TEST(Triangulate, ASlitStays) {
+    Corners corners;
+    const std::vector<Loop> loops{corners.loop({{0, 0}, {4, 0}, {4, 4}, {0, 4}}),
+                                  corners.loop({{1, 2}, {3, 2}})};
+    const std::array<NodeId, 2> slit{loops[1][0].node, loops[1][1].node};
+    expect_tiles(corners, loops, 16, std::span(&slit, 1));
+    Polygons polygons;
+    divide_convex(loops, 1e-12, std::span(&slit, 1), polygons);
+    int ahead = 0, back = 0;
+    for (std::size_t k = 0; k < polygons.size(); ++k) {
+        for (std::size_t i = 0; i < polygons[k].size(); ++i) {
+            const NodeId a = polygons[k][i], b = polygons[k][(i + 1) % polygons[k].size()];
+            ahead += a == slit[0] && b == slit[1];
+            back += a == slit[1] && b == slit[0];
+        }
+    }
+    EXPECT_EQ(ahead, 1);
+    EXPECT_EQ(back, 1);
+}
+
+TEST(Triangulate, AHoleThatTouchesTheOutline) {
+    Corners corners;
+    // one walk that passes (2, 0) twice
+    expect_tiles(corners,
+                 {corners.loop({{0, 0}, {2, 0}, {1, 1}, {3, 1}, {2, 0}, {4, 0}, {4, 4}, {0, 4}})},
+                 15);
+}
+
+TEST(Triangulate, ALongCombOfManyTeeth) {
+    Corners corners;
+    std::vector<PlanePosition> comb{{0, -1}, {1000, -1}};
+    for (int i = 1000; i > 0; --i) {
+        comb.push_back({static_cast<double>(i), 0});
+        comb.push_back({i - 0.5, 5.0 + i % 7});
+    }
+    comb.push_back({0, 0});
+    expect_tiles(corners, {corners.loop(comb)}, signed_area(comb));
+}
+
+TEST(Triangulate, WhatRoundingHasFoldedOverStaysClosed) {
+    Corners corners;
+    const std::vector<Loop> loops{
+        corners.loop({{0, 0}, {4, 0}, {4, 4}, {2, -1e-9}, {0, 4}})};  // its dent pokes through
+    Polygons polygons;
+    divide_convex(loops, 1e-8, {}, polygons);
+    std::map<std::array<NodeId, 2>, int> edges;
+    for (std::size_t i = 0; i < loops[0].size(); ++i)
+        --edges[std::array{loops[0][i].node, loops[0][(i + 1) % loops[0].size()].node}];
+    for (std::size_t k = 0; k < polygons.size(); ++k) {
+        for (std::size_t i = 0; i < polygons[k].size(); ++i)
+            ++edges[std::array{polygons[k][i], polygons[k][(i + 1) % polygons[k].size()]}];
+    }
+    for (const auto& [edge, count] : edges)
+        EXPECT_EQ(count, (edges[std::array{edge[1], edge[0]}]));
+}
+
+}  // namespace
+}  // namespace realmodel::cutting

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is wrong with the halves of a cut model, by the outside check's tests of topology and by volumes."""
+
+import io
+
+import numpy as np
+
+from . import places
+from .model_view import exported_arrays
+
+ARRAYS = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
+
+
+def native_arrays(case, result, cells):
+    """A built case as the native cutters take it."""
+    arrays = exported_arrays(case, result, cells)
+    return arrays | {"blocks": len(arrays["block_names"]), "cell_kind": cells}
+
+
+def complex_of(model, half=None, touches=False):
+    """The outside checker's view of a model, or of a half of it."""
+    arrays = dict(model)
+    if half is not None:
+        arrays |= {name: np.asarray(half[name]) for name in ARRAYS}
+        arrays["cell_kind"] = "blocks" if touches else arrays["cell_kind"]
+    buffer = io.BytesIO()
+    np.savez(buffer, **arrays)
+    buffer.seek(0)
+    return places.checker().Complex(buffer)
+
+
+def topology_failures(m):
+    """Cells closed, vertices distinct and used, volumes positive up to rounding."""
+    checker = places.checker()
+    failures = list(checker.check_shapes(m))
+    if not failures and len(m.cell_block):
+        for check in (checker.check_vertices, checker.check_closed, checker.check_volumes):
+            failures += check(m)
+    return failures
+
+
+def volume_allowance(model, volumes):
+    """1e-9 of each volume, and the rounding of coordinates."""
+    if not len(model["vertices"]):
+        return np.zeros(len(volumes))
+    extent = np.ptp(model["vertices"], axis=0)
+    step = np.spacing(np.abs(model["vertices"]).max(axis=0))
+    rounding = 64 * (step * np.roll(extent, 1) * np.roll(extent, 2)).sum()
+    return 1e-9 * np.abs(volumes) + rounding
+
+
+def caps_of(half):
+    """The caps as sorted tuples of positions, each turned so that its least corner comes first."""
+    caps = []
+    offsets = half["face_offsets"]
+    for f in np.flatnonzero(half["face_surface"] == -3):
+        corners = half["vertices"][half["face_vertices"][offsets[f] : offsets[f + 1]]].tolist()
+        caps.append([tuple(corner) for corner in corners])
+    return caps
+
+
+def _from_least(corners):
+    at = corners.index(min(corners))
+    return tuple(corners[at:] + corners[:at])
+
+
+def cut_failures(model, cut, inside="below", outside="above"):
+    """Everything that is wrong with both halves together."""
+    failures = []
+    for name in (inside, outside):
+        failures += [
+            f"{name} {text}"
+            for text in topology_failures(complex_of(model, cut[name], cut[f"{name}_touches"]))
+        ]
+    if failures:
+        return failures
+    whole = np.zeros(model["blocks"])
+    if len(model["cell_block"]):
+        own = places.checker().cell_volumes(complex_of(model))
+        whole = np.bincount(model["cell_block"], weights=own, minlength=model["blocks"])
+    off = np.abs(cut[inside]["volumes"] + cut[outside]["volumes"] - whole)
+    if (off > volume_allowance(model, whole)).any():
+        failures.append(f"volumes: {cut[inside]['volumes']} and {cut[outside]['volumes']} of {whole}")
+    for name in (inside, outside):
+        half = cut[name]
+        if (model["cell_block"][half["cells"]] != half["cell_block"]).any():
+            failures.append(f"{name} blocks: a part has another block than its cell")
+    ours = sorted(_from_least(cap) for cap in caps_of(cut[inside]))
+    theirs = sorted(_from_least(cap[::-1]) for cap in caps_of(cut[outside]))
+    if ours != theirs:
+        failures.append(f"caps: {len(ours)} and {len(theirs)}, not the same turned over")
+    return failures
