@@ -7,6 +7,8 @@ reaches the main thread alone.
 
 from __future__ import annotations
 
+import os
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -173,13 +175,30 @@ def _wait(thread: threading.Thread) -> None:
         _leaving.append(thread)
 
 
+@contextmanager
+def _waiting_threads_sleep():
+    """Has OpenMP's threads sleep while they have nothing to do, unless the user said otherwise.
+
+    GNU's spin by default: on a busy machine they then take the time of those that work, and small
+    parallel loops get slower by far. The library reads this once, when it is loaded.
+    """
+    name = "OMP_WAIT_POLICY"
+    if "realmodel._native" in sys.modules or name in os.environ or "GOMP_SPINCOUNT" in os.environ:
+        yield
+        return
+    os.environ[name] = "PASSIVE"
+    try:
+        yield
+    finally:
+        os.environ.pop(name, None)
+
+
 def native_module():
     """The compiled part. Raises BuildFailed with the way to get it where it is missing."""
     try:
-        from realmodel import _native
+        with _waiting_threads_sleep():
+            from realmodel import _native
     except ImportError as error:
-        import sys
-
         version = f"{sys.version_info.major}.{sys.version_info.minor}"
         raise BuildFailed(
             f"the native module for Python {version} cannot be loaded ({error}); build it with "
