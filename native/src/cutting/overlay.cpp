@@ -154,7 +154,7 @@ void Overlay::cross_segments(std::int32_t triangle) {
                                         triangles_[index(triangle)].segments.end());
     const auto box = [&](const Segment& s, std::size_t k) {
         const double p = points_.rounded(s.ends[0])[k], q = points_.rounded(s.ends[1])[k];
-        return std::minmax(p, q);
+        return std::pair(std::min(p, q), std::max(p, q));  // minmax would refer to p and q
     };
     for (std::size_t i = 0; i < segments.size(); ++i) {
         for (std::size_t j = i + 1; j < segments.size(); ++j) {
