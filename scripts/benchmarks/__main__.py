@@ -68,7 +68,9 @@ def _arguments() -> argparse.Namespace:
     if given.fit:
         given.only = [*(given.only or []), "fit"]
     if given.write is None and not given.quick:
-        given.write = ROOT / "docs" / "performance.md"
+        given.write = Path("docs/performance.md")
+    if given.write is not None:
+        given.write = ROOT / given.write  # what is relative is so to the project, not to this folder
     return given
 
 
