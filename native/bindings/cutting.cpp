@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "arrays.hpp"
+#include "complex_arrays.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/cutting/cut.hpp"
 
@@ -55,14 +56,7 @@ private:
 };
 
 py::dict to_dict(strata::CellComplex&& complex, std::vector<std::int32_t>&& origin) {
-    py::dict result;
-    result["vertices"] = to_array(std::move(complex.vertices));
-    result["face_offsets"] = to_array(std::move(complex.face_offsets));
-    result["face_vertices"] = to_array(std::move(complex.face_vertices));
-    result["face_cells"] = to_array(std::move(complex.face_cells));
-    result["face_surface"] = to_array(std::move(complex.face_surface));
-    result["cell_block"] = to_array(std::move(complex.cell_block));
-    result["volumes"] = to_array(std::move(complex.volumes));
+    py::dict result = complex_arrays(complex);
     result["cells"] = to_array(std::move(origin));
     return result;
 }

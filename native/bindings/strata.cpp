@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "complex_arrays.hpp"
 #include "realmodel/base/memory.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/strata/cell_components.hpp"
@@ -23,14 +24,7 @@ namespace realmodel::bindings {
 namespace {
 
 py::dict to_dict(strata::CellComplex&& complex) {
-    py::dict result;
-    result["vertices"] = to_array(std::move(complex.vertices));
-    result["face_offsets"] = to_array(std::move(complex.face_offsets));
-    result["face_vertices"] = to_array(std::move(complex.face_vertices));
-    result["face_cells"] = to_array(std::move(complex.face_cells));
-    result["face_surface"] = to_array(std::move(complex.face_surface));
-    result["cell_block"] = to_array(std::move(complex.cell_block));
-    result["volumes"] = to_array(std::move(complex.volumes));
+    py::dict result = complex_arrays(complex);
     py::list warnings;
     for (const strata::Warning& w : complex.warnings) {
         warnings.append(py::make_tuple(w.kind, w.surface, w.items, w.text));

@@ -6,24 +6,9 @@
 
 #include "box_tree.hpp"
 #include "cell_cut.hpp"
-#include "sets.hpp"
+#include "strata/disjoint_parts.hpp"
 
 namespace realmodel::cutting {
-
-namespace {
-
-double triple(const Position& o, const Position& a, const Position& b, const Position& c) {
-    Position u, v, w;
-    for (std::size_t k = 0; k < 3; ++k) {
-        u[k] = a[k] - o[k];
-        v[k] = b[k] - o[k];
-        w[k] = c[k] - o[k];
-    }
-    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-           u[2] * (v[0] * w[1] - v[1] * w[0]);
-}
-
-}  // namespace
 
 /// Joins pieces that meet along an edge. Where caps end at an edge each of them closes the part
 /// whose face it meets there. False where one part would use an edge four times, though the model's
@@ -50,7 +35,7 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
     std::sort(uses_.begin() + static_cast<std::ptrdiff_t>(own), uses_.end(), by_edge);
     std::inplace_merge(uses_.begin(), uses_.begin() + static_cast<std::ptrdiff_t>(own), uses_.end(),
                        by_edge);
-    Sets sets(count);
+    strata::DisjointParts sets(count);
     std::vector<const Use*> faces, caps;
     for (std::size_t begin = 0; begin < uses_.size();) {
         std::size_t end = begin + 1;
@@ -178,7 +163,7 @@ void CellCutter::attach_shells(std::span<const PieceRef> refs, CellCut& result,
                 box[r].include(position(nodes[k]));
                 if (k < 2) continue;
                 const double part =
-                    triple(origin, first, position(nodes[k - 1]), position(nodes[k]));
+                    sixfold_volume(origin, first, position(nodes[k - 1]), position(nodes[k]));
                 volume[r] += reversed ? -part : part;
             }
         }

@@ -43,4 +43,15 @@ double rounding_of(std::span<const Position> positions) {
     return 4 * (std::nextafter(largest, HUGE_VAL) - largest);
 }
 
+double sixfold_volume(const Position& o, const Position& a, const Position& b, const Position& c) {
+    Position u, v, w;
+    for (std::size_t k = 0; k < 3; ++k) {
+        u[k] = a[k] - o[k];
+        v[k] = b[k] - o[k];
+        w[k] = c[k] - o[k];
+    }
+    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
+           u[2] * (v[0] * w[1] - v[1] * w[0]);
+}
+
 }  // namespace realmodel::cutting

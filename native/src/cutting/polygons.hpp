@@ -52,6 +52,10 @@ private:
 /// the first corner so that coordinates far from the origin cost no digits).
 Position polygon_normal(std::span<const Position> corners);
 
+/// Six times the volume of a tetrahedron; positive where a, b, c turn counter-clockwise seen from
+/// outside.
+double sixfold_volume(const Position& o, const Position& a, const Position& b, const Position& c);
+
 /// How far apart rounding may put things that are in one place: a few units in the last place of
 /// the largest coordinate.
 double rounding_of(std::span<const Position> positions);

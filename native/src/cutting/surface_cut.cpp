@@ -169,7 +169,7 @@ void SurfaceCut::locate_caps() {
     }
     std::sort(uses_.begin(), uses_.end());
 
-    Sets sets(count);
+    strata::DisjointParts sets(count);
     cap_cell_.assign(count, -1);
     std::vector<std::uint8_t> told(count, 0);
     std::vector<std::int32_t> told_cell(count, -1);
@@ -259,7 +259,7 @@ std::int32_t SurfaceCut::cell_around(const Position& p) const {
 /// Joins the sides of faces and caps that bound the same part of a cell.
 void SurfaceCut::join_parts() {
     const std::size_t count = regions().size();
-    sets_ = std::make_unique<Sets>(2 * (count + model_.face_count()));
+    sets_ = std::make_unique<strata::DisjointParts>(2 * (count + model_.face_count()));
     is_cut_.assign(model_.cell_block.size(), 0);
     for (const std::int32_t cell : cap_cell_) {
         if (cell >= 0) is_cut_[index(cell)] = 1;
@@ -398,7 +398,7 @@ void SurfaceCut::refuse_open(std::size_t region) const {
 void SurfaceCut::label_parts() {
     const std::size_t count = regions().size();
     const std::size_t slots = 2 * (count + model_.face_count());
-    Sets bodies(slots);
+    strata::DisjointParts bodies(slots);
     for (std::size_t s = 0; s < slots; ++s)
         bodies.join(static_cast<std::int32_t>(s), sets_->find(static_cast<std::int32_t>(s)));
     const auto pass = [&](std::size_t item, std::size_t face) {

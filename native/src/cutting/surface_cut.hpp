@@ -8,7 +8,7 @@
 #include "cutter_surface.hpp"
 #include "halves.hpp"
 #include "overlay.hpp"
-#include "sets.hpp"
+#include "strata/disjoint_parts.hpp"
 
 namespace realmodel::cutting {
 
@@ -108,7 +108,7 @@ private:
     std::vector<std::int32_t> cap_cell_;   ///< by region: the cell that it lies in, -1 none
     std::vector<Use> uses_;             ///< of edges of the surface's regions, all that meet there
     std::vector<std::uint8_t> is_cut_;  ///< by cell
-    std::unique_ptr<Sets> sets_;
+    std::unique_ptr<strata::DisjointParts> sets_;
     std::vector<std::int8_t> side_;  ///< by slot of a set's least member
     Pieces pieces_;
     PieceParts parts_;

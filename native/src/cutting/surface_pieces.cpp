@@ -12,21 +12,6 @@
 
 namespace realmodel::cutting {
 
-namespace {
-
-double sixfold_volume(const Position& o, const Position& a, const Position& b, const Position& c) {
-    Position u, v, w;
-    for (std::size_t k = 0; k < 3; ++k) {
-        u[k] = a[k] - o[k];
-        v[k] = b[k] - o[k];
-        w[k] = c[k] - o[k];
-    }
-    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-           u[2] * (v[0] * w[1] - v[1] * w[0]);
-}
-
-}  // namespace
-
 /// The wall of a hollow that the surface cuts out of a cell bounds the part around it.
 void SurfaceCut::attach_hollows() {
     struct Shell {
@@ -151,7 +136,7 @@ void SurfaceCut::make_face_pieces(std::size_t face, std::span<const std::int32_t
             }
         }
     }
-    Sets joined(own.size());
+    strata::DisjointParts joined(own.size());
     for (auto& [ends, users] : by_ends) {
         if (ends[0] > ends[1] || std::binary_search(barriers_.begin(), barriers_.end(), ends))
             continue;

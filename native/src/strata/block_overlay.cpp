@@ -49,14 +49,12 @@ std::array<PlaneId, 3> BlockOverlay::neighbours_of(PlaneId plane) const {
 }
 
 Polygon BlockOverlay::outline_of(PlaneId plane) {
-    Polygon outline;
     const auto& corner = geometry_.plane(plane).corner;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const VertexId from = geometry_.space(corner[i]).plan;
-        const VertexId to = geometry_.space(corner[(i + 1) % 3]).plan;
-        outline.push_back({from, geometry_.add_edge(from, to)});
-    }
-    return outline;
+    PlanTriangle v;
+    for (std::size_t i = 0; i < 3; ++i)
+        v[i] = geometry_.space(corner[i]).plan;
+    const auto outline = triangle_outline(geometry_, v);
+    return {outline.begin(), outline.end()};
 }
 
 TriangleBounds BlockOverlay::part_bounds(std::size_t part) const {
@@ -71,10 +69,7 @@ void BlockOverlay::start_region(const std::vector<PlanTriangle>& region,
     for (const auto& [triangles, plane] :
          {std::pair(&region, kSky), std::pair(&outside, kOutside)}) {
         for (const PlanTriangle& t : *triangles) {
-            Polygon outline;
-            for (std::size_t i = 0; i < 3; ++i)
-                outline.push_back({t[i], geometry_.add_edge(t[i], t[(i + 1) % 3])});
-            parts_.add_facet(outline, plane, -1, kSkyLabel);
+            parts_.add_facet(triangle_outline(geometry_, t), plane, -1, kSkyLabel);
             tiles_.for_each_centre_in(corners_of(geometry_, t),
                                       [&, kind = plane](std::size_t tile) {
                                           cover_[tile] = kind == kSky ? kSkyOnly : kOutsideOnly;
@@ -86,10 +81,7 @@ void BlockOverlay::start_region(const std::vector<PlanTriangle>& region,
 void BlockOverlay::start_sky(const BlockLayer& layer) {
     started_ = true;
     for (const PlanTriangle& t : layer.empty) {
-        Polygon outline;
-        for (std::size_t i = 0; i < 3; ++i)
-            outline.push_back({t[i], geometry_.add_edge(t[i], t[(i + 1) % 3])});
-        parts_.add_facet(outline, kSky, -1, kSkyLabel);
+        parts_.add_facet(triangle_outline(geometry_, t), kSky, -1, kSkyLabel);
         tiles_.for_each_centre_in(corners_of(geometry_, t),
                                   [&](std::size_t tile) { cover_[tile] = kSkyOnly; });
     }
@@ -128,10 +120,7 @@ Layer BlockOverlay::needed_part(const BlockLayer& layer, Classified& c) {
         part.plane.push_back(plane);
     }
     for (const PlanTriangle& t : layer.empty) {
-        Polygon outline;
-        for (std::size_t i = 0; i < 3; ++i)
-            outline.push_back({t[i], geometry_.add_edge(t[i], t[(i + 1) % 3])});
-        part.polygons.add(outline);
+        part.polygons.add(triangle_outline(geometry_, t));
         part.plane.push_back(kVoid);
     }
     part.index(geometry_, progress_, std::max(tiles_.size(), part.plane.size()));

@@ -16,11 +16,8 @@ using exact::VertexId;
 
 namespace {
 
-void add_triangle(PlanGeometry& geometry, PolygonPool& pool, const std::array<VertexId, 3>& v) {
-    const Corner corners[] = {{v[0], geometry.add_edge(v[0], v[1])},
-                              {v[1], geometry.add_edge(v[1], v[2])},
-                              {v[2], geometry.add_edge(v[2], v[0])}};
-    pool.add(corners);
+void add_triangle(PlanGeometry& geometry, PolygonPool& pool, const PlanTriangle& triangle) {
+    pool.add(triangle_outline(geometry, triangle));
 }
 
 PlanTriangle plan_of(const PlanGeometry& geometry, const UsedTriangle& triangle) {
@@ -84,6 +81,12 @@ void add_empty(PlanGeometry& geometry, Layer& layer, const FrameTriangles& filli
 }
 
 }  // namespace
+
+std::array<Corner, 3> triangle_outline(PlanGeometry& geometry, const PlanTriangle& v) {
+    return {{{v[0], geometry.add_edge(v[0], v[1])},
+             {v[1], geometry.add_edge(v[1], v[2])},
+             {v[2], geometry.add_edge(v[2], v[0])}}};
+}
 
 void Layer::index(const PlanGeometry& geometry, const Progress* progress, std::size_t cells) {
     const Scope scope(geometry);

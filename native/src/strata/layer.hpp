@@ -47,6 +47,9 @@ std::vector<UsedTriangle> enter_surface(exact::PlanGeometry& geometry, const Sur
                                         int index, const PlanSnapping& snapping,
                                         std::vector<Warning>& warnings, const Progress* progress);
 
+/// A triangle that turns counter-clockwise as a polygon; its lines are made where they are new.
+std::array<Corner, 3> triangle_outline(exact::PlanGeometry& geometry, const PlanTriangle& v);
+
 /// Whether two triangles meet along edge i of the first at the same heights.
 bool meet_in_height(const exact::PlanGeometry& geometry, PlaneId plane, std::size_t i,
                     PlaneId other);

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "../strata/complex_checks.hpp"
+#include "complex_view.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/cutting/cut.hpp"
 
@@ -13,19 +13,6 @@ namespace {
 using strata::CellComplex;
 using strata::grid;
 using strata::OwnedSurface;
-
-ComplexView view(const CellComplex& c, bool blocks = false) {
-    ComplexView v;
-    v.vertices = {c.vertices.data()->data(), 3 * c.vertices.size()};
-    v.face_offsets = c.face_offsets;
-    v.face_vertices = c.face_vertices;
-    v.face_cells = {c.face_cells.data()->data(), 2 * c.face_cells.size()};
-    v.face_surface = c.face_surface;
-    v.cell_block = c.cell_block;
-    v.blocks = c.volumes.size();
-    v.cells_are_blocks = blocks;
-    return v;
-}
 
 CellComplex level_layers(const std::vector<double>& heights, int n = 2) {
     std::vector<OwnedSurface> surfaces;
