@@ -221,6 +221,11 @@ PointId Scope::crossing(LineId a, LineId b) {
             if (side(directed(a, false), v) == 0) return v;
         }
     }
+    return crossing_between_ends(a, b);
+}
+
+PointId Scope::crossing_between_ends(LineId a, LineId b) {
+    const Line la = line(a), lb = line(b);
     Point p;
     p.first = a;
     p.second = b;

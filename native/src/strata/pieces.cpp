@@ -2,12 +2,50 @@
 #include "pieces.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace realmodel::strata {
 
-const std::vector<std::int32_t>& PieceFinder::overlapping(PolygonView outline) {
+namespace {
+
+/// Whether two convex polygons have the same corners.
+bool same_corners(PolygonView a, PolygonView b) {
+    if (a.size() != b.size()) return false;
+    const auto first =
+        std::find_if(b.begin(), b.end(), [&](const Corner& c) { return c.point == a[0].point; });
+    if (first == b.end()) return false;
+    auto j = static_cast<std::size_t>(first - b.begin());
+    for (const Corner& corner : a) {
+        if (corner.point != b[j].point) return false;
+        j = j + 1 < b.size() ? j + 1 : 0;
+    }
+    return true;
+}
+
+}  // namespace
+
+/// Finds polygons that may share an area with the outline. Where one is the outline, as on meshes
+/// that surfaces have in common and where the frame is filled around equal borders, it is the only
+/// one; whether so is the result.
+bool PieceFinder::find_candidates(PolygonView outline) {
+    const auto polygon = [&](std::size_t i) { return layer_.polygons[i]; };
+    if (expected_ < layer_.polygons.size() && same_corners(outline, polygon(expected_))) {
+        candidates_.assign(1, static_cast<std::int32_t>(expected_++));
+        return true;
+    }
     layer_.grid.candidates(scope_, outline, candidates_);
+    for (const std::int32_t c : candidates_) {
+        if (!same_corners(outline, polygon(static_cast<std::size_t>(c)))) continue;
+        candidates_.assign(1, c);
+        expected_ = static_cast<std::size_t>(c) + 1;
+        return true;
+    }
+    return false;
+}
+
+const std::vector<std::int32_t>& PieceFinder::overlapping(PolygonView outline) {
+    if (find_candidates(outline)) return candidates_;
     overlapping_.clear();
     for (const std::int32_t c : candidates_) {
         if (clipper_.overlap(outline, layer_.polygons[static_cast<std::size_t>(c)])) {
@@ -17,59 +55,97 @@ const std::vector<std::int32_t>& PieceFinder::overlapping(PolygonView outline) {
     return overlapping_;
 }
 
+PieceFinder::HeightRange PieceFinder::heights_of(PlaneId plane) const {
+    HeightRange range{HUGE_VAL, -HUGE_VAL};
+    for (const exact::SpaceId corner : scope_.shared().plane(plane).corner) {
+        const double z = scope_.shared().space(corner).z;
+        range = {std::min(range.low, z), std::max(range.high, z)};
+    }
+    return range;
+}
+
 const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
     pieces_.clear();
-    layer_.grid.candidates(scope_, outline, candidates_);
+    const HeightRange facet = plane < 0 ? HeightRange{} : heights_of(plane);
+    if (find_candidates(outline)) {
+        add_common(candidates_.front(), outline, plane, facet);
+        return pieces_;
+    }
+    facet_clipper_.begin(outline);
     for (const std::int32_t c : candidates_) {
         const PolygonView common =
-            clipper_.intersect(outline, layer_.polygons[static_cast<std::size_t>(c)]);
-        if (common.empty()) continue;
-        const PlaneId surface = layer_.plane[static_cast<std::size_t>(c)];
-        if (surface < 0) {
-            add(c, Side::kAbsent, common, kVoid, kVoid);
-        } else if (plane == kSky) {
-            add(c, Side::kBelow, common, kVoid, kVoid);
-        } else if (plane == kVoid) {
-            add(c, Side::kNotBelow, common, kVoid, kVoid);
-        } else {
-            common_.assign(common.begin(), common.end());
-            classify(c, plane, common_);
-        }
+            facet_clipper_.intersect(layer_.polygons[static_cast<std::size_t>(c)]);
+        if (!common.empty()) add_common(c, common, plane, facet);
     }
     return pieces_;
+}
+
+/// Adds what a facet, which lies between these heights, has in common with a polygon.
+void PieceFinder::add_common(std::int32_t polygon, PolygonView common, PlaneId plane,
+                             const HeightRange& facet) {
+    const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
+    if (surface < 0) {
+        add(polygon, Side::kAbsent, common);
+    } else if (plane < 0) {
+        add(polygon, plane == kSky ? Side::kBelow : Side::kNotBelow, common);
+    } else {
+        // both are parts of triangles, so most are told apart by the heights of the corners
+        const HeightRange heights = heights_of(surface);
+        if (heights.high < facet.low) {
+            add(polygon, Side::kBelow, common);
+        } else if (heights.low >= facet.high) {
+            add(polygon, Side::kNotBelow, common);
+        } else {
+            classify(polygon, plane, common);
+        }
+    }
 }
 
 void PieceFinder::classify(std::int32_t polygon, PlaneId facet_plane, PolygonView common) {
     const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
     bool lower = false, higher = false;
+    signs_.clear();
     if (surface != facet_plane) {
         const auto trace = scope_.shared().trace_filter(surface, facet_plane);
         for (const Corner& corner : common) {
             const int sign = scope_.compare_heights(surface, facet_plane, trace, corner.point);
             lower |= sign < 0;
             higher |= sign > 0;
+            signs_.push_back(static_cast<std::int8_t>(sign));
         }
     }
     if (!lower || !higher) {
-        add(polygon, lower ? Side::kBelow : Side::kNotBelow, common, surface, facet_plane);
+        add(polygon, lower ? Side::kBelow : Side::kNotBelow, common);
+        if (lower) {
+            std::transform(signs_.begin(), signs_.end(),
+                           pieces_.touches.end() - static_cast<std::ptrdiff_t>(signs_.size()),
+                           [](std::int8_t sign) { return sign == 0 ? 1 : 0; });
+        }
         return;
     }
     const DirectedLine above = scope_.trace(surface, facet_plane);
-    add(polygon, Side::kBelow, clipper_.cut(common, exact::opposite(above)), surface, facet_plane);
-    add(polygon, Side::kNotBelow, clipper_.cut(common, above), surface, facet_plane);
+    add_touching(polygon, clipper_.cut(common, exact::opposite(above)), surface, facet_plane);
+    add(polygon, Side::kNotBelow, clipper_.cut(common, above));
 }
 
-void PieceFinder::add(std::int32_t polygon, Side side, PolygonView outline, PlaneId lower,
-                      PlaneId upper) {
+/// Adds a piece that touches the facet nowhere.
+void PieceFinder::add(std::int32_t polygon, Side side, PolygonView outline) {
     const auto first = static_cast<std::int64_t>(pieces_.corners.size());
-    for (const Corner& corner : outline) {
-        pieces_.corners.push_back(corner);
-        const bool touches = side == Side::kBelow && lower >= 0 &&
-                             scope_.compare_heights(lower, upper, corner.point) == 0;
-        pieces_.touches.push_back(touches ? 1 : 0);
-    }
+    pieces_.corners.insert(pieces_.corners.end(), outline.begin(), outline.end());
+    pieces_.touches.resize(pieces_.corners.size(), 0);
     pieces_.list.push_back(
         {polygon, side, first, static_cast<std::int64_t>(pieces_.corners.size())});
+}
+
+/// Adds a piece below the facet that is as high as it at some of its corners.
+void PieceFinder::add_touching(std::int32_t polygon, PolygonView outline, PlaneId lower,
+                               PlaneId upper) {
+    add(polygon, Side::kBelow, outline);
+    for (auto c = static_cast<std::size_t>(pieces_.list.back().first); c < pieces_.corners.size();
+         ++c) {
+        pieces_.touches[c] =
+            scope_.compare_heights(lower, upper, pieces_.corners[c].point) == 0 ? 1 : 0;
+    }
 }
 
 std::int32_t PieceGrouping::root(std::int32_t piece) {

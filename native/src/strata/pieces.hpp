@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "envelope.hpp"
+#include "facet_clipper.hpp"
 
 namespace realmodel::strata {
 
@@ -44,7 +45,8 @@ struct Pieces {
 /// Finds the pieces of facets, one after another, in one thread's scope.
 class PieceFinder {
 public:
-    PieceFinder(Scope& scope, const Layer& layer) : scope_(scope), clipper_(scope), layer_(layer) {}
+    PieceFinder(Scope& scope, const Layer& layer)
+        : scope_(scope), clipper_(scope), facet_clipper_(scope), layer_(layer) {}
 
     /// Pieces of the facet with this outline and plane. All that there is lies below the sky, and
     /// none of it below a void.
@@ -53,15 +55,26 @@ public:
     const std::vector<std::int32_t>& overlapping(PolygonView outline);
 
 private:
-    void add(std::int32_t polygon, Side side, PolygonView outline, PlaneId lower, PlaneId upper);
+    /// Heights between which a triangle lies.
+    struct HeightRange {
+        double low, high;
+    };
+    HeightRange heights_of(PlaneId plane) const;
+    bool find_candidates(PolygonView outline);
+    void add_common(std::int32_t polygon, PolygonView common, PlaneId plane,
+                    const HeightRange& facet);
+    void add(std::int32_t polygon, Side side, PolygonView outline);
+    void add_touching(std::int32_t polygon, PolygonView outline, PlaneId lower, PlaneId upper);
     void classify(std::int32_t polygon, PlaneId facet_plane, PolygonView common);
 
     Scope& scope_;
     Clipper clipper_;
+    FacetClipper facet_clipper_;
     const Layer& layer_;
     Pieces pieces_;
-    Polygon common_;
+    std::vector<std::int8_t> signs_;  ///< of surface less facet at the corners of a piece
     std::vector<std::int32_t> candidates_, overlapping_;
+    std::size_t expected_ = 0;  ///< polygon after the last that was a facet: the next one's, often
 };
 
 /// Groups the pieces below a facet into cells. Pieces are joined across edges where the cell is

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "realmodel/exact/key_table.hpp"
+#include "realmodel/exact/side_rows.hpp"
 
 namespace realmodel::exact {
 
@@ -215,6 +216,12 @@ public:
     /// On which side of a directed line a point lies: 1 left, 0 on it, -1 right. The predicate that
     /// every decision comes down to: the sign of a 3 x 3 determinant of plan lines.
     int side(DirectedLine line, PointId point);
+    /// Adds a point, or a line, to a row that has room.
+    void add_to(PointRow& row, PointId point) const;
+    void add_to(LineRow& row, DirectedLine line) const;
+    /// The same as `side` of all points of a row, or of a point and all lines of a row.
+    Sides sides(DirectedLine line, const PointRow& points);
+    Sides sides(const LineRow& lines, PointId point);
     /// The sign of the height of plane `upper` less that of plane `lower` above a point.
     int compare_heights(PlaneId upper, PlaneId lower, PointId point);
     /// The same with the filter of their trace at hand; the trace itself need not exist.
@@ -231,6 +238,9 @@ public:
     /// The point where two lines cross, which must exist. Input vertices and edges that pierce a
     /// plane are recognised by name.
     PointId crossing(LineId a, LineId b);
+    /// The same where no input vertex is the crossing: between the ends of an edge on one of them
+    /// and the ends of an edge on the other.
+    PointId crossing_between_ends(LineId a, LineId b);
     /// Where two planes are equally high; positive where `upper` is above `lower`.
     DirectedLine trace(PlaneId upper, PlaneId lower);
 

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+// Points or lines side by side, so that one question is asked of all of them at once: most are
+// answered by floating point, several at a time; the rest one by one, exactly.
+namespace realmodel::exact {
+
+/// So many points or lines in a row at most.
+inline constexpr std::size_t kRowLength = 12;
+
+/// Which of a row's points lie left of a line and which right of it, or of which of a row's lines a
+/// point lies left or right: a bit for each; neither where the point is on the line.
+struct Sides {
+    std::uint32_t left = 0, right = 0;
+};
+
+/// Points by their numbers, with their positions and bounds on the errors of these.
+struct PointRow {
+    std::size_t size = 0;
+    std::array<std::int32_t, kRowLength> point;
+    std::array<double, kRowLength> x, y, error;
+};
+
+/// Directed lines, with their filters.
+struct LineRow {
+    std::size_t size = 0;
+    std::array<std::int32_t, kRowLength> line;
+    std::array<double, kRowLength> a, b, c, error_a, error_b, error_c, x0, y0;
+};
+
+}  // namespace realmodel::exact

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "facet_clipper.hpp"
+
+namespace realmodel::strata {
+
+using exact::Sides;
+
+namespace {
+
+bool bit(std::uint32_t bits, std::size_t i) {
+    return (bits >> i & 1U) != 0;
+}
+
+}  // namespace
+
+void FacetClipper::begin(PolygonView facet) {
+    facet_ = facet;
+    ++number_;
+    corners_.size = lines_.size = 0;
+    if (facet.size() > exact::kRowLength) return;
+    for (const Corner& corner : facet) {
+        scope_.add_to(corners_, corner.point);
+        scope_.add_to(lines_, corner.line);
+    }
+}
+
+const FacetClipper::KnownPoint& FacetClipper::known_point(PointId point) {
+    KnownPoint& known = points_[static_cast<std::size_t>(point) % kKnown];
+    if (known.point != point || known.facet != number_)
+        known = {point, number_, scope_.sides(lines_, point)};
+    return known;
+}
+
+FacetClipper::KnownLine& FacetClipper::known_line(LineId line) {
+    KnownLine& known = known_lines_[static_cast<std::size_t>(line) % kKnown];
+    if (known.line != line || known.facet != number_) {
+        known.line = line;
+        known.facet = number_;
+        known.sides = scope_.sides(exact::directed(line, false), corners_);
+        known.crossing.fill(-1);
+    }
+    return known;
+}
+
+PolygonView FacetClipper::intersect(PolygonView window) {
+    if (facet_.size() > exact::kRowLength || window.size() > exact::kRowLength)
+        return clipper_.intersect(facet_, window);
+    const std::uint32_t all = (1U << facet_.size()) - 1U;
+    bool on_line = false;
+    for (std::size_t j = 0; j < window.size(); ++j) {
+        KnownLine& known = known_line(exact::line_of(window[j].line));
+        Sides corners = known.sides;
+        if (exact::is_reversed(window[j].line)) std::swap(corners.left, corners.right);
+        if (corners.left == 0) return {};
+        on_line |= (corners.left | corners.right) != all;
+        edges_[j] = {&known, corners};
+    }
+    std::uint32_t reached = 0;
+    for (std::size_t j = 0; j < window.size(); ++j) {
+        window_corners_[j] = known_point(window[j].point).sides;
+        reached |= window_corners_[j].left;
+        on_line |= (window_corners_[j].left | window_corners_[j].right) != all;
+    }
+    if (reached != all) return {};  // all of the window lies right of one of the facet's lines
+    // A corner of one on a line of the other is for the clipper, which takes line by line.
+    return on_line ? clipper_.intersect(facet_, window) : follow(window);
+}
+
+PointId FacetClipper::crossing(std::size_t i, std::size_t j, PolygonView window) {
+    KnownLine& known = *edges_[j].known;
+    const LineId line = exact::line_of(window[j].line);
+    // two lines of the window may have the same place
+    if (known.line != line)
+        return scope_.crossing_between_ends(exact::line_of(facet_[i].line), line);
+    PointId& point = known.crossing[i];
+    if (point < 0) point = scope_.crossing_between_ends(exact::line_of(facet_[i].line), line);
+    return point;
+}
+
+/// Goes around the facet, and from each edge where it leaves the window around the window until
+/// that leaves the facet, where the facet comes in again. No corner lies on a line of the other.
+PolygonView FacetClipper::follow(PolygonView window) {
+    const std::size_t m = facet_.size(), n = window.size();
+    const std::uint32_t all = (1U << m) - 1U;
+    std::uint32_t inside = all;  // the facet's corners in the window
+    for (std::size_t j = 0; j < n; ++j)
+        inside &= edges_[j].corners.left;
+    if (inside == all) return facet_;
+    result_.clear();
+    for (std::size_t i = 0; i < m; ++i) {
+        const std::size_t to = i + 1 < m ? i + 1 : 0;
+        if (bit(inside, i)) result_.push_back(facet_[i]);
+        std::size_t out = n;
+        for (std::size_t j = 0; j < n; ++j) {
+            const bool here = bit(edges_[j].corners.left, i);
+            if (here == bit(edges_[j].corners.left, to)) continue;
+            const std::size_t next = j + 1 < n ? j + 1 : 0;
+            if (bit(window_corners_[j].left, i) == bit(window_corners_[next].left, i)) continue;
+            if (here) {
+                out = j;
+            } else {
+                result_.push_back({crossing(i, j, window), facet_[i].line});
+            }
+        }
+        if (out == n) continue;
+        result_.push_back({crossing(i, out, window), window[out].line});
+        for (std::size_t j = out + 1 < n ? out + 1 : 0; window_corners_[j].left == all && j != out;
+             j = j + 1 < n ? j + 1 : 0)
+            result_.push_back(window[j]);
+    }
+    if (result_.empty()) result_.assign(window.begin(), window.end());  // it lies in the facet
+    return result_;
+}
+
+}  // namespace realmodel::strata

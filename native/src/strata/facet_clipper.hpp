@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "polygon.hpp"
+
+namespace realmodel::strata {
+
+/// Cuts one facet after another with the polygons of a layer. The common part of two convex
+/// polygons follows from where the corners of each lie against the lines of the other, without a
+/// question about a crossing; and polygons of a layer have corners and lines in common, so what was
+/// found of these is kept for as long as the facet lasts.
+class FacetClipper {
+public:
+    explicit FacetClipper(Scope& scope) : scope_(scope), clipper_(scope) {}
+
+    /// Begins with a facet, which has to stay where it is.
+    void begin(PolygonView facet);
+    /// The common part of the facet and a convex polygon, valid until the next call; empty without
+    /// area.
+    PolygonView intersect(PolygonView window);
+
+private:
+    /// Known things are looked up in the place that their number gives; who comes later stays.
+    static constexpr std::size_t kKnown = 64;
+    struct KnownPoint {
+        PointId point = -1;
+        std::uint32_t facet = 0;  ///< of which this is known
+        exact::Sides sides;       ///< of the facet's lines
+    };
+    struct KnownLine {
+        LineId line = -1;
+        std::uint32_t facet = 0;
+        exact::Sides sides;  ///< of the facet's corners, seen along the line
+        std::array<PointId, exact::kRowLength> crossing;  ///< with each edge; -1: not yet
+    };
+    /// A window's edge: what is known of its line, turned to its direction.
+    struct Edge {
+        KnownLine* known;
+        exact::Sides corners;
+    };
+
+    const KnownPoint& known_point(PointId point);
+    KnownLine& known_line(LineId line);
+    PolygonView follow(PolygonView window);
+    PointId crossing(std::size_t facet_edge, std::size_t window_edge, PolygonView window);
+
+    Scope& scope_;
+    Clipper clipper_;
+    PolygonView facet_;
+    std::uint32_t number_ = 0;  ///< of the facet
+    exact::PointRow corners_;
+    exact::LineRow lines_;
+    std::array<KnownPoint, kKnown> points_;
+    std::array<KnownLine, kKnown> known_lines_;
+    std::array<Edge, exact::kRowLength> edges_;
+    std::array<exact::Sides, exact::kRowLength> window_corners_;
+    Polygon result_;
+};
+
+}  // namespace realmodel::strata
