@@ -10,20 +10,32 @@ bl_info = {
     "author": "The RealModel authors",
     "version": (0, 1, 0),
     "blender": (3, 4, 0),
-    "location": "Batch: build_model.py",
+    "location": "3D Viewport > Sidebar > RealModel",
     "description": "Exact models of sedimentary rock from the surfaces that bound its layers",
     "category": "3D View",
 }
 
 
 def register():
-    """Called by Blender when the add-on is enabled.
+    """Called by Blender when the add-on is enabled. What needs Blender is imported here and not before."""
+    from . import handlers, operators, props, ui
+    from .bl import display
 
-    The parts that need Blender are imported here and not before. They register no classes of Blender
-    yet: the add-on gives scripts `realmodel.core` and `realmodel.bl`.
-    """
-    from . import bl  # noqa: F401
+    done = []
+    try:
+        for part in (props, operators, ui, display, handlers):
+            part.register()
+            done.append(part)
+    except BaseException:
+        for part in reversed(done):
+            part.unregister()
+        raise
 
 
 def unregister():
-    """Called by Blender when the add-on is disabled; nothing was registered that would stay."""
+    """Called by Blender when the add-on is disabled; nothing stays: no class, property, handler, timer."""
+    from . import handlers, operators, props, ui
+    from .bl import display
+
+    for part in (handlers, display, ui, operators, props):
+        part.unregister()

@@ -22,15 +22,7 @@ def new_mesh(name, coordinates, offsets, corners, face_surface=None):
     """
     mesh = bpy.data.meshes.new(name)
     try:
-        versions.fill_mesh(
-            mesh,
-            np.ascontiguousarray(coordinates, np.float32),
-            np.ascontiguousarray(offsets, np.int32),
-            np.ascontiguousarray(corners, np.int32),
-        )
-        if face_surface is not None:
-            attribute = mesh.attributes.new(FACE_SURFACE, "INT", "FACE")
-            attribute.data.foreach_set("value", np.ascontiguousarray(face_surface, np.int32))
+        _fill(mesh, coordinates, offsets, corners, face_surface)
     except BaseException:
         bpy.data.meshes.remove(mesh)
         raise
@@ -43,14 +35,41 @@ def triangle_mesh(name, coordinates, triangles):
     Triangles that repeat a corner are left out: they have no area, the model leaves them out too,
     and Blender's edge tables take harm from them.
     """
+    triangles = without_repeated_corners(triangles)
+    return new_mesh(name, coordinates, np.arange(0, 3 * len(triangles) + 1, 3), triangles.ravel())
+
+
+def without_repeated_corners(triangles):
+    """(T, 3) int32: the triangles whose corners are three different vertices."""
     triangles = np.asarray(triangles, np.int32).reshape(-1, 3)
     repeated = (
         (triangles[:, 0] == triangles[:, 1])
         | (triangles[:, 1] == triangles[:, 2])
         | (triangles[:, 2] == triangles[:, 0])
     )
-    triangles = triangles[~repeated]
-    return new_mesh(name, coordinates, np.arange(0, 3 * len(triangles) + 1, 3), triangles.ravel())
+    return triangles[~repeated]
+
+
+def refill(mesh, coordinates, offsets, corners, face_surface=None):
+    """Gives a mesh other vertices and polygons in the place of those that it has; its materials stay.
+
+    The arrays are those of `new_mesh`. The datablock stays the same, so nothing that points to it has to
+    know.
+    """
+    mesh.clear_geometry()
+    _fill(mesh, coordinates, offsets, corners, face_surface)
+
+
+def _fill(mesh, coordinates, offsets, corners, face_surface):
+    versions.fill_mesh(
+        mesh,
+        np.ascontiguousarray(coordinates, np.float32),
+        np.ascontiguousarray(offsets, np.int32),
+        np.ascontiguousarray(corners, np.int32),
+    )
+    if face_surface is not None:
+        attribute = mesh.attributes.new(FACE_SURFACE, "INT", "FACE")
+        attribute.data.foreach_set("value", np.ascontiguousarray(face_surface, np.int32))
 
 
 def mesh_coordinates(mesh):

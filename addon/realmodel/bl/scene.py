@@ -28,7 +28,7 @@ OBJECT_KINDS = ("interface", "block")
 
 
 @dataclass
-class _Created:
+class Created:
     """Datablocks made so far; whatever goes wrong, they can be taken back."""
 
     objects: list = field(default_factory=list)
@@ -69,7 +69,7 @@ def write_model(scene, model):
     model_origin = origin.choose_origin(model.surface_vertices)
     old = model_objects(scene)
     earlier_names = {_identity(item): item.name for item in old}
-    created = _Created()
+    created = Created()
     try:
         palette, updates = _materials(scene, model, created)
         rocks = _rock_objects(model, model_origin, palette, created)
@@ -81,17 +81,17 @@ def write_model(scene, model):
     if model_collection(scene) is None:
         scene.collection.children.link(project)
         _hide_interfaces(scene)
-    _remove_objects(old)
+    remove_objects(old)
     _remove_stale(project, {rock.name for rock in rocks})
-    _name(bpy.data.collections, project, model.project.name)
+    give_name(bpy.data.collections, project, model.project.name)
     for name, colour, material in updates:
-        _name(bpy.data.materials, material, name)
+        give_name(bpy.data.materials, material, name)
         materials.set_colour(material, colour)
     for rock in rocks:
         for made, name in (*rock.interfaces, *rock.blocks):
             earlier = earlier_names.get(_identity(made), name)
-            _name(bpy.data.objects, made, earlier if _is_name_of(earlier, name) else name)
-            _name(bpy.data.meshes, made.data, made.name)
+            give_name(bpy.data.objects, made, earlier if is_name_of(earlier, name) else name)
+            give_name(bpy.data.meshes, made.data, made.name)
     scene[stored_project.KEY] = stored
     scene[origin.KEY] = [float(value) for value in model_origin]
     return project
@@ -102,13 +102,13 @@ def _identity(item):
     return tuple(item.get(key) for key in (TAG, ROCK, SURFACE, BLOCK))
 
 
-def _is_name_of(name, wanted):
+def is_name_of(name, wanted):
     """Whether a name is the wanted one or what Blender makes of it where it is taken ("S0.001")."""
     base, _, number = name.rpartition(".")
     return name == wanted or (base == wanted and number.isdecimal())
 
 
-def _name(store, datablock, name):
+def give_name(store, datablock, name):
     """Name a datablock where the name is free. Blender would take it away from another one's."""
     if datablock.name != name and name not in store:
         datablock.name = name
@@ -136,7 +136,7 @@ def remove_model(scene):
     """Take the model out of a scene: its objects, its collections and the stored project."""
     project = model_collection(scene)
     if project is not None:
-        _remove_objects(model_objects(scene))
+        remove_objects(model_objects(scene))
         for rock in list(project.children):
             for collection in list(rock.children):
                 _remove_if_empty(collection)
@@ -262,7 +262,7 @@ def _hide_interfaces(scene):
                 layer.hide_viewport = layer.collection.get(TAG) == "interfaces"
 
 
-def _remove_objects(objects):
+def remove_objects(objects):
     """Remove objects with their meshes, and the materials of the model that nothing uses now."""
     used = []
     for item in objects:

@@ -101,6 +101,11 @@ def project_from_scene(scene):
     return None if text is None else unpack(text)
 
 
+def store(scene, project):
+    """Keeps a project, whose shapes are arrays, in a scene."""
+    scene[KEY] = pack(project)
+
+
 def _rock(archive, r, entry):
     holes = [archive[f"{r}/hole/{h}"] for h in range(entry["holes"])]
     region = archive[f"{r}/region"] if f"{r}/region" in archive else None

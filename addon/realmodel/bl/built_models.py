@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The models that were built in this session of Blender, kept beside the scenes that show them.
+
+A scene names its model by `built_stamp`, which is saved and undone with the scene; after a .blend was opened
+the model itself is not there and is built again when somebody asks for it.
+"""
+
+import secrets
+
+_MOST_KEPT = 4
+_models = {}  # (stamp, cells) -> realmodel.core.Model, the oldest first
+
+
+def remember(model, stamp=None):
+    """Keeps a model; returns the stamp by which a scene names it. stamp: of the same model with other
+    cells."""
+    stamp = stamp or secrets.token_hex(8)
+    _models.pop((stamp, model.cell_kind), None)
+    while len(_models) >= _MOST_KEPT:
+        _models.pop(next(iter(_models)))
+    _models[stamp, model.cell_kind] = model
+    return stamp
+
+
+def current(scene, cells=None):
+    """The realmodel.core.Model that a scene shows, or None where it is not at hand.
+
+    cells: "columns" or "blocks"; None: whichever there is, rather columns.
+    """
+    stamp = scene.realmodel.built_stamp
+    kinds = ("columns", "blocks") if cells is None else (cells,)
+    return next((_models[stamp, kind] for kind in kinds if (stamp, kind) in _models), None)
+
+
+def forget():
+    """Lets go of all models."""
+    _models.clear()

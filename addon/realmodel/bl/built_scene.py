@@ -1,0 +1,439 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A built model into the scene of its settings, in place of the one before.
+
+Objects stay the same ones where their block or surface is still there: what the user did to them - selection,
+other materials, constraints, their place in the outliner - stays. The tree and the custom properties are
+those that `scene` describes. What the model's own objects are is known by the pointers in the settings, so
+copies, appended models and other scenes are left alone.
+"""
+
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+
+from ..core import BuildFailed
+from . import (
+    display,
+    library_rows,
+    materials,
+    meshes,
+    project_settings,
+    scene,
+    settings,
+    shapes,
+    surface_figures,
+)
+from .origin import KEY as ORIGIN_KEY
+from .origin import choose_origin, offsets_from
+from .stored_project import KEY as PROJECT_KEY
+
+
+@dataclass
+class Prepared:
+    """A model as Blender takes it: all that can be made without touching Blender.
+
+    interfaces: by (rock, surface) numbers (offsets (V, 3) float32, triangles, digest). blocks: for each block
+    of the model (offsets, face_offsets, face_vertices, face_surface), None where it has no cells. stored: by
+    (rock, surface or None for the region) the text that its row is to keep of its file, and the stamp of the
+    file. figures: for each surface what surface_figures says of it.
+    """
+
+    model: object
+    origin: np.ndarray
+    interfaces: dict = field(default_factory=dict)
+    blocks: list = field(default_factory=list)
+    stored: dict = field(default_factory=dict)
+    figures: list = field(default_factory=list)
+
+
+def prepare(model, composed):
+    """Prepared arrays of a model; may run in a thread of its own."""
+    origin = composed.origin
+    if composed.origin_is_free:
+        origin = choose_origin(model.surface_vertices)
+    prepared = Prepared(model, origin)
+    surface = 0
+    for r, rock in enumerate(model.project.rocks):
+        for s in range(len(rock.surfaces)):
+            vertices, triangles = model.surface(surface)
+            given = offsets_from(origin, vertices)
+            triangles = meshes.without_repeated_corners(triangles)
+            prepared.interfaces[r, s] = (given, triangles, shapes.digest(given, triangles))
+            surface += 1
+    for number, block in enumerate(model.blocks):
+        shell = model.block_boundary(number) if block.cells else None
+        prepared.blocks.append(
+            None
+            if shell is None
+            else (
+                offsets_from(origin, shell.vertices),
+                shell.face_offsets.astype(np.int32),
+                shell.face_vertices,
+                shell.face_surface,
+            )
+        )
+    for (r, s), stamp in composed.read.items():
+        rock = model.project.rocks[r]
+        text = (
+            project_settings.packed_region(rock) if s is None else project_settings.packed(rock.surfaces[s])
+        )
+        prepared.stored[r, s] = (text, stamp)
+    for r, s in composed.edited:  # the digits that Blender's 32 bits do not have
+        prepared.stored[r, s] = (project_settings.packed(model.project.rocks[r].surfaces[s]), "")
+    prepared.figures = surface_figures.of_model(model)
+    return prepared
+
+
+def check_rows(current, project):
+    """Raises BuildFailed where the lists of a scene are no longer those that a project was made from."""
+    now = [(row.name, [s.name for s in row.surfaces]) for row in current.realmodel.rocks]
+    then = [(rock.name, [s.name for s in rock.surfaces]) for rock in project.rocks]
+    if now != then:
+        raise BuildFailed("the lists were changed while it was being built; build again")
+
+
+def put(current, prepared, composed, in_place=False):
+    """Puts a prepared model into a scene.
+
+    current: the bpy.types.Scene. in_place: give the blocks' meshes other contents instead of other meshes,
+    so that what points to them - Blender's undo among it - need not know; not for what may fail.
+    If anything fails the scene is as it was before.
+    """
+    model = prepared.model
+    check_rows(current, model.project)
+    created = scene.Created()
+    try:
+        palette, updates = _palette(current, model, created)
+        interfaces = _new_interfaces(current, prepared, composed, created)
+        blocks = _new_blocks(current, prepared, created, in_place)
+    except BaseException:
+        created.remove()
+        raise
+    with settings.filling():
+        _settle_edited(current, composed)
+        tree = _tree(current, model.project)
+        _place_interfaces(current, tree, interfaces)
+        _place_blocks(current, prepared, tree, blocks, palette)
+        for name, colour, material in updates:
+            scene.give_name(bpy.data.materials, material, name)
+            materials.set_colour(material, colour)
+        _keep(current, prepared)
+        current[ORIGIN_KEY] = [float(value) for value in prepared.origin]
+        if PROJECT_KEY in current:
+            del current[PROJECT_KEY]  # made anew when the file is saved
+
+
+def _keep(current, prepared):
+    """What was read from files stays in the rows, and the figures of each surface with it."""
+    for (r, s), (text, stamp) in prepared.stored.items():
+        row = current.realmodel.rocks[r]
+        if s is None:
+            row.region_stored, row.region_stamp = text, stamp
+        else:
+            surface = row.surfaces[s]
+            setattr(surface, "stored" if surface.source == "POINTS_FILE" else "stored_mesh", text)
+            surface.stored_stamp = stamp
+    rows = [row for _, row in settings.surface_rows(current)]
+    for row, figures in zip(rows, prepared.figures, strict=True):
+        row.figures = figures
+
+
+def _palette(current, model, created):
+    """Material of each property that a block has, and which are to be renamed or recoloured."""
+    palette, updates = {}, []
+    for property_id in sorted({int(block.property) for block in model.blocks if block.cells}):
+        name, colour = materials.name_and_colour(model.project.library, property_id)
+        known = library_rows.scene_materials(current, property_id)
+        if known:
+            material = known[0]
+            updates.append((name, colour, material))
+        else:
+            material = materials.new_material(name, property_id, colour)
+            created.materials.append(material)
+        palette[property_id] = material
+    return palette, updates
+
+
+def _new_interfaces(current, prepared, composed, created):
+    """By (rock, surface) the object that is to be the interface, with another mesh where it needs one:
+    (object, mesh or None, digest)."""
+    found = {}
+    for r, rock in enumerate(current.realmodel.rocks):
+        for s, row in enumerate(rock.surfaces):
+            given, triangles, digest = prepared.interfaces[r, s]
+            own = row.object if row.source == "MESH_OBJECT" else row.interface
+            if own is not None and (row.source == "MESH_OBJECT" or (r, s) in composed.edited):
+                found[r, s] = (own, None, "")
+                continue
+            mesh = None
+            if own is None or digest != row.interface_digest:
+                mesh = meshes.triangle_mesh(row.name, given, triangles)
+                created.meshes.append(mesh)
+            if own is None:
+                own = bpy.data.objects.new(row.name, mesh)
+                created.objects.append(own)
+            found[r, s] = (own, mesh, digest)
+    return found
+
+
+def _settle_edited(current, composed):
+    """Interfaces changed by hand count as they are from now on."""
+    for r, s in composed.edited:
+        row = current.realmodel.rocks[r].surfaces[s]
+        row.object = row.interface
+        row.source = "MESH_OBJECT"
+        row.interface_digest = ""
+
+
+def _new_blocks(current, prepared, created, in_place):
+    """For each block of the model (object, new mesh or None to be filled in place), None for absent ones."""
+    known = {(row.rock, row.name): row.object for row in current.realmodel.results}
+    model, found = prepared.model, []
+    for block, arrays in zip(model.blocks, prepared.blocks, strict=True):
+        if arrays is None:
+            found.append(None)
+            continue
+        item = known.get((model.project.rocks[block.rock].name, block.name))
+        if item is not None and (item.type != "MESH" or item.library is not None):
+            item = None
+        if item is not None and in_place and item.mode == "OBJECT" and item.data.users == 1:
+            found.append((item, None))
+            continue
+        mesh = meshes.new_mesh(block.name, *arrays)
+        created.meshes.append(mesh)
+        if item is None:
+            item = bpy.data.objects.new(block.name, mesh)
+            created.objects.append(item)
+        found.append((item, mesh))
+    return found
+
+
+@dataclass
+class _Tree:
+    """The collections of a model: for each rock mass (interfaces, blocks)."""
+
+    rocks: list
+
+
+def _tree(current, project):
+    """The model's collections, linked where they were taken out, new where there are none."""
+    group = current.realmodel
+    top = _collection(current, current.collection, group, "collection", project.name, "project")
+    rocks = []
+    for row in group.rocks:
+        parent = _collection(current, top, row, "collection", row.name, "rock", row.name)
+        pair = []
+        for kind in ("interfaces", "blocks"):
+            pair.append(_collection(current, parent, row, kind, f"{row.name} {kind}", kind, row.name))
+        rocks.append(tuple(pair))
+    return _Tree(rocks)
+
+
+def _collection(current, parent, row, pointer, name, kind, rock_name=None):
+    collection = getattr(row, pointer)
+    if collection is None or collection.library is not None:
+        collection = bpy.data.collections.new(name)
+        collection.hide_render = kind == "interfaces"
+        setattr(row, pointer, collection)
+    collection[scene.TAG] = kind
+    if rock_name is not None:
+        collection[scene.ROCK] = rock_name
+    if not scene.is_name_of(collection.name, name):
+        scene.give_name(bpy.data.collections, collection, name)
+    if collection not in list(current.collection.children_recursive):
+        parent.children.link(collection)
+    return collection
+
+
+def _place_interfaces(current, tree, interfaces):
+    for (r, s), (item, mesh, digest) in interfaces.items():
+        rock = current.realmodel.rocks[r]
+        row = rock.surfaces[s]
+        if mesh is not None and item.data != mesh:
+            _change_mesh(item, mesh)
+        adopted = item.get(scene.TAG) == "interface"
+        if item.library is None:
+            item[scene.TAG] = "interface"
+            item[scene.ROCK] = rock.name
+            item[scene.SURFACE] = row.name
+            item[scene.PROPERTY] = row.property_id
+        _link(current, tree.rocks[r][0], item, move=not adopted)
+        if item.library is None and not scene.is_name_of(item.name, row.name):
+            scene.give_name(bpy.data.objects, item, row.name)
+        row.interface = item
+        row.interface_digest = digest
+        if row.source in ("MESH_FILE", "POINTS_FILE"):
+            row.object = item
+
+
+def _place_blocks(current, prepared, tree, blocks, palette):
+    model = prepared.model
+    before = [row.object for row in current.realmodel.results]
+    kept = []
+    for block, made, arrays in zip(model.blocks, blocks, prepared.blocks, strict=True):
+        if made is None:
+            kept.append(None)
+            continue
+        item, mesh = made
+        if mesh is None:
+            meshes.refill(item.data, *arrays)
+        elif item.data != mesh:
+            _change_mesh(item, mesh)
+        _give_material(item, palette[int(block.property)])
+        rock_name = model.project.rocks[block.rock].name
+        item[scene.TAG] = "block"
+        item[scene.ROCK] = rock_name
+        item[scene.SURFACE] = str(model.surface_names[block.surface])
+        item[scene.BLOCK] = block.name
+        item[scene.PROPERTY] = int(block.property)
+        _link(current, tree.rocks[block.rock][1], item)
+        kept.append(item)
+    remove_objects([item for item in before if item is not None and item not in kept])
+    fill_results(current, model, kept)
+
+
+def _give_material(item, material):
+    """The property's material, unless the user has given the block another."""
+    slots = item.data.materials
+    if not len(slots):
+        slots.append(material)
+    elif slots[0] is None or materials.KEY in slots[0]:
+        slots[0] = material
+
+
+def _change_mesh(item, mesh):
+    """Another mesh for an object, with the materials and the name of the one before; that one goes."""
+    old = item.data
+    if not len(mesh.materials):
+        for material in old.materials:
+            mesh.materials.append(material)
+    item.data = mesh
+    if not old.users:
+        name = old.name
+        bpy.data.meshes.remove(old)
+        scene.give_name(bpy.data.meshes, mesh, name)
+
+
+def _link(current, collection, item, move=False):
+    """Links an object into its collection where it is nowhere in the scene; an object that becomes part of
+    the model only now moves there."""
+    if move:
+        for other in list(item.users_collection):
+            if other != collection and (
+                other == current.collection or other in list(current.collection.children_recursive)
+            ):
+                other.objects.unlink(item)
+    if current not in item.users_scene and item.name not in collection.objects:
+        collection.objects.link(item)
+
+
+def fill_results(current, model, objects):
+    """The rows of the results for a model's blocks."""
+    group = current.realmodel
+    chosen = group.active_result
+    group.results.clear()
+    total = model.volume
+    for block, item in zip(model.blocks, objects, strict=True):
+        row = group.results.add()
+        row.name, row.rock = block.name, model.project.rocks[block.rock].name
+        row.surface = str(model.surface_names[block.surface])
+        row.property_id = int(block.property)
+        row.volume, row.volume_exact = block.volume, repr(block.volume)
+        row.share = 100.0 * block.volume / total if total else 0.0
+        row.cells, row.components = block.cells, block.components
+        row.object = item
+    group.active_result = min(chosen, max(len(group.results) - 1, 0))
+
+
+def remove_objects(objects):
+    """Removes objects with their meshes, and the model's materials that nothing uses then."""
+    scene.remove_objects([item for item in objects if item.library is None])
+
+
+def clear(current):
+    """Takes the blocks out of a scene; the interfaces and all settings stay."""
+    objects = [row.object for row in current.realmodel.results if row.object is not None]
+    with settings.filling():
+        current.realmodel.results.clear()
+        current.realmodel.built_stamp = ""
+        current.realmodel.warnings = ""
+    remove_objects(objects)
+    if PROJECT_KEY in current:
+        del current[PROJECT_KEY]
+    display.cleared(current)
+
+
+def remove_model(current):
+    """Takes a whole model out of a scene: blocks, the interfaces that were made for it, collections,
+    settings. Objects that the user brought stay, outside of the model's collections."""
+    clear(current)
+    group = current.realmodel
+    for row in group.rocks:
+        for surface in row.surfaces:
+            item = surface.interface
+            if item is None:
+                continue
+            if surface.interface_digest:
+                surface.interface = surface.object = None
+                remove_objects([item])
+            else:
+                _release(current, item)
+    collections = [(row.interfaces, row.blocks, row.collection) for row in group.rocks]
+    top = group.collection
+    for key in ("rocks", "results", "library"):
+        getattr(group, key).clear()
+    group.collection = None
+    for collection in [c for three in collections for c in three] + [top]:
+        _remove_if_empty(collection)
+    if ORIGIN_KEY in current:
+        del current[ORIGIN_KEY]
+
+
+def _release(current, item):
+    """An object of the user's that is no interface any more."""
+    for key in (scene.TAG, scene.ROCK, scene.SURFACE, scene.PROPERTY):
+        if key in item:
+            del item[key]
+    for collection in list(item.users_collection):
+        if collection.get(scene.TAG) == "interfaces":
+            collection.objects.unlink(item)
+    if current not in item.users_scene:
+        current.collection.objects.link(item)
+    display.show(current, item, True)
+
+
+def remove_rock(current, row):
+    """What belongs to a rock mass that leaves the list: its blocks, the interfaces made for it, its
+    collections."""
+    name = row.name
+    with settings.filling():
+        for surface in row.surfaces:
+            release_surface(current, surface)
+        group = current.realmodel
+        gone = [n for n, block in enumerate(group.results) if block.rock == name]
+        objects = [group.results[n].object for n in gone]
+        for n in reversed(gone):
+            group.results.remove(n)
+        remove_objects([item for item in objects if item is not None])
+        for collection in (row.interfaces, row.blocks, row.collection):
+            _remove_if_empty(collection)
+
+
+def _remove_if_empty(collection):
+    if collection is not None and not len(collection.objects) and not len(collection.children):
+        bpy.data.collections.remove(collection)
+
+
+def release_surface(current, row):
+    """What belongs to a surface that leaves the list: its interface goes where it was made for it, an object
+    of the user's stays."""
+    item = row.interface
+    row.interface = None
+    if item is None:
+        return
+    if row.interface_digest and item.library is None:
+        row.object = row.object if row.object != item else None
+        remove_objects([item])
+    else:
+        _release(current, item)

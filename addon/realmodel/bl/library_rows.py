@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The library's rows in the settings, and the materials that follow them."""
+
+import colorsys
+
+import bpy
+
+from ..core import Library, Property
+from . import display, live, materials, settings
+
+_TEXTS = ("rock", "age", "structure", "description")
+
+
+def library_of(scene):
+    """The realmodel.core.Library of the rows, or None where there are none. Raises InputRefused."""
+    rows = scene.realmodel.library
+    if not len(rows):
+        return None
+    return Library([_property(row) for row in rows])
+
+
+def _property(row):
+    texts = {key: getattr(row, key) or None for key in _TEXTS}
+    density = settings.number(row, "density") or None
+    color = hex_colour(row.color) if row.has_color else None
+    return Property(row.id, row.name, color=color, density=density, **texts)
+
+
+def fill(scene, library):
+    """Rows for a library; None empties them."""
+    group = scene.realmodel
+    with settings.filling():
+        group.library.clear()
+        group.active_property = 0
+        for entry in library or ():
+            add(scene, entry)
+
+
+def add(scene, entry):
+    """A row for one realmodel.core.Property."""
+    row = scene.realmodel.library.add()
+    with settings.filling():
+        row.id, row.name = entry.id, entry.name
+        for key in _TEXTS:
+            setattr(row, key, getattr(entry, key) or "")
+        if entry.density is not None:
+            settings.set_number(row, "density", entry.density)
+        if entry.color is not None:
+            row.color = entry.rgb
+            row.has_color = True
+    return row
+
+
+def next_colour(scene):
+    """An "#rrggbb" for one more property, unlike those that are there."""
+    hue = 0.09 + 0.618034 * len(scene.realmodel.library)  # golden section: never the same again
+    return hex_colour(colorsys.hsv_to_rgb(hue % 1.0, 0.45, 0.8))
+
+
+def find(scene, property_id):
+    """The row of an ID, or None."""
+    return next((row for row in scene.realmodel.library if row.id == property_id), None)
+
+
+def free_id(scene):
+    return max((row.id for row in scene.realmodel.library), default=0) + 1
+
+
+def hex_colour(color):
+    """The "#rrggbb" of three sRGB numbers from 0 to 1."""
+    return "#" + "".join(f"{round(255 * min(max(channel, 0.0), 1.0)):02x}" for channel in color)
+
+
+def changed(row, _context):
+    """A name or an ID was changed."""
+    if not settings.is_filling():
+        _update_material(row)
+        live.touch(row.id_data)
+
+
+def colour_changed(row, _context):
+    if not settings.is_filling():
+        row.has_color = True
+        _update_material(row)
+        display.colours_changed(row.id_data)
+
+
+def _update_material(row):
+    """The material of the property in this scene takes its name and colour at once."""
+    for material in scene_materials(row.id_data, row.id):
+        if material.name != row.name and row.name and row.name not in bpy.data.materials:
+            material.name = row.name
+        materials.set_colour(material, hex_colour(row.color) if row.has_color else materials.NEUTRAL_GREY)
+
+
+def update_materials(scene):
+    """All materials take the names and colours of the library."""
+    for row in scene.realmodel.library:
+        _update_material(row)
+
+
+def scene_materials(scene, property_id):
+    """The model's materials of a property that its blocks use."""
+    found = {}
+    for block in scene.realmodel.results:
+        if block.object is None or block.object.type != "MESH":
+            continue
+        for material in block.object.data.materials:
+            if material is not None and material.get(materials.KEY) == property_id:
+                found[material.name_full] = material
+    return list(found.values())

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The options of methods between the settings of a surface and realmodel.core."""
+
+import json
+
+from ..core.methods import METHODS
+from .settings import number, set_number
+
+# Settings that the panel shows for an option: the switch before it, if it has one, and its own.
+SHOWN = {
+    "neighbours": (None, ("neighbours",)),
+    "octants": (None, ("octants",)),
+    "radius": (None, ("radius",)),
+    "power": (None, ("power",)),
+    "smoothing": (None, ("smoothing",)),
+    "drift": (None, ("drift",)),
+    "extrapolate": (None, ("extrapolate",)),
+    "thickness_method": (None, ("thickness_method",)),
+    "border": (None, ("border",)),
+    "above": (None, ("above",)),
+    "below": (None, ("below",)),
+    "to": (None, ("to",)),
+    "weight": ("use_weight", ("weight",)),
+    "dip": ("use_dip", ("dip", "dip_direction")),
+    "dip_direction": (None, ()),
+    "value": ("use_value", ("value",)),
+    "thickness": ("use_thickness", ("thickness",)),
+    "anisotropy": ("use_anisotropy", ("anisotropy_ratio", "anisotropy_azimuth")),
+    "variogram": (None, ()),
+}
+_SURFACES = ("border", "above", "below", "to")
+_NONE_IS_ZERO = ("radius",)
+_WORDS = ("drift", "extrapolate", "thickness_method")
+_WHOLE = ("neighbours", "octants")
+_VARIOGRAM = ("range", "sill", "nugget")
+
+
+def options_of(row):
+    """The options of a surface's method as realmodel.core takes them; those at their default are left out."""
+    known = METHODS[row.method].options
+    options = json.loads(row.other_options) if row.other_options else {}
+    options = {key: value for key, value in options.items() if key in known}
+    if row.fit_variogram:
+        options.pop("variogram", None)
+    for name, option in known.items():
+        if name in options or name not in SHOWN:
+            continue
+        value = _value(row, name)
+        if value is not None and value != option.default:
+            options[name] = value
+    return options
+
+
+def _value(row, name):
+    if name in _WORDS or name in _WHOLE:
+        return getattr(row, name)
+    if name in _SURFACES:
+        return _surface_or_height(getattr(row, name))
+    if name == "variogram":
+        return None if row.fit_variogram else _variogram(row)
+    if name == "anisotropy":
+        return _anisotropy(row) if row.use_anisotropy else None
+    if name == "dip_direction":
+        return number(row, name) if row.use_dip else None
+    switch, _ = SHOWN[name]
+    if switch is not None and not getattr(row, switch):
+        return None
+    value = number(row, name)
+    return None if name in _NONE_IS_ZERO and value == 0.0 else value
+
+
+def _surface_or_height(text):
+    text = text.strip()
+    try:
+        return float(text)
+    except ValueError:
+        return text or None
+
+
+def _variogram(row):
+    return {
+        "model": row.variogram_model,
+        **{key: number(row, f"variogram_{key}") for key in _VARIOGRAM},
+    }
+
+
+def _anisotropy(row):
+    return {key: number(row, f"anisotropy_{key}") for key in ("ratio", "azimuth")}
+
+
+def set_options(row, method, options):
+    """Sets a surface's method and its options from a project; what the panel has no setting for is kept."""
+    if method is not None:
+        row.method = method
+    other = {}
+    for name, value in options.items():
+        if not _set(row, name, value):
+            other[name] = value.settings() if hasattr(value, "settings") else value
+    row.other_options = json.dumps(other) if other else ""
+
+
+def _set(row, name, value):
+    """Whether the settings of a surface could take an option's value."""
+    if value is None:
+        return True
+    if name in _WORDS or name in _WHOLE:
+        setattr(row, name, value)
+    elif name in _SURFACES:
+        if not isinstance(value, (str, int, float)):
+            return False
+        setattr(row, name, value if isinstance(value, str) else repr(value))
+    elif name == "variogram":
+        return _set_variogram(row, value)
+    elif name == "anisotropy":
+        row.use_anisotropy = True
+        for key, part in value.items():
+            set_number(row, f"anisotropy_{key}", part)
+    elif name in SHOWN:
+        switch, _ = SHOWN[name]
+        if switch is not None:
+            setattr(row, switch, True)
+        set_number(row, name, value)
+    else:
+        return False
+    return True
+
+
+def _set_variogram(row, value):
+    value = value.settings() if hasattr(value, "settings") else value
+    row.fit_variogram = False
+    if "structures" in value:
+        return False  # nested ones are kept as they are
+    row.variogram_model = value["model"]
+    for key in _VARIOGRAM:
+        set_number(row, f"variogram_{key}", value.get(key, 0.0))
+    return True
+
+
+def has_nested_variogram(row):
+    """Whether a variogram of several structures, which the panel cannot change, came with the project."""
+    return bool(row.other_options) and "variogram" in json.loads(row.other_options)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The last refusal of a build, and the way to the place that it speaks of."""
+
+import json
+
+import bmesh
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from ..core import InputRefused
+from . import build_job, display, project_settings, shapes
+
+_FRAMED = 0.05  # of the object's size, at least, around a bad place
+
+
+def forget(context):
+    activity = context.window_manager.realmodel
+    activity.problem = activity.problem_object = activity.problem_triangles = activity.problem_place = ""
+
+
+def remember(context, error):
+    """Keeps what is to be shown of a refusal."""
+    activity = context.window_manager.realmodel
+    activity.problem = build_job.message(error)
+    row = build_job.refused_surface(context.scene, error)
+    item = None if row is None else (row.object if row.source == "MESH_OBJECT" else row.interface)
+    if project_settings.in_use(item) and error.triangles:
+        activity.problem_object = item.name
+        activity.problem_triangles = json.dumps([int(t) for t in error.triangles])
+    if isinstance(error, InputRefused) and error.place is not None:
+        activity.problem_place = json.dumps([float(value) for value in error.place])
+
+
+def has_place(context):
+    return context.window_manager.realmodel.problem_object in bpy.data.objects
+
+
+def show(context):
+    """Selects the bad triangles of the last refusal in edit mode, and turns the viewports to them.
+
+    Raises InputRefused where they are not there any more.
+    """
+    activity = context.window_manager.realmodel
+    item = bpy.data.objects.get(activity.problem_object)
+    if item is None or item.name not in context.view_layer.objects:
+        raise InputRefused("the refused surface is not in this scene any more", advice="build again")
+    triangles = json.loads(activity.problem_triangles or "[]")
+    if context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    display.show(context.scene, item, True)
+    _open_eyes(context.view_layer.layer_collection, item)
+    depsgraph = context.evaluated_depsgraph_get()
+    with shapes.evaluated_mesh(item, depsgraph) as mesh:
+        corners, polygons = shapes.mesh_triangles(mesh)
+        bad = np.array([t for t in triangles if t < len(corners)], np.int64)
+        places = shapes.offsets(item, mesh)[np.unique(corners[bad])]
+        same = len(mesh.polygons) == len(item.data.polygons)
+        chosen = set(np.unique(polygons[bad]).tolist()) if same else set()
+    for other in context.view_layer.objects:
+        other.select_set(other == item)
+    context.view_layer.objects.active = item
+    bpy.ops.object.mode_set(mode="EDIT")
+    _select_faces(context, item, chosen)
+    _frame(context, places, max(item.dimensions) * _FRAMED)
+
+
+def _open_eyes(layer, item):
+    """The collections that an object stands in are shown, or it could not be edited."""
+    found = item.name in layer.collection.objects
+    for child in layer.children:
+        if _open_eyes(child, item):
+            found = True
+    if found:
+        layer.hide_viewport = False
+    return found
+
+
+def _select_faces(context, item, chosen):
+    context.tool_settings.mesh_select_mode = (False, False, True)
+    mesh = bmesh.from_edit_mesh(item.data)
+    for sequence in (mesh.verts, mesh.edges, mesh.faces):
+        for element in sequence:
+            element.select = False
+    for face in mesh.faces:
+        if face.index in chosen:
+            face.select_set(True)
+    mesh.select_flush_mode()
+    bmesh.update_edit_mesh(item.data, loop_triangles=False, destructive=False)
+
+
+def _frame(context, places, least):
+    if not len(places):
+        return
+    low, high = places.min(axis=0), places.max(axis=0)
+    size = max(float(np.linalg.norm(high - low)), least)
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                view = area.spaces.active.region_3d
+                view.view_location = Vector((low + high) / 2)
+                view.view_distance = 2.5 * size
+                area.tag_redraw()

@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From the settings of a scene and the objects that they point to, to a project, and back."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from ..core import InputRefused, Project, Rock, Surface
+from ..core.project import rock_item, surface_item
+from ..core.rock_input import read_rocks
+from ..core.work import run
+from . import built_models, library_rows, method_settings, settings, shapes, stored_arrays
+from .origin import KEY as ORIGIN_KEY
+
+POINTS, MESHES = ("POINTS_FILE", "POINTS_OBJECT"), ("MESH_OBJECT", "MESH_FILE")
+
+
+@dataclass
+class Composed:
+    """A project as the scene has it. read: by (rock number, surface number or None for the region) the stamp
+    of the file that it is yet to be read from. origin_is_free: nothing in the scene holds it fast. edited:
+    (rock, surface) numbers of the interfaces that were changed by hand since they were made, and therefore
+    count as they are."""
+
+    project: Project
+    origin: np.ndarray
+    origin_is_free: bool
+    read: dict = field(default_factory=dict)
+    edited: list = field(default_factory=list)
+
+
+def model_origin(scene):
+    """(3,) float64: what object coordinates lack to be model coordinates."""
+    return np.array(scene.get(ORIGIN_KEY, (0.0, 0.0, 0.0)), np.float64)
+
+
+def _origin_is_free(scene):
+    """Whether the origin may yet be chosen: no object of the scene stands where it says."""
+    pointed = [row.region for row in scene.realmodel.rocks]
+    pointed += [item for _, row in settings.surface_rows(scene) for item in (row.object, row.interface)]
+    return ORIGIN_KEY not in scene and not any(pointed)
+
+
+def absolute(path):
+    """A path as the user gave it ("//" is the .blend's folder) as a Path; None for an empty one."""
+    path = path.strip()
+    return Path(os.path.realpath(bpy.path.abspath(path))) if path else None
+
+
+def compose(scene, depsgraph, whole=True):
+    """The project of a scene's settings.
+
+    depsgraph: the evaluated one, in which modifiers have been applied. whole: look whether files have
+    changed; otherwise (live) what the .blend keeps of them is taken where it does. Raises InputRefused,
+    naming the rock mass and the surface, for what cannot be built from.
+    """
+    origin = model_origin(scene)
+    project = Project(scene.realmodel.name, [], library_rows.library_of(scene))
+    composed = Composed(project, origin, _origin_is_free(scene))
+    for number, row in enumerate(scene.realmodel.rocks):
+        rock = Rock(row.name, [], mesher=row.mesher)
+        if row.edge_length > 0.0:
+            rock.edge_length = settings.number(row, "edge_length")
+        if row.use_base:
+            rock.base_elevation = settings.number(row, "base_elevation")
+        _region(composed, number, rock, row, depsgraph, whole)
+        composed.project.rocks.append(rock)
+        for at, surface_row in enumerate(row.surfaces):
+            surface = _plain_surface(surface_row)
+            try:
+                _shape(scene, composed, (number, at), surface, surface_row, depsgraph, whole)
+            except InputRefused as error:
+                raise error.within(surface_item(rock, surface)) from error
+            rock.surfaces.append(surface)
+    return composed
+
+
+def _plain_surface(row):
+    """A surface with everything but its shape."""
+    surface = Surface(row.name, rule=row.rule, property=row.property_id, block=row.block or None)
+    if row.source not in MESHES:
+        surface.method = row.method
+        surface.options = method_settings.options_of(row)
+        if row.use_minimum_thickness:
+            surface.minimum_thickness = settings.number(row, "minimum_thickness")
+    return surface
+
+
+def region_rings(row, depsgraph, origin):
+    """The outlines of a rock mass's region object, or None where it has none. Raises InputRefused."""
+    if row.region is None:
+        return None
+    return [ring + origin[:2] for ring in shapes.rings(row.region, depsgraph)]
+
+
+def _region(composed, number, rock, row, depsgraph, whole):
+    try:
+        rings = region_rings(row, depsgraph, composed.origin)
+        if rings is None:
+            rings = _stored_rings(composed, number, rock, row, whole)
+    except InputRefused as error:
+        raise error.within(rock_item(rock)) from error
+    if rings:
+        rock.region, rock.holes = rings[0], rings[1:]
+
+
+def _stored_rings(composed, number, rock, row, whole):
+    """The outlines that the .blend keeps of a region's file; None where the file is to be read."""
+    path = absolute(row.region_file)
+    if path is not None and (not row.region_stored or (whole and _changed(path, row.region_stamp))):
+        rock.region = path
+        composed.read[number, None] = stored_arrays.file_stamp(path)
+        return None
+    if not row.region_stored:
+        return None
+    arrays = stored_arrays.unpack(row.region_stored)
+    return [arrays[f"ring{n}"] for n in range(len(arrays))]
+
+
+def _changed(path, stamp):
+    """Whether a file is there and is another one than was read."""
+    now = stored_arrays.file_stamp(path)
+    return bool(now) and now != stamp
+
+
+def _shape(scene, composed, place, surface, row, depsgraph, whole):
+    if row.source == "NONE":
+        return
+    if row.source in ("POINTS_OBJECT", "MESH_OBJECT"):
+        _from_object(composed, surface, row, depsgraph)
+        return
+    if row.interface_digest and in_use(row.interface):
+        given, triangles = shapes.triangulation(row.interface, depsgraph)
+        if shapes.digest(given, triangles) != row.interface_digest:
+            composed.edited.append(place)
+            base = _made_of(scene, place, row)
+            _take_mesh(composed, surface, row.interface, given, triangles, base)
+            return
+    path, stored = absolute(row.filepath), stored_shape(row)
+    if path is not None and (not stored or (whole and _changed(path, row.stored_stamp))):
+        setattr(surface, "points" if row.source == "POINTS_FILE" else "mesh", path)
+        composed.read[place] = stored_arrays.file_stamp(path)
+    elif stored:
+        _take_stored(surface, stored)
+    else:
+        kind = "points" if row.source == "POINTS_FILE" else "mesh"
+        raise InputRefused(f"no file with its {kind} is chosen", advice="choose its file, or another source")
+
+
+def stored_shape(row):
+    """The text in which the .blend keeps what a surface's file had; "" where it keeps nothing."""
+    return row.stored if row.source == "POINTS_FILE" else row.stored_mesh
+
+
+def _take_stored(surface, text):
+    for key, array in stored_arrays.unpack(text).items():
+        setattr(surface, key, array)
+
+
+def _from_object(composed, surface, row, depsgraph):
+    if row.object is None:
+        if row.source == "MESH_OBJECT" and row.stored_mesh:
+            _take_stored(surface, row.stored_mesh)
+            return
+        raise InputRefused("it has no object", advice="choose the object that gives its shape")
+    if row.source == "POINTS_OBJECT":
+        surface.points = shapes.points(row.object, depsgraph) + composed.origin
+        if not len(surface.points):
+            raise InputRefused(f"object '{row.object.name}' has no vertices", advice="choose another object")
+        return
+    given, triangles = shapes.triangulation(row.object, depsgraph)
+    base = stored_arrays.unpack(row.stored_mesh) if row.stored_mesh else {}
+    _take_mesh(composed, surface, row.object, given, triangles, base)
+
+
+def _made_of(scene, place, row):
+    """The arrays, in full digits, that an interface was made of: kept ones, or those of the model at hand."""
+    if row.source == "MESH_FILE" and row.stored_mesh:
+        return stored_arrays.unpack(row.stored_mesh)
+    model = built_models.current(scene)
+    if model is None or len(model.surface_names) != sum(1 for _ in settings.surface_rows(scene)):
+        return {}
+    before = sum(len(rock.surfaces) for rock in list(scene.realmodel.rocks)[: place[0]])
+    vertices, triangles = model.surface(before + place[1])
+    return {"vertices": vertices, "triangles": triangles}
+
+
+def _take_mesh(composed, surface, item, given, triangles, base):
+    if not len(triangles):
+        raise InputRefused(f"object '{item.name}' has no faces", advice="choose a mesh that has faces")
+    surface.points, surface.method, surface.options = None, None, {}
+    surface.minimum_thickness = None
+    surface.vertices = shapes.with_full_digits(
+        given, triangles, composed.origin, base.get("vertices"), base.get("triangles")
+    )
+    surface.triangles = triangles
+
+
+def oldest_first(items, depsgraph):
+    """Mesh objects by the mean height of their vertices: where surfaces follow each other, their order in
+    age."""
+
+    def mean_height(item):
+        heights = shapes.points(item, depsgraph)[:, 2]
+        return float(heights.mean()) if len(heights) else 0.0
+
+    return sorted(items, key=mean_height)
+
+
+def read_project(composed):
+    """The project with arrays in the place of the files that it still names. Raises InputRefused."""
+    given = composed.project
+    if not composed.read:
+        return given
+    inputs = run(lambda work: read_rocks(work, given))
+    return Project(given.name, [entry.rock for entry in inputs], given.library)
+
+
+def in_use(item):
+    """Whether an object that a setting points to is still in some scene: deleted objects that are pointed to
+    live on outside of all."""
+    return item is not None and len(item.users_scene) > 0
+
+
+def packed(surface):
+    """The text that a row keeps of the shape of a realmodel.core.Surface with arrays."""
+    if surface.points is not None:
+        return stored_arrays.pack(points=np.asarray(surface.points, np.float64))
+    return stored_arrays.pack(
+        vertices=np.asarray(surface.vertices, np.float64), triangles=np.asarray(surface.triangles, np.int32)
+    )
+
+
+def packed_region(rock):
+    """The text that a row keeps of the outlines of a realmodel.core.Rock with arrays."""
+    rings = [np.asarray(ring, np.float64) for ring in (rock.region, *rock.holes)]
+    return stored_arrays.pack(**{f"ring{n}": ring for n, ring in enumerate(rings)})
+
+
+def fill(scene, project, stored=False):
+    """Rows for a project, in place of those that are there.
+
+    project: realmodel.core.Project. Files stay files, unless they have been read (stored=True, as
+    `Model.project`): then their arrays are kept.
+    """
+    group = scene.realmodel
+    with settings.filling():
+        group.rocks.clear()
+        group.results.clear()
+        group.active_rock = group.stage = 0
+        group.name = project.name
+        group.exists = True
+        group.version = settings.VERSION
+        group.project_file = str(project.path or "")
+        group.library_path = str(project.library.path or "") if project.library else ""
+        for rock in project.rocks:
+            add_rock(group, rock)
+        group.stage = settings.last_stage(scene)
+    library_rows.fill(scene, project.library)
+
+
+def add_rock(group, rock):
+    """A row for a realmodel.core.Rock."""
+    row = group.rocks.add()
+    with settings.filling():
+        row.name = rock.name
+        if rock.edge_length is not None:
+            settings.set_number(row, "edge_length", rock.edge_length)
+        row.mesher = rock.mesher
+        if rock.base_elevation is not None:
+            settings.set_number(row, "base_elevation", rock.base_elevation)
+            row.use_base = True
+        if rock.region_file is not None:
+            row.region_file = str(rock.region_file)
+        elif rock.region is not None:
+            row.region_stored = packed_region(rock)
+        for surface in rock.surfaces:
+            fill_surface(row.surfaces.add(), surface)
+        row.active_surface = max(len(rock.surfaces) - 1, 0)
+    return row
+
+
+def fill_surface(row, surface):
+    """Sets a surface's row from a realmodel.core.Surface."""
+    with settings.filling():
+        row.name = surface.name
+        row.rule = surface.rule
+        row.property_id = surface.property
+        row.block = surface.block or ""
+        if surface.minimum_thickness is not None:
+            row.use_minimum_thickness = True
+            settings.set_number(row, "minimum_thickness", surface.minimum_thickness)
+        method_settings.set_options(row, surface.method, surface.options)
+        if surface.input_file is not None:
+            row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
+            row.filepath = str(surface.input_file)
+        elif surface.interpolated and surface.points is None:
+            row.source = "NONE"
+        else:
+            row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
+            setattr(row, "stored" if surface.interpolated else "stored_mesh", packed(surface))

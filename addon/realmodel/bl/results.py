@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The table of blocks that a build fills in."""
+
+import csv
+import io
+
+from . import settings
+
+CSV_HEADINGS = ("block", "rock", "property", "volume", "share", "components", "cells")
+
+
+def volume(row):
+    """The volume of a row in full, model units cubed."""
+    return float(row.volume_exact) if row.volume_exact else float(row.volume)
+
+
+def row_chosen(group, context):
+    """Selects the block of the chosen row, alone."""
+    if settings.is_filling() or not 0 <= group.active_result < len(group.results):
+        return
+    chosen = group.results[group.active_result].object
+    layer = context.view_layer
+    if chosen is None or chosen.name not in layer.objects:
+        return
+    if context.mode != "OBJECT":
+        return  # an edit under way is not to be left for it
+    for item in layer.objects:
+        item.select_set(item == chosen)
+    layer.objects.active = chosen
+
+
+def as_csv(scene):
+    """The table as text with commas, numbers in full."""
+    file = io.StringIO()
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(CSV_HEADINGS)
+    names = {row.id: row.name for row in scene.realmodel.library}
+    rows = scene.realmodel.results
+    total = sum(volume(row) for row in rows)
+    for row in rows:
+        share = volume(row) / total if total else 0.0
+        name = names.get(row.property_id, row.property_id or "")
+        writer.writerow([row.name, row.rock, name, repr(volume(row)), repr(share), row.components, row.cells])
+    return file.getvalue()

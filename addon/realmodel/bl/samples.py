@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The examples that come with RealModel: project files in the folder blend_samples."""
+
+from pathlib import Path
+
+import bpy
+
+from ..core import InputRefused
+
+# Beside the add-on where it was installed, above it where it runs from its repository.
+_PLACES = (Path(__file__).resolve().parents[1], Path(__file__).resolve().parents[3])
+_LABELS = {
+    "two_layers": ("Two layers", "The smallest project: two surfaces from points, one erosion"),
+    "haut_barr": ("Haut-Barr", "A castle hill of eleven surfaces, cut by erosion into separate bodies"),
+}
+_items = []  # Blender does not keep the texts of dynamic enums itself
+
+
+def folder():
+    """The folder of the examples, or None where they were not installed."""
+    return next((p / "blend_samples" for p in _PLACES if (p / "blend_samples").is_dir()), None)
+
+
+def enum_items(_operator, _context):
+    """Enum items of the examples that are there."""
+    place = folder()
+    names = [] if place is None else sorted(p.parent.name for p in place.glob("*/project.toml"))
+    names.sort(key=lambda name: list(_LABELS).index(name) if name in _LABELS else len(_LABELS))
+    _items[:] = [(name, *_LABELS.get(name, (name.replace("_", " ").capitalize(), ""))) for name in names]
+    return _items or [("NONE", "No examples", "The folder blend_samples is not there")]
+
+
+def project_file(name):
+    """The project file of an example. Raises InputRefused."""
+    place = folder()
+    path = None if place is None else place / name / "project.toml"
+    if path is None or not path.is_file():
+        raise InputRefused(f"there is no example '{name}'", advice="open a project file instead")
+    return Path(bpy.path.native_pathsep(str(path)))

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rows of `scene.realmodel`: which is active, what they may point to, names, numbers in full
+precision."""
+
+import json
+from contextlib import contextmanager
+
+import numpy as np
+
+VERSION = 1  # of the settings; versioning.py brings older ones up to it
+
+_quiet = 0  # how many blocks of code fill in settings at the moment
+
+
+@contextmanager
+def filling():
+    """While settings are filled in by a program, changing them has no consequences of its own."""
+    global _quiet
+    _quiet += 1
+    try:
+        yield
+    finally:
+        _quiet -= 1
+
+
+def is_filling():
+    return _quiet > 0
+
+
+def is_mesh_object(_row, item):
+    """Poll of pointers to objects: what has vertices."""
+    return item.type == "MESH"
+
+
+def is_region_object(_row, item):
+    """Poll of pointers to objects: what can bound a region."""
+    return item.type in {"MESH", "CURVE"}
+
+
+def active_rock(scene):
+    """The active rock mass's row, or None."""
+    rows = scene.realmodel.rocks
+    return rows[min(scene.realmodel.active_rock, len(rows) - 1)] if len(rows) else None
+
+
+def active_surface(scene):
+    """The active surface's row, or None."""
+    rock = active_rock(scene)
+    if rock is None or not len(rock.surfaces):
+        return None
+    return rock.surfaces[min(max(rock.active_surface, 0), len(rock.surfaces) - 1)]
+
+
+def surface_rows(scene):
+    """(rock row, surface row) of every surface, in the model's order."""
+    for rock in scene.realmodel.rocks:
+        for surface in rock.surfaces:
+            yield rock, surface
+
+
+def last_stage(scene):
+    """The number of the youngest surface, counted from 0; 0 where there is none."""
+    return (
+        max((len(rock.surfaces) for rock in scene.realmodel.rocks), default=1) - 1 if has_rows(scene) else 0
+    )
+
+
+def has_rows(scene):
+    return any(len(rock.surfaces) for rock in scene.realmodel.rocks)
+
+
+def free_name(rows, wanted, own=None):
+    """The wanted name, or with the next free number where another row has it."""
+    taken = {row.name for row in rows if row != own}
+    if wanted not in taken:
+        return wanted
+    number = 2
+    while f"{wanted} {number}" in taken:
+        number += 1
+    return f"{wanted} {number}"
+
+
+def number(row, key):
+    """A number of a row in full: Blender's properties hold 32 bits, about seven digits.
+
+    What was set by `set_number` comes back as it was, as long as the property still shows it; what was typed
+    comes as the shortest decimal that the property stands for, so 0.1 is 0.1.
+    """
+    shown = np.float32(getattr(row, key))
+    exact = json.loads(row.exact).get(key) if row.exact else None
+    if exact is not None and np.float32(exact) == shown:
+        return exact
+    return float(str(shown))
+
+
+def set_number(row, key, value):
+    """Sets a number of a row, and keeps all its digits."""
+    setattr(row, key, value)
+    kept = json.loads(row.exact) if row.exact else {}
+    kept.pop(key, None)
+    if number(row, key) != float(value):
+        kept[key] = float(value)
+    row.exact = json.dumps(kept) if kept else ""
+
+
+def copy_row(source, target):
+    """Copies every setting of one row to another of its kind, the rows inside it too."""
+    with filling():
+        for prop in source.bl_rna.properties:
+            key = prop.identifier
+            if prop.type == "COLLECTION":
+                for entry in getattr(source, key):
+                    copy_row(entry, getattr(target, key).add())
+            elif not prop.is_readonly:
+                setattr(target, key, getattr(source, key))

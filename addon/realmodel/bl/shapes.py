@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects of the scene as what a model is built from: triangulations, points, outlines.
+
+All coordinates are model coordinates: object coordinates in the world, plus the model origin. Modifiers and
+geometry nodes count: the evaluated mesh is taken, and an edit that is under way in edit mode with it.
+"""
+
+import hashlib
+from contextlib import contextmanager
+
+import numpy as np
+
+from ..core import InputRefused
+from . import meshes
+
+
+@contextmanager
+def evaluated_mesh(item, depsgraph):
+    """The mesh of an object as the viewport shows it, with its modifiers."""
+    if item.mode == "EDIT":
+        item.update_from_editmode()
+        if not item.modifiers and item.type == "MESH":
+            yield item.data
+            return
+    evaluated = item.evaluated_get(depsgraph)
+    mesh = evaluated.to_mesh(preserve_all_data_layers=False, depsgraph=depsgraph)
+    try:
+        yield mesh
+    finally:
+        evaluated.to_mesh_clear()
+
+
+def offsets(item, mesh):
+    """(V, 3) float64: a mesh's vertices in the world, without the model origin."""
+    coordinates = meshes.mesh_coordinates(mesh).astype(np.float64)
+    matrix = np.array(item.matrix_world, np.float64)
+    if (matrix == np.eye(4)).all():
+        return coordinates
+    return coordinates @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def mesh_triangles(mesh):
+    """(T, 3) int32 triangles of a mesh and (T,) int32 the polygon that each is of."""
+    mesh.calc_loop_triangles()
+    corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("vertices", corners)
+    polygons = np.empty(len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("polygon_index", polygons)
+    return corners.reshape(-1, 3), polygons
+
+
+def triangulation(item, depsgraph):
+    """(V, 3) float64 offsets from the origin and (T, 3) int32 triangles of a mesh object."""
+    with evaluated_mesh(item, depsgraph) as mesh:
+        return offsets(item, mesh), mesh_triangles(mesh)[0]
+
+
+def points(item, depsgraph):
+    """(P, 3) float64 offsets from the origin: the vertices of a mesh object."""
+    with evaluated_mesh(item, depsgraph) as mesh:
+        return offsets(item, mesh)
+
+
+def digest(given, triangles):
+    """What tells whether a mesh is still as it was: of offsets rounded as Blender keeps them, and
+    triangles."""
+    found = hashlib.blake2b(digest_size=16)
+    found.update(np.ascontiguousarray(given, np.float32).tobytes())
+    found.update(np.ascontiguousarray(triangles, np.int32).tobytes())
+    return found.hexdigest()
+
+
+def with_full_digits(given, triangles, model_origin, stored_vertices, stored_triangles):
+    """(V, 3) float64 model coordinates of a mesh that was made from stored ones: what nobody moved keeps all
+    the digits that it had before Blender rounded it; what was moved is taken as it stands."""
+    moved = given + model_origin
+    if stored_vertices is None or stored_vertices.shape != given.shape:
+        return moved
+    if not np.array_equal(meshes.without_repeated_corners(stored_triangles), triangles):
+        return moved
+    same = np.asarray(given, np.float32) == np.asarray(stored_vertices - model_origin, np.float32)
+    return np.where(same, stored_vertices, moved)
+
+
+def rings(item, depsgraph):
+    """The outlines of a curve or mesh object seen from above, each (N, 2) float64 offsets from the origin.
+
+    Of a mesh with faces the border, otherwise its edges; inner loops are holes (even-odd).
+    Raises InputRefused where they do not close.
+    """
+    with evaluated_mesh(item, depsgraph) as mesh:
+        plan = offsets(item, mesh)[:, :2]
+        edges = _bounding_edges(mesh)
+    where = f"region object '{item.name}'"
+    if not len(edges):
+        raise InputRefused(
+            "it has no edges", item=where, advice="draw an outline, or choose a curve or a mesh that has one"
+        )
+    return [plan[ring] for ring in _closed_chains(edges, len(plan), where, plan)]
+
+
+def _bounding_edges(mesh):
+    """(E, 2) the edges that only one face uses; all edges of a mesh that has no faces."""
+    edges = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("vertices", edges)
+    edges = edges.reshape(-1, 2)
+    if not len(mesh.polygons):
+        return edges
+    used = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("edge_index", used)
+    return edges[np.bincount(used, minlength=len(edges)) == 1]
+
+
+def _closed_chains(edges, count, where, plan):
+    """Vertex numbers of each closed loop that the edges make."""
+    degree = np.bincount(edges.ravel(), minlength=count)
+    odd = np.flatnonzero((degree != 2) & (degree != 0))
+    if len(odd):
+        place = plan[odd[0]]
+        what = "its outline is open" if degree[odd[0]] == 1 else "its outline touches or crosses itself"
+        raise InputRefused(
+            f"{what} near ({place[0]:.6g}, {place[1]:.6g})",
+            item=where,
+            advice="close the curve (Toggle Cyclic), or join the ends of the edges",
+        )
+    neighbours = [[] for _ in range(count)]
+    for a, b in edges.tolist():
+        neighbours[a].append(b)
+        neighbours[b].append(a)
+    left, found = set(np.flatnonzero(degree).tolist()), []
+    while left:
+        start = min(left)
+        chain, before, at = [start], start, neighbours[start][0]
+        while at != start:
+            chain.append(at)
+            first, second = neighbours[at]
+            before, at = at, second if first == before else first
+        left.difference_update(chain)
+        found.append(chain)
+    return found
+
+
+def enclosed_volume(mesh):
+    """The volume inside a closed mesh, by the divergence theorem, in the object's own coordinates."""
+    triangles, _ = mesh_triangles(mesh)
+    if not len(triangles):
+        return 0.0
+    at = meshes.mesh_coordinates(mesh).astype(np.float64)
+    a, b, c = (at - at.mean(axis=0))[triangles].transpose(1, 0, 2)
+    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0)

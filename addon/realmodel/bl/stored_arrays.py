@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Arrays as text, for properties of the .blend: what was read from files stays with the model."""
+
+import base64
+import hashlib
+import io
+import zipfile
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from ..core import InputRefused
+
+_BROKEN = (KeyError, TypeError, ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
+_MOST_KEPT = 256
+_unpacked = {}  # by digest of the text: arrays read lately, not to be written to
+
+
+def pack(**arrays):
+    """A compressed .npz in base64. The same arrays give the same text."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w") as archive:
+        for name, array in arrays.items():
+            member = io.BytesIO()
+            np.lib.format.write_array(member, np.ascontiguousarray(array), allow_pickle=False)
+            entry = zipfile.ZipInfo(f"{name}.npy")  # dated 1980
+            archive.writestr(entry, member.getbuffer(), zipfile.ZIP_DEFLATED, compresslevel=1)
+    return base64.b64encode(file.getvalue()).decode("ascii")
+
+
+def unpack(text):
+    """The arrays of `pack` by name; they cannot be written to. Raises InputRefused for damaged text."""
+    key = hashlib.blake2b(text.encode("ascii", "replace"), digest_size=16).digest()
+    if key not in _unpacked:
+        try:
+            file = io.BytesIO(base64.b64decode(text, validate=True))
+            with np.load(file, allow_pickle=False) as archive:
+                arrays = {name: archive[name] for name in archive.files}
+        except _BROKEN as error:
+            raise InputRefused(
+                f"what the .blend keeps of it cannot be read: {error}",
+                advice="choose its file again, or open an older copy of the .blend",
+            ) from error
+        for array in arrays.values():
+            array.flags.writeable = False
+        while len(_unpacked) >= _MOST_KEPT:
+            _unpacked.pop(next(iter(_unpacked)))
+        _unpacked[key] = arrays
+    return _unpacked[key]
+
+
+def forget():
+    """Lets go of what was read lately."""
+    _unpacked.clear()
+
+
+def file_stamp(path):
+    """What tells whether a file is still the one that was read; "" where there is no such file."""
+    try:
+        found = Path(path).stat()
+    except (OSError, ValueError):
+        return ""
+    return f"{path}|{found.st_mtime_ns}|{found.st_size}"

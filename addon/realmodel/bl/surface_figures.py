@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a build tells of each surface: its points, its heights, how much of it was not eroded away again."""
+
+import json
+
+import numpy as np
+
+
+def of_model(model):
+    """For each surface of a model a JSON text: points, triangles, low, high, area (in plan, of what survives,
+    model units squared) and share (of the surface itself; null where the region cuts it off)."""
+    areas = _surviving_areas(model)
+    found, number = [], 0
+    for rock in model.project.rocks:
+        for surface in rock.surfaces:
+            vertices, triangles = model.surface(number)
+            heights = vertices[np.unique(triangles), 2] if len(triangles) else np.zeros(1)
+            whole = _plan_area(vertices, triangles) if surface.interpolated or rock.region is None else 0.0
+            figures = {
+                "points": len(surface.points) if surface.points is not None else None,
+                "triangles": len(triangles),
+                "low": float(heights.min()),
+                "high": float(heights.max()),
+                "area": float(areas[number]),
+                "share": min(float(areas[number]) / whole, 1.0) if whole else None,
+            }
+            found.append(json.dumps(figures))
+            number += 1
+    return found
+
+
+def read(row):
+    """The figures of a surface's row, or None before a build."""
+    return json.loads(row.figures) if row.figures else None
+
+
+def _surviving_areas(model):
+    """(S,) float64: the area in plan of the faces that lie on each surface."""
+    plan = model.vertices[:, :2] - model.vertices[:1, :2]
+    corners = plan[model.face_vertices]
+    following = np.arange(1, len(model.face_vertices) + 1)
+    following[model.face_offsets[1:] - 1] = model.face_offsets[:-1]
+    after = corners[following]
+    doubled = corners[:, 0] * after[:, 1] - corners[:, 1] * after[:, 0]
+    area = np.abs(np.add.reduceat(doubled, model.face_offsets[:-1])) / 2 if len(doubled) else np.zeros(0)
+    on = model.face_surface >= 0
+    return np.bincount(model.face_surface[on], area[on], len(model.surface_names))
+
+
+def _plan_area(vertices, triangles):
+    a, b, c = (vertices[triangles[:, k], :2] for k in range(3))
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    return float(np.abs(ux * vy - uy * vx).sum() / 2)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What RealModel does when Blender opens, saves or undoes: registered once, and all taken out again."""
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import versioning
+from .bl import built_models, display, live, project_settings, stored_arrays, stored_project
+from .core import RealModelError
+
+
+@persistent
+def _loaded(*_arguments):
+    built_models.forget()
+    stored_arrays.forget()
+    migrate_all()
+    live.switched()
+
+
+@persistent
+def _before_loading(*_arguments):
+    live.stop_work()
+
+
+@persistent
+def _before_saving(*_arguments):
+    """The project goes into the .blend for programs that read it without the panel."""
+    for scene in bpy.data.scenes:
+        group = scene.realmodel
+        if not len(group.results) or stored_project.KEY in scene or scene.library is not None:
+            continue
+        try:
+            composed = project_settings.compose(scene, _depsgraph(scene), whole=False)
+            stored_project.store(scene, project_settings.read_project(composed))
+        except RealModelError as error:
+            print(f"RealModel: scene '{scene.name}': its project is not stored: {error}")
+
+
+def _depsgraph(scene):
+    layer = scene.view_layers[0]
+    layer.update()
+    return layer.depsgraph
+
+
+@persistent
+def _undone(*_arguments):
+    live.undone()
+
+
+@persistent
+def _changed(scene, depsgraph):
+    live.changed(scene, depsgraph)
+
+
+@persistent
+def _frame_changed(scene, *_arguments):
+    display.frame_changed(scene)
+
+
+def migrate_all():
+    """Brings every scene of the file up to date; one that cannot be is left as it is, and said so."""
+    for scene in bpy.data.scenes:
+        try:
+            versioning.migrate(scene)
+        except RealModelError as error:
+            print(f"RealModel: scene '{scene.name}': {error}")
+
+
+_HANDLERS = (
+    ("load_post", _loaded),
+    ("load_pre", _before_loading),
+    ("save_pre", _before_saving),
+    ("undo_post", _undone),
+    ("redo_post", _undone),
+    ("depsgraph_update_post", _changed),
+    ("frame_change_post", _frame_changed),
+)
+
+
+def _migrate_at_start():
+    """Once, when Blender lets its data be changed: an add-on that is enabled may not do so yet."""
+    if hasattr(bpy.types.Scene, "realmodel"):
+        migrate_all()
+
+
+def register():
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
+    bpy.app.timers.register(_migrate_at_start, first_interval=0.0)
+
+
+def unregister():
+    if bpy.app.timers.is_registered(_migrate_at_start):
+        bpy.app.timers.unregister(_migrate_at_start)
+    for name, handler in _HANDLERS:
+        registered = getattr(bpy.app.handlers, name)
+        if handler in registered:
+            registered.remove(handler)
+    live.stop()
+    built_models.forget()
+    stored_arrays.forget()

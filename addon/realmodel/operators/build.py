@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Building: at once for scripts; with progress and Esc from the panel."""
+
+import bpy
+
+from ..bl import build_job, built_scene, live, problems
+from ..core import Cancelled, RealModelError
+from .reporting import Reporting, needed_model
+
+_STEP = 0.05  # seconds between two looks at the work
+
+
+class REALMODEL_OT_build(Reporting, bpy.types.Operator):
+    """Intersect and cut: build the blocks from all surfaces, oldest first. Esc cancels, and nothing has
+    changed"""
+
+    bl_idname = "realmodel.build"
+    bl_label = "Build"
+
+    _job = None
+    _timer = None
+
+    @classmethod
+    def poll(cls, context):
+        return not context.window_manager.realmodel.running
+
+    def act(self, context):
+        live.stop_work()
+        problems.forget(context)
+        job = build_job.BuildJob(context.scene, context.evaluated_depsgraph_get())
+        self._tell_done(job.run())
+
+    def invoke(self, context, event):
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        live.stop_work()
+        problems.forget(context)
+        try:
+            self._job = build_job.BuildJob(context.scene, context.evaluated_depsgraph_get())
+        except RealModelError as error:
+            return self._refused(context, error)
+        self._job.start()
+        running.append(self._job)
+        activity = context.window_manager.realmodel
+        activity.running, activity.progress, activity.text = True, 0.0, "starting"
+        self._timer = context.window_manager.event_timer_add(_STEP, window=context.window)
+        context.window_manager.progress_begin(0, 100)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type == "ESC" and event.value == "PRESS":
+            self._job.cancel()
+            return {"RUNNING_MODAL"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        if not self._job.done:
+            self._show_progress(context)
+            return {"PASS_THROUGH"}
+        self._leave(context)
+        try:
+            self._tell_done(self._job.finish())
+        except Cancelled:
+            self.report({"WARNING"}, "Cancelled: the scene is as it was")
+            return {"CANCELLED"}
+        except Exception as error:
+            return self._refused(context, error)
+        redraw(context)
+        return {"FINISHED"}
+
+    def cancel(self, context):
+        """Blender ends the operator: another file is opened, or the window is closed."""
+        self._job.cancel()
+        self._leave(context)
+
+    def _show_progress(self, context):
+        fraction, text = self._job.state()
+        activity = context.window_manager.realmodel
+        activity.progress, activity.text = 100.0 * fraction, text
+        context.window_manager.progress_update(100.0 * fraction)
+        if context.workspace is not None:
+            context.workspace.status_text_set(f"RealModel: {text}, {100 * fraction:.0f} %     Esc: cancel")
+        redraw(context)
+
+    def _leave(self, context):
+        if self._job in running:
+            running.remove(self._job)
+        manager = context.window_manager
+        manager.realmodel.running = False
+        manager.progress_end()
+        if self._timer is not None:
+            manager.event_timer_remove(self._timer)
+            self._timer = None
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+        redraw(context)
+
+    def _refused(self, context, error):
+        self.report({"ERROR"}, build_job.message(error))
+        problems.remember(context, error)
+        if problems.has_place(context):
+            problems.show(context)
+        redraw(context)
+        return {"CANCELLED"}
+
+    def _tell_done(self, model):
+        present = sum(block.cells > 0 for block in model.blocks)
+        for warning in model.warnings:
+            self.report({"WARNING"}, str(warning))
+        seconds = sum(model.timings.values())
+        self.report({"INFO"}, f"Built {present} blocks in {seconds:.2f} s")
+
+
+running = []  # the jobs of builds that are shown with progress
+
+
+def redraw(context):
+    """The sidebars show what has changed."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
+
+
+class REALMODEL_OT_cancel(bpy.types.Operator):
+    """Stop the build that is running; the scene stays as it was"""
+
+    bl_idname = "realmodel.cancel"
+    bl_label = "Cancel Build"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context):
+        return context.window_manager.realmodel.running
+
+    def execute(self, _context):
+        for job in running:
+            job.cancel()
+        return {"FINISHED"}
+
+
+class REALMODEL_OT_clear(Reporting, bpy.types.Operator):
+    """Remove the blocks; the interfaces and all settings stay"""
+
+    bl_idname = "realmodel.clear"
+    bl_label = "Clear Blocks"
+
+    def act(self, context):
+        needed_model(context)
+        built_scene.clear(context.scene)
+
+
+class REALMODEL_OT_show_problem(Reporting, bpy.types.Operator):
+    """Select the bad place of the refused surface in edit mode and frame it"""
+
+    bl_idname = "realmodel.show_problem"
+    bl_label = "Show the Place"
+
+    @classmethod
+    def poll(cls, context):
+        return problems.has_place(context)
+
+    def act(self, context):
+        problems.show(context)
+
+
+CLASSES = (REALMODEL_OT_build, REALMODEL_OT_cancel, REALMODEL_OT_clear, REALMODEL_OT_show_problem)
+
+
+def unregister():
+    for job in list(running):
+        job.cancel()
+        job.wait()
+    running.clear()

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The model and its report out to files."""
+
+import bpy
+from bpy.props import StringProperty
+from bpy_extras.io_utils import ExportHelper
+
+from ..bl import model_at_hand, project_settings
+from ..core import UsageError
+from ..core.atomic import Outputs
+from ..core.exporters import WRITERS, save_model, writer_for
+from ..core.exporters.report import write_report
+from .reporting import Reporting, needed_model, needed_path
+
+
+class REALMODEL_OT_export(Reporting, bpy.types.Operator, ExportHelper):
+    """Export the built model; the ending of the file name says the format"""
+
+    bl_idname = "realmodel.export"
+    bl_label = "Export Model"
+    bl_options = {"REGISTER"}
+
+    filename_ext = ".npz"
+    check_extension = None  # any of the formats
+    filter_glob: StringProperty(default=";".join(f"*{e}" for e in WRITERS), options={"HIDDEN"})
+
+    def act(self, context):
+        needed_model(context)
+        path = project_settings.absolute(needed_path(self.filepath, "the model"))
+        writer_for(path)
+        save_model(model_at_hand.model_of(context), path)
+        self.report({"INFO"}, f"Wrote {path}")
+
+    def check(self, _context):
+        return False
+
+
+class REALMODEL_OT_report(Reporting, bpy.types.Operator, ExportHelper):
+    """Write a report of the built model (JSON): volumes, settings, warnings, and the proof of the model"""
+
+    bl_idname = "realmodel.report"
+    bl_label = "Write Report"
+    bl_options = {"REGISTER"}
+
+    filename_ext = ".json"
+    filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
+
+    def act(self, context):
+        needed_model(context)
+        path = project_settings.absolute(needed_path(self.filepath, "the report"))
+        if path.suffix.lower() != ".json":
+            raise UsageError(f"{path}: a report ends in .json")
+        model = model_at_hand.model_of(context)
+        with Outputs() as outputs, outputs.file(path) as file:
+            write_report(model, path, file)
+        self.report({"INFO"}, f"Wrote {path}")
+
+
+CLASSES = (REALMODEL_OT_export, REALMODEL_OT_report)

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The library of properties: its rows, its files, and giving a property to blocks."""
+
+import bpy
+from bpy.props import BoolProperty, StringProperty
+from bpy_extras.io_utils import ExportHelper, ImportHelper
+
+from ..bl import display, library_rows, live, project_settings, properties_of_blocks, settings
+from ..core import InputRefused, Property, load_library
+from ..core.project_writer import save_library
+from .reporting import Reporting, needed_path
+
+
+class REALMODEL_OT_library_add(Reporting, bpy.types.Operator):
+    """Add a property to the library"""
+
+    bl_idname = "realmodel.library_add"
+    bl_label = "Add Property"
+
+    name: StringProperty(name="Name", default="New property")
+
+    def act(self, context):
+        group = context.scene.realmodel
+        number = library_rows.free_id(context.scene)
+        name = settings.free_name(group.library, self.name.strip() or "New property")
+        library_rows.add(context.scene, Property(number, name, color=library_rows.next_colour(context.scene)))
+        with settings.filling():
+            group.active_property = len(group.library) - 1
+
+
+class REALMODEL_OT_library_remove(Reporting, bpy.types.Operator):
+    """Remove the active property from the library; surfaces that have it are left without one"""
+
+    bl_idname = "realmodel.library_remove"
+    bl_label = "Remove Property"
+
+    def act(self, context):
+        group = context.scene.realmodel
+        if not len(group.library):
+            raise InputRefused("the library is empty", advice="there is nothing to remove")
+        number = min(group.active_property, len(group.library) - 1)
+        gone = group.library[number].id
+        with settings.filling():
+            group.library.remove(number)
+            group.active_property = max(0, min(number, len(group.library) - 1))
+            if library_rows.find(context.scene, gone) is None:
+                for _, surface in settings.surface_rows(context.scene):
+                    if surface.property_id == gone:
+                        surface.property_id = 0
+        properties_of_blocks.follow_surfaces(context.scene)
+        live.touch(context.scene)
+
+
+class REALMODEL_OT_library_import(Reporting, bpy.types.Operator, ImportHelper):
+    """Import properties from a library file (TOML); those with an ID that is there already take its place"""
+
+    bl_idname = "realmodel.library_import"
+    bl_label = "Import Library"
+
+    filename_ext = ".toml"
+    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+    replace: BoolProperty(name="Replace", description="Remove the properties that are there first")
+
+    def act(self, context):
+        path = project_settings.absolute(needed_path(self.filepath, "the library"))
+        library = load_library(path)
+        scene = context.scene
+        kept = (
+            [] if self.replace else [e for e in library_rows.library_of(scene) or () if e.id not in library]
+        )
+        library_rows.fill(scene, [*kept, *library])
+        library_rows.update_materials(scene)
+        display.colours_changed(scene)
+        live.touch(scene)
+        self.report({"INFO"}, f"Read {len(library)} properties")
+
+
+class REALMODEL_OT_library_export(Reporting, bpy.types.Operator, ExportHelper):
+    """Export the library to a file (TOML)"""
+
+    bl_idname = "realmodel.library_export"
+    bl_label = "Export Library"
+    bl_options = {"REGISTER"}
+
+    filename_ext = ".toml"
+    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+
+    def act(self, context):
+        library = library_rows.library_of(context.scene)
+        if library is None:
+            raise InputRefused("the library is empty", advice="add a property first")
+        path = project_settings.absolute(needed_path(self.filepath, "the library"))
+        save_library(library, path)
+        self.report({"INFO"}, f"Wrote {len(library)} properties to {path}")
+
+
+class REALMODEL_OT_assign_property(Reporting, bpy.types.Operator):
+    """Give the active property of the library to the selected blocks, and to the surfaces above them"""
+
+    bl_idname = "realmodel.assign_property"
+    bl_label = "Assign to Selected Blocks"
+
+    def act(self, context):
+        group = context.scene.realmodel
+        if not len(group.library):
+            raise InputRefused("the library is empty", advice="add a property first")
+        entry = group.library[min(group.active_property, len(group.library) - 1)]
+        selected = set(context.selected_objects)
+        rows = [row for row in group.results if row.object in selected]
+        if not rows:
+            raise InputRefused("no block is selected", advice="select blocks of the model first")
+        properties_of_blocks.assign(context.scene, rows, entry.id)
+        self.report({"INFO"}, f"{entry.name}: {', '.join(row.name for row in rows)}")
+
+
+CLASSES = (
+    REALMODEL_OT_library_add,
+    REALMODEL_OT_library_remove,
+    REALMODEL_OT_library_import,
+    REALMODEL_OT_library_export,
+    REALMODEL_OT_assign_property,
+)

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The table of blocks."""
+
+import bpy
+
+from ..bl import results
+from .reporting import Reporting, needed_model
+
+
+class REALMODEL_OT_copy_table(Reporting, bpy.types.Operator):
+    """Copy the table of blocks to the clipboard as CSV, for a spreadsheet"""
+
+    bl_idname = "realmodel.copy_table"
+    bl_label = "Copy Table as CSV"
+    bl_options = {"REGISTER"}
+
+    def act(self, context):
+        needed_model(context)
+        context.window_manager.clipboard = results.as_csv(context.scene)
+        self.report({"INFO"}, f"Copied {len(context.scene.realmodel.results)} rows")
+
+
+CLASSES = (REALMODEL_OT_copy_table,)

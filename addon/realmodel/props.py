@@ -1,0 +1,287 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The model's settings as properties of the scene: `scene.realmodel`, saved in the .blend.
+
+They are the whole input of a model: what a build needs beside them are the objects that they point to.
+What goes on at the moment (progress, the last problem) is in `window_manager.realmodel` and not saved.
+"""
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from . import props_surface, props_view
+from .bl import changes, display, library_rows, results, settings
+from .core.project import MESHERS_HERE
+
+_MESHERS = {
+    "delaunay": ("Delaunay", "Triangles as equal as refinement of a Delaunay triangulation makes them"),
+    "frontal": ("Frontal", "Triangles laid from the border inwards: close to equilateral nearly everywhere"),
+}
+
+DISPLAYS = (
+    ("POINTS", "Points", "Vertices of the interfaces and blocks"),
+    ("LINES", "Lines", "Edges of the interfaces and blocks"),
+    ("AREAS", "Areas", "Faces of the blocks as separate, flat areas with their edges"),
+    ("SURFACES", "Surfaces", "The interfaces: the surfaces that the model is built from"),
+    ("POLYHEDRA", "Polyhedra", "The polyhedral cells that the blocks consist of"),
+    ("BLOCKS", "Blocks", "The blocks as solid bodies"),
+)
+
+
+class RealModelProperty(bpy.types.PropertyGroup):
+    """One entry of the library: what a block may be made of."""
+
+    id: IntProperty(
+        name="ID",
+        description="Number by which surfaces name this property; each entry has its own",
+        default=1,
+        update=library_rows.changed,
+    )
+    name: StringProperty(
+        name="Name",
+        description="Name of the rock; the material of its blocks is called so",
+        update=library_rows.changed,
+    )
+    color: FloatVectorProperty(
+        name="Colour",
+        description="Colour of the blocks that have this property; their material follows at once",
+        subtype="COLOR_GAMMA",
+        size=3,
+        min=0.0,
+        max=1.0,
+        default=(0.7019608, 0.7019608, 0.7019608),
+        update=library_rows.colour_changed,
+    )
+    has_color: BoolProperty(options={"HIDDEN"})
+    rock: StringProperty(name="Rock", description="Kind of rock, such as sandstone")
+    age: StringProperty(name="Age", description="Geological age, such as Triassic", update=changes.colouring)
+    structure: StringProperty(name="Structure", description="Bedding, texture, grain size")
+    density: FloatProperty(
+        name="Density",
+        description="Density in your units, such as kg/m³; 0 where it is not known",
+        min=0.0,
+        precision=1,
+    )
+    description: StringProperty(name="Description", description="Whatever else is to be kept")
+    exact: StringProperty(options={"HIDDEN"})
+
+
+class RealModelRock(bpy.types.PropertyGroup):
+    """A rock mass: a region in plan and its surfaces, oldest first."""
+
+    name: StringProperty(name="Name", description="Name of the rock mass", update=changes.setting)
+    region: PointerProperty(
+        name="Region",
+        type=bpy.types.Object,
+        poll=settings.is_region_object,
+        description=(
+            "Curve or mesh object whose outline, seen from above, bounds the rock mass; inner loops are holes"
+        ),
+        update=changes.region,
+    )
+    region_file: StringProperty(
+        name="Region file",
+        description="File with the outline of the rock mass, where no object gives it (GeoJSON)",
+        subtype="FILE_PATH",
+        update=changes.region,
+    )
+    region_stored: StringProperty(options={"HIDDEN"})
+    region_stamp: StringProperty(options={"HIDDEN"})
+    region_area: FloatProperty(options={"HIDDEN"}, default=-1.0)
+    edge_length: FloatProperty(
+        name="Edge length",
+        description=(
+            "Length of the edges of the triangles on which surfaces are interpolated; 0: not given. "
+            "Half of it makes four times as many triangles"
+        ),
+        min=0.0,
+        subtype="DISTANCE",
+        update=changes.setting,
+    )
+    mesher: EnumProperty(
+        name="Mesher",
+        description="How the region is divided into triangles",
+        items=[(name, *_MESHERS[name]) for name in MESHERS_HERE],
+        default="delaunay",
+        update=changes.setting,
+    )
+    base_elevation: FloatProperty(
+        name="Base elevation",
+        description="Height of the flat base of the oldest block; it lies below all surfaces",
+        subtype="DISTANCE",
+        update=changes.base_elevation,
+    )
+    use_base: BoolProperty(
+        name="Base",
+        description="Lay a block beneath the oldest surface, down to the base elevation",
+        update=changes.setting,
+    )
+    surfaces: CollectionProperty(type=props_surface.RealModelSurface)
+    active_surface: IntProperty(
+        name="Active surface",
+        description="The surface whose settings are shown, counted from the oldest, 0",
+    )
+    collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
+    interfaces: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
+    blocks: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
+    exact: StringProperty(options={"HIDDEN"})
+
+
+class RealModelBlock(bpy.types.PropertyGroup):
+    """A row of the results: one block as it was built."""
+
+    name: StringProperty(name="Block")
+    rock: StringProperty(name="Rock mass")
+    surface: StringProperty(name="Surface", description="The surface that the block was deposited beneath")
+    property_id: IntProperty(name="Property")
+    volume: FloatProperty(name="Volume", subtype="NONE")
+    volume_exact: StringProperty(options={"HIDDEN"})
+    share: FloatProperty(name="Share", subtype="PERCENTAGE")
+    cells: IntProperty(name="Cells")
+    components: IntProperty(name="Components", description="Separate bodies that the block consists of")
+    object: PointerProperty(type=bpy.types.Object)
+
+
+class RealModelSettings(bpy.types.PropertyGroup):
+    """`scene.realmodel`: a model and how it is shown."""
+
+    version: IntProperty(options={"HIDDEN"})
+    name: StringProperty(
+        name="Name", description="Name of the model; its collection is called so", update=changes.setting
+    )
+    exists: BoolProperty(options={"HIDDEN"})
+    project_file: StringProperty(
+        name="Project file",
+        description="The project file that the model was opened from or saved to",
+        subtype="FILE_PATH",
+    )
+    rocks: CollectionProperty(type=RealModelRock)
+    active_rock: IntProperty(name="Active rock mass", description="The rock mass whose surfaces are shown")
+    library: CollectionProperty(type=RealModelProperty)
+    library_path: StringProperty(options={"HIDDEN"})
+    active_property: IntProperty(name="Active property")
+    cells: EnumProperty(
+        name="Cells",
+        description="What the model is made of",
+        items=(
+            ("COLUMNS", "Columns", "Many small cells, each under one facet of a surface: for simulation"),
+            ("BLOCKS", "Blocks", "One cell for each connected part of a block: much faster, and lighter"),
+        ),
+        default="COLUMNS",
+        update=changes.setting,
+    )
+    stage: IntProperty(
+        name="Stage",
+        description=(
+            "Replay deposition and erosion: 0 shows the oldest surface only, the last stage the whole model. "
+            "It can be keyframed"
+        ),
+        min=0,
+        update=changes.stage,
+    )
+    display: EnumProperty(
+        name="Display",
+        description="How the model is drawn",
+        items=DISPLAYS,
+        default="BLOCKS",
+        update=lambda self, _context: display.mode_changed(self.id_data),
+    )
+    explode: FloatProperty(
+        name="Explode",
+        description="Move the blocks apart so that the layers inside show; 0 leaves them in place",
+        min=0.0,
+        soft_max=2.0,
+        update=lambda self, _context: display.explode_changed(self.id_data),
+    )
+    explode_direction: EnumProperty(
+        name="Explode",
+        description="Where the blocks go",
+        items=(
+            ("Z", "Upwards", "The younger a block, the higher it is lifted"),
+            ("CENTRE", "From the centre", "Every block moves away from the middle of the model"),
+            ("BLOCK", "By block", "The blocks stand side by side, the oldest first"),
+        ),
+        update=lambda self, _context: display.explode_changed(self.id_data),
+    )
+    color_by: EnumProperty(
+        name="Colour by",
+        description="What the colours of the blocks tell",
+        items=(
+            ("PROPERTY", "Property", "The colours of the library"),
+            ("BLOCK", "Block", "Each block its own colour"),
+            ("ROCK", "Rock mass", "Each rock mass its own colour"),
+            ("AGE", "Age", "From the oldest to the youngest"),
+        ),
+        update=lambda self, _context: display.colours_changed(self.id_data),
+    )
+    live: BoolProperty(
+        name="Live",
+        description=(
+            "Build again on its own after each change to an interface or a setting, when the hand rests"
+        ),
+        update=changes.live_switched,
+    )
+    results: CollectionProperty(type=RealModelBlock)
+    active_result: IntProperty(
+        name="Active block",
+        description="The row of the results; choosing one selects the block in the viewport",
+        update=results.row_chosen,
+    )
+    warnings: StringProperty(options={"HIDDEN"})
+    built_stamp: StringProperty(options={"HIDDEN"})
+    collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
+    view: PointerProperty(type=props_view.RealModelView)
+
+
+class RealModelActivity(bpy.types.PropertyGroup):
+    """`window_manager.realmodel`: what goes on at the moment; not saved."""
+
+    running: BoolProperty(options={"SKIP_SAVE"})
+    progress: FloatProperty(
+        name="Progress",
+        description="How much of the build is done",
+        subtype="PERCENTAGE",
+        min=0.0,
+        max=100.0,
+        precision=0,
+        options={"SKIP_SAVE"},
+    )
+    text: StringProperty(options={"SKIP_SAVE"})
+    problem: StringProperty(options={"SKIP_SAVE"})
+    problem_object: StringProperty(options={"SKIP_SAVE"})
+    problem_triangles: StringProperty(options={"SKIP_SAVE"})
+    problem_place: StringProperty(options={"SKIP_SAVE"})
+    seconds: FloatProperty(options={"SKIP_SAVE"})
+
+
+_CLASSES = (
+    *props_surface.CLASSES,
+    *props_view.CLASSES,
+    RealModelProperty,
+    RealModelRock,
+    RealModelBlock,
+    RealModelSettings,
+    RealModelActivity,
+)
+
+
+def register():
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Scene.realmodel = PointerProperty(type=RealModelSettings, name="RealModel")
+    bpy.types.WindowManager.realmodel = PointerProperty(type=RealModelActivity, name="RealModel")
+
+
+def unregister():
+    del bpy.types.WindowManager.realmodel
+    del bpy.types.Scene.realmodel
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,293 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of one surface, with the options of every method; the panel shows those of its own method."""
+
+import bpy
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
+
+from .bl import changes, settings
+from .core.methods import DEFAULT_METHOD, EXTRAPOLATE, METHODS, THICKNESS_METHODS
+from .core.variogram import VARIOGRAM_MODELS
+
+SOURCES = (
+    ("POINTS_FILE", "Points file", "Text file with x, y and z of points that the surface is laid through"),
+    ("POINTS_OBJECT", "Points object", "The vertices of a mesh object are points of the surface"),
+    ("MESH_OBJECT", "Mesh object", "A mesh object of the scene, with its modifiers, is the surface"),
+    ("MESH_FILE", "Mesh file", "File with the triangles of the surface (OFF)"),
+    ("NONE", "No points", "For methods that make a surface without points: constant, parallel"),
+)
+
+RULES = (
+    ("erosional", "Erosional", "Cuts away what lies above it: a surface of erosion, the usual case"),
+    ("conformable", "Conformable", "Only deposits: ends where it meets what is there already (onlap)"),
+    ("base", "Base", "Only deposits, and younger surfaces cannot cut it (baselap)"),
+    ("discontinuous", "Discontinuous", "Cuts what is older, and younger surfaces cannot cut it"),
+)
+
+METHOD_LABELS = {
+    "kriging": ("Kriging", "The best guess from neighbouring points, as the variogram says how they vary"),
+    "universal_kriging": ("Universal kriging", "Kriging of what a trend, such as a dip, leaves over"),
+    "idw": ("Inverse distance", "Mean of neighbouring points, the nearer the more"),
+    "spline": ("Spline", "The smoothest sheet through the points: a thin plate"),
+    "dsi": ("DSI", "Discrete smooth interpolation: smooth on the mesh, through points, with constraints"),
+    "natural_neighbour": ("Natural neighbour", "Mean of the points around, by shares of their area"),
+    "tin": ("TIN", "Triangles between the points"),
+    "grid": ("Grid", "Points on a regular grid, bilinear between them"),
+    "plane": ("Plane", "One plane through the points, or of a given dip"),
+    "constant": ("Constant", "One height everywhere"),
+    "parallel": ("Parallel", "A given thickness above or below another surface"),
+    "auto": ("Automatic", "Chooses the method that predicts left-out points best"),
+}
+
+_EXTRAPOLATE = {
+    "method": ("As the method", "The method goes on outside the points"),
+    "nearest": ("Nearest point", "Outside the points the height of the nearest one"),
+    "none": ("Not at all", "The surface ends where the points end"),
+}
+_NOT_GIVEN_SURFACE = "Name of another surface of this rock mass, or a height"
+
+
+def _items(names, labels=None):
+    """Enum items; a name without a label of its own gets one made from it."""
+    labels = labels or {}
+    return [(name, *labels.get(name, (name.replace("_", " ").capitalize(), ""))) for name in names]
+
+
+class RealModelSurface(bpy.types.PropertyGroup):
+    """A surface: where its shape comes from, its rule, and what lies beneath it."""
+
+    name: StringProperty(name="Name", description="Name of the surface", update=changes.setting)
+    source: EnumProperty(
+        name="Source",
+        description="Where the shape of the surface comes from",
+        items=SOURCES,
+        default="POINTS_FILE",
+        update=changes.source,
+    )
+    filepath: StringProperty(
+        name="File",
+        description="File with the points or the mesh",
+        subtype="FILE_PATH",
+        update=changes.source,
+    )
+    object: PointerProperty(
+        name="Object",
+        type=bpy.types.Object,
+        poll=settings.is_mesh_object,
+        description="Mesh object that gives the points or the surface; modifiers on it count",
+        update=changes.source,
+    )
+    interface: PointerProperty(type=bpy.types.Object, options={"HIDDEN"})
+    interface_digest: StringProperty(options={"HIDDEN"})
+    stored: StringProperty(options={"HIDDEN"})
+    stored_stamp: StringProperty(options={"HIDDEN"})
+    stored_mesh: StringProperty(options={"HIDDEN"})
+    rule: EnumProperty(
+        name="Rule",
+        description="What the surface does to what is there when it comes",
+        items=RULES,
+        default="erosional",
+        update=changes.setting,
+    )
+    property_id: IntProperty(
+        name="Property",
+        description="ID, in the library, of what was deposited beneath this surface; 0: none",
+        update=changes.setting,
+    )
+    block: StringProperty(
+        name="Block",
+        description="Name of the block beneath this surface; empty: the surface's name and 'block'",
+        update=changes.setting,
+    )
+    hide: BoolProperty(
+        name="Hide",
+        description="Do not show this interface in the viewport; it is built all the same",
+        update=changes.hide,
+    )
+    use_minimum_thickness: BoolProperty(
+        name="Minimum thickness",
+        description="Keep the surface at least so far above the next older one",
+        update=changes.setting,
+    )
+    minimum_thickness: FloatProperty(
+        name="Minimum thickness",
+        description="Least distance above the next older surface",
+        min=0.0,
+        subtype="DISTANCE",
+        update=changes.setting,
+    )
+    exact: StringProperty(options={"HIDDEN"})
+    figures: StringProperty(options={"HIDDEN"})
+
+    method: EnumProperty(
+        name="Method",
+        description="How heights are made from the points",
+        items=_items(METHODS, METHOD_LABELS),
+        default=DEFAULT_METHOD,
+        update=changes.setting,
+    )
+    neighbours: IntProperty(
+        name="Neighbours",
+        description="How many points, the nearest in plan, count at each place; 0: all of them",
+        default=16,
+        min=0,
+        update=changes.setting,
+    )
+    octants: IntProperty(
+        name="Per octant",
+        description="At most so many points from each eighth of the directions; 0: any number",
+        min=0,
+        update=changes.setting,
+    )
+    radius: FloatProperty(
+        name="Radius",
+        description="Points farther away do not count; 0: no limit",
+        min=0.0,
+        subtype="DISTANCE",
+        update=changes.setting,
+    )
+    fit_variogram: BoolProperty(
+        name="Fit the variogram",
+        description="Fit the variogram to the points; switch it off to give your own",
+        default=True,
+        update=changes.setting,
+    )
+    variogram_model: EnumProperty(
+        name="Variogram",
+        description="Shape of the variogram",
+        items=_items(VARIOGRAM_MODELS),
+        update=changes.setting,
+    )
+    variogram_range: FloatProperty(
+        name="Range",
+        description="Distance beyond which points tell nothing of each other",
+        default=100.0,
+        min=0.0,
+        subtype="DISTANCE",
+        update=changes.setting,
+    )
+    variogram_sill: FloatProperty(
+        name="Sill",
+        description="Variance between points farther apart than the range; it includes the nugget",
+        default=1.0,
+        min=0.0,
+        update=changes.setting,
+    )
+    variogram_nugget: FloatProperty(
+        name="Nugget",
+        description="Variance between points at one place; 0 honours every point",
+        min=0.0,
+        update=changes.setting,
+    )
+    use_anisotropy: BoolProperty(
+        name="Anisotropy",
+        description="Points along one direction are more alike than across it",
+        update=changes.setting,
+    )
+    anisotropy_ratio: FloatProperty(
+        name="Ratio",
+        description="How many times the range along the azimuth is longer than across",
+        default=2.0,
+        min=0.001,
+        update=changes.setting,
+    )
+    anisotropy_azimuth: FloatProperty(
+        name="Azimuth",
+        description="Direction of the longest range, in degrees clockwise from north (+y)",
+        update=changes.setting,
+    )
+    drift: EnumProperty(
+        name="Drift",
+        description="Form of the trend",
+        items=(("linear", "Linear", "A plane"), ("quadratic", "Quadratic", "A curved sheet")),
+        update=changes.setting,
+    )
+    power: FloatProperty(
+        name="Power",
+        description="How fast the weight of a point falls with its distance",
+        default=2.0,
+        min=0.01,
+        update=changes.setting,
+    )
+    smoothing: FloatProperty(
+        name="Smoothing",
+        description="0: the sheet goes through every point; more: it may leave them to be smoother",
+        min=0.0,
+        update=changes.setting,
+    )
+    use_weight: BoolProperty(
+        name="Loose points",
+        description="Points need not hold exactly",
+        update=changes.setting,
+    )
+    weight: FloatProperty(
+        name="Weight",
+        description="Weight of a point against the roughness of one node",
+        default=1.0,
+        min=1e-9,
+        update=changes.setting,
+    )
+    border: StringProperty(
+        name="Border",
+        description=f"What the surface is at the border of the region. {_NOT_GIVEN_SURFACE}; empty: free",
+        update=changes.setting,
+    )
+    above: StringProperty(
+        name="Stay above", description=f"{_NOT_GIVEN_SURFACE}; empty: no bound", update=changes.setting
+    )
+    below: StringProperty(
+        name="Stay below", description=f"{_NOT_GIVEN_SURFACE}; empty: no bound", update=changes.setting
+    )
+    use_dip: BoolProperty(
+        name="Given dip", description="Give the dip; off: it is fitted to the points", update=changes.setting
+    )
+    dip: FloatProperty(
+        name="Dip", description="Degrees below the horizontal", min=0.0, max=89.999, update=changes.setting
+    )
+    dip_direction: FloatProperty(
+        name="Dip direction",
+        description="Azimuth to which the plane falls, in degrees clockwise from north (+y)",
+        update=changes.setting,
+    )
+    use_value: BoolProperty(
+        name="Given height",
+        description="Give the height; off: the mean of the points",
+        update=changes.setting,
+    )
+    value: FloatProperty(
+        name="Height", description="Height everywhere", subtype="DISTANCE", update=changes.setting
+    )
+    to: StringProperty(name="Parallel to", description=_NOT_GIVEN_SURFACE, update=changes.setting)
+    use_thickness: BoolProperty(
+        name="Given thickness",
+        description="Give the thickness; off: it comes from the points",
+        update=changes.setting,
+    )
+    thickness: FloatProperty(
+        name="Thickness",
+        description="Distance above the other surface; negative: below it",
+        subtype="DISTANCE",
+        update=changes.setting,
+    )
+    thickness_method: EnumProperty(
+        name="Spread by",
+        description="How the thickness at the points is spread between them",
+        items=_items(THICKNESS_METHODS, METHOD_LABELS),
+        update=changes.setting,
+    )
+    extrapolate: EnumProperty(
+        name="Outside the points",
+        description="What happens beyond the points",
+        items=_items(EXTRAPOLATE, _EXTRAPOLATE),
+        update=changes.setting,
+    )
+    other_options: StringProperty(options={"HIDDEN"})
+
+
+CLASSES = (RealModelSurface,)

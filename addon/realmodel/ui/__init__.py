@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tab "RealModel" of the 3D viewport's sidebar: one module for each of its panels, in their order."""
+
+import bpy
+
+from . import build, library, lists, results, rocks, start, surfaces, view
+
+_MODULES = (lists, start, rocks, surfaces, build, view, library, results)
+
+
+def register():
+    for module in _MODULES:
+        for cls in module.CLASSES:
+            bpy.utils.register_class(cls)
+
+
+def unregister():
+    for module in reversed(_MODULES):
+        for cls in reversed(module.CLASSES):
+            bpy.utils.unregister_class(cls)

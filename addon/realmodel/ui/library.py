@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The library of properties."""
+
+import bpy
+
+from .panel import TabPanel, hint
+
+
+class REALMODEL_PT_library(TabPanel, bpy.types.Panel):
+    bl_label = "Library"
+    bl_idname = "REALMODEL_PT_library"
+    bl_order = 5
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_in(self, layout, _context, group):
+        if not len(group.library):
+            hint(
+                layout,
+                "The library tells what blocks are made of: name, age, colour. Add an entry or import one.",
+            )
+        row = layout.row()
+        row.template_list("REALMODEL_UL_library", "", group, "library", group, "active_property", rows=4)
+        buttons = row.column(align=True)
+        buttons.operator("realmodel.library_add", text="", icon="ADD")
+        buttons.operator("realmodel.library_remove", text="", icon="REMOVE")
+        line = layout.row(align=True)
+        line.operator("realmodel.library_import", text="Import...", icon="IMPORT")
+        line.operator("realmodel.library_export", text="Export...", icon="EXPORT")
+        if not len(group.library):
+            return
+        entry = group.library[min(group.active_property, len(group.library) - 1)]
+        for key in ("name", "id", "color", "rock", "age", "structure", "density", "description"):
+            layout.prop(entry, key)
+        layout.operator("realmodel.assign_property", icon="MATERIAL")
+
+
+CLASSES = (REALMODEL_PT_library,)

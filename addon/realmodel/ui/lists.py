@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How the rows of the lists are drawn."""
+
+import bpy
+
+from ..bl import library_rows, units
+
+
+class REALMODEL_UL_rocks(bpy.types.UIList):
+    """Rock masses."""
+
+    def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name):
+        row = layout.row(align=True)
+        row.prop(item, "name", text="", emboss=False, icon="OUTLINER_OB_VOLUME")
+        count = len(item.surfaces)
+        row.label(text=f"{count} surface{'' if count == 1 else 's'}")
+
+
+class REALMODEL_UL_surfaces(bpy.types.UIList):
+    """Surfaces, the youngest on top, as in the field."""
+
+    def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_name):
+        row = layout.row(align=True)
+        entry = library_rows.find(context.scene, item.property_id)
+        if entry is not None:
+            swatch = row.row()
+            swatch.scale_x = 0.3
+            swatch.prop(entry, "color", text="")
+        row.prop(item, "name", text="", emboss=False)
+        row.label(text=item.bl_rna.properties["rule"].enum_items[item.rule].name)
+        row.prop(item, "hide", text="", emboss=False, icon="HIDE_ON" if item.hide else "HIDE_OFF")
+
+    def filter_items(self, _context, data, name):
+        rows = getattr(data, name)
+        shown = []
+        if self.filter_name:
+            shown = bpy.types.UI_UL_list.filter_items_by_name(
+                self.filter_name, self.bitflag_filter_item, rows, "name"
+            )
+        return shown, list(range(len(rows) - 1, -1, -1))
+
+
+class REALMODEL_UL_library(bpy.types.UIList):
+    """Properties."""
+
+    def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name):
+        row = layout.row(align=True)
+        swatch = row.row()
+        swatch.scale_x = 0.3
+        swatch.prop(item, "color", text="")
+        row.prop(item, "name", text="", emboss=False)
+        number = row.row()
+        number.alignment = "RIGHT"
+        number.label(text=str(item.id))
+
+
+class REALMODEL_UL_results(bpy.types.UIList):
+    """Blocks, the youngest on top."""
+
+    def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_name):
+        split = layout.split(factor=0.42)
+        split.label(text=item.name, icon="MESH_CUBE" if item.object else "X")
+        right = split.split(factor=0.55)
+        right.label(text=units.volume_text(context.scene, item) if item.volume else "none left")
+        figures = right.split(factor=0.6)
+        figures.label(text=f"{item.share:.1f} %")
+        figures.label(text=str(item.components) if item.components else "")
+
+    def filter_items(self, _context, data, name):
+        rows = getattr(data, name)
+        shown = []
+        if self.filter_name:
+            shown = bpy.types.UI_UL_list.filter_items_by_name(
+                self.filter_name, self.bitflag_filter_item, rows, "name"
+            )
+        return shown, list(range(len(rows) - 1, -1, -1))
+
+
+CLASSES = (REALMODEL_UL_rocks, REALMODEL_UL_surfaces, REALMODEL_UL_library, REALMODEL_UL_results)

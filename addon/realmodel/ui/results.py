@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The table of blocks, and the model out to files."""
+
+import bpy
+
+from ..bl import units
+from .panel import TabPanel, hint
+
+
+class REALMODEL_PT_results(TabPanel, bpy.types.Panel):
+    bl_label = "Results"
+    bl_idname = "REALMODEL_PT_results"
+    bl_order = 6
+
+    def draw_in(self, layout, context, group):
+        if not len(group.results):
+            hint(layout, "Build the model first; its blocks and their volumes are listed here.")
+            return
+        heading = layout.split(factor=0.42)
+        heading.label(text="Block")
+        right = heading.split(factor=0.55)
+        right.label(text="Volume")
+        figures = right.split(factor=0.6)
+        figures.label(text="Share")
+        figures.label(text="Parts")
+        layout.template_list("REALMODEL_UL_results", "", group, "results", group, "active_result", rows=4)
+        layout.label(text=f"Together {units.total_volume_text(context.scene)}")
+        layout.operator("realmodel.copy_table", icon="COPYDOWN")
+        line = layout.row(align=True)
+        line.operator("realmodel.export", text="Export...", icon="EXPORT")
+        line.operator("realmodel.report", text="Report...", icon="TEXT")
+
+
+CLASSES = (REALMODEL_PT_results,)

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The list of surfaces and the settings of the active one."""
+
+import bpy
+
+from ..bl import library_rows, method_settings, settings, surface_figures, units
+from ..core.methods import METHODS
+from .panel import TabPanel, hint, wrapped
+
+
+class REALMODEL_PT_surfaces(TabPanel, bpy.types.Panel):
+    bl_label = "Surfaces"
+    bl_idname = "REALMODEL_PT_surfaces"
+    bl_order = 2
+
+    def draw_in(self, layout, context, _group):
+        rock = settings.active_rock(context.scene)
+        if rock is None:
+            hint(layout, "Add a rock mass first; its surfaces are listed here, the youngest on top.")
+            return
+        row = layout.row()
+        row.template_list("REALMODEL_UL_surfaces", "", rock, "surfaces", rock, "active_surface", rows=4)
+        buttons = row.column(align=True)
+        buttons.operator("realmodel.surface_add", text="", icon="ADD").empty = True
+        buttons.operator("realmodel.surface_remove", text="", icon="REMOVE")
+        buttons.operator("realmodel.surface_copy", text="", icon="DUPLICATE")
+        buttons.separator()
+        buttons.operator("realmodel.surface_move", text="", icon="TRIA_UP").direction = "UP"
+        buttons.operator("realmodel.surface_move", text="", icon="TRIA_DOWN").direction = "DOWN"
+        if not len(rock.surfaces):
+            hint(
+                layout,
+                "No surface yet. Begin with the oldest: from a file of points or a mesh, or from a mesh.",
+            )
+        line = layout.row(align=True)
+        line.operator("realmodel.surface_add", text="Add from File...", icon="FILE_FOLDER")
+        line.operator("realmodel.surface_add", text="Add Active Mesh", icon="OBJECT_DATA").use_object = True
+        surface = settings.active_surface(context.scene)
+        if surface is not None:
+            _draw_surface(layout, context, surface)
+
+
+def _draw_surface(layout, context, surface):
+    layout.separator()
+    layout.prop(surface, "source")
+    if surface.source in ("POINTS_OBJECT", "MESH_OBJECT"):
+        layout.prop(surface, "object")
+    elif surface.source in ("POINTS_FILE", "MESH_FILE"):
+        layout.prop(surface, "filepath")
+    if surface.source not in ("MESH_OBJECT", "MESH_FILE"):
+        _draw_method(layout.column(), surface)
+    layout.prop(surface, "rule")
+    hint(layout, surface.bl_rna.properties["rule"].enum_items[surface.rule].description)
+    entry = library_rows.find(context.scene, surface.property_id)
+    known = (
+        f"{entry.name} ({entry.id})"
+        if entry
+        else "None"
+        if not surface.property_id
+        else str(surface.property_id)
+    )
+    row = layout.split(factor=0.4)
+    label = row.row()
+    label.alignment = "RIGHT"
+    label.label(text="Property")
+    row.operator_menu_enum("realmodel.surface_property", "property_id", text=known)
+    layout.prop(surface, "block")
+    _draw_figures(layout, context, surface)
+
+
+def _draw_method(layout, surface):
+    layout.prop(surface, "method")
+    for name in METHODS[surface.method].options:
+        switch, shown = method_settings.SHOWN.get(name, (None, ()))
+        if name == "variogram":
+            _draw_variogram(layout, surface)
+            continue
+        if switch is not None:
+            layout.prop(surface, switch)
+            if not getattr(surface, switch):
+                continue
+        for key in shown:
+            layout.prop(surface, key)
+    layout.prop(surface, "use_minimum_thickness")
+    if surface.use_minimum_thickness:
+        layout.prop(surface, "minimum_thickness", text="At least")
+
+
+def _draw_variogram(layout, surface):
+    layout.prop(surface, "fit_variogram")
+    if surface.fit_variogram:
+        return
+    if method_settings.has_nested_variogram(surface):
+        hint(layout, "A variogram of several structures, from the project file.")
+        return
+    for key in ("variogram_model", "variogram_range", "variogram_sill", "variogram_nugget"):
+        layout.prop(surface, key)
+
+
+def _draw_figures(layout, context, surface):
+    figures = surface_figures.read(surface)
+    if figures is None:
+        return
+    scene, column = context.scene, layout.box().column(align=True)
+    if figures["points"]:
+        column.label(text=f"{figures['points']:,} points, {figures['triangles']:,} triangles")
+    else:
+        column.label(text=f"{figures['triangles']:,} triangles")
+    low, high = (units.length_text(scene, figures[key]) for key in ("low", "high"))
+    column.label(text=f"Heights {low} to {high}")
+    share = "" if figures["share"] is None else f" ({100 * figures['share']:.0f} %)"
+    left = f"Survives over {units.area_text(scene, figures['area'])}{share}"
+    for line in wrapped(
+        left if figures["area"] > 0.0 else "Nothing of it survives: younger surfaces cut it away"
+    ):
+        column.label(text=line)
+
+
+CLASSES = (REALMODEL_PT_surfaces,)

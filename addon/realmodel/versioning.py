@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Older .blend files brought up to date, one step for each version of the settings.
+
+Version 0 is a scene that build_model.py wrote: it has the stored project and the objects, but no settings.
+tests/data/versions has a file of each version.
+"""
+
+from .bl import adoption, settings
+
+
+def _from_0(scene):
+    """Settings for a model that was built in batch."""
+    adoption.adopt(scene)
+
+
+_STEPS = (_from_0,)  # step n makes version n + 1 of version n
+
+
+def needs_migration(scene):
+    group = scene.realmodel
+    if group.exists:
+        return group.version < settings.VERSION
+    return adoption.can_be_adopted(scene)
+
+
+def migrate(scene):
+    """Brings the settings of a scene up to date. Raises RealModelError where what they hold is damaged; then
+    they stay as they were."""
+    if not needs_migration(scene) or scene.library is not None:
+        return
+    version = scene.realmodel.version if scene.realmodel.exists else 0
+    for step in _STEPS[version:]:
+        step(scene)
+    scene.realmodel.version = settings.VERSION

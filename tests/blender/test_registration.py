@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Enabling and disabling the add-on: nothing stays behind, as often as it is done."""
+
+import unittest
+
+import bpy
+import realmodel
+
+
+def traces():
+    """Everything that an add-on may leave in Blender."""
+    handlers = {name: [f.__module__ for f in registered] for name, registered in _handler_lists()}
+    classes = sorted(
+        cls.__name__
+        for base in (bpy.types.Operator, bpy.types.Panel, bpy.types.UIList, bpy.types.PropertyGroup)
+        for cls in base.__subclasses__()
+        if cls.is_registered and cls.__module__.startswith("realmodel")
+    )
+    menus = [
+        getattr(f, "__module__", "")
+        for menu in (bpy.types.TOPBAR_MT_file_import, bpy.types.TOPBAR_MT_file_export)
+        for f in menu._dyn_ui_initialize()
+    ]
+    properties = [hasattr(t, "realmodel") for t in (bpy.types.Scene, bpy.types.WindowManager)]
+    return handlers, classes, menus, properties, dir(bpy.ops.realmodel)
+
+
+def _handler_lists():
+    for name in dir(bpy.app.handlers):
+        registered = getattr(bpy.app.handlers, name)
+        if isinstance(registered, list):
+            yield name, registered
+
+
+class Registration(unittest.TestCase):
+    def test_nothing_stays(self):
+        before = traces()
+        self.assertEqual(before[1], [], "the add-on was registered before this test")
+        for _ in range(3):
+            realmodel.register()
+            during = traces()
+            realmodel.unregister()
+            self.assertEqual(traces(), before)
+        self.assertIn("REALMODEL_OT_build", during[1])
+        self.assertIn("build", during[4])
+        self.assertEqual(during[3], [True, True])
+
+    def test_a_failure_leaves_nothing(self):
+        from realmodel import handlers
+
+        before, register = traces(), handlers.register
+
+        def failing():
+            raise RuntimeError("on purpose")
+
+        handlers.register = failing
+        try:
+            with self.assertRaisesRegex(RuntimeError, "on purpose"):
+                realmodel.register()
+        finally:
+            handlers.register = register
+        self.assertEqual(traces(), before)
+
+    def test_every_operator_says_what_it_does(self):
+        realmodel.register()
+        try:
+            for cls in bpy.types.Operator.__subclasses__():
+                if cls.__module__.startswith("realmodel."):
+                    described = bpy.ops.realmodel.__getattr__(cls.bl_idname.split(".")[1]).get_rna_type()
+                    self.assertGreater(len(described.description), 15, cls.bl_idname)
+                    self.assertTrue(described.name, cls.bl_idname)
+        finally:
+            realmodel.unregister()
