@@ -31,16 +31,10 @@ if ! "$root/scripts/python_environment.sh" "$root/build/tools" "$root/scripts/re
     echo "build.sh: pybind11 could not be fetched; building with the system's (the module may then need NumPy 1)" >&2
 fi
 
-# A compiler of CGAL code takes up to 2 GB.
-jobs=$(nproc)
-memory_jobs=$(awk '/MemAvailable/ {print int($2 / 2e6)}' /proc/meminfo)
-((memory_jobs < jobs)) && jobs=$memory_jobs
-((jobs < 1)) && jobs=1
-
 # What was found for another interpreter must not stay in the cache.
 (cd "$root" && cmake --preset release -U 'Python*' -U '_Python*' -U 'pybind11*' \
     "-DPython_EXECUTABLE=$python" --log-level=WARNING)
-cmake --build "$root/build/release" --target _native -j "$jobs"
+cmake --build "$root/build/release" --target _native -j "$("$root/scripts/build_jobs.sh")"
 
 if ! PYTHONPATH="$root/addon" "$python" -c 'import realmodel._native'; then
     echo "build.sh: the module was built but $python cannot load it (reason above)" >&2

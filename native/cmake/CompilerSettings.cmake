@@ -33,6 +33,14 @@ if(REALMODEL_SANITIZE)
     target_link_options(realmodel_settings INTERFACE -fsanitize=${REALMODEL_SANITIZE})
 endif()
 
+# A module is loaded into a process that runs already. Its few thread-local variables (a few dozen bytes;
+# the C library keeps room for that) are addressed directly, not through a call of the dynamic
+# linker, which the module would then need by name.
+add_library(realmodel_loaded_late INTERFACE)
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
+    target_compile_options(realmodel_loaded_late INTERFACE -ftls-model=initial-exec)
+endif()
+
 add_library(realmodel_warnings INTERFACE)
 target_compile_options(realmodel_warnings INTERFACE
     -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Werror)

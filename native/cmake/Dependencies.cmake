@@ -8,17 +8,17 @@ find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp REQUIRED)
 
 # CGAL is used as headers only, without its CMake package, which would link GMP and MPFR into
 # everything. Its exact predicates need GMP; MPFR only comes in with its exact constructions
-# (kernel EPECK), which we do not use. GMP is shared: Debian's static one is not position independent.
+# (kernel EPECK), which we do not use.
 find_path(CGAL_INCLUDE_DIR CGAL/version.h REQUIRED)
-find_path(GMP_INCLUDE_DIR gmpxx.h REQUIRED)
-find_library(GMP_LIBRARY gmp REQUIRED)
-find_library(GMPXX_LIBRARY gmpxx REQUIRED)
+include(Gmp)
 
 add_library(realmodel_dependencies INTERFACE)
 target_include_directories(realmodel_dependencies SYSTEM INTERFACE
-    ${NANOFLANN_INCLUDE_DIR} ${CGAL_INCLUDE_DIR} ${GMP_INCLUDE_DIR})
+    ${NANOFLANN_INCLUDE_DIR} ${CGAL_INCLUDE_DIR})
 target_compile_definitions(realmodel_dependencies INTERFACE
     CGAL_USE_GMP=1 CGAL_USE_GMPXX=1 EIGEN_MPL2_ONLY)
 target_link_libraries(realmodel_dependencies INTERFACE
-    Eigen3::Eigen OpenMP::OpenMP_CXX ${GMPXX_LIBRARY} ${GMP_LIBRARY})
-target_link_options(realmodel_dependencies INTERFACE -Wl,--as-needed)
+    Eigen3::Eigen OpenMP::OpenMP_CXX realmodel_gmp)
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
+    target_link_options(realmodel_dependencies INTERFACE -Wl,--as-needed)
+endif()

@@ -1,6 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The Python module realmodel._native, for the interpreter given by -DPython_EXECUTABLE.
-# It is written into the add-on's folder with the ABI in its name, beside those for other versions.
+# The Python module realmodel._native. Only native/bindings is compiled for one version of Python:
+# everything else is the library realmodel, compiled once.
+#
+#   _native            for the interpreter given by -DPython_EXECUTABLE, written into the add-on's folder
+#                      with the ABI in its name, beside those for other versions
+#   packaged_modules   for versions of which only the headers are there, for scripts/package.sh:
+#                      -DREALMODEL_PACKAGED_PYTHONS=SUFFIX=FOLDER[:FOLDER...];...
+#                      written into packaged_modules/ of the build folder as _native.SUFFIX
 
 set(PYBIND11_FINDPYTHON ON)
 find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module)
@@ -29,10 +35,39 @@ foreach(source IN LISTS bindings_sources)
 endforeach()
 configure_file("${CMAKE_CURRENT_LIST_DIR}/bind_parts.hpp.in" "${CMAKE_CURRENT_BINARY_DIR}/bindings/bind_parts.hpp" @ONLY)
 
+# What is the same for all of them.
+function(finish_python_module target)
+    target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/bindings")
+    target_link_libraries(${target} PRIVATE realmodel realmodel_warnings realmodel_loaded_late)
+    set_target_properties(${target} PROPERTIES
+        DEFINE_SYMBOL "" # or the same source would be another one for each of them
+        REALMODEL_GMP_INSIDE ON)
+    if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
+        set(exports "${PROJECT_SOURCE_DIR}/native/cmake/module_exports.map")
+        target_link_options(${target} PRIVATE "-Wl,--version-script=${exports}" $<$<CONFIG:Release>:-s>)
+        set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS "${exports}")
+    endif()
+endfunction()
+
 pybind11_add_module(_native MODULE NO_EXTRAS ${bindings_sources})
-target_include_directories(_native PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/bindings")
-target_link_libraries(_native PRIVATE realmodel realmodel_warnings)
-# Nothing of the libraries inside may be seen from outside: Blender has copies of its own.
-target_link_options(_native PRIVATE -Wl,--exclude-libs,ALL $<$<CONFIG:Release>:-s>)
-set_target_properties(_native PROPERTIES
-    LIBRARY_OUTPUT_DIRECTORY "${PROJECT_SOURCE_DIR}/addon/realmodel")
+finish_python_module(_native)
+set_target_properties(_native PROPERTIES LIBRARY_OUTPUT_DIRECTORY "${PROJECT_SOURCE_DIR}/addon/realmodel")
+
+set(REALMODEL_PACKAGED_PYTHONS "" CACHE STRING "Ends of module names and the folders of the headers, for packaged_modules")
+add_custom_target(packaged_modules)
+foreach(entry IN LISTS REALMODEL_PACKAGED_PYTHONS)
+    if(NOT entry MATCHES "^([^=]+)=(.+)$")
+        message(FATAL_ERROR "REALMODEL_PACKAGED_PYTHONS: '${entry}' is not SUFFIX=FOLDER[:FOLDER...]")
+    endif()
+    set(suffix "${CMAKE_MATCH_1}")
+    string(REPLACE ":" ";" header_folders "${CMAKE_MATCH_2}")
+    string(MAKE_C_IDENTIFIER "packaged_${suffix}" target)
+    add_library(${target} MODULE EXCLUDE_FROM_ALL ${bindings_sources})
+    finish_python_module(${target})
+    target_link_libraries(${target} PRIVATE pybind11::headers)
+    target_include_directories(${target} SYSTEM PRIVATE ${header_folders})
+    set_target_properties(${target} PROPERTIES
+        PREFIX "" OUTPUT_NAME "_native" SUFFIX ".${suffix}"
+        LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/packaged_modules")
+    add_dependencies(packaged_modules ${target})
+endforeach()

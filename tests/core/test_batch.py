@@ -373,6 +373,8 @@ def test_without_the_native_module(layers, tmp_path):
     """One line says how to get it."""
     copy = tmp_path / "copy"
     (copy / "addon").mkdir(parents=True)
+    (copy / "scripts").mkdir()
+    (copy / "scripts" / "build.sh").write_text("")
     (copy / "build_model.py").write_text(SCRIPT.read_text())
     package = ROOT / "addon" / "realmodel"
     for path in package.rglob("*.py"):

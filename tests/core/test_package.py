@@ -4,18 +4,45 @@
 import ast
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import realmodel
 from realmodel import _native
 
 ROOT = Path(__file__).resolve().parents[2]
+ADDON = ROOT / "addon" / "realmodel"
 
 
 def test_one_version_everywhere():
     version = (ROOT / "VERSION").read_text(encoding="utf-8").strip()
     assert version == _native.VERSION
     assert version == ".".join(map(str, realmodel.bl_info["version"]))
+    assert version == manifest()["version"]
+
+
+def manifest():
+    with (ADDON / "blender_manifest.toml").open("rb") as file:
+        return tomllib.load(file)
+
+
+def test_the_manifest_says_what_bl_info_says():
+    assert manifest()["name"] == realmodel.bl_info["name"]
+    assert manifest()["maintainer"] == realmodel.bl_info["author"]
+    assert manifest()["id"] == ADDON.name
+
+
+def test_the_package_never_names_itself():
+    """As an extension of Blender 4.2 and newer it has another name: bl_ext.user_default.realmodel."""
+    for path in ADDON.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            names = []
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom) and not node.level:
+                names = [node.module]
+            itself = [name for name in names if name.split(".")[0] == "realmodel"]
+            assert not itself, f"{path.relative_to(ROOT)}, line {node.lineno}"
 
 
 def test_bl_info_is_read_without_running_the_add_on():

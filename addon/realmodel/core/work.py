@@ -15,6 +15,7 @@ from collections.abc import Callable
 from contextlib import contextmanager, suppress
 from typing import TypeVar
 
+from . import missing_native
 from .errors import BuildFailed, Cancelled
 
 Progress = Callable[[float, str], None]
@@ -22,6 +23,7 @@ Cancel = Callable[[], bool]
 Result = TypeVar("Result")
 
 POLL_SECONDS = 0.04
+_PACKAGE = __package__.rpartition(".")[0]  # "realmodel", or what Blender calls an extension
 _SECONDS_TO_LEAVE = 0.1  # with one poll before it, an answer to cancel() stays within 0.2 s
 
 
@@ -183,7 +185,7 @@ def _waiting_threads_sleep():
     parallel loops get slower by far. The library reads this once, when it is loaded.
     """
     name = "OMP_WAIT_POLICY"
-    if "realmodel._native" in sys.modules or name in os.environ or "GOMP_SPINCOUNT" in os.environ:
+    if f"{_PACKAGE}._native" in sys.modules or name in os.environ or "GOMP_SPINCOUNT" in os.environ:
         yield
         return
     os.environ[name] = "PASSIVE"
@@ -197,11 +199,16 @@ def native_module():
     """The compiled part. Raises BuildFailed with the way to get it where it is missing."""
     try:
         with _waiting_threads_sleep():
-            from realmodel import _native
+            from .. import _native
     except ImportError as error:
-        version = f"{sys.version_info.major}.{sys.version_info.minor}"
-        raise BuildFailed(
-            f"the native module for Python {version} cannot be loaded ({error}); build it with "
-            f"scripts/build.sh {sys.executable if 'bpy' not in sys.modules else f'python{version}'}"
-        ) from error
+        raise BuildFailed(missing_native.explanation(error)) from error
     return _native
+
+
+def native_problem() -> str | None:
+    """What keeps the compiled part from being loaded and what to do, or None where it is there."""
+    try:
+        native_module()
+    except BuildFailed as failure:
+        return str(failure)
+    return None

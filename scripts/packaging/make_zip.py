@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Puts the add-on into one zip that Blender installs.
+
+    python3 make_zip.py FOLDER MODULE...
+
+FOLDER: where realmodel-VERSION-linux-x64.zip goes. MODULE: the native modules, one for each Python.
+The zip is written whole or not at all, and the same files give the same bytes.
+"""
+
+import os
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+ADDON = ROOT / "addon" / "realmodel"
+TOP = "realmodel"  # Blender 3.4 would spill a zip without one top folder over the add-ons
+LARGEST = 10e6  # bytes
+INSTALLERS_NOTES = {"made_from", "RECORD", "INSTALLER", "REQUESTED"}  # of this machine, not of the package
+EARLIEST = (1980, 1, 1, 0, 0, 0)  # the time of every file in the zip: the zero of the format
+
+
+def tracked_files(folder):
+    """The files of a folder that git knows or would add, without what it ignores."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", "--", str(folder)]
+    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True).stdout
+    names = {name for name in listed.decode().split("\0") if name}
+    return [ROOT / name for name in names if (ROOT / name).is_file()]
+
+
+def contents(modules):
+    """{name in the zip: file}."""
+    files = {f"{TOP}/{path.relative_to(ADDON).as_posix()}": path for path in tracked_files(ADDON)}
+    vendored = ADDON / "vendor"  # made by scripts/build.sh, not in the repository
+    for path in vendored.rglob("*"):
+        if path.is_file() and "__pycache__" not in path.parts and path.name not in INSTALLERS_NOTES:
+            files[f"{TOP}/{path.relative_to(ADDON).as_posix()}"] = path
+    for path in tracked_files(ROOT / "blend_samples"):
+        files[f"{TOP}/{path.relative_to(ROOT).as_posix()}"] = path
+    files[f"{TOP}/LICENSE"] = ROOT / "LICENSE"
+    for module in modules:
+        files[f"{TOP}/{module.name}"] = module
+    return files
+
+
+def write_zip(path, files):
+    """Write the zip, through a file beside it that is renamed at the end."""
+    unfinished = path.with_name(path.name + ".part")
+    try:
+        with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+            for name in sorted(files):
+                entry = zipfile.ZipInfo(name, EARLIEST)
+                entry.create_system = 3  # Unix, whichever system makes it
+                entry.external_attr = (0o100755 if name.endswith(".so") else 0o100644) << 16
+                entry.compress_type = zipfile.ZIP_DEFLATED
+                archive.writestr(entry, files[name].read_bytes(), compresslevel=9)
+        size = unfinished.stat().st_size
+        if size > LARGEST:
+            sys.exit(
+                f"make_zip.py: the zip has {size / 1e6:.1f} MB; more than {LARGEST / 1e6:.0f} MB is a mistake"
+            )
+        os.replace(unfinished, path)
+    finally:
+        unfinished.unlink(missing_ok=True)
+
+
+def main(folder, *modules):
+    version = (ROOT / "VERSION").read_text(encoding="utf-8").strip()
+    path = Path(folder) / f"{TOP}-{version}-linux-x64.zip"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    files = contents([Path(module) for module in modules])
+    write_zip(path, files)
+    print(
+        f"Made {path}: {len(files)} files, {path.stat().st_size / 1e6:.1f} MB, {len(modules)} native modules"
+    )
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    main(*sys.argv[1:])
