@@ -203,12 +203,3 @@ def native_module():
     except ImportError as error:
         raise BuildFailed(missing_native.explanation(error)) from error
     return _native
-
-
-def native_problem() -> str | None:
-    """What keeps the compiled part from being loaded and what to do, or None where it is there."""
-    try:
-        native_module()
-    except BuildFailed as failure:
-        return str(failure)
-    return None
