@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "arithmetic.hpp"
-#include "point_key.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::exact {
@@ -36,6 +35,12 @@ void PlanGeometry::expect_vertices(std::size_t count) {
     space_table_.reserve(count);
 }
 
+void PlanGeometry::expect_lines(std::size_t count) {
+    lines_.reserve(count);
+    filters_.reserve(count);
+    line_table_.reserve(count);
+}
+
 VertexId PlanGeometry::add_vertex(double x, double y) {
     const auto hx = halves(x), hy = halves(y);
     const auto found = vertex_table_.insert({hx[0], hx[1], hy[0], hy[1]});
@@ -57,13 +62,29 @@ SpaceId PlanGeometry::add_space_vertex(VertexId plan, double z) {
 }
 
 PlaneId PlanGeometry::add_plane(const std::array<SpaceId, 3>& corner) {
+    const PlaneId plane = make_planes(1);
+    set_plane(plane, corner);
+    return plane;
+}
+
+PlaneId PlanGeometry::make_planes(std::size_t count) {
+    const auto first = static_cast<PlaneId>(planes_.size());
+    planes_.resize(planes_.size() + count);
+    plane_filters_.resize(planes_.size());
+    return first;
+}
+
+void PlanGeometry::set_plane(PlaneId plane, const std::array<SpaceId, 3>& corner) {
     const auto position = [&](int i) {
-        return points_[static_cast<std::size_t>(space(corner[i]).plan)];
+        const Point& p = points_[static_cast<std::size_t>(space(corner[i]).plan)];
+        return std::array{p.x, p.y};
     };
-    const Point p0 = position(0), p1 = position(1), p2 = position(2);
+    const auto [x0, y0] = position(0);
+    const auto [x1, y1] = position(1);
+    const auto [x2, y2] = position(2);
     const double z0 = space(corner[0]).z;
-    const double ux = p1.x - p0.x, uy = p1.y - p0.y, uz = space(corner[1]).z - z0;
-    const double vx = p2.x - p0.x, vy = p2.y - p0.y, vz = space(corner[2]).z - z0;
+    const double ux = x1 - x0, uy = y1 - y0, uz = space(corner[1]).z - z0;
+    const double vx = x2 - x0, vy = y2 - y0, vz = space(corner[2]).z - z0;
     const double c = ux * vy - uy * vx;
     const double error_c = 4 * kEpsilon * (std::abs(ux * vy) + std::abs(uy * vx)) + 1e-290;
     const double least = std::abs(c) - error_c;
@@ -79,10 +100,9 @@ PlaneId PlanGeometry::add_plane(const std::array<SpaceId, 3>& corner) {
     filter.error_y = safe ? (error_b + std::abs(filter.gy) * error_c) / least * (1 + 0x1p-40) +
                                 kEpsilon * std::abs(filter.gy)
                           : HUGE_VAL;
-    planes_.push_back(
-        {corner, {space(corner[0]).plan, space(corner[1]).plan, space(corner[2]).plan}});
-    plane_filters_.push_back(filter);
-    return static_cast<PlaneId>(planes_.size() - 1);
+    planes_[static_cast<std::size_t>(plane)] = {
+        corner, {space(corner[0]).plan, space(corner[1]).plan, space(corner[2]).plan}};
+    plane_filters_[static_cast<std::size_t>(plane)] = filter;
 }
 
 void PlanGeometry::freeze_vertices() {
@@ -111,6 +131,16 @@ LineId PlanGeometry::add_line(const Line& line) {
         lines_.push_back(line);
         filters_.push_back(line.kind == Line::Kind::kEdge ? edge_filter(line.first, line.second)
                                                           : trace_filter(line.first, line.second));
+    }
+    return found.number;
+}
+
+LineId PlanGeometry::add_line(const Line& line, const LineFilter& filter) {
+    const auto found = line_table_.insert(line_key_of(line));
+    if (found.is_new) {
+        check_room(lines_.size(), "lines");
+        lines_.push_back(line);
+        filters_.push_back(filter);
     }
     return found.number;
 }

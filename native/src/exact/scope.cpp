@@ -5,7 +5,6 @@
 
 #include "arithmetic.hpp"
 #include "formulas.hpp"
-#include "point_key.hpp"
 #include "realmodel/exact/plan_geometry.hpp"
 
 namespace realmodel::exact {
@@ -13,6 +12,9 @@ namespace realmodel::exact {
 namespace {
 
 constexpr double kEpsilon = 0x1p-52;
+
+/// Instead of a shared id.
+constexpr std::int32_t kKept = -1, kAsked = -2;
 
 int sign_of(double value) {
     return value > 0.0 ? 1 : (value < 0.0 ? -1 : 0);
@@ -251,17 +253,54 @@ PointId Scope::crossing_between_ends(LineId a, LineId b) {
     return kLocal + found.number;
 }
 
+void Scope::ask_for_line(LineId id) {
+    if (id < kLocal) return;
+    const auto local = static_cast<std::size_t>(id - kLocal);
+    if (line_ids_.size() < lines_.size()) line_ids_.resize(lines_.size(), kKept);
+    if (line_ids_[local] != kKept) return;
+    line_ids_[local] = kAsked;
+    asked_lines_.push_back(static_cast<std::int32_t>(local));
+}
+
+void Scope::ask_for_point(PointId id) {
+    if (id < kLocal) return;
+    const auto local = static_cast<std::size_t>(id - kLocal);
+    if (point_ids_.size() < points_.size()) point_ids_.resize(points_.size(), kKept);
+    if (point_ids_[local] != kKept) return;
+    point_ids_[local] = kAsked;
+    asked_points_.push_back(static_cast<std::int32_t>(local));
+    ask_for_line(points_[local].first);
+    ask_for_line(points_[local].second);
+}
+
 void Scope::hand_over(PlanGeometry& geometry) {
+    constexpr std::size_t kAhead = 12;
     receiver_ = &geometry;
-    line_ids_.assign(lines_.size(), -1);
-    point_ids_.assign(points_.size(), -1);
+    line_ids_.resize(lines_.size(), kKept);
+    point_ids_.resize(points_.size(), kKept);
+    const auto line_asked = [&](std::size_t i) {
+        return static_cast<std::size_t>(asked_lines_[i]);
+    };
+    for (std::size_t i = 0; i < asked_lines_.size(); ++i) {
+        if (i + kAhead < asked_lines_.size()) geometry.prefetch(lines_[line_asked(i + kAhead)]);
+        shared_line(kLocal + asked_lines_[i]);
+    }
+    for (std::size_t i = 0; i < asked_points_.size() + kAhead; ++i) {
+        if (i < asked_points_.size()) {
+            Point& ahead = points_[static_cast<std::size_t>(asked_points_[i])];
+            ahead.first = shared_line(ahead.first);
+            ahead.second = shared_line(ahead.second);
+            geometry.prefetch(ahead);
+        }
+        if (i >= kAhead) shared_point(kLocal + asked_points_[i - kAhead]);
+    }
 }
 
 LineId Scope::shared_line(LineId id) {
     if (id < kLocal) return id;
     const auto local = static_cast<std::size_t>(id - kLocal);
     LineId& shared = line_ids_[local];
-    if (shared < 0) shared = receiver_->add_line(lines_[local]);
+    if (shared < 0) shared = receiver_->add_line(lines_[local], filters_[local]);
     return shared;
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "block_overlay.hpp"
-#include "parallel_chunks.hpp"
+#include "parallel_counts.hpp"
 
 namespace realmodel::strata {
 
@@ -26,29 +26,25 @@ PlanBox box_of_edge(const PlanGeometry& geometry, VertexId from, VertexId to) {
 }  // namespace
 
 BlockLayer make_block_layer(PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
-                            PlanLinks links, const Frame& frame, std::int32_t number, int threads,
+                            SurfacePlan plan, std::int32_t number, int threads,
                             const Progress* progress) {
-    const auto filling = cover_frame(geometry, links.border, frame);
-    if (!filling) make_layer(geometry, triangles, frame, number, threads, progress);  // refuses
+    if (!plan.filling) make_layer(geometry, triangles, plan, number, threads, progress);  // refuses
     BlockLayer layer;
     layer.number = number;
-    layer.first_plane = static_cast<PlaneId>(geometry.plane_count());
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        poll(progress, t);
-        geometry.add_plane(triangles[t].corner);
-    }
-    layer.neighbour = std::move(links.neighbour);
-    for (std::size_t t = 0; t < layer.size(); ++t) {
-        poll(progress, t);
-        for (std::size_t i = 0; i < 3; ++i) {
-            std::int32_t& n = layer.neighbour[t][i];
-            if (n >= 0 && !meet_in_height(geometry, layer.first_plane + static_cast<PlaneId>(t), i,
-                                          layer.first_plane + n))
-                n = -1;
+    layer.first_plane = make_planes(geometry, triangles, threads, progress);
+    layer.neighbour = std::move(plan.links.neighbour);
+    parallel_ranges(layer.size(), 8192, threads, progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                std::int32_t& n = layer.neighbour[t][i];
+                if (n >= 0 && !meet_in_height(geometry, layer.first_plane + static_cast<PlaneId>(t),
+                                              i, layer.first_plane + n))
+                    n = -1;
+            }
         }
-    }
-    for (std::size_t t = 0; t < filling->triangles.size(); ++t) {
-        if (filling->covered[t] == 0) layer.empty.push_back(filling->triangles[t]);
+    });
+    for (std::size_t t = 0; t < plan.filling->triangles.size(); ++t) {
+        if (plan.filling->covered[t] == 0) layer.empty.push_back(plan.filling->triangles[t]);
     }
     return layer;
 }

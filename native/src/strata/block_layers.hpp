@@ -32,9 +32,8 @@ struct BlockRegion {
 /// The layer of a checked surface from its linked triangles; its planes are made.
 /// @throws InputError kind double_valued, as make_layer does
 BlockLayer make_block_layer(exact::PlanGeometry& geometry,
-                            const std::vector<UsedTriangle>& triangles, PlanLinks links,
-                            const Frame& frame, std::int32_t number, int threads,
-                            const Progress* progress);
+                            const std::vector<UsedTriangle>& triangles, SurfacePlan plan,
+                            std::int32_t number, int threads, const Progress* progress);
 
 BlockRegion make_block_region(const exact::PlanGeometry& geometry,
                               const std::vector<PlanTriangle>& triangles, const Frame& frame,

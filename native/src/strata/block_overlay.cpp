@@ -123,7 +123,7 @@ Layer BlockOverlay::needed_part(const BlockLayer& layer, Classified& c) {
         part.polygons.add(triangle_outline(geometry_, t));
         part.plane.push_back(kVoid);
     }
-    part.index(geometry_, progress_, std::max(tiles_.size(), part.plane.size()));
+    part.index(geometry_, threads_, progress_, std::max(tiles_.size(), part.plane.size()));
     return part;
 }
 

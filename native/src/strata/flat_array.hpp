@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <type_traits>
+#include <utility>
 
 namespace realmodel::strata {
 
@@ -18,6 +20,17 @@ public:
     FlatArray() = default;
     explicit FlatArray(std::size_t size)
         : elements_(std::make_unique_for_overwrite<Element[]>(size)), size_(size) {}
+
+    FlatArray(const FlatArray& other) : FlatArray(other.size_) {
+        std::copy(other.begin(), other.end(), begin());
+    }
+    FlatArray(FlatArray&& other) noexcept
+        : elements_(std::move(other.elements_)), size_(std::exchange(other.size_, 0)) {}
+    FlatArray& operator=(FlatArray other) noexcept {
+        std::swap(elements_, other.elements_);
+        std::swap(size_, other.size_);
+        return *this;
+    }
 
     std::size_t size() const { return size_; }
     Element& operator[](std::size_t i) { return elements_[i]; }

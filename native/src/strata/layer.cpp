@@ -2,11 +2,13 @@
 #include "layer.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "parallel_chunks.hpp"
+#include "parallel_counts.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::strata {
@@ -15,6 +17,14 @@ using exact::PlanGeometry;
 using exact::VertexId;
 
 namespace {
+
+constexpr std::size_t kRange = 8192;
+
+/// Whether the line of the edge between a triangle and its neighbour, if any, is known when the
+/// triangles are taken in order.
+bool is_known(std::int32_t neighbour, std::size_t triangle) {
+    return neighbour >= 0 && static_cast<std::size_t>(neighbour) < triangle;
+}
 
 void add_triangle(PlanGeometry& geometry, PolygonPool& pool, const PlanTriangle& triangle) {
     pool.add(triangle_outline(geometry, triangle));
@@ -25,6 +35,42 @@ PlanTriangle plan_of(const PlanGeometry& geometry, const UsedTriangle& triangle)
     for (std::size_t i = 0; i < 3; ++i)
         v[i] = geometry.space(triangle.corner[i]).plan;
     return v;
+}
+
+/// Outlines of triangles that hang together: the line of an edge is asked for once.
+void add_outlines(PlanGeometry& geometry, PolygonPool& pool,
+                  const std::vector<UsedTriangle>& triangles, const PlanLinks& links,
+                  const Progress* progress) {
+    constexpr std::size_t kAhead = 8;
+    const std::size_t count = triangles.size();
+    pool.corners.resize(3 * count);
+    pool.offsets.resize(count + 1);
+    for (std::size_t t = 0; t < count + kAhead; ++t) {
+        poll(progress, t);
+        if (t < count) {
+            const PlanTriangle v = plan_of(geometry, triangles[t]);
+            for (std::size_t i = 0; i < 3; ++i) {
+                pool.corners[3 * t + i].point = v[i];
+                if (!is_known(links.neighbour[t][i], t))
+                    geometry.prefetch_edge(v[i], v[(i + 1) % 3]);
+            }
+            pool.offsets[t + 1] = static_cast<std::int64_t>(3 * (t + 1));
+        }
+        if (t < kAhead) continue;
+        Corner* own = &pool.corners[3 * (t - kAhead)];
+        for (std::size_t i = 0; i < 3; ++i) {
+            const PointId to = own[(i + 1) % 3].point;
+            const std::int32_t neighbour = links.neighbour[t - kAhead][i];
+            if (!is_known(neighbour, t - kAhead)) {
+                own[i].line = geometry.add_edge(own[i].point, to);
+                continue;
+            }
+            const Corner* other = &pool.corners[3 * static_cast<std::size_t>(neighbour)];
+            while (other->point != to)
+                ++other;
+            own[i].line = exact::opposite(other->line);
+        }
+    }
 }
 
 /// Void triangles (plane `empty`) where nothing is covered.
@@ -80,23 +126,8 @@ void add_empty(PlanGeometry& geometry, Layer& layer, const FrameTriangles& filli
     throw std::logic_error("a surface covers a place twice, yet no two of its triangles overlap");
 }
 
-}  // namespace
-
-std::array<Corner, 3> triangle_outline(PlanGeometry& geometry, const PlanTriangle& v) {
-    return {{{v[0], geometry.add_edge(v[0], v[1])},
-             {v[1], geometry.add_edge(v[1], v[2])},
-             {v[2], geometry.add_edge(v[2], v[0])}}};
-}
-
-void Layer::index(const PlanGeometry& geometry, const Progress* progress, std::size_t cells) {
-    const Scope scope(geometry);
-    std::vector<std::uint8_t> is_surface(plane.size());
-    std::transform(plane.begin(), plane.end(), is_surface.begin(),
-                   [](PlaneId p) { return static_cast<std::uint8_t>(p == kVoid ? 0 : 1); });
-    runs_on.assign(plane.size(), 0);
-    grid = PlanGrid(scope, polygons, is_surface, cells, progress);
-}
-
+/// Where triangles that turn counter-clockwise lie in the frame; nothing where they cover a place
+/// twice.
 std::optional<FrameTriangles> cover_frame(const PlanGeometry& geometry,
                                           const std::vector<BorderEdge>& border,
                                           const Frame& frame) {
@@ -111,6 +142,23 @@ std::optional<FrameTriangles> cover_frame(const PlanGeometry& geometry,
     }
 }
 
+}  // namespace
+
+std::array<Corner, 3> triangle_outline(PlanGeometry& geometry, const PlanTriangle& v) {
+    return {{{v[0], geometry.add_edge(v[0], v[1])},
+             {v[1], geometry.add_edge(v[1], v[2])},
+             {v[2], geometry.add_edge(v[2], v[0])}}};
+}
+
+void Layer::index(const PlanGeometry& geometry, int threads, const Progress* progress,
+                  std::size_t cells) {
+    std::vector<std::uint8_t> is_surface(plane.size());
+    std::transform(plane.begin(), plane.end(), is_surface.begin(),
+                   [](PlaneId p) { return static_cast<std::uint8_t>(p == kVoid ? 0 : 1); });
+    runs_on.assign(plane.size(), 0);
+    grid = PlanGrid(geometry, polygons, is_surface, cells, threads, progress);
+}
+
 bool meet_in_height(const PlanGeometry& geometry, PlaneId plane, std::size_t i, PlaneId other) {
     const auto& corner = geometry.plane(plane).corner;
     for (const exact::SpaceId s : {corner[i], corner[(i + 1) % 3]}) {
@@ -119,38 +167,56 @@ bool meet_in_height(const PlanGeometry& geometry, PlaneId plane, std::size_t i, 
     return true;
 }
 
-PlanLinks link_triangles(const PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
-                         const Progress* progress) {
-    return link_triangles(
-        triangles.size(), [&](std::size_t t) { return plan_of(geometry, triangles[t]); }, progress);
+std::vector<SurfacePlan> plan_surfaces(const PlanGeometry& geometry,
+                                       const std::vector<std::vector<UsedTriangle>>& surfaces,
+                                       const Frame& frame, int threads, const Progress* progress) {
+    std::vector<SurfacePlan> plans(surfaces.size());
+    parallel_chunks(surfaces.size(), threads, progress, [&](std::size_t k) {
+        const auto& triangles = surfaces[k];
+        plans[k].links = link_triangles(
+            triangles.size(), [&](std::size_t t) { return plan_of(geometry, triangles[t]); },
+            progress);
+        plans[k].filling = cover_frame(geometry, plans[k].links.border, frame);
+    });
+    return plans;
+}
+
+PlaneId make_planes(PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles, int threads,
+                    const Progress* progress) {
+    const PlaneId first = geometry.make_planes(triangles.size());
+    parallel_ranges(
+        triangles.size(), kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t)
+                geometry.set_plane(first + static_cast<PlaneId>(t), triangles[t].corner);
+        });
+    return first;
 }
 
 Layer make_layer(PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
-                 const Frame& frame, int index, int threads, const Progress* progress) {
+                 const SurfacePlan& plan, int index, int threads, const Progress* progress) {
     Layer layer;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        poll(progress, t);
-        add_triangle(geometry, layer.polygons, plan_of(geometry, triangles[t]));
-        layer.plane.push_back(geometry.add_plane(triangles[t].corner));
-    }
-    const PlanLinks links = link_triangles(geometry, triangles, progress);
-    const auto filling = cover_frame(geometry, links.border, frame);
-    if (!filling) {
-        layer.index(geometry, progress);
+    const PlaneId first = make_planes(geometry, triangles, threads, progress);
+    layer.plane.resize(triangles.size());
+    std::iota(layer.plane.begin(), layer.plane.end(), first);
+    add_outlines(geometry, layer.polygons, triangles, plan.links, progress);
+    if (!plan.filling) {
+        layer.index(geometry, threads, progress);
         refuse_overlap(geometry, layer, triangles, index, threads, progress);
     }
-    add_empty(geometry, layer, *filling, kVoid);
-    layer.index(geometry, progress);
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        poll(progress, t);
-        bool runs_on = true;
-        for (std::size_t i = 0; i < 3 && runs_on; ++i) {
-            const std::int32_t n = links.neighbour[t][i];
-            runs_on = n >= 0 && meet_in_height(geometry, layer.plane[t], i,
-                                               layer.plane[static_cast<std::size_t>(n)]);
-        }
-        layer.runs_on[t] = runs_on ? 1 : 0;
-    }
+    add_empty(geometry, layer, *plan.filling, kVoid);
+    layer.index(geometry, threads, progress);
+    parallel_ranges(
+        triangles.size(), kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t) {
+                bool runs_on = true;
+                for (std::size_t i = 0; i < 3 && runs_on; ++i) {
+                    const std::int32_t n = plan.links.neighbour[t][i];
+                    runs_on = n >= 0 && meet_in_height(geometry, layer.plane[t], i,
+                                                       layer.plane[static_cast<std::size_t>(n)]);
+                }
+                layer.runs_on[t] = runs_on ? 1 : 0;
+            }
+        });
     return layer;
 }
 

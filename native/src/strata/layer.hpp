@@ -31,7 +31,7 @@ struct Layer {
     PlanGrid grid;
 
     /// Makes the grid of the polygons as they are now; nothing more is known of how they run on.
-    void index(const exact::PlanGeometry& geometry, const Progress* progress,
+    void index(const exact::PlanGeometry& geometry, int threads, const Progress* progress,
                std::size_t cells = 0);
 };
 
@@ -54,19 +54,26 @@ std::array<Corner, 3> triangle_outline(exact::PlanGeometry& geometry, const Plan
 bool meet_in_height(const exact::PlanGeometry& geometry, PlaneId plane, std::size_t i,
                     PlaneId other);
 
-PlanLinks link_triangles(const exact::PlanGeometry& geometry,
-                         const std::vector<UsedTriangle>& triangles, const Progress* progress);
+/// How a surface lies in plan.
+struct SurfacePlan {
+    PlanLinks links;
+    /// The frame around its triangles; nothing where they cover a place twice.
+    std::optional<FrameTriangles> filling;
+};
 
-/// Where triangles that turn counter-clockwise lie in the frame; nothing where they cover a place
-/// twice.
-std::optional<FrameTriangles> cover_frame(const exact::PlanGeometry& geometry,
-                                          const std::vector<BorderEdge>& border,
-                                          const Frame& frame);
+/// How checked surfaces lie in plan.
+std::vector<SurfacePlan> plan_surfaces(const exact::PlanGeometry& geometry,
+                                       const std::vector<std::vector<UsedTriangle>>& surfaces,
+                                       const Frame& frame, int threads, const Progress* progress);
+
+/// Planes of triangles, one after another; the first of them.
+PlaneId make_planes(exact::PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
+                    int threads, const Progress* progress);
 
 /// The layer of a checked surface.
 /// @throws InputError kind double_valued, with the two triangles and a place in both
 Layer make_layer(exact::PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
-                 const Frame& frame, int index, int threads, const Progress* progress);
+                 const SurfacePlan& plan, int index, int threads, const Progress* progress);
 
 /// The region as a layer: plane kSky inside and kOutside outside.
 Layer make_region(exact::PlanGeometry& geometry, const std::vector<PlanTriangle>& triangles,

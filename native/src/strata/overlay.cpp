@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <memory>
 
@@ -7,6 +8,7 @@
 #include "parallel_chunks.hpp"
 #include "pieces.hpp"
 #include "realmodel/base/errors.hpp"
+#include "shared_polygons.hpp"
 
 namespace realmodel::strata {
 
@@ -33,6 +35,10 @@ struct ChunkResult {
     PolygonPool lowered_outlines;
     std::vector<LoweredPiece> lowered;
     Envelope kept;
+
+    std::array<PolygonPool*, 4> pools() {
+        return {&faces.polygons, &lowered_outlines, &kept.outlines, &kept.face_polygons};
+    }
 };
 
 /// Works on the facets of one chunk.
@@ -179,12 +185,6 @@ private:
     std::vector<std::int32_t> group_;
 };
 
-/// Gives a chunk's polygons shared lines and points.
-void share(Scope& scope, PolygonPool& pool) {
-    for (Corner& corner : pool.corners)
-        corner = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};
-}
-
 /// The lowered pieces of all chunks, under shared ids.
 struct LoweredPieces {
     PolygonPool outlines;
@@ -242,9 +242,6 @@ public:
         for (auto& chunk : chunks) {
             if (progress != nullptr) progress->check();
             chunk->scope.hand_over(geometry);
-            for (PolygonPool* pool : {&chunk->faces.polygons, &chunk->lowered_outlines,
-                                      &chunk->kept.outlines, &chunk->kept.face_polygons})
-                share(chunk->scope, *pool);
             start_.push_back(at);
             at.pass(*chunk);
         }
@@ -271,6 +268,8 @@ public:
         end_.facet_face.make_room(next.face_polygons);
         next.face_above.resize(end_.facet_face.polygon);
         parallel_chunks(chunks_.size(), threads, progress, [&](std::size_t c) {
+            for (PolygonPool* pool : chunks_[c]->pools())
+                share(chunks_[c]->scope, *pool);
             put_chunk(*chunks_[c], start_[c], next, lowered);
             chunks_[c].reset();
         });
@@ -380,6 +379,8 @@ Envelope overlay(PlanGeometry& geometry, const Envelope& envelope, const Layer& 
         for (std::size_t f = c * kChunk; f < std::min(envelope.size(), (c + 1) * kChunk); ++f) {
             facets.process(f);
         }
+        for (const PolygonPool* pool : results[c]->pools())
+            ask_for(results[c]->scope, *pool);
     });
     Envelope next;
     LoweredPieces lowered;

@@ -4,9 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "parallel_chunks.hpp"
+#include "parallel_counts.hpp"
 
 namespace realmodel::strata {
+
+namespace {
+
+constexpr std::size_t kRange = 8192;
+
+}  // namespace
 
 PlanBox box_of(const Scope& scope, PolygonView polygon) {
     PlanBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -32,9 +38,9 @@ std::int64_t PolygonCells::row(double y) const {
                       rows_ - 1);
 }
 
-void PolygonCells::fill(const Scope& scope, const PolygonPool& polygons,
+void PolygonCells::fill(const exact::PlanGeometry& geometry, const PolygonPool& polygons,
                         const std::vector<PlanBox>& boxes, const std::vector<std::int32_t>& chosen,
-                        std::size_t cells, const Progress* progress) {
+                        std::size_t cells, int threads, const Progress* progress) {
     if (chosen.empty()) return;
     frame_ = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     for (const std::int32_t i : chosen) {
@@ -50,34 +56,51 @@ void PolygonCells::fill(const Scope& scope, const PolygonPool& polygons,
     rows_ = std::max<std::int64_t>(1, std::llround(std::sqrt(count / shape)));
     step_x_ = std::max(width / static_cast<double>(columns_), 1e-300);
     step_y_ = std::max(height / static_cast<double>(rows_), 1e-300);
-    offsets_.assign(static_cast<std::size_t>(columns_ * rows_ + 1), 0);
-    for (std::size_t c = 0; c < chosen.size(); ++c) {
-        poll(progress, c);
-        const auto i = static_cast<std::size_t>(chosen[c]);
-        for_each_cell(scope, polygons[i], boxes[i],
-                      [&](std::int64_t cell) { ++offsets_[static_cast<std::size_t>(cell) + 1]; });
-    }
-    for (std::size_t c = 1; c < offsets_.size(); ++c)
-        offsets_[c] += offsets_[c - 1];
-    items_.resize(static_cast<std::size_t>(offsets_.back()));
-    std::vector<std::int64_t> next(offsets_.begin(), offsets_.end() - 1);
-    for (std::size_t c = 0; c < chosen.size(); ++c) {
-        poll(progress, c);
-        const auto i = static_cast<std::size_t>(chosen[c]);
-        for_each_cell(scope, polygons[i], boxes[i], [&](std::int64_t cell) {
-            items_[static_cast<std::size_t>(next[static_cast<std::size_t>(cell)]++)] = chosen[c];
-        });
-    }
+    offsets_ =
+        zeros<std::uint32_t>(static_cast<std::size_t>(columns_ * rows_ + 1), threads, progress);
+    // Calls visit(cell, polygon), from several threads.
+    const auto for_all = [&](const auto& visit) {
+        parallel_ranges(chosen.size(), kRange, threads, progress,
+                        [&](std::size_t begin, std::size_t end) {
+                            const Scope scope(geometry);
+                            for (std::size_t c = begin; c < end; ++c) {
+                                const auto i = static_cast<std::size_t>(chosen[c]);
+                                for_each_cell(scope, polygons[i], boxes[i], [&](std::int64_t cell) {
+                                    visit(static_cast<std::size_t>(cell), chosen[c]);
+                                });
+                            }
+                        });
+    };
+    for_all([&](std::size_t cell, std::int32_t) { count_one(offsets_[cell]); });
+    running_totals(offsets_, UINT32_MAX, threads, progress);
+    items_ = FlatArray<Item>(offsets_[offsets_.size() - 1]);
+    FlatArray<std::uint32_t> filled =
+        zeros<std::uint32_t>(static_cast<std::size_t>(columns_ * rows_), threads, progress);
+    for_all([&](std::size_t cell, std::int32_t polygon) {
+        const PlanBox& box = boxes[static_cast<std::size_t>(polygon)];
+        const CellSpan span = span_of(box);
+        const bool whole = is_inside(box) && span.is_narrow();
+        items_[offsets_[cell] + count_one(filled[cell])] = {
+            polygon, whole ? static_cast<std::int32_t>(span.left) : kScattered,
+            whole ? static_cast<std::int32_t>(span.low) : kScattered};
+    });
+}
+
+PolygonCells::CellSpan PolygonCells::span_of(const PlanBox& box) const {
+    return {column(box.low_x), column(box.high_x), row(box.low_y), row(box.high_y)};
+}
+
+bool PolygonCells::is_inside(const PlanBox& box) const {
+    return box.low_x >= frame_.low_x && box.high_x <= frame_.high_x && box.low_y >= frame_.low_y &&
+           box.high_y <= frame_.high_y;
 }
 
 template <class Visit>
 void PolygonCells::for_each_cell(const Scope& scope, PolygonView polygon, const PlanBox& box,
                                  const Visit& visit) const {
-    const std::int64_t r0 = row(box.low_y), r1 = row(box.high_y);
-    const std::int64_t c0 = column(box.low_x), c1 = column(box.high_x);
-    const bool inside = box.low_x >= frame_.low_x && box.high_x <= frame_.high_x &&
-                        box.low_y >= frame_.low_y && box.high_y <= frame_.high_y;
-    if (inside && (c1 - c0 <= 1 || r1 - r0 <= 1)) {
+    const CellSpan span = span_of(box);
+    const auto [c0, c1, r0, r1] = span;
+    if (is_inside(box) && span.is_narrow()) {
         for (std::int64_t r = r0; r <= r1; ++r) {
             for (std::int64_t c = c0; c <= c1; ++c)
                 visit(r * columns_ + c);
@@ -124,44 +147,66 @@ void PolygonCells::for_each_cell(const Scope& scope, PolygonView polygon, const 
     }
 }
 
-void PolygonCells::append(const Scope& scope, PolygonView polygon, const PlanBox& box,
+bool PolygonCells::append(const Scope& scope, PolygonView polygon, const PlanBox& box,
                           const std::vector<PlanBox>& boxes,
                           std::vector<std::int32_t>& found) const {
-    if (items_.empty() || !box.meets(frame_)) return;
-    for_each_cell(scope, polygon, box, [&](std::int64_t cell) {
-        for (auto i = offsets_[static_cast<std::size_t>(cell)],
-                  end = offsets_[static_cast<std::size_t>(cell) + 1];
-             i < end; ++i) {
-            const std::int32_t item = items_[static_cast<std::size_t>(i)];
-            if (boxes[static_cast<std::size_t>(item)].meets(box)) found.push_back(item);
+    if (items_.size() == 0 || !box.meets(frame_)) return true;
+    const CellSpan span = span_of(box);
+    bool is_once = true;
+    const auto visit = [&](std::size_t cell, const auto& is_first) {
+        for (std::size_t i = offsets_[cell], end = offsets_[cell + 1]; i < end; ++i) {
+            const Item& item = items_[i];
+            if (!is_first(item)) continue;
+            if (!boxes[static_cast<std::size_t>(item.polygon)].meets(box)) continue;
+            is_once &= item.left != kScattered;
+            found.push_back(item.polygon);
         }
+    };
+    if (is_inside(box) && span.is_narrow()) {
+        for (std::int64_t r = span.low; r <= span.high; ++r) {
+            for (std::int64_t c = span.left; c <= span.right; ++c) {
+                visit(static_cast<std::size_t>(r * columns_ + c), [&](const Item& item) {
+                    return item.left == kScattered ||
+                           (c == std::max<std::int64_t>(span.left, item.left) &&
+                            r == std::max<std::int64_t>(span.low, item.low));
+                });
+            }
+        }
+        return is_once;
+    }
+    for_each_cell(scope, polygon, box, [&](std::int64_t cell) {
+        visit(static_cast<std::size_t>(cell), [](const Item&) { return true; });
     });
+    return false;
 }
 
-PlanGrid::PlanGrid(const Scope& scope, const PolygonPool& polygons,
-                   const std::vector<std::uint8_t>& is_inner, std::size_t cells,
+PlanGrid::PlanGrid(const exact::PlanGeometry& geometry, const PolygonPool& polygons,
+                   const std::vector<std::uint8_t>& is_inner, std::size_t cells, int threads,
                    const Progress* progress) {
     std::vector<std::int32_t> inner, outer;
-    boxes_.reserve(polygons.size());
-    for (std::size_t i = 0; i < polygons.size(); ++i) {
-        poll(progress, i);
-        boxes_.push_back(box_of(scope, polygons[i]));
+    for (std::size_t i = 0; i < polygons.size(); ++i)
         (is_inner[i] != 0 ? inner : outer).push_back(static_cast<std::int32_t>(i));
-    }
+    boxes_.resize(polygons.size());
+    parallel_ranges(polygons.size(), kRange, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        const Scope scope(geometry);
+                        for (std::size_t i = begin; i < end; ++i)
+                            boxes_[i] = box_of(scope, polygons[i]);
+                    });
     cells = std::max(cells, polygons.size());
-    inner_.fill(scope, polygons, boxes_, inner, cells, progress);
+    inner_.fill(geometry, polygons, boxes_, inner, cells, threads, progress);
     // fans of needles around the border: fine cells keep them apart
-    outer_.fill(scope, polygons, boxes_, outer, cells, progress);
+    outer_.fill(geometry, polygons, boxes_, outer, cells, threads, progress);
 }
 
 void PlanGrid::candidates(const Scope& scope, PolygonView polygon,
                           std::vector<std::int32_t>& found) const {
     found.clear();
     const PlanBox box = box_of(scope, polygon);
-    inner_.append(scope, polygon, box, boxes_, found);
-    outer_.append(scope, polygon, box, boxes_, found);
+    bool is_once = inner_.append(scope, polygon, box, boxes_, found);
+    is_once &= outer_.append(scope, polygon, box, boxes_, found);
     std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    if (!is_once) found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
 }  // namespace realmodel::strata

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "flat_array.hpp"
 #include "polygon.hpp"
 #include "realmodel/base/progress.hpp"
 
@@ -27,13 +28,29 @@ PlanBox box_of(const Scope& scope, PolygonView polygon);
 class PolygonCells {
 public:
     /// chosen: the polygons to enter; boxes: of all polygons; cells: about so many.
-    void fill(const Scope& scope, const PolygonPool& polygons, const std::vector<PlanBox>& boxes,
-              const std::vector<std::int32_t>& chosen, std::size_t cells, const Progress* progress);
-    /// Appends the polygons whose cells and boxes meet those of `polygon`, some of them repeatedly.
-    void append(const Scope& scope, PolygonView polygon, const PlanBox& box,
+    void fill(const exact::PlanGeometry& geometry, const PolygonPool& polygons,
+              const std::vector<PlanBox>& boxes, const std::vector<std::int32_t>& chosen,
+              std::size_t cells, int threads, const Progress* progress);
+    /// Appends the polygons whose cells and boxes meet those of `polygon`; whether none of them
+    /// comes repeatedly.
+    bool append(const Scope& scope, PolygonView polygon, const PlanBox& box,
                 const std::vector<PlanBox>& boxes, std::vector<std::int32_t>& found) const;
 
 private:
+    /// Columns and rows that a box meets.
+    struct CellSpan {
+        std::int64_t left, right, low, high;
+        bool is_narrow() const { return right - left <= 1 || high - low <= 1; }
+    };
+    /// A polygon in a cell. Of those entered in all cells of a box, the first column and row: two
+    /// such polygons meet for the first time in a cell that follows from them.
+    struct Item {
+        std::int32_t polygon, left, low;
+    };
+    static constexpr std::int32_t kScattered = -1;
+
+    CellSpan span_of(const PlanBox& box) const;
+    bool is_inside(const PlanBox& box) const;
     std::int64_t column(double x) const;
     std::int64_t row(double y) const;
     /// Calls visit(cell) for each cell that the polygon crosses.
@@ -44,8 +61,8 @@ private:
     PlanBox frame_;
     double step_x_ = 1, step_y_ = 1;
     std::int64_t columns_ = 0, rows_ = 0;
-    std::vector<std::int64_t> offsets_;
-    std::vector<std::int32_t> items_;
+    FlatArray<std::uint32_t> offsets_;
+    FlatArray<Item> items_;  ///< of one cell in any order
 };
 
 /// Finds the polygons of a set that may share an area with another polygon. What fills the frame
@@ -55,8 +72,8 @@ public:
     PlanGrid() = default;
     /// is_inner: of each polygon, whether it is the surface's; cells: at
     /// least so many of either kind.
-    PlanGrid(const Scope& scope, const PolygonPool& polygons,
-             const std::vector<std::uint8_t>& is_inner, std::size_t cells,
+    PlanGrid(const exact::PlanGeometry& geometry, const PolygonPool& polygons,
+             const std::vector<std::uint8_t>& is_inner, std::size_t cells, int threads,
              const Progress* progress);
 
     /// Numbers of all polygons whose cells and boxes meet those of `polygon`, ascending.

@@ -98,7 +98,7 @@ Layer raise(PlanGeometry& geometry, const Layer& surface, const Layer& bound, in
             if (of < 0 || whole[static_cast<std::size_t>(of)] == 0) append(*chunk, i, raised);
         }
     }
-    raised.index(geometry, progress);
+    raised.index(geometry, threads, progress);
     return raised;
 }
 

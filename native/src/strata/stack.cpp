@@ -121,7 +121,11 @@ struct Site {
 /// The layers e_k of a rock mass, handed out from the youngest to the oldest.
 class LayerSequence {
 public:
-    LayerSequence(Site& site, EnteredRock& rock) : site_(site), rock_(rock) {
+    LayerSequence(Site& site, EnteredRock& rock)
+        : site_(site),
+          rock_(rock),
+          plans_(plan_surfaces(site.geometry, rock.surfaces, site.frame, site.threads,
+                               site.progress)) {
         const bool plain = std::all_of(rock.rules.begin(), rock.rules.end(),
                                        [](Rule r) { return r == Rule::kErosional; });
         if (plain) return;  // e_k is the surface itself, made when it is asked for
@@ -142,15 +146,17 @@ public:
 private:
     Layer surface(std::size_t k) {
         const auto number = rock_.first_surface + static_cast<std::int32_t>(k);
-        Layer layer = make_layer(site_.geometry, rock_.surfaces[k], site_.frame, number,
+        Layer layer = make_layer(site_.geometry, rock_.surfaces[k], plans_[k], number,
                                  site_.threads, site_.progress);
         rock_.surfaces[k] = {};
+        plans_[k] = {};
         site_.surface_of_plane.resize(site_.geometry.plane_count(), number);
         return layer;
     }
 
     Site& site_;
     EnteredRock& rock_;
+    std::vector<SurfacePlan> plans_;
     std::vector<Layer> replayed_;
 };
 
@@ -282,15 +288,13 @@ bool is_plain(const std::vector<EnteredRock>& rocks) {
 
 /// The blocks of a single rock mass whose surfaces are all erosional.
 CellComplex build_plain_blocks(Site& site, EnteredRock& rock) {
-    std::vector<PlanLinks> links(rock.surfaces.size());
-    parallel_chunks(links.size(), site.threads, site.progress, [&](std::size_t k) {
-        links[k] = link_triangles(site.geometry, rock.surfaces[k], site.progress);
-    });
+    std::vector<SurfacePlan> plans =
+        plan_surfaces(site.geometry, rock.surfaces, site.frame, site.threads, site.progress);
     std::vector<BlockLayer> layers;
     for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
         if (site.progress != nullptr) site.progress->check();
-        layers.push_back(make_block_layer(site.geometry, rock.surfaces[k], std::move(links[k]),
-                                          site.frame, static_cast<std::int32_t>(k), site.threads,
+        layers.push_back(make_block_layer(site.geometry, rock.surfaces[k], std::move(plans[k]),
+                                          static_cast<std::int32_t>(k), site.threads,
                                           site.progress));
         site.surface_of_plane.resize(site.geometry.plane_count(), static_cast<std::int32_t>(k));
         rock.surfaces[k] = {};
@@ -358,6 +362,9 @@ CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping&
         for (EnteredRock& rock : entered)
             enter_base(site, rock);
         site.geometry.freeze_vertices();
+        // of triangulations of these vertices, and one is crossed by a trace here and there
+        if (cells == CellKind::kColumns)
+            site.geometry.expect_lines(4 * site.geometry.point_count());
     }
     if (site.geometry.point_count() == 0) {
         result.face_offsets.push_back(0);

@@ -36,6 +36,12 @@ public:
         }
     }
 
+    /// Fetches the place of a key that will be inserted soon, as memory takes its time. (Calls that
+    /// do nothing else are left out by g++, so this and what calls it must be inlined.)
+    [[gnu::always_inline]] void prefetch(const Key& key) const {
+        if (!slots_.empty()) __builtin_prefetch(&slots_[hash(key) & mask_]);
+    }
+
     /// Makes room for so many keys at once.
     void reserve(std::size_t count) {
         keys_.reserve(count);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -74,6 +75,16 @@ struct Point {
     double error = 0;     ///< bound on the distance in x and in y
 };
 
+/// What tells lines apart.
+inline KeyTable::Key line_key_of(const Line& line) {
+    return {static_cast<std::int32_t>(line.kind), line.first, line.second, 0};
+}
+/// The name of a crossing: the edge and the plane that it pierces, or its two lines.
+inline KeyTable::Key point_key_of(const Point& point) {
+    if (point.edge_from >= 0) return {0, point.edge_from, point.edge_to, point.pierced};
+    return {1, std::min(point.first, point.second), std::max(point.first, point.second), 0};
+}
+
 /// A number in extended precision and a bound on its error.
 struct Near {
     long double value;
@@ -128,22 +139,38 @@ public:
     PlanGeometry(const PlanGeometry&) = delete;
     PlanGeometry& operator=(const PlanGeometry&) = delete;
 
-    /// Makes room for so many vertices.
+    /// Makes room for so many vertices, or lines.
     void expect_vertices(std::size_t count);
+    void expect_lines(std::size_t count);
     /// The vertex at (x, y), made where it is new. All vertices come before the first crossing.
     VertexId add_vertex(double x, double y);
     /// The space vertex at a plan vertex and a height, made where it is new.
     SpaceId add_space_vertex(VertexId plan, double z);
     /// A plane through three space vertices that turn counter-clockwise in plan.
     PlaneId add_plane(const std::array<SpaceId, 3>& corner);
+    /// Makes room for so many planes; the first of them. Each has to be set before it is used, by
+    /// any thread.
+    PlaneId make_planes(std::size_t count);
+    void set_plane(PlaneId plane, const std::array<SpaceId, 3>& corner);
     /// To be called once, when all vertices are there and before any other question is asked.
     void freeze_vertices();
 
     /// The line through two plan vertices, made where it is new, directed from `from` to `to`.
     DirectedLine add_edge(VertexId from, VertexId to);
     LineId add_line(const Line& line);
+    LineId add_line(const Line& line, const LineFilter& filter);
     /// The crossing of two different lines that are not parallel, made where it is new.
     PointId add_point(const Point& point);
+    /// To be called some time before one of these is added, as memory takes its time.
+    [[gnu::always_inline]] void prefetch_edge(VertexId from, VertexId to) const {
+        prefetch(Line{Line::Kind::kEdge, std::min(from, to), std::max(from, to)});
+    }
+    [[gnu::always_inline]] void prefetch(const Line& line) const {
+        line_table_.prefetch(line_key_of(line));
+    }
+    [[gnu::always_inline]] void prefetch(const Point& point) const {
+        point_table_.prefetch(point_key_of(point));
+    }
 
     VertexId vertex_count() const { return static_cast<VertexId>(vertex_count_); }
     std::size_t space_count() const { return space_.size(); }
@@ -261,10 +288,14 @@ public:
     /// How many decisions of this scope floating point left to exact arithmetic.
     std::uint64_t exact_decisions() const { return exact_; }
 
-    /// Begins to hand local lines and points over to the geometry, where they are asked for: what
-    /// nobody asks for stays behind. Nothing new may be found afterwards.
+    /// Asks for a line or point, which may be local, to be handed over.
+    void ask_for_line(LineId id);
+    void ask_for_point(PointId id);
+    /// Hands the local lines and points over to the geometry that were asked for; what nobody asks
+    /// for stays behind. Nothing new may be found afterwards.
     void hand_over(PlanGeometry& geometry);
-    /// The shared id of a line or point, which may be local.
+    /// The shared id of a line or point, which may be local; handed over now if nobody asked
+    /// before.
     LineId shared_line(LineId id);
     DirectedLine shared_directed(DirectedLine id) {
         return directed(shared_line(line_of(id)), is_reversed(id));
@@ -285,8 +316,9 @@ private:
     std::vector<Point> points_;
     KeyTable line_table_, point_table_;
     PlanGeometry* receiver_ = nullptr;
-    std::vector<LineId> line_ids_;  ///< -1 for what was not handed over
+    std::vector<LineId> line_ids_;  ///< shared ones, or kKept or kAsked
     std::vector<PointId> point_ids_;
+    std::vector<std::int32_t> asked_lines_, asked_points_;  ///< local, in order
     std::uint64_t decisions_ = 0, exact_ = 0;
 };
 

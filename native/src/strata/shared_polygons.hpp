@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "polygon.hpp"
+
+namespace realmodel::strata {
+
+/// Asks for all lines and points of polygons that a scope found.
+inline void ask_for(Scope& scope, const PolygonPool& pool) {
+    for (const Corner& corner : pool.corners) {
+        scope.ask_for_point(corner.point);
+        scope.ask_for_line(exact::line_of(corner.line));
+    }
+}
+
+/// Gives polygons the shared lines and points, which the scope has handed over.
+inline void share(Scope& scope, PolygonPool& pool) {
+    for (Corner& corner : pool.corners)
+        corner = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};
+}
+
+}  // namespace realmodel::strata
