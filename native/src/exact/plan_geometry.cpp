@@ -19,6 +19,16 @@ std::array<std::int32_t, 2> halves(double value) {
     return {static_cast<std::int32_t>(bits >> 32), static_cast<std::int32_t>(bits)};
 }
 
+KeyTable::Key position_key(double x, double y) {
+    const auto hx = halves(x), hy = halves(y);
+    return {hx[0], hx[1], hy[0], hy[1]};
+}
+
+KeyTable::Key height_key(VertexId plan, double z) {
+    const auto hz = halves(z);
+    return {plan, hz[0], hz[1], 0};
+}
+
 void check_room(std::size_t count, const char* what) {
     if (count >= static_cast<std::size_t>(kLocal)) {
         throw InputError("too_large", std::string("the model needs more than 500 million ") + what +
@@ -37,13 +47,14 @@ void PlanGeometry::expect_vertices(std::size_t count) {
 
 void PlanGeometry::expect_lines(std::size_t count) {
     lines_.reserve(count);
-    filters_.reserve(count);
     line_table_.reserve(count);
 }
 
 VertexId PlanGeometry::add_vertex(double x, double y) {
-    const auto hx = halves(x), hy = halves(y);
-    const auto found = vertex_table_.insert({hx[0], hx[1], hy[0], hy[1]});
+    const auto found = vertex_table_.insert(position_key(x, y), [&](std::int32_t number) {
+        const Point& vertex = points_[static_cast<std::size_t>(number)];
+        return position_key(vertex.x, vertex.y);
+    });
     if (found.is_new) {
         check_room(points_.size(), "positions");
         Point vertex;
@@ -55,8 +66,10 @@ VertexId PlanGeometry::add_vertex(double x, double y) {
 }
 
 SpaceId PlanGeometry::add_space_vertex(VertexId plan, double z) {
-    const auto hz = halves(z);
-    const auto found = space_table_.insert({plan, hz[0], hz[1], 0});
+    const auto found = space_table_.insert(height_key(plan, z), [&](std::int32_t number) {
+        const SpaceVertex& vertex = space_[static_cast<std::size_t>(number)];
+        return height_key(vertex.plan, vertex.z);
+    });
     if (found.is_new) space_.push_back({plan, z == 0.0 ? 0.0 : z});
     return found.number;
 }
@@ -125,28 +138,20 @@ DirectedLine PlanGeometry::add_edge(VertexId from, VertexId to) {
 }
 
 LineId PlanGeometry::add_line(const Line& line) {
-    const auto found = line_table_.insert(line_key_of(line));
+    const auto found = line_table_.insert(line_key_of(line), [&](std::int32_t number) {
+        return line_key_of(lines_[static_cast<std::size_t>(number)]);
+    });
     if (found.is_new) {
         check_room(lines_.size(), "lines");
         lines_.push_back(line);
-        filters_.push_back(line.kind == Line::Kind::kEdge ? edge_filter(line.first, line.second)
-                                                          : trace_filter(line.first, line.second));
-    }
-    return found.number;
-}
-
-LineId PlanGeometry::add_line(const Line& line, const LineFilter& filter) {
-    const auto found = line_table_.insert(line_key_of(line));
-    if (found.is_new) {
-        check_room(lines_.size(), "lines");
-        lines_.push_back(line);
-        filters_.push_back(filter);
     }
     return found.number;
 }
 
 PointId PlanGeometry::add_point(const Point& point) {
-    const auto found = point_table_.insert(point_key_of(point));
+    const auto found = point_table_.insert(point_key_of(point), [&](std::int32_t number) {
+        return point_key_of(points_[vertex_count_ + static_cast<std::size_t>(number)]);
+    });
     if (found.is_new) {
         check_room(points_.size(), "points");
         points_.push_back(point);

@@ -48,7 +48,6 @@ void Scope::locate(Point& p) {
     }
     p.x = *x;
     p.y = *y;
-    p.error = std::max(std::abs(p.x), std::abs(p.y)) * 0x1p-53 + 1e-300;
 }
 
 std::array<double, 2> Scope::rounded(PointId id) {

@@ -31,8 +31,9 @@ int Scope::filtered_side(const LineFilter& line, const Point& point) const {
     const double dx = point.x - line.x0, dy = point.y - line.y0;
     const double u = line.a * dx, v = line.b * dy;
     const double value = u + v + line.c;
-    const double reach_x = point.error + kEpsilon * std::abs(dx);
-    const double reach_y = point.error + kEpsilon * std::abs(dy);
+    const double point_error = point.error();
+    const double reach_x = point_error + kEpsilon * std::abs(dx);
+    const double reach_y = point_error + kEpsilon * std::abs(dy);
     const double error = (std::abs(line.a) + line.error_a) * reach_x +
                          (std::abs(line.b) + line.error_b) * reach_y + line.error_a * std::abs(dx) +
                          line.error_b * std::abs(dy) + line.error_c +
@@ -83,9 +84,11 @@ int Scope::side(DirectedLine directed_line, PointId id) {
         if (l.kind == Line::Kind::kTrace && on_trace_by_name(l.first, l.second, p)) return 0;
     }
     ++decisions_;
-    if (result == 2) result = filtered_side(filter(line_id), p);
-    if (result == 2 && l.kind == Line::Kind::kEdge && is_vertex(id) && vanishes(filter(line_id), p))
-        return 0;
+    if (result == 2) {
+        const LineFilter f = filter(line_id);
+        result = filtered_side(f, p);
+        if (result == 2 && l.kind == Line::Kind::kEdge && is_vertex(id) && vanishes(f, p)) return 0;
+    }
     if (result == 2) result = exact_side(l, id);
     return is_reversed(directed_line) ? -result : result;
 }
@@ -202,7 +205,9 @@ int Scope::compare(int axis, PointId a, PointId b) {
 
 DirectedLine Scope::trace(PlaneId upper, PlaneId lower) {
     const Line l{Line::Kind::kTrace, std::min(upper, lower), std::max(upper, lower)};
-    const auto found = line_table_.insert(line_key_of(l));
+    const auto found = line_table_.insert(line_key_of(l), [&](std::int32_t number) {
+        return line_key_of(lines_[static_cast<std::size_t>(number)]);
+    });
     if (found.is_new) {
         lines_.push_back(l);
         filters_.push_back(shared_.trace_filter(l.first, l.second));
@@ -245,7 +250,9 @@ PointId Scope::crossing_between_ends(LineId a, LineId b) {
             break;
         }
     }
-    const auto found = point_table_.insert(point_key_of(p));
+    const auto found = point_table_.insert(point_key_of(p), [&](std::int32_t number) {
+        return point_key_of(points_[static_cast<std::size_t>(number)]);
+    });
     if (found.is_new) {
         locate(p);
         points_.push_back(p);
@@ -300,7 +307,7 @@ LineId Scope::shared_line(LineId id) {
     if (id < kLocal) return id;
     const auto local = static_cast<std::size_t>(id - kLocal);
     LineId& shared = line_ids_[local];
-    if (shared < 0) shared = receiver_->add_line(lines_[local], filters_[local]);
+    if (shared < 0) shared = receiver_->add_line(lines_[local]);
     return shared;
 }
 

@@ -63,12 +63,12 @@ void Scope::add_to(PointRow& row, PointId id) const {
     row.point[row.size] = id;
     row.x[row.size] = p.x;
     row.y[row.size] = p.y;
-    row.error[row.size] = p.error;
+    row.error[row.size] = p.error();
     ++row.size;
 }
 
 void Scope::add_to(LineRow& row, DirectedLine directed_line) const {
-    const LineFilter& f = filter(line_of(directed_line));
+    const LineFilter f = filter(line_of(directed_line));
     const double sign = is_reversed(directed_line) ? -1.0 : 1.0;
     const std::size_t i = row.size;
     row.line[i] = directed_line;
@@ -84,7 +84,7 @@ void Scope::add_to(LineRow& row, DirectedLine directed_line) const {
 }
 
 Sides Scope::sides(DirectedLine directed_line, const PointRow& points) {
-    const LineFilter& f = filter(line_of(directed_line));
+    const LineFilter f = filter(line_of(directed_line));
     const double sign = is_reversed(directed_line) ? -1.0 : 1.0;
     const double a = sign * f.a, b = sign * f.b, c = sign * f.c;
     CertainSides known;
@@ -99,11 +99,12 @@ Sides Scope::sides(DirectedLine directed_line, const PointRow& points) {
 
 Sides Scope::sides(const LineRow& lines, PointId id) {
     const Point& p = point(id);
+    const double error = p.error();
     CertainSides known;
     for (std::size_t i = 0; i < lines.size; ++i) {
         known.add(i,
                   filtered(lines.a[i], lines.b[i], lines.c[i], lines.error_a[i], lines.error_b[i],
-                           lines.error_c[i], p.x - lines.x0[i], p.y - lines.y0[i], p.error));
+                           lines.error_c[i], p.x - lines.x0[i], p.y - lines.y0[i], error));
     }
     decisions_ += lines.size;
     return completed(known, lines.size, [&](std::size_t i) { return side(lines.line[i], id); });

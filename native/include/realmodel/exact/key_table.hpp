@@ -9,8 +9,9 @@
 
 namespace realmodel::exact {
 
-/// Maps keys of four 32-bit numbers to consecutive numbers. Open addressing with linear probing;
-/// numbers are given in the order of first insertion, so nothing depends on the hash.
+/// Numbers things that are told apart by keys of four 32-bit numbers, consecutively. The keys stay
+/// with the things: the table has their hashes only. Open addressing with linear probing; numbers
+/// are given in the order of first insertion, so nothing depends on the hash.
 class KeyTable {
 public:
     using Key = std::array<std::int32_t, 4>;
@@ -20,19 +21,21 @@ public:
         bool is_new;
     };
 
-    std::int32_t size() const { return static_cast<std::int32_t>(keys_.size()); }
+    std::int32_t size() const { return size_; }
 
-    /// The number of the key, which is `size()` before the call where the key is new.
-    Found insert(const Key& key) {
-        if ((keys_.size() + 1) * 3 > slots_.size() * 2) grow();
-        for (std::size_t slot = hash(key) & mask_;; slot = (slot + 1) & mask_) {
-            if (slots_[slot] < 0) {
-                slots_[slot] = size();
-                keys_.push_back(key);
-                return {slots_[slot], true};
+    /// The number of the key, which is `size()` before the call where the key is new; key_of gives
+    /// the key of a number that was given before.
+    template <class KeyOf>
+    Found insert(const Key& key, const KeyOf& key_of) {
+        if ((static_cast<std::size_t>(size_) + 1) * 3 > slots_.size() * 2) grow();
+        const std::uint32_t tag = hash(key);
+        for (std::size_t slot = tag & mask_;; slot = (slot + 1) & mask_) {
+            Slot& here = slots_[slot];
+            if (here.number < 0) {
+                here = {tag, size_};
+                return {size_++, true};
             }
-            if (same(keys_[static_cast<std::size_t>(slots_[slot])], key))
-                return {slots_[slot], false};
+            if (here.tag == tag && same(key_of(here.number), key)) return {here.number, false};
         }
     }
 
@@ -44,19 +47,23 @@ public:
 
     /// Makes room for so many keys at once.
     void reserve(std::size_t count) {
-        keys_.reserve(count);
         const std::size_t slots = std::bit_ceil(std::max<std::size_t>(64, count + count / 2 + 2));
         if (slots > slots_.size()) resize(slots);
     }
 
 private:
+    struct Slot {
+        std::uint32_t tag = 0;  ///< hash of the key
+        std::int32_t number = -1;
+    };
+
     // two words rather than a call that compares bytes
     static bool same(const Key& a, const Key& b) {
         using Words = std::array<std::uint64_t, 2>;
         const auto p = std::bit_cast<Words>(a), q = std::bit_cast<Words>(b);
         return p[0] == q[0] && p[1] == q[1];
     }
-    static std::size_t hash(const Key& key) {
+    static std::uint32_t hash(const Key& key) {
         const auto word = [](std::int32_t a, std::int32_t b) {
             return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)) << 32) |
                    static_cast<std::uint32_t>(b);
@@ -66,24 +73,26 @@ private:
         h = (h + word(key[2], key[3])) * 0xBF58476D1CE4E5B9u;
         h ^= h >> 32;
         h *= 0x94D049BB133111EBu;
-        return static_cast<std::size_t>(h ^ (h >> 31));
+        return static_cast<std::uint32_t>(h ^ (h >> 31));
     }
 
     void grow() { resize(slots_.empty() ? 64 : slots_.size() * 2); }
     void resize(std::size_t slots) {
-        slots_.assign(slots, -1);
-        mask_ = slots_.size() - 1;
-        for (std::size_t i = 0; i < keys_.size(); ++i) {
-            std::size_t slot = hash(keys_[i]) & mask_;
-            while (slots_[slot] >= 0)
+        std::vector<Slot> old(slots);
+        std::swap(old, slots_);
+        mask_ = slots - 1;
+        for (const Slot& from : old) {
+            if (from.number < 0) continue;
+            std::size_t slot = from.tag & mask_;
+            while (slots_[slot].number >= 0)
                 slot = (slot + 1) & mask_;
-            slots_[slot] = static_cast<std::int32_t>(i);
+            slots_[slot] = from;
         }
     }
 
-    std::vector<Key> keys_;
-    std::vector<std::int32_t> slots_;
+    std::vector<Slot> slots_;
     std::size_t mask_ = 0;
+    std::int32_t size_ = 0;
 };
 
 }  // namespace realmodel::exact

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -71,8 +72,12 @@ struct Point {
     /// elsewhere.
     SpaceId edge_from = -1, edge_to = -1;
     PlaneId pierced = -1;
-    double x = 0, y = 0;  ///< close to the true position
-    double error = 0;     ///< bound on the distance in x and in y
+    double x = 0, y = 0;  ///< the doubles nearest to the true position
+
+    /// Bound on the distance from the true position in x and in y.
+    double error() const {
+        return first < 0 ? 0 : std::max(std::abs(x), std::abs(y)) * 0x1p-53 + 1e-300;
+    }
 };
 
 /// What tells lines apart.
@@ -158,7 +163,6 @@ public:
     /// The line through two plan vertices, made where it is new, directed from `from` to `to`.
     DirectedLine add_edge(VertexId from, VertexId to);
     LineId add_line(const Line& line);
-    LineId add_line(const Line& line, const LineFilter& filter);
     /// The crossing of two different lines that are not parallel, made where it is new.
     PointId add_point(const Point& point);
     /// To be called some time before one of these is added, as memory takes its time.
@@ -178,7 +182,11 @@ public:
     std::size_t line_count() const { return lines_.size(); }
     std::size_t point_count() const { return points_.size(); }
     const Line& line(LineId id) const { return lines_[static_cast<std::size_t>(id)]; }
-    const LineFilter& filter(LineId id) const { return filters_[static_cast<std::size_t>(id)]; }
+    LineFilter filter(LineId id) const {
+        const Line& l = line(id);
+        return l.kind == Line::Kind::kEdge ? edge_filter(l.first, l.second)
+                                           : trace_filter(l.first, l.second);
+    }
     const Point& point(PointId id) const { return points_[static_cast<std::size_t>(id)]; }
     const Plane& plane(PlaneId id) const { return planes_[static_cast<std::size_t>(id)]; }
     const PlaneFilter& plane_filter(PlaneId id) const {
@@ -212,7 +220,6 @@ private:
     std::vector<Plane> planes_;
     std::vector<PlaneFilter> plane_filters_;
     std::vector<Line> lines_;
-    std::vector<LineFilter> filters_;
     KeyTable vertex_table_, space_table_, line_table_, point_table_;
     std::size_t vertex_count_ = 0;
     int plan_exponent_ = 0, height_exponent_ = 0;
@@ -232,7 +239,7 @@ public:
     const Line& line(LineId id) const {
         return id < kLocal ? shared_.line(id) : lines_[static_cast<std::size_t>(id - kLocal)];
     }
-    const LineFilter& filter(LineId id) const {
+    LineFilter filter(LineId id) const {
         return id < kLocal ? shared_.filter(id) : filters_[static_cast<std::size_t>(id - kLocal)];
     }
     const Point& point(PointId id) const {
