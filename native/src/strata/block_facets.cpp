@@ -6,6 +6,7 @@
 
 #include "parallel_chunks.hpp"
 #include "pieces.hpp"
+#include "shared_polygons.hpp"
 
 namespace realmodel::strata {
 
@@ -172,6 +173,8 @@ std::vector<std::unique_ptr<OverlaidChunk>> overlay_facets(const PlanGeometry& g
         FacetOverlay overlay(exact, layer, number, is_divided, *result[c]);
         for (std::size_t f = c * kChunk; f < std::min(count, (c + 1) * kChunk); ++f)
             overlay.process(f);
+        for (const PolygonPool* pool : result[c]->pools())
+            ask_for(result[c]->scope, *pool);
     });
     return result;
 }

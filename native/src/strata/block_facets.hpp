@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -44,6 +45,10 @@ struct OverlaidChunk {
     Envelope kept;
     PolygonPool lowered_outlines;
     std::vector<LoweredPiece> lowered;
+
+    std::array<PolygonPool*, 4> pools() {
+        return {&faces.polygons, &lowered_outlines, &kept.outlines, &kept.face_polygons};
+    }
 };
 
 /// Overlays facets with part of surface `number`; marks polygons of it that do not lie below as a

@@ -9,6 +9,7 @@
 #include "block_facets.hpp"
 #include "disjoint_parts.hpp"
 #include "parallel_chunks.hpp"
+#include "shared_polygons.hpp"
 
 namespace realmodel::strata {
 
@@ -158,26 +159,22 @@ void BlockOverlay::overlay_exactly(const BlockLayer& layer, const Layer& part,
     c.is_divided.assign(part.plane.size(), 0);
     const auto overlaid =
         overlay_facets(geometry_, exact, part, layer.number, c.is_divided, threads_, progress_);
-    for (const auto& chunk : overlaid) {
+    for (const auto& chunk : overlaid)
         chunk->scope.hand_over(geometry_);
+    parallel_chunks(overlaid.size(), threads_, progress_, [&](std::size_t i) {
+        for (PolygonPool* pool : overlaid[i]->pools())
+            share(overlaid[i]->scope, *pool);
+    });
+    for (const auto& chunk : overlaid) {
         const auto first = static_cast<std::int32_t>(made_.node_block.size());
         const auto shared_node = [&](std::int32_t node) {
             return node == kOutsideCell ? node : node + first;
         };
-        const auto shared = [&](PolygonView polygon) {
-            Polygon result(polygon.begin(), polygon.end());
-            for (Corner& corner : result) {
-                corner = {chunk->scope.shared_point(corner.point),
-                          chunk->scope.shared_directed(corner.line)};
-            }
-            return result;
-        };
         made_.node_block.insert(made_.node_block.end(), chunk->node_block.begin(),
                                 chunk->node_block.end());
         for (std::size_t f = 0; f < chunk->faces.size(); ++f) {
-            made_.faces.add(shared(chunk->faces.polygons[f]), chunk->faces.plane[f],
-                            chunk->faces.layer[f], chunk->faces.above[f],
-                            shared_node(chunk->faces.below[f]));
+            made_.faces.add(chunk->faces.polygons[f], chunk->faces.plane[f], chunk->faces.layer[f],
+                            chunk->faces.above[f], shared_node(chunk->faces.below[f]));
         }
         for (const auto& closed : chunk->closed_whole) {
             made_.whole[static_cast<std::size_t>(closed.plane)] = {closed.above,
@@ -190,17 +187,10 @@ void BlockOverlay::overlay_exactly(const BlockLayer& layer, const Layer& part,
             LoweredPiece piece = chunk->lowered[i];
             piece.node = shared_node(piece.node);
             c.lowered.push_back(piece);
-            c.lowered_outlines.add(shared(chunk->lowered_outlines[i]));
+            c.lowered_outlines.add(chunk->lowered_outlines[i]);
         }
-        for (std::size_t f = 0; f < chunk->kept.size(); ++f) {
-            const Envelope& kept = chunk->kept;
-            next_parts_.add_facet(shared(kept.outlines[f]), kept.plane[f], kept.layer[f],
-                                  kept.pending[f]);
-            for (auto g = kept.face_offsets[f]; g < kept.face_offsets[f + 1]; ++g) {
-                const auto face = static_cast<std::size_t>(g);
-                next_parts_.add_face(shared(kept.face_polygons[face]), kept.face_above[face]);
-            }
-        }
+        for (std::size_t f = 0; f < chunk->kept.size(); ++f)
+            next_parts_.add_facet_of(chunk->kept, f, chunk->kept.pending[f]);
     }
 }
 
