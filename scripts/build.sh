@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs what building needs, builds RealModel in release and leaves the Python module for one
-# interpreter in addon/realmodel, beside those for others: PYTHONPATH=addon finds it.
+# interpreter in addon/realmodel, beside those for others: PYTHONPATH=addon finds it. The packages that
+# travel with the add-on come into addon/realmodel/vendor.
 #
 #   scripts/build.sh [PYTHON]      PYTHON: an interpreter, 3.11 or newer (default: python3)
 set -euo pipefail
@@ -29,6 +30,10 @@ keeper=/usr/bin/python3
 [[ -x $keeper ]] || keeper=$python
 if ! "$root/scripts/python_environment.sh" "$root/build/tools" "$root/scripts/requirements/build.txt" "$keeper"; then
     echo "build.sh: pybind11 could not be fetched; building with the system's (the module may then need NumPy 1)" >&2
+fi
+
+if ! "$root/scripts/vendor_packages.sh" "$root/build/tools/bin/python"; then
+    echo "build.sh: pyshp and tifffile could not be fetched; shapefiles and GeoTIFF will not be read" >&2
 fi
 
 # What was found for another interpreter must not stay in the cache.

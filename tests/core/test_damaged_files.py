@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from realmodel.core import InputRefused, load_library, load_project
-from realmodel.core.readers import read_off, read_points, read_region
+from realmodel.core import InputRefused, PointFile, load_library, load_project
+from realmodel.core.readers import read_off, read_point_file, read_points, read_region
 
 PROJECT = b"""format = 1
 name = "x"
@@ -40,10 +40,14 @@ PIECES = [b"9" * 400, b"9" * 5000, b"[" * 5000, b"\x00", b"\xff", b"\xef\xbb\xbf
 PIECES += rb"""nan -1 1e999 [ ] { " ''' # = [[rock]] true , ; . null 0x1 1_0 rock.x inf \u0041""".split()
 
 
+GRID = b"ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1.5\nNODATA_value -9\n1 2 3\n4 -9 6e0\n"
+
+
 READERS = {
     "p.toml": (PROJECT, load_project),
     "library.toml": (LIBRARY, load_library),
     "p.csv": (POINTS, read_points),
+    "g.asc": (GRID, lambda file: read_point_file(PointFile(file))),
     "m.off": (OFF, read_off),
     "r.geojson": (REGION, read_region),
 }

@@ -10,8 +10,8 @@ be read without RealModel:
 
 `settings` is UTF-8 JSON: {"format": 1, "name", "rocks": [{"name", "edge_length", "mesher",
 "base_elevation", "holes": count, "surfaces": [{"name", "method", "options", "rule", "property",
-"block"}]}], "library": [...] or null}. Numbers keep every bit: JSON's are written with as many digits
-as it takes, arrays are float64 and int32 in model units. Rock r's arrays are `r/region` (N, 2),
+"block"}]}], "library": [...] or null, "units": "m"}. Numbers keep every bit: JSON's are written with
+as many digits as it takes, arrays are float64 and int32 in model units. Rock r's arrays are `r/region` (N, 2),
 `r/hole/h`, and for surface s either `r/s/points` (P, 3) or `r/s/vertices` (V, 3) with
 `r/s/triangles` (T, 3).
 """
@@ -26,6 +26,7 @@ import zlib
 import numpy as np
 
 from ..core import InputRefused, Library, Project, Property, Rock, Surface
+from ..core.units import MODEL_UNIT
 
 KEY = "realmodel_project"
 FORMAT = 1
@@ -65,6 +66,7 @@ def pack(project):
     if project.library is not None:
         library = [dataclasses.asdict(entry) for entry in project.library]
     settings = {"format": FORMAT, "name": project.name, "rocks": rocks, "library": library}
+    settings["units"] = project.units
     text = json.dumps(settings, ensure_ascii=False, default=_plain).encode()
     return _archive({"settings": np.frombuffer(text, np.uint8), **arrays})
 
@@ -85,7 +87,7 @@ def unpack(text):
             library = settings["library"]
             if library is not None:
                 library = Library([Property(**entry) for entry in library])
-            return Project(settings["name"], rocks, library)
+            return Project(settings["name"], rocks, library, units=settings.get("units", MODEL_UNIT))
     except _BROKEN as error:
         advice = "open an older copy of the file, or build from the project file again"
         raise InputRefused(f"the stored project cannot be read: {error}", advice=advice) from error

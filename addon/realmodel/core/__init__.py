@@ -21,6 +21,7 @@ from .interpolation import interpolate
 from .library import Library, Property, load_library
 from .model import Block, BlockBoundary, Model
 from .planar_mesh import mesh_region
+from .point_file import PointFile
 from .project import Project, Rock, Surface
 from .project_file import load_project
 from .section import Fence, Section
@@ -44,6 +45,7 @@ __all__ = [
     "Model",
     "NotEnoughMemory",
     "OutputFailed",
+    "PointFile",
     "Project",
     "Property",
     "RealModelError",

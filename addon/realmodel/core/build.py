@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 
@@ -68,7 +69,7 @@ def build_stage(
     ):
         return model
     given = model.project
-    project = Project(given.name, [entry.rock for entry in inputs], given.library, given.path)
+    project = replace(given, rocks=[entry.rock for entry in inputs])
 
     def task(work: Work) -> Model:
         built = _intersect(work, inputs, model.cell_kind, model.threads, 0.0, _STAGE_INTERSECTED)
@@ -118,7 +119,7 @@ def _build(
     inputs = taken()
     with timed("intersect"):
         built = _intersect(work, inputs, cells, threads, at, shares.intersect)
-    given = Project(project.name, [entry.rock for entry in inputs], project.library, project.path)
+    given = replace(project, rocks=[entry.rock for entry in inputs])
     return _assemble(work, given, inputs, built, cells, threads, timings, shares.intersect)
 
 

@@ -90,7 +90,7 @@ def expected_shares(project: Project, cells: str) -> Shares:
             if surface.interpolated:
                 waiting += 1
                 if _fits_variogram(surface):
-                    given = 0 if surface.points is None or size else len(surface.points)
+                    given = len(surface.points) if isinstance(surface.points, (np.ndarray, list)) else 0
                     fitted.append(given + size / _BYTES_PER_POINT)
             else:
                 given = 0 if surface.triangles is None else len(surface.triangles)

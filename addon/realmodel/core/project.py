@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import builtins
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +21,10 @@ from .methods import (
     check_method,
     checked_options,
 )
+from .point_file import PointFile, ReadingRefused
+from .readers.point_input import companions
 from .toml_table import TomlDocument
+from .units import METRES, MODEL_UNIT
 
 RULES = ("erosional", "conformable", "base", "discontinuous")
 MESHERS = ("delaunay", "frontal")
@@ -45,8 +48,8 @@ class Surface:
     """One bounding surface of the layers.
 
     Its shape is a ready triangulation - `vertices` (V, 3) float64 in model units with `triangles`
-    (T, 3) of vertex numbers, or the file `mesh` - or scattered `points`, (P, 3) or a file, which are
-    interpolated on the planar mesh of the rock's region by `method` with its `options`.
+    (T, 3) of vertex numbers, or the file `mesh` - or scattered `points`, (P, 3), a file or a PointFile, which
+    are interpolated on the planar mesh of the rock's region by `method` with its `options`.
     Some methods do without points. With `minimum_thickness` an interpolated surface stays so far above the
     older one. `property` is the library id of the block deposited beneath it (0: none), `block` that block's
     name.
@@ -56,7 +59,7 @@ class Surface:
     name: str
     vertices: np.ndarray | None = None
     triangles: np.ndarray | None = None
-    points: np.ndarray | str | Path | None = None
+    points: np.ndarray | str | Path | PointFile | None = None
     method: str | None = None
     options: dict = field(default_factory=dict)
     rule: str = "erosional"
@@ -86,8 +89,18 @@ class Surface:
     @builtins.property  # a field of this class is called property
     def input_file(self) -> Path | None:
         """The file that gives this surface its shape; None where arrays do."""
-        shape = self.points if self.interpolated else self.mesh
-        return Path(shape) if isinstance(shape, (str, Path)) else None
+        if self.interpolated:
+            return None if self.point_file is None else Path(self.point_file.file)
+        return Path(self.mesh) if isinstance(self.mesh, (str, Path)) else None
+
+    @builtins.property  # a field of this class is called property
+    def point_file(self) -> PointFile | None:
+        """The file of its points and how it is read; None where they are an array, or there are none."""
+        return (
+            PointFile(self.points)
+            if isinstance(self.points, (str, Path))
+            else (self.points if isinstance(self.points, PointFile) else None)
+        )
 
     def shape_source(self) -> tuple[Path | None, int | None]:
         """Where the shape comes from, for messages: its file, or its line in the project file."""
@@ -148,24 +161,31 @@ class Rock:
 
 @dataclass
 class Project:
-    """Rock masses that make one model, and the library of their properties."""
+    """Rock masses that make one model, and the library of their properties.
+
+    units: of the model's lengths, which files in other units are brought to.
+    """
 
     name: str
     rocks: list[Rock]
     library: Library | None = None
     path: Path | None = None
+    units: str = MODEL_UNIT
 
     def input_files(self) -> list[Path]:
         """Every file that this project reads, itself included."""
         files = [self.path, self.library.path if self.library else None]
         for rock in self.rocks:
             files += [rock.region_file, *(surface.input_file for surface in rock.surfaces)]
+            for surface in rock.surfaces:
+                if surface.point_file is not None:
+                    files += companions(Path(surface.point_file.file))
         return [Path(file) for file in files if file is not None]
 
     def stage(self, m: int) -> Project:
         """This project as it was just after surface m of each rock mass: only the surfaces up to it."""
         rocks = [Rock(**{**vars(rock), "surfaces": rock.surfaces[: m + 1]}) for rock in self.rocks]
-        return Project(self.name, rocks, self.library, self.path)
+        return replace(self, rocks=rocks)
 
 
 def rock_item(rock: Rock) -> str:
@@ -188,6 +208,9 @@ def check_project(project: Project) -> None:
     """Refuses a project that cannot be built, before anything is read. Raises InputRefused."""
     if not _is_name(project.name):
         raise InputRefused("a project needs a name", file=project.path)
+    if project.units not in METRES:
+        what = f"unknown unit {project.units!r}"
+        raise InputRefused(what, file=project.path, item="units", advice=f"there are {', '.join(METRES)}")
     if not project.rocks:
         raise InputRefused("there is no rock mass", file=project.path, item=f"project '{project.name}'")
     seen: set[str] = set()
@@ -303,6 +326,11 @@ def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
         if given:
             raise refuse(f"a ready mesh is not interpolated, so '{given[0]}' has no meaning here", given[0])
         return
+    try:
+        if surface.point_file is not None:
+            surface.point_file.check()
+    except ReadingRefused as error:
+        raise refuse(error.what, error.key, error.advice) from error
     try:
         check_method(surface.method or DEFAULT_METHOD)
         if not shapes and surface.needs_points:

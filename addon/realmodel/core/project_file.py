@@ -10,15 +10,19 @@ import numpy as np
 from .finite import is_finite
 from .library import load_library
 from .methods import ALL_OPTIONS
+from .point_file import PointFile
 from .project import Project, Rock, Source, Surface, check_project, is_file
 from .toml_table import Table, TomlDocument
+from .units import METRES, MODEL_UNIT
 
 FORMAT = 1
-_PROJECT_KEYS = ("format", "name", "library", "rock")
+_PROJECT_KEYS = ("format", "name", "units", "library", "rock")
 _ROCK_KEYS = ("name", "region", "holes", "edge_length", "mesher", "base_elevation", "surface")
+_READING_KEYS = ("columns", "where", "separator", "decimal", "nodata", "units")  # of a file of points
 _SURFACE_KEYS = (
     "name",
     "points",
+    *_READING_KEYS,
     "mesh",
     "method",
     *ALL_OPTIONS,
@@ -49,7 +53,10 @@ def load_project(path: str | Path) -> Project:
             raise top.refuse(f"there is no file {library_path}", "library", "check the path")
         library = load_library(library_path)
     rocks = [_read_rock(table, path.parent) for table in top.tables("rock", "rock")]
-    project = Project(name, rocks, library, path)
+    units = top.text("units") or MODEL_UNIT
+    if units not in METRES:
+        raise top.refuse(f"unknown unit '{units}'", "units", f"there are {', '.join(METRES)}")
+    project = Project(name, rocks, library, path, units)
     check_project(project)
     return project
 
@@ -108,6 +115,12 @@ def _read_surface(table: Table, folder: Path) -> Surface:
     table.item = f"{table.item.rpartition(', ')[0]}, surface '{name}'"
     table.allow_only(_SURFACE_KEYS)
     files = {key: folder / table.text(key) for key in ("points", "mesh") if key in table}
+    reading = {key: table.content[key] for key in _READING_KEYS if key in table}
+    if reading and "points" not in files:
+        key = next(iter(reading))
+        raise table.refuse(f"'{key}' says how a file of points is read, and there is none", key)
+    if reading:
+        files["points"] = PointFile(files["points"], **reading)
     property_id = table.integer("property")
     options = {key: table.content[key] for key in ALL_OPTIONS if key in table}
     return Surface(

@@ -13,7 +13,7 @@ from .heights import Interpolation
 from .interpolation import checked_points
 from .planar_mesh import mesh_rings, triangulate_rings
 from .project import Project, Rock, Surface, rock_item, surface_item
-from .readers import read_off, read_points, read_region
+from .readers import read_off, read_point_file, read_region
 from .region_rings import checked_ring
 from .surface_heights import Triangulation, give_heights, interpolation_order, named_surfaces
 from .work import Work
@@ -85,7 +85,8 @@ def read_rocks(work: Work, project: Project) -> list[RockInput]:
                 work.step((first + share) / total)
 
             step(0.0)
-            surface, shape, face = _read_surface(rock, surface, step)
+            surface, shape, face, told = _read_surface(rock, surface, project.units, step)
+            warnings += [BuildWarning(text, "points", rock.name, surface.name) for text in told]
             surfaces.append(surface)
             shapes.append(shape)
             faces.append(face)
@@ -116,13 +117,16 @@ def _read_region(rock: Rock) -> tuple[Rock, list[BuildWarning]]:
 
 
 def _read_surface(
-    rock: Rock, surface: Surface, step
-) -> tuple[Surface, Triangulation | None, np.ndarray | None]:
-    """The surface with arrays in it, its triangulation if it is a ready mesh, and the faces of its file."""
+    rock: Rock, surface: Surface, units: str, step
+) -> tuple[Surface, Triangulation | None, np.ndarray | None, list[str]]:
+    """The surface with arrays in it, its triangulation if it is a ready mesh, the faces of its file, and what
+    there is to tell."""
     faces = None
     try:
         if surface.interpolated:
-            points = surface.points if surface.input_file is None else read_points(surface.input_file, step)
+            points, told = surface.points, []
+            if surface.point_file is not None:
+                points, told = read_point_file(surface.point_file, units, step)
             if points is None or (not len(points) and not surface.needs_points):
                 points = np.empty((0, 3))
             else:
@@ -135,6 +139,7 @@ def _read_surface(
                 ),
                 None,
                 None,
+                told,
             )
         if surface.mesh is not None:
             mesh = read_off(surface.input_file, step)
@@ -150,7 +155,7 @@ def _read_surface(
         mesh=None,
         shape_file=surface.input_file or surface.shape_file,
     )
-    return surface, (vertices, triangles), faces
+    return surface, (vertices, triangles), faces, []
 
 
 def checked_triangulation(vertices, triangles) -> Triangulation:

@@ -1,110 +1,275 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scattered points from text: CSV and its kin, with or without a header, and plain .xyz."""
+"""Scattered points from tables of text: CSV and its kin, with or without a header, and plain .xyz."""
 
 from __future__ import annotations
 
-import csv
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputRefused
-from .text import LINES_AT_ONCE, NOT_FINITE, NUMBER, Step, column_numbers, no_step, read_text
+from ..errors import InputRefused, number_list
+from ..point_file import list_of
+from ..work import native_module
+from .table_layout import (
+    TableLayout,
+    column_number,
+    decimal_comma,
+    fields,
+    is_number,
+    names_shown,
+    plain_name,
+    table_layout,
+)
+from .text import Step, no_step, read_bytes, require_text
 
-_NAMES = ("x", "y", "z")
+BYTES_AT_ONCE = 1 << 19  # between two steps: a few milliseconds
+_AXES = {
+    "x": ("x", "easting", "east", "x_coord", "xcoord", "coord_x", "utm_x", "x_utm"),
+    "y": ("y", "northing", "north", "y_coord", "ycoord", "coord_y", "utm_y", "y_utm"),
+    "z": ("z", "elevation", "elev", "altitude", "height", "z_coord", "zcoord", "coord_z"),
+}
+KNOWN = frozenset(name for names in _AXES.values() for name in names)
+
+
+@dataclass(frozen=True)
+class PointRows:
+    """points (P, 3) float64 in the order of the file; how many rows had no value, and how many did not
+    hold what was asked for."""
+
+    points: np.ndarray
+    missing: int = 0
+    filtered: int = 0
 
 
 def read_points(file: str | Path, step: Step = no_step) -> np.ndarray:
-    """(P, 3) float64 points of a text file, in its order.
+    """(P, 3) float64 points of a table of text; read_point_rows with nothing said about it."""
+    return read_point_rows(file, step=step).points
 
-    The values of a line stand apart by semicolons, tabs, commas or blanks (in this order of
-    preference, told from the first line). A first line without numbers is a header; where it has
-    columns X, Y and Z (any case) they are taken, otherwise the first three. '#' begins a comment.
-    Further columns are ignored. Raises InputRefused naming file and line.
-    step(fraction) is called at least every 20,000 lines; what it raises passes through.
+
+def read_point_rows(
+    file: str | Path,
+    columns: Sequence[str | int] | None = None,
+    where: Mapping | None = None,
+    separator: str | None = None,
+    decimal: str | None = None,
+    nodata: Sequence = (),
+    step: Step = no_step,
+) -> PointRows:
+    """The points of a table of text, as PointFile describes it.
+
+    Where nothing is said: values stand apart by semicolons, tabs, commas, bars or blanks, told from the first
+    line of numbers. Lines without numbers before it are headers; columns named x, y and z, or easting,
+    northing and elevation (any case, a unit in brackets behind it) are taken, otherwise the first three.
+    Decimal commas are known where commas do not separate and cannot stand between thousands. '#' begins a
+    comment. Further columns are ignored. Raises InputRefused naming file and line.
+    step(fraction) is called every few milliseconds; what it raises passes through.
     """
     file = Path(file)
-    lines = read_text(file).split("\n")
-    first = next((n for n, line in enumerate(lines) if _content(line)), None)
-    if first is None:
-        raise InputRefused("there are no points in it", file=file)
-    delimiter = next((mark for mark in ";\t," if len(_fields(lines[first], mark)) >= 3), None)
-    columns = _header_columns(file, first + 1, _fields(lines[first], delimiter))
-    body = lines[first if columns is None else first + 1 :]
-    skipped = len(lines) - len(body)
-    columns = columns or (0, 1, 2)
-    try:
-        points = column_numbers(body, columns, delimiter, np.float64, step)
-    except ValueError:
-        points = None
-    if points is None or not np.isfinite(points).all():
-        points = _line_by_line(file, body, skipped, columns, delimiter, step)
-    if not len(points):
-        raise InputRefused("there are no points in it", file=file)
-    return np.ascontiguousarray(points)
+    table = open_table(file, separator, columns or (), where or {}, KNOWN)
+    wanted = _wanted_columns(table, columns)
+    filters = [
+        (table.column(name), _values(list_of(value), table.encoding)) for name, value in (where or {}).items()
+    ]
+    rows = read_rows(table, wanted, ("x", "y", "z"), filters, decimal, list(nodata), step)
+    if len(rows.points):
+        return rows
+    if rows.filtered:
+        raise _nothing_matches(table, where)
+    what = "all its points are without a value" if rows.missing else "there are no points in it"
+    raise InputRefused(what, file=file)
 
 
-def _content(line: str) -> str:
-    return line.partition("#")[0].strip(" ")
+@dataclass(frozen=True)
+class Table:
+    """A table of text that was opened: what it holds, and how it is written."""
+
+    file: Path
+    raw: bytes
+    encoding: str
+    layout: TableLayout
+
+    def column(self, name: str | int) -> int:
+        return column_number(self.file, self.layout, name)
+
+    def line_of(self, byte: int) -> int:
+        return self.layout.body_line + self.raw.count(b"\n", self.layout.body, byte)
 
 
-def _fields(line: str, delimiter: str | None) -> list[str]:
-    content = _content(line)
-    if delimiter is None:
-        return content.split()
-    if '"' in content:
-        return [entry.strip() for entry in next(csv.reader([content], delimiter=delimiter))]
-    return [entry.strip() for entry in content.split(delimiter)]
+def open_table(
+    file: Path,
+    separator: str | None,
+    names: Sequence,
+    where: Mapping,
+    known,
+    numbers: int = 3,
+    columns: int = 3,
+) -> Table:
+    """A table that has columns of these names, and of those that `where` names."""
+    raw = read_bytes(file)
+    require_text(file, raw)
+    if b"\r" in raw and b"\n" not in raw:
+        raw = raw.replace(b"\r", b"\n")
+    start = 3 if raw.startswith(b"\xef\xbb\xbf") else 0
+    encoding = "utf-8"
+    if not raw.isascii():
+        try:
+            raw.decode("utf-8")
+        except UnicodeDecodeError:
+            encoding = "latin-1"
+    wanted = [name for name in (*names, *where) if isinstance(name, str)]
+    layout = table_layout(
+        file,
+        raw,
+        start,
+        encoding,
+        separator=separator,
+        wanted=wanted,
+        known=known,
+        numbers=numbers,
+        columns=columns,
+    )
+    return Table(file, raw, encoding, layout)
 
 
-def _is_numeric(entry: str) -> bool:
-    return bool(NUMBER.fullmatch(entry) or NOT_FINITE.fullmatch(entry))
-
-
-def _header_columns(file: Path, line: int, entries: list[str]) -> tuple[int, int, int] | None:
-    """The columns of x, y and z if the first line is a header, None if it is a line of numbers."""
-    names = [entry.strip("\"'").lower() for entry in entries]
-    found = [names.count(name) for name in _NAMES]
-    if not any(found):
-        return None if any(_is_numeric(entry) for entry in entries) else (0, 1, 2)
-    for name, count in zip(_NAMES, found, strict=True):
+def _wanted_columns(table: Table, columns: Sequence[str | int] | None) -> list[int]:
+    if columns is not None:
+        return [table.column(column) for column in columns]
+    names = [plain_name(name) for name in table.layout.names or ()]
+    found = {
+        axis: next((alias for alias in aliases if alias in names), None) for axis, aliases in _AXES.items()
+    }
+    if not any(found.values()):
+        return [0, 1, 2]
+    for axis, alias in found.items():
+        count = names.count(alias) if alias else 0
         if count != 1:
-            what = (
-                f"the header has {count} columns named {name}"
-                if count
-                else f"the header has no column {name}"
+            said = f"{count} columns named {alias}" if count else f"no column {axis}"
+            advice = 'name the columns x, y and z, or say which they are: columns = ["X", "Y", "Z"]'
+            raise InputRefused(
+                f"the header has {said}", file=table.file, line=table.layout.name_line, advice=advice
             )
-            raise InputRefused(what, file=file, line=line, advice="name the columns x, y and z")
-    return tuple(names.index(name) for name in _NAMES)
+    return [names.index(alias) for alias in found.values()]
 
 
-def _line_by_line(file, lines, skipped, columns, delimiter, step: Step) -> np.ndarray:
-    """The same points, slowly, stopping at the first line that is not as it must be."""
-    points = []
-    for number, line in enumerate(lines):
-        if number % LINES_AT_ONCE == 0:
-            step(number / len(lines))
-        if not _content(line):
-            continue
-        entries = _fields(line, delimiter)
+def _values(values: Sequence, encoding: str) -> tuple[list[float], list[bytes]]:
+    """What native code compares entries with: numbers as numbers, text as it stands in the file."""
+    numbers = [float(value) for value in values if not isinstance(value, str)]
+    return numbers, [value.strip().encode(encoding, "replace") for value in values if isinstance(value, str)]
 
-        def refuse(what: str, advice: str | None = None, number=number) -> InputRefused:
-            return InputRefused(what, file=file, line=skipped + number + 1, advice=advice)
 
-        if len(entries) <= max(columns):
-            raise refuse(f"{max(columns) + 1} values are needed, there are {len(entries)}")
-        point = []
-        for name, column in zip(_NAMES, columns, strict=True):
-            entry = entries[column]
-            if NOT_FINITE.fullmatch(entry):
-                raise refuse(f"{name} is {entry}, not a finite number", "leave out points without a value")
-            if not NUMBER.fullmatch(entry):
-                raise refuse(
-                    f"{name} is not a number: '{entry}'",
-                    "write decimals with a point" if "," in entry else None,
-                )
-            point.append(float(entry))
-        if not np.isfinite(point).all():
-            raise refuse("a number is too large")
-        points.append(point)
-    return np.array(points, np.float64).reshape(-1, 3)
+def read_rows(
+    table: Table,
+    columns: Sequence[int],
+    names: Sequence[str],
+    filters: Sequence = (),
+    decimal: str | None = None,
+    nodata: Sequence = (),
+    step: Step = no_step,
+) -> PointRows:
+    """The numbers (N, len(columns)) of the rows of a table; `names` call the columns in messages."""
+    native = native_module()
+    missing = _values(nodata, table.encoding)
+    mark = decimal or "."
+    if decimal is None and table.layout.separator != ",":
+        numeric = [column for column, (numbers, _) in filters if numbers]
+        if decimal_comma(_head_entries(table, [*columns, *numeric])):
+            mark = ","
+    while True:
+        try:
+            return _pieces(native, table, columns, filters, mark, missing, step)
+        except native.InputError as error:
+            undecided = decimal is None and mark == "." and table.layout.separator != ","
+            if undecided and error.kind == "not_a_number" and _has_decimal_commas(table, columns, error):
+                mark = ","
+                continue
+            raise _refused(table, columns, names, mark, error) from error
+
+
+def _pieces(native, table, columns, filters, decimal, missing, step) -> PointRows:
+    """native.read_numbers over the whole table; its errors count from the beginning of the file."""
+    raw, at = table.raw, table.layout.body
+    line, found, counts = table.layout.body_line, [], np.zeros(2, np.int64)
+    while at < len(raw):
+        end = raw.find(b"\n", min(at + BYTES_AT_ONCE, len(raw)))
+        end = len(raw) if end < 0 else end + 1
+        try:
+            values, lines, filtered, without = native.read_numbers(
+                raw, at, end, table.layout.separator, decimal, columns, filters, missing
+            )
+        except native.InputError as error:
+            error.items = [error.items[0] + line, *error.items[1:]]
+            error.items[2:] = [byte + at for byte in error.items[2:]]
+            raise
+        found.append(values)
+        counts += filtered, without
+        line, at = line + lines, end
+        step(at / len(raw))
+    points = np.concatenate(found) if found else np.empty((0, len(columns)))
+    return PointRows(points, missing=int(counts[1]), filtered=int(counts[0]))
+
+
+def _head_entries(table: Table, columns: Sequence[int], most: int = 2000) -> list[str]:
+    """The entries of some columns in the first rows."""
+    body = table.raw[table.layout.body : table.layout.body + (1 << 18)].decode(table.encoding, "replace")
+    rows = [fields(line, table.layout.separator) for line in body.split("\n")[:most] if line.strip()]
+    return [row[column] for row in rows for column in columns if column < len(row)]
+
+
+def _has_decimal_commas(table: Table, columns: Sequence[int], error) -> bool:
+    entry = _entry(table, error)
+    if "," not in entry:
+        return False
+    others = _head_entries(table, columns)
+    told = decimal_comma([*others, entry])
+    if told is None and is_number(entry, ",") and not any("." in other for other in others):
+        raise InputRefused(
+            f"'{entry}' may have a comma for the decimals or between thousands",
+            file=table.file,
+            line=error.items[0],
+            advice='say decimal = "," where it is the decimals; take out commas between thousands',
+        ) from error
+    return bool(told)
+
+
+def _entry(table: Table, error) -> str:
+    begin, end = error.items[2:4]
+    return table.raw[begin:end].decode(table.encoding, "replace").strip()
+
+
+def _refused(table: Table, columns, names, decimal, error) -> InputRefused:
+    line = error.items[0]
+    if error.kind == "too_few":
+        needed = max(columns) + 1
+        return InputRefused(
+            f"{needed} values are needed, there are {error.items[1]}", file=table.file, line=line
+        )
+    name, entry = names[error.items[1]], _entry(table, error)
+    if error.kind == "not_finite":
+        advice = "leave out points without a value, or say nodata = nan"
+        return InputRefused(
+            f"{name} is {entry}, not a finite number", file=table.file, line=line, advice=advice
+        )
+    if error.kind == "too_large":
+        return InputRefused("a number is too large", file=table.file, line=line)
+    advice = None
+    if decimal == "." and "," in entry:
+        advice = "write decimals with a point"
+    elif decimal == "," and "." in entry:
+        advice = "the decimals of this file have commas: write all of them so"
+    elif not entry:
+        advice = 'leave out points without a value, or say nodata = ""'
+    return InputRefused(f"{name} is not a number: '{entry:.40}'", file=table.file, line=line, advice=advice)
+
+
+def _nothing_matches(table: Table, where: Mapping) -> InputRefused:
+    """No row holds what `where` asks for: said with what there is."""
+    conditions = ", ".join(f"{name} = {value!r}" for name, value in where.items())
+    there = []
+    for name in where:
+        seen = dict.fromkeys(_head_entries(table, [table.column(name)], 100_000))
+        there.append(f"{name} has {names_shown(list(seen))}")
+    return InputRefused(
+        f"no row has {conditions}", file=table.file, advice=f"among the first rows {number_list(there)}"
+    )

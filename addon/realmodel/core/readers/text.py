@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -22,14 +23,30 @@ def no_step(_fraction: float) -> None:
     """For callers that want no progress."""
 
 
-def read_text(file: Path) -> str:
-    """The text of a file. Numbers are ASCII, so that names in any 8-bit encoding do no harm."""
+def read_bytes(file: Path) -> bytes:
+    """What a file holds; text in UTF-16, as spreadsheets write it, as UTF-8. Raises InputRefused."""
     try:
         raw = Path(file).read_bytes()
     except OSError as error:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
+    if raw[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE):
+        try:
+            return raw.decode("utf-16").encode()
+        except UnicodeDecodeError as error:
+            raise InputRefused("damaged UTF-16 text", file=file, advice="save it as UTF-8") from error
+    return raw
+
+
+def require_text(file: Path, raw: bytes) -> None:
+    """Refuses what cannot be text."""
     if b"\0" in raw[:4096]:
         raise InputRefused("this is a binary file, not text", file=file)
+
+
+def read_text(file: Path) -> str:
+    """The text of a file. Numbers are ASCII, so that names in any 8-bit encoding do no harm."""
+    raw = read_bytes(file)
+    require_text(file, raw)
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""ESRI ASCII grids (.asc): a header of keys, then heights row after row from north to south."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputRefused
+from ..work import native_module
+from .points import BYTES_AT_ONCE
+from .raster import Raster, without_values
+from .table_layout import is_number
+from .text import Step, no_step, read_bytes, require_text
+
+_KEYS = (
+    "ncols",
+    "nrows",
+    "xllcorner",
+    "yllcorner",
+    "xllcenter",
+    "yllcenter",
+    "cellsize",
+    "dx",
+    "dy",
+    "nodata_value",
+)
+_BEGINNING = re.compile(rb"\s*(?:ncols|nrows)[ \t]", re.IGNORECASE)
+_LONGEST_HEADER = 4096
+
+
+def is_ascii_grid(head: bytes) -> bool:
+    """Whether a file that begins so is one."""
+    return bool(_BEGINNING.match(head.removeprefix(b"\xef\xbb\xbf")))
+
+
+def read_ascii_grid(file: str | Path, nodata: Sequence[float] = (), step: Step = no_step) -> Raster:
+    """A grid; heights stand at the centres of its cells. nodata: further numbers that mean no height.
+
+    Raises InputRefused naming file and line.
+    """
+    file = Path(file)
+    raw = read_bytes(file)
+    require_text(file, raw)
+    if b"\n" not in raw:
+        raw = raw.replace(b"\r", b"\n")
+    decimal = "," if b"," in raw[:_LONGEST_HEADER] and b"." not in raw[:_LONGEST_HEADER] else "."
+    header, lines, body, body_line = _header(file, raw, decimal)
+    columns, rows = (_count(file, header, lines, key) for key in ("ncols", "nrows"))
+    size = header.get("cellsize")
+    dx, dy = header.get("dx", size), header.get("dy", size)
+    if dx is None or dy is None or not (dx > 0 and dy > 0):
+        line = lines.get("cellsize")
+        raise InputRefused("the header needs a cellsize above 0", file=file, line=line)
+    west = _lower_left(file, header, "x", dx)
+    south = _lower_left(file, header, "y", dy)
+    z = _heights(file, raw, body, body_line, decimal, rows * columns, (columns, rows), step)
+    none = [header["nodata_value"]] if "nodata_value" in header else []
+    z = without_values(z.reshape(rows, columns), [*none, *nodata])
+    return Raster(z, (west, south + (rows - 1) * dy), (dx, 0.0), (0.0, -dy))
+
+
+def _header(file: Path, raw: bytes, decimal: str) -> tuple[dict, dict, int, int]:
+    """The keys' numbers and lines, the byte where the heights begin, and the line of that."""
+    header, lines = {}, {}
+    at, number = 3 if raw.startswith(b"\xef\xbb\xbf") else 0, 0
+    while at < len(raw):
+        number += 1
+        end = raw.find(b"\n", at)
+        end = len(raw) if end < 0 else end
+        entries = raw[at:end].decode("ascii", "replace").split()
+        if entries and not entries[0][0].isalpha():
+            break
+        at = min(end + 1, len(raw))
+        if not entries:
+            continue
+        key = entries[0].lower()
+        if key not in _KEYS:
+            what = f"the header has an unknown key '{entries[0]:.20}'"
+            raise InputRefused(what, file=file, line=number, advice=f"known are {', '.join(_KEYS)}")
+        if len(entries) != 2 or not is_number(entries[1], decimal):
+            raise InputRefused(f"{entries[0]} needs one number", file=file, line=number)
+        header[key] = float(entries[1].replace(",", "."))
+        lines[key] = number
+    return header, lines, at, max(number, 1)
+
+
+def _count(file: Path, header: dict, lines: dict, key: str) -> int:
+    value = header.get(key)
+    if value is None:
+        raise InputRefused(f"the header has no {key}", file=file)
+    if not (value >= 1 and value == int(value)):
+        raise InputRefused(f"{key} must be a whole number from 1", file=file, line=lines[key])
+    return int(value)
+
+
+def _lower_left(file: Path, header: dict, axis: str, size: float) -> float:
+    """The coordinate of the centre of the cell in the south-west."""
+    if f"{axis}llcenter" in header:
+        return header[f"{axis}llcenter"]
+    if f"{axis}llcorner" in header:
+        return header[f"{axis}llcorner"] + 0.5 * size
+    raise InputRefused(f"the header has neither {axis}llcorner nor {axis}llcenter", file=file)
+
+
+def _heights(file, raw, body, body_line, decimal, count, shape, step: Step) -> np.ndarray:
+    """The numbers behind the header, wherever its lines end."""
+    native = native_module()
+    one_a_line = bytes.maketrans(b" \t\r", b"\n\n\n")
+    found, at = [], body
+    while at < len(raw):
+        blank = re.compile(rb"\s").search(raw, min(at + BYTES_AT_ONCE, len(raw)))
+        end = len(raw) if blank is None else blank.end()
+        piece = raw[at:end].translate(one_a_line)
+        try:
+            found.append(native.read_numbers(piece, 0, len(piece), " ", decimal, [0], [], ([], []))[0][:, 0])
+        except native.InputError as error:
+            begin, stop = error.items[2:4]
+            line = body_line + raw.count(b"\n", body, at + begin)
+            entry = piece[begin:stop].decode("latin-1")
+            advice = "write the NODATA_value where there is no height" if error.kind == "not_finite" else None
+            raise InputRefused(f"not a height: '{entry:.40}'", file=file, line=line, advice=advice) from error
+        at = end
+        step(at / len(raw))
+    z = np.concatenate(found) if found else np.empty(0)
+    if len(z) != count:
+        raise InputRefused(
+            f"{shape[0]} columns and {shape[1]} rows are announced, {count} heights; there are {len(z)}",
+            file=file,
+            advice="the file is cut off or its header is wrong",
+        )
+    return z

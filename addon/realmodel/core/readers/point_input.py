@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points from any file that holds some: what kind it is, is told from what it holds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputRefused
+from ..point_file import PointFile
+from ..units import MODEL_UNIT, factor
+from .ascii_grid import is_ascii_grid, read_ascii_grid
+from .geotiff import is_tiff, read_geotiff, world_file
+from .points import read_point_rows
+from .raster import Raster
+from .text import Step, no_step
+
+_HEAD = 512
+
+
+def read_point_file(
+    given: PointFile, model_unit: str = MODEL_UNIT, step: Step = no_step
+) -> tuple[np.ndarray, list[str]]:
+    """(P, 3) float64 points in the model's unit, and what to tell about them, sentences.
+
+    Raises InputRefused naming the file, and the line where it has some.
+    """
+    file = Path(given.file)
+    head = _head(file)
+    if is_tiff(head) or is_ascii_grid(head):
+        points, warnings = _raster_points(given, file, head, step)
+    else:
+        rows = read_point_rows(
+            file, given.columns, given.where, given.separator, given.decimal, given.nodata_values, step
+        )
+        points, warnings = rows.points, []
+        if rows.missing:
+            warnings.append(f"{file}: {rows.missing} points without a value are left out")
+    for columns, unit in ((slice(0, 2), given.plan_unit), (slice(2, 3), given.height_unit)):
+        if (scale := factor(unit, model_unit)) != 1.0:
+            points[:, columns] *= scale
+    return np.ascontiguousarray(points), warnings
+
+
+def companions(file: Path) -> list[Path]:
+    """Files beside a file of points that are read with it."""
+    beside = world_file(file) if file.suffix.lower() in (".tif", ".tiff") else None
+    return [] if beside is None else [beside]
+
+
+def _head(file: Path) -> bytes:
+    try:
+        with file.open("rb") as opened:
+            return opened.read(_HEAD)
+    except OSError as error:
+        raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
+
+
+def _raster_points(given: PointFile, file: Path, head: bytes, step: Step) -> tuple[np.ndarray, list[str]]:
+    if given.for_tables:
+        what = f"it is a raster, so '{given.for_tables[0]}' has no meaning here"
+        raise InputRefused(what, file=file, advice="take it out")
+    nodata = [value for value in given.nodata_values if not isinstance(value, str)]
+    read = read_geotiff if is_tiff(head) else read_ascii_grid
+    raster: Raster = read(file, nodata, step)
+    warnings = [] if given.units else [f"{file}: {text}" for text in raster.warnings]
+    return raster.points(file), warnings

@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Packages of others that travel in the add-on, in the folder vendor (scripts/requirements/vendor.txt)."""
+
+from __future__ import annotations
+
+import importlib
+from types import ModuleType
+
+from ..errors import BuildFailed
+
+
+def vendored(module: str, package: str, purpose: str) -> ModuleType:
+    """A module of the folder vendor, or else the one that this Python has. Only what needs it imports it.
+
+    Raises BuildFailed where there is neither.
+    """
+    for name in (f"realmodel.vendor.{module}", module):
+        try:
+            return importlib.import_module(name)
+        except ModuleNotFoundError as error:
+            if error.name not in (name, "realmodel.vendor"):
+                raise BuildFailed(f"{package} cannot be loaded ({error})") from error
+    raise BuildFailed(
+        f"{purpose} needs the package {package}, which is not in addon/realmodel/vendor; "
+        "scripts/build.sh puts it there"
+    )

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Units of length, and what a file in one is multiplied by in a model of another."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+MODEL_UNIT = "m"  # of a project that does not say
+# Metres in each, exactly. Coordinates of old surveys in the United States are in survey feet.
+METRES = {
+    "mm": Fraction(1, 1000),
+    "cm": Fraction(1, 100),
+    "m": Fraction(1),
+    "km": Fraction(1000),
+    "in": Fraction(254, 10_000),
+    "ft": Fraction(3048, 10_000),
+    "us-ft": Fraction(1200, 3937),
+    "yd": Fraction(9144, 10_000),
+    "mi": Fraction(1_609_344, 1000),
+}
+
+
+def factor(unit: str | None, model_unit: str = MODEL_UNIT) -> float:
+    """What lengths in a unit are multiplied by; 1 where none is given."""
+    return 1.0 if unit is None else float(METRES[unit] / METRES[model_unit])

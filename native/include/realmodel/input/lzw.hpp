@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace realmodel::input {
+
+/// Bytes of a strip or tile of a TIFF file compressed by LZW (TIFF 6.0, section 13: codes of 9 to
+/// 12 bits, most significant bit first, the width changing one code early).
+///
+/// Ends at the end-of-information code, or where the codes end. Throws InputError of kind
+/// "damaged" where a code cannot be there, or where more than `most` bytes would come out.
+std::vector<std::uint8_t> decode_lzw(std::span<const std::uint8_t> encoded, std::size_t most);
+
+}  // namespace realmodel::input

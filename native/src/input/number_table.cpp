@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/input/number_table.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <optional>
+
+#include "input/number_text.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::input {
+
+namespace {
+
+constexpr std::size_t bytes_at_once = 1 << 16;  // a thread's share of the text
+
+/// Bytes of the text, without blanks around them and without quotes.
+struct Field {
+    std::size_t begin, end;
+    bool quoted = false;
+};
+
+/// What is wrong with a line of a piece of the text; `items` as read_numbers says.
+struct Wrong {
+    std::string kind;
+    std::vector<std::int64_t> items;
+};
+
+bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+/// The lines of a part of the text, one after another.
+class Lines {
+public:
+    Lines(std::string_view text, const TableFormat& format) : text_(text), format_(format) {
+        for (const std::size_t column : format.columns)
+            most_ = std::max(most_, column + 1);
+        for (const RowFilter& filter : format.filters)
+            most_ = std::max(most_, filter.column + 1);
+    }
+
+    /// Reads the lines that begin in [begin, end) into `out`; stops at the first that is wrong.
+    std::optional<Wrong> read(std::size_t begin, std::size_t end, NumberTable& out) {
+        while (begin < end) {
+            const std::size_t newline = std::min(text_.find('\n', begin), text_.size());
+            split(begin, newline);
+            if (!fields_.empty()) {
+                if (std::optional<Wrong> wrong = row(out)) {
+                    wrong->items[0] = static_cast<std::int64_t>(out.lines);
+                    return wrong;
+                }
+            }
+            ++out.lines;
+            begin = newline + 1;
+        }
+        return std::nullopt;
+    }
+
+private:
+    std::string_view text_;
+    const TableFormat& format_;
+    std::size_t most_ = 1;       // fields of a line that matter
+    std::vector<Field> fields_;  // of the present line
+    std::string unquoted_;
+
+    void skip_blanks(std::size_t& at, std::size_t end) const {
+        while (at < end && is_blank(text_[at]) && text_[at] != format_.separator)
+            ++at;
+        if (format_.separator != ' ') return;
+        while (at < end && is_blank(text_[at]))
+            ++at;
+    }
+
+    bool is_comment(std::size_t at, std::size_t end) const {
+        const char c = text_[at];
+        return c == '#' || c == '!' || c == '%' || c == '>' ||
+               (c == '/' && at + 1 < end && text_[at + 1] == '/');
+    }
+
+    /// The first fields of the line [at, end); none where it is blank or a comment.
+    void split(std::size_t at, std::size_t end) {
+        fields_.clear();
+        std::size_t first = at;
+        while (first < end && is_blank(text_[first]))
+            ++first;
+        if (first == end || is_comment(first, end)) return;
+        bool more = true;
+        while (more && fields_.size() < most_) {
+            skip_blanks(at, end);
+            if (at == end && format_.separator == ' ') return;
+            if (at < end && text_[at] == '#') return;
+            more = at < end && text_[at] == '"' ? quoted(at, end) : plain(at, end);
+        }
+    }
+
+    /// A field in quotes; `at` goes behind its separator. Returns whether there may be another.
+    bool quoted(std::size_t& at, std::size_t end) {
+        std::size_t close = at + 1;
+        while (close < end && (text_[close] != '"' || (close + 1 < end && text_[close + 1] == '"')))
+            close += text_[close] == '"' ? 2 : 1;
+        close = std::min(close, end);
+        fields_.push_back({at + 1, close, true});
+        at = std::min(close + 1, end);
+        while (at < end && !is_separator(text_[at]))
+            ++at;
+        return at < end ? (++at, true) : false;
+    }
+
+    bool is_separator(char c) const {
+        return format_.separator == ' ' ? is_blank(c) : c == format_.separator;
+    }
+
+    bool plain(std::size_t& at, std::size_t end) {
+        const std::size_t begin = at;
+        bool ends_here = false;
+        while (at < end && !is_separator(text_[at])) {
+            if (text_[at] == '#' && is_number(trimmed(begin, at))) {
+                ends_here = true;
+                break;
+            }
+            ++at;
+        }
+        fields_.push_back(trimmed(begin, at));
+        return !ends_here && at < end ? (++at, true) : false;
+    }
+
+    Field trimmed(std::size_t begin, std::size_t end) const {
+        while (end > begin && is_blank(text_[end - 1]))
+            --end;
+        return {begin, end};
+    }
+
+    ParsedNumber number_of(const Field& field) const {
+        std::size_t begin = field.begin, end = field.end;
+        if (field.quoted) {
+            while (begin < end && is_blank(text_[begin]))
+                ++begin;
+            while (end > begin && is_blank(text_[end - 1]))
+                --end;
+        }
+        ParsedNumber number = parse_number(text_.substr(begin, end - begin), format_.decimal);
+        if (number.length != end - begin) number.spelling = Spelling::not_a_number;
+        return number;
+    }
+
+    bool is_number(const Field& field) const {
+        return number_of(field).spelling != Spelling::not_a_number;
+    }
+
+    bool is_one_of(const Field& field, const Values& values) {
+        if (!values.numbers.empty()) {
+            const ParsedNumber number = number_of(field);
+            if (number.spelling == Spelling::number || number.spelling == Spelling::not_finite) {
+                for (const double value : values.numbers) {
+                    if (value == number.value || (std::isnan(value) && std::isnan(number.value)))
+                        return true;
+                }
+            }
+        }
+        if (values.texts.empty()) return false;
+        std::string_view entry = text_.substr(field.begin, field.end - field.begin);
+        if (field.quoted && entry.find("\"\"") != std::string_view::npos) {
+            unquoted_.clear();
+            for (std::size_t i = 0; i < entry.size(); ++i) {
+                unquoted_.push_back(entry[i]);
+                if (entry[i] == '"') ++i;
+            }
+            entry = unquoted_;
+        }
+        return std::find(values.texts.begin(), values.texts.end(), entry) != values.texts.end();
+    }
+
+    /// Takes up the present line.
+    std::optional<Wrong> row(NumberTable& out) {
+        if (fields_.size() < most_) {
+            return Wrong{"too_few", {0, static_cast<std::int64_t>(fields_.size())}};
+        }
+        for (const RowFilter& filter : format_.filters) {
+            if (is_one_of(fields_[filter.column], filter.values)) continue;
+            ++out.filtered;
+            return std::nullopt;
+        }
+        if (!format_.missing.numbers.empty() || !format_.missing.texts.empty()) {
+            for (const std::size_t column : format_.columns) {
+                if (!is_one_of(fields_[column], format_.missing)) continue;
+                ++out.missing;
+                return std::nullopt;
+            }
+        }
+        for (std::size_t i = 0; i < format_.columns.size(); ++i) {
+            const Field& field = fields_[format_.columns[i]];
+            const ParsedNumber number = number_of(field);
+            if (number.spelling == Spelling::number) {
+                out.values.push_back(number.value);
+                continue;
+            }
+            const char* const kind = number.spelling == Spelling::not_finite  ? "not_finite"
+                                     : number.spelling == Spelling::too_large ? "too_large"
+                                                                              : "not_a_number";
+            return Wrong{kind,
+                         {0, static_cast<std::int64_t>(i), static_cast<std::int64_t>(field.begin),
+                          static_cast<std::int64_t>(field.end)}};
+        }
+        return std::nullopt;
+    }
+};
+
+[[noreturn]] void refuse(Wrong wrong, std::size_t lines_before) {
+    wrong.items[0] += static_cast<std::int64_t>(lines_before);
+    const std::string line = "line " + std::to_string(wrong.items[0]);
+    throw InputError(wrong.kind, line + " cannot be read: " + wrong.kind, -1,
+                     std::move(wrong.items));
+}
+
+}  // namespace
+
+NumberTable read_numbers(std::string_view text, const TableFormat& format, int threads) {
+    std::vector<std::size_t> begins{0};  // of the parts: lines are kept whole
+    while (begins.back() + bytes_at_once < text.size()) {
+        const std::size_t newline = text.find('\n', begins.back() + bytes_at_once);
+        if (newline == std::string_view::npos) break;
+        begins.push_back(newline + 1);
+    }
+    const auto parts = static_cast<std::ptrdiff_t>(begins.size());
+    begins.push_back(text.size());
+    std::vector<NumberTable> tables(begins.size() - 1);
+    std::vector<std::optional<Wrong>> wrong(begins.size() - 1);
+    std::exception_ptr thrown;
+    const int team = threads > 0 ? threads : omp_get_max_threads();
+#pragma omp parallel for schedule(dynamic) num_threads(team) if (parts > 1)
+    for (std::ptrdiff_t part = 0; part < parts; ++part) {
+        try {
+            Lines lines(text, format);
+            wrong[part] = lines.read(begins[part], begins[part + 1], tables[part]);
+        } catch (...) {  // out of memory
+#pragma omp critical(realmodel_read_numbers)
+            thrown = std::current_exception();
+        }
+    }
+    if (thrown) std::rethrow_exception(thrown);
+    NumberTable all;
+    std::size_t count = 0;
+    for (const NumberTable& table : tables)
+        count += table.values.size();
+    all.values.reserve(count);
+    for (std::size_t part = 0; part < tables.size(); ++part) {
+        if (wrong[part]) refuse(std::move(*wrong[part]), all.lines);
+        const NumberTable& table = tables[part];
+        all.values.insert(all.values.end(), table.values.begin(), table.values.end());
+        all.lines += table.lines;
+        all.filtered += table.filtered;
+        all.missing += table.missing;
+    }
+    return all;
+}
+
+}  // namespace realmodel::input
