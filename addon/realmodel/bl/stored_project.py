@@ -11,8 +11,8 @@ be read without RealModel:
 `settings` is UTF-8 JSON: {"format": 1, "name", "rocks": [{"name", "edge_length", "mesher",
 "base_elevation", "holes": count, "surfaces": [{"name", "method", "options", "rule", "property",
 "block"}]}], "library": [...] or null, "units": "m"}. Numbers keep every bit: JSON's are written with
-as many digits as it takes, arrays are float64 and int32 in model units. Rock r's arrays are `r/region` (N, 2),
-`r/hole/h`, and for surface s either `r/s/points` (P, 3) or `r/s/vertices` (V, 3) with
+as many digits as it takes, arrays are float64 and int32 in model units. Rock r's arrays are `r/region`
+(N, 2), `r/hole/h`, and for surface s either `r/s/points` (P, 3) or `r/s/vertices` (V, 3) with
 `r/s/triangles` (T, 3).
 """
 

@@ -19,6 +19,7 @@ from .errors import UsageError
 from .library import Library, Property
 from .project import Project, Rock, Surface, check_project
 from .rock_input import checked_triangulation
+from .units import MODEL_UNIT
 
 _NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")
 
@@ -56,6 +57,8 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
             return target.name
 
         lines = ["format = 1", f"name = {toml_value(project.name)}"]
+        if project.units != MODEL_UNIT:
+            lines.append(f"units = {toml_value(project.units)}")
         if project.library is not None:
             library = write(beside("library", ending=".toml"), library_text(project.library).encode())
             lines.append(f"library = {toml_value(library)}")

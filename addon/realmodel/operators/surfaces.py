@@ -8,8 +8,8 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..bl import built_scene, live, project_settings, settings
-from ..core import InputRefused
-from ..core.readers import read_off, read_points
+from ..core import InputRefused, PointFile
+from ..core.readers import read_off, read_point_file
 from .reporting import Reporting, needed_rock, needed_surface
 from .rocks import add_rock
 
@@ -75,7 +75,7 @@ def _check_file(path: Path):
     if path.suffix.lower() in _MESH_ENDINGS:
         read_off(path)
     else:
-        read_points(path)
+        read_point_file(PointFile(path))
 
 
 class REALMODEL_OT_surface_remove(Reporting, bpy.types.Operator):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -84,6 +85,8 @@ def _header(file: Path, raw: bytes, decimal: str) -> tuple[dict, dict, int, int]
         if len(entries) != 2 or not is_number(entries[1], decimal):
             raise InputRefused(f"{entries[0]} needs one number", file=file, line=number)
         header[key] = float(entries[1].replace(",", "."))
+        if not math.isfinite(header[key]) and key != "nodata_value":
+            raise InputRefused(f"{entries[0]} is not finite", file=file, line=number)
         lines[key] = number
     return header, lines, at, max(number, 1)
 
