@@ -27,7 +27,7 @@ needs_tifffile = pytest.mark.skipif(tifffile is None, reason="addon/realmodel/ve
     [
         HEAD + "NODATA_value -9999\n1 2 3\n4 -9999 6\n",
         HEAD.upper() + "nodata_value -9999\r\n1 2 3 4\r\n-9999\r\n6",
-        "nrows 2\nncols 3\nyllcenter 205\nxllcenter 105\ndx 10\ndy 10\nNODATA_value -9999.\n1 2 3 4 -9999\n6\n",
+        "nrows 2\nncols 3\nyllcenter 205\nxllcenter 105\ndx 10\ndy 10\nnodata_value -9999\n1 2 3 4\n-9999 6",
         HEAD.replace("100", "100,0") + "NODATA_value -9999\n1,0 2 3\n4 -9999 6\n",
     ],
 )
