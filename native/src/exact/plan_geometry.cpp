@@ -2,7 +2,6 @@
 #include "realmodel/exact/plan_geometry.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "arithmetic.hpp"
@@ -13,21 +12,6 @@ namespace realmodel::exact {
 namespace {
 
 constexpr double kEpsilon = 0x1p-52;  // twice the unit roundoff, so that products of bounds fit in
-
-std::array<std::int32_t, 2> halves(double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value);  // -0 is 0
-    return {static_cast<std::int32_t>(bits >> 32), static_cast<std::int32_t>(bits)};
-}
-
-KeyTable::Key position_key(double x, double y) {
-    const auto hx = halves(x), hy = halves(y);
-    return {hx[0], hx[1], hy[0], hy[1]};
-}
-
-KeyTable::Key height_key(VertexId plan, double z) {
-    const auto hz = halves(z);
-    return {plan, hz[0], hz[1], 0};
-}
 
 void check_room(std::size_t count, const char* what) {
     if (count >= static_cast<std::size_t>(kLocal)) {

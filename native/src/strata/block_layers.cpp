@@ -28,7 +28,8 @@ PlanBox box_of_edge(const PlanGeometry& geometry, VertexId from, VertexId to) {
 BlockLayer make_block_layer(PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
                             SurfacePlan plan, std::int32_t number, int threads,
                             const Progress* progress) {
-    if (!plan.filling) make_layer(geometry, triangles, plan, number, threads, progress);  // refuses
+    if (!plan.filling)
+        make_layer(geometry, triangles, plan, {}, number, threads, progress);  // refuses
     BlockLayer layer;
     layer.number = number;
     layer.first_plane = make_planes(geometry, triangles, threads, progress);

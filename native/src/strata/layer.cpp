@@ -37,11 +37,13 @@ PlanTriangle plan_of(const PlanGeometry& geometry, const UsedTriangle& triangle)
     return v;
 }
 
-/// Outlines of triangles that hang together: the line of an edge is asked for once.
+/// Outlines of triangles that hang together: the line of an edge is asked for once, and not at all
+/// where the `similar` outlines have it.
 void add_outlines(PlanGeometry& geometry, PolygonPool& pool,
                   const std::vector<UsedTriangle>& triangles, const PlanLinks& links,
-                  const Progress* progress) {
+                  const PolygonPool& similar, const Progress* progress) {
     constexpr std::size_t kAhead = 8;
+    constexpr DirectedLine kUnknown = -1;
     const std::size_t count = triangles.size();
     pool.corners.resize(3 * count);
     pool.offsets.resize(count + 1);
@@ -49,9 +51,13 @@ void add_outlines(PlanGeometry& geometry, PolygonPool& pool,
         poll(progress, t);
         if (t < count) {
             const PlanTriangle v = plan_of(geometry, triangles[t]);
+            Corner* own = &pool.corners[3 * t];
+            const PolygonView like = t < similar.size() ? similar[t] : PolygonView();
+            const bool same = like.size() == 3 && like[0].point == v[0] && like[1].point == v[1] &&
+                              like[2].point == v[2];
             for (std::size_t i = 0; i < 3; ++i) {
-                pool.corners[3 * t + i].point = v[i];
-                if (!is_known(links.neighbour[t][i], t))
+                own[i] = {v[i], same ? like[i].line : kUnknown};
+                if (!same && !is_known(links.neighbour[t][i], t))
                     geometry.prefetch_edge(v[i], v[(i + 1) % 3]);
             }
             pool.offsets[t + 1] = static_cast<std::int64_t>(3 * (t + 1));
@@ -59,6 +65,7 @@ void add_outlines(PlanGeometry& geometry, PolygonPool& pool,
         if (t < kAhead) continue;
         Corner* own = &pool.corners[3 * (t - kAhead)];
         for (std::size_t i = 0; i < 3; ++i) {
+            if (own[i].line != kUnknown) continue;
             const PointId to = own[(i + 1) % 3].point;
             const std::int32_t neighbour = links.neighbour[t - kAhead][i];
             if (!is_known(neighbour, t - kAhead)) {
@@ -193,12 +200,13 @@ PlaneId make_planes(PlanGeometry& geometry, const std::vector<UsedTriangle>& tri
 }
 
 Layer make_layer(PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
-                 const SurfacePlan& plan, int index, int threads, const Progress* progress) {
+                 const SurfacePlan& plan, const PolygonPool& similar, int index, int threads,
+                 const Progress* progress) {
     Layer layer;
     const PlaneId first = make_planes(geometry, triangles, threads, progress);
     layer.plane.resize(triangles.size());
     std::iota(layer.plane.begin(), layer.plane.end(), first);
-    add_outlines(geometry, layer.polygons, triangles, plan.links, progress);
+    add_outlines(geometry, layer.polygons, triangles, plan.links, similar, progress);
     if (!plan.filling) {
         layer.index(geometry, threads, progress);
         refuse_overlap(geometry, layer, triangles, index, threads, progress);

@@ -45,7 +45,8 @@ struct UsedTriangle {
 /// @throws InputError kinds not_finite, bad_index, vertical_triangle
 std::vector<UsedTriangle> enter_surface(exact::PlanGeometry& geometry, const SurfaceView& surface,
                                         int index, const PlanSnapping& snapping,
-                                        std::vector<Warning>& warnings, const Progress* progress);
+                                        std::vector<Warning>& warnings, int threads,
+                                        const Progress* progress);
 
 /// A triangle that turns counter-clockwise as a polygon; its lines are made where they are new.
 std::array<Corner, 3> triangle_outline(exact::PlanGeometry& geometry, const PlanTriangle& v);
@@ -70,10 +71,12 @@ std::vector<SurfacePlan> plan_surfaces(const exact::PlanGeometry& geometry,
 PlaneId make_planes(exact::PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
                     int threads, const Progress* progress);
 
-/// The layer of a checked surface.
+/// The layer of a checked surface. `similar`: outlines that some of the triangles may have at the
+/// same numbers, whose lines are then known.
 /// @throws InputError kind double_valued, with the two triangles and a place in both
 Layer make_layer(exact::PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,
-                 const SurfacePlan& plan, int index, int threads, const Progress* progress);
+                 const SurfacePlan& plan, const PolygonPool& similar, int index, int threads,
+                 const Progress* progress);
 
 /// The region as a layer: plane kSky inside and kOutside outside.
 Layer make_region(exact::PlanGeometry& geometry, const std::vector<PlanTriangle>& triangles,

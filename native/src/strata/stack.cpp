@@ -136,6 +136,10 @@ public:
         }
     }
 
+    /// Takes the outlines of a layer that was taken before and is done with: the next one may be
+    /// on the same mesh.
+    void give_back(Layer layer) { similar_ = std::move(layer.polygons); }
+
     Layer take(std::int32_t k) {
         if (replayed_.empty()) return surface(static_cast<std::size_t>(k));
         Layer layer = std::move(replayed_.back());
@@ -146,7 +150,7 @@ public:
 private:
     Layer surface(std::size_t k) {
         const auto number = rock_.first_surface + static_cast<std::int32_t>(k);
-        Layer layer = make_layer(site_.geometry, rock_.surfaces[k], plans_[k], number,
+        Layer layer = make_layer(site_.geometry, rock_.surfaces[k], plans_[k], similar_, number,
                                  site_.threads, site_.progress);
         rock_.surfaces[k] = {};
         plans_[k] = {};
@@ -157,6 +161,7 @@ private:
     Site& site_;
     EnteredRock& rock_;
     std::vector<SurfacePlan> plans_;
+    PolygonPool similar_;
     std::vector<Layer> replayed_;
 };
 
@@ -224,7 +229,7 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
 
 /// Enters the vertices of a rock mass.
 EnteredRock enter_rock(PlanGeometry& geometry, const StackInput& input, std::int32_t first_surface,
-                       const PlanSnapping& snapping, std::vector<Warning>& warnings,
+                       const PlanSnapping& snapping, std::vector<Warning>& warnings, int threads,
                        const Progress* progress) {
     EnteredRock rock;
     rock.first_surface = first_surface;
@@ -236,7 +241,7 @@ EnteredRock enter_rock(PlanGeometry& geometry, const StackInput& input, std::int
     for (std::size_t k = 0; k < input.surfaces.size(); ++k) {
         rock.surfaces.push_back(enter_surface(geometry, input.surfaces[k],
                                               first_surface + static_cast<std::int32_t>(k),
-                                              snapping, warnings, progress));
+                                              snapping, warnings, threads, progress));
     }
     if (input.region) rock.region = enter_region(geometry, *input.region, snapping);
     return rock;
@@ -267,10 +272,11 @@ void build_rock(Site& site, EnteredRock& rock, double start, double share) {
     for (std::int32_t k = count - 1; k >= 0; --k) {
         begin(site.progress, start + share * static_cast<double>(count - 1 - k) / count,
               share / count, "intersecting the surfaces");
-        const Layer layer = layers.take(k);
+        Layer layer = layers.take(k);
         envelope = envelope.size() == 0 ? initial_envelope(layer, k)
                                         : overlay(site.geometry, envelope, layer, k,
                                                   site.construction, site.threads, site.progress);
+        layers.give_back(std::move(layer));
     }
     if (rock.base)
         check_base(lowest_place(site.geometry, envelope), *rock.base_elevation, rock.first_surface);
@@ -353,7 +359,8 @@ CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping&
     site.geometry.expect_vertices(vertices);
     std::int32_t surfaces = 0;
     for (const StackInput& rock : rocks) {
-        entered.push_back(enter_rock(site.geometry, rock, surfaces, snapping, warnings, progress));
+        entered.push_back(
+            enter_rock(site.geometry, rock, surfaces, snapping, warnings, threads, progress));
         surfaces += static_cast<std::int32_t>(rock.surfaces.size());
     }
     CellComplex result;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -80,6 +81,20 @@ struct Point {
     }
 };
 
+/// The halves of a double as a part of a key; -0 is 0.
+inline std::array<std::int32_t, 2> halves(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value);
+    return {static_cast<std::int32_t>(bits >> 32), static_cast<std::int32_t>(bits)};
+}
+/// What tells plan vertices apart, and space vertices.
+inline KeyTable::Key position_key(double x, double y) {
+    const auto hx = halves(x), hy = halves(y);
+    return {hx[0], hx[1], hy[0], hy[1]};
+}
+inline KeyTable::Key height_key(VertexId plan, double z) {
+    const auto hz = halves(z);
+    return {plan, hz[0], hz[1], 0};
+}
 /// What tells lines apart.
 inline KeyTable::Key line_key_of(const Line& line) {
     return {static_cast<std::int32_t>(line.kind), line.first, line.second, 0};
@@ -166,6 +181,12 @@ public:
     /// The crossing of two different lines that are not parallel, made where it is new.
     PointId add_point(const Point& point);
     /// To be called some time before one of these is added, as memory takes its time.
+    [[gnu::always_inline]] void prefetch_vertex(double x, double y) const {
+        vertex_table_.prefetch(position_key(x, y));
+    }
+    [[gnu::always_inline]] void prefetch_space_vertex(VertexId plan, double z) const {
+        space_table_.prefetch(height_key(plan, z));
+    }
     [[gnu::always_inline]] void prefetch_edge(VertexId from, VertexId to) const {
         prefetch(Line{Line::Kind::kEdge, std::min(from, to), std::max(from, to)});
     }
