@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "parallel_chunks.hpp"
+#include "parallel_counts.hpp"
 
 namespace realmodel::strata {
 
@@ -87,13 +87,47 @@ TriangleBounds bounds_of(const PlanGeometry& geometry, PlaneId plane) {
     return b;
 }
 
+/// Finds the bounds of everything that meets while a surface is added.
+void BlockOverlay::locate(const BlockLayer& layer) {
+    surface_at_.resize(layer.size());
+    parallel_ranges(layer.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t t = begin; t < end; ++t) {
+                            const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
+                            surface_at_[t] = located(bounds_of(geometry_, plane));
+                        }
+                    });
+    whole_at_.resize(whole_.size());
+    parallel_ranges(whole_.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f)
+                            whole_at_[f] = located(bounds_of(geometry_, whole_[f].plane));
+                    });
+    part_at_.resize(parts_.size());
+    parallel_ranges(parts_.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        const Scope scope(geometry_);
+                        for (std::size_t f = begin; f < end; ++f) {
+                            TriangleBounds bounds{box_of(scope, parts_.outlines[f]), 0, 0};
+                            if (parts_.plane[f] >= 0) {
+                                const auto whole = bounds_of(geometry_, parts_.plane[f]);
+                                bounds.low = whole.low;
+                                bounds.high = whole.high;
+                            }
+                            part_at_[f] = located(bounds);
+                        }
+                    });
+}
+
 BlockOverlay::SurfaceTiles BlockOverlay::surface_tiles(const BlockLayer& layer) const {
     SurfaceTiles surface(tiles_.size());
     for (std::size_t t = 0; t < layer.size(); ++t) {
         poll(progress_, t);
-        const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
-        tiles_.for_each(tiles_.span(b.box),
-                        [&](std::size_t tile) { surface.include(tile, b.low, b.high); });
+        const auto& [b, span] = surface_at_[t];
+        for (std::int32_t r = span.low; r <= span.high; ++r) {
+            for (std::int32_t c = span.left; c <= span.right; ++c)
+                surface.include(tiles_.tile(c, r), b.low, b.high);
+        }
     }
     for (const PlanTriangle& t : layer.empty) {
         tiles_.for_each_centre_in(corners_of(geometry_, t),
@@ -107,18 +141,18 @@ BlockOverlay::SurfaceTiles BlockOverlay::surface_tiles(const BlockLayer& layer) 
 
 BlockOverlay::EnvelopeTiles BlockOverlay::envelope_tiles() const {
     EnvelopeTiles envelope(tiles_.size());
-    const auto include = [&](const TriangleBounds& b, std::int32_t pending) {
-        tiles_.for_each(tiles_.span(b.box), [&](std::size_t tile) {
-            envelope.include(tile, b.low, b.high);
+    const auto include = [&](const TileBounds& at, std::int32_t pending) {
+        tiles_.for_each(at.span, [&](std::size_t tile) {
+            envelope.include(tile, at.bounds.low, at.bounds.high);
             envelope.label[tile] = merged_label(envelope.label[tile], pending);
         });
     };
     for (std::size_t f = 0; f < whole_.size(); ++f) {
         poll(progress_, f);
-        include(bounds_of(geometry_, whole_[f].plane), whole_[f].pending);
+        include(whole_at_[f], whole_[f].pending);
     }
     for (std::size_t f = 0; f < parts_.size(); ++f) {
-        if (parts_.plane[f] >= 0) include(part_bounds(f), parts_.pending[f]);
+        if (parts_.plane[f] >= 0) include(part_at_[f], parts_.pending[f]);
     }
     return envelope;
 }
@@ -130,10 +164,10 @@ void BlockOverlay::classify_surface(const BlockLayer& layer, const EnvelopeTiles
     c.node.assign(layer.size(), kOutsideCell);
     parallel_chunks((layer.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
         for (std::size_t t = k * kChunk; t < std::min(layer.size(), (k + 1) * kChunk); ++t) {
-            const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
+            const TriangleBounds& b = surface_at_[t].bounds;
             double low = HUGE_VAL, high = -HUGE_VAL;
             std::int32_t label = kNoLabel;
-            const bool mixed = tiles_.any(tiles_.span(b.box), [&](std::size_t tile) {
+            const bool mixed = tiles_.any(surface_at_[t].span, [&](std::size_t tile) {
                 if (on_border_[tile] != 0) return true;
                 if (cover_[tile] == kOutsideOnly) {
                     low = -HUGE_VAL;
@@ -169,18 +203,16 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
         poll(progress_, t);
         if (c.surface[t] != Classified::kUnclear || c.label[t] < 0) continue;
         unclear.push_back(static_cast<std::int32_t>(t));
-        const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
-        tiles_.for_each(tiles_.span(b.box), [&](std::size_t tile) { is_wanted[tile] = 1; });
+        tiles_.for_each(surface_at_[t].span, [&](std::size_t tile) { is_wanted[tile] = 1; });
     }
     if (unclear.empty()) return;
     // whole facets first, then parts
     const TileBins bins(tiles_, is_wanted, [&](const auto& add) {
         for (std::size_t f = 0; f < whole_.size(); ++f)
-            add(static_cast<std::int32_t>(f),
-                tiles_.span(bounds_of(geometry_, whole_[f].plane).box));
+            add(static_cast<std::int32_t>(f), whole_at_[f].span);
         for (std::size_t f = 0; f < parts_.size(); ++f) {
             if (parts_.plane[f] >= 0)
-                add(static_cast<std::int32_t>(whole_.size() + f), tiles_.span(part_bounds(f).box));
+                add(static_cast<std::int32_t>(whole_.size() + f), part_at_[f].span);
         }
     });
     parallel_chunks(
@@ -188,16 +220,16 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
             for (std::size_t i = k * kChunk; i < std::min(unclear.size(), (k + 1) * kChunk); ++i) {
                 const auto t = static_cast<std::size_t>(unclear[i]);
                 const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
-                const PlanBox box = bounds_of(geometry_, plane).box;
+                const PlanBox& box = surface_at_[t].bounds.box;
                 bool below = true, above = true;
-                tiles_.any(tiles_.span(box), [&](std::size_t tile) {
+                tiles_.any(surface_at_[t].span, [&](std::size_t tile) {
                     return !bins.all(tile, [&](std::int32_t number) {
                         const auto f = static_cast<std::size_t>(number);
                         const bool is_whole = f < whole_.size();
                         const PlaneId facet =
                             is_whole ? whole_[f].plane : parts_.plane[f - whole_.size()];
-                        const PlanBox facet_box = is_whole ? bounds_of(geometry_, facet).box
-                                                           : part_bounds(f - whole_.size()).box;
+                        const PlanBox& facet_box =
+                            (is_whole ? whole_at_[f] : part_at_[f - whole_.size()]).bounds.box;
                         if (!box.meets(facet_box)) return true;
                         const Standing standing =
                             compare_over(geometry_, plane, facet, box, facet_box, margin_);
@@ -217,13 +249,13 @@ void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& 
     for (std::size_t t = 0; t < layer.size(); ++t) {
         poll(progress_, t);
         if (c.surface[t] != Classified::kUnclear) continue;
-        const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
-        tiles_.for_each(tiles_.span(b.box), [&](std::size_t tile) { is_unclear[tile] = 1; });
+        tiles_.for_each(surface_at_[t].span, [&](std::size_t tile) { is_unclear[tile] = 1; });
     }
-    const auto classify = [&](const TriangleBounds& b) {
+    const auto classify = [&](const TileBounds& at) {
+        const TriangleBounds& b = at.bounds;
         double low = HUGE_VAL, high = -HUGE_VAL;
         bool any_empty = false, any_rock = false, near_unclear = false;
-        const bool mixed = tiles_.any(tiles_.span(b.box), [&](std::size_t tile) {
+        const bool mixed = tiles_.any(at.span, [&](std::size_t tile) {
             if (on_border_[tile] != 0) return true;
             near_unclear |= is_unclear[tile] != 0;
             if (surface.is_empty[tile] != 0) {
@@ -244,12 +276,12 @@ void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& 
     c.whole.resize(whole_.size());
     parallel_chunks((whole_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
         for (std::size_t f = k * kChunk; f < std::min(whole_.size(), (k + 1) * kChunk); ++f)
-            c.whole[f] = classify(bounds_of(geometry_, whole_[f].plane));
+            c.whole[f] = classify(whole_at_[f]);
     });
     c.part.resize(parts_.size());
     parallel_chunks((parts_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
         for (std::size_t f = k * kChunk; f < std::min(parts_.size(), (k + 1) * kChunk); ++f)
-            c.part[f] = parts_.plane[f] < 0 ? Classified::kExact : classify(part_bounds(f));
+            c.part[f] = parts_.plane[f] < 0 ? Classified::kExact : classify(part_at_[f]);
     });
     compare_facets(layer, c);
 }
@@ -259,29 +291,29 @@ void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& 
 void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
     std::vector<std::uint8_t> is_wanted(tiles_.size(), 0);
     bool any = false;
-    const auto want = [&](const PlanBox& box) {
+    const auto want = [&](const TileBounds& at) {
         any = true;
-        tiles_.for_each(tiles_.span(box), [&](std::size_t tile) { is_wanted[tile] = 1; });
+        tiles_.for_each(at.span, [&](std::size_t tile) { is_wanted[tile] = 1; });
     };
     for (std::size_t f = 0; f < whole_.size(); ++f) {
-        if (c.whole[f] == Classified::kToCompare) want(bounds_of(geometry_, whole_[f].plane).box);
+        if (c.whole[f] == Classified::kToCompare) want(whole_at_[f]);
     }
     for (std::size_t f = 0; f < parts_.size(); ++f) {
-        if (c.part[f] == Classified::kToCompare) want(part_bounds(f).box);
+        if (c.part[f] == Classified::kToCompare) want(part_at_[f]);
     }
     if (!any) return;
     const TileBins bins(tiles_, is_wanted, [&](const auto& add) {
         for (std::size_t t = 0; t < layer.size(); ++t) {
-            add(static_cast<std::int32_t>(t),
-                tiles_.span(bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t)).box));
+            add(static_cast<std::int32_t>(t), surface_at_[t].span);
         }
     });
-    const auto compare = [&](PlaneId facet, const PlanBox& box) {
+    const auto compare = [&](PlaneId facet, const TileBounds& at) {
+        const PlanBox& box = at.bounds.box;
         bool below = true, above = true;
-        const bool unclear = tiles_.any(tiles_.span(box), [&](std::size_t tile) {
+        const bool unclear = tiles_.any(at.span, [&](std::size_t tile) {
             return !bins.all(tile, [&](std::int32_t t) {
                 const PlaneId plane = layer.first_plane + t;
-                const PlanBox other = bounds_of(geometry_, plane).box;
+                const PlanBox& other = surface_at_[static_cast<std::size_t>(t)].bounds.box;
                 if (!box.meets(other)) return true;
                 if (c.surface[static_cast<std::size_t>(t)] == Classified::kUnclear) return false;
                 const Standing standing =
@@ -297,13 +329,13 @@ void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
     parallel_chunks((whole_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
         for (std::size_t f = k * kChunk; f < std::min(whole_.size(), (k + 1) * kChunk); ++f) {
             if (c.whole[f] == Classified::kToCompare)
-                c.whole[f] = compare(whole_[f].plane, bounds_of(geometry_, whole_[f].plane).box);
+                c.whole[f] = compare(whole_[f].plane, whole_at_[f]);
         }
     });
     parallel_chunks((parts_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
         for (std::size_t f = k * kChunk; f < std::min(parts_.size(), (k + 1) * kChunk); ++f) {
             if (c.part[f] == Classified::kToCompare)
-                c.part[f] = compare(parts_.plane[f], part_bounds(f).box);
+                c.part[f] = compare(parts_.plane[f], part_at_[f]);
         }
     });
 }

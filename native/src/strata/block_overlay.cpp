@@ -50,18 +50,21 @@ std::array<PlaneId, 3> BlockOverlay::neighbours_of(PlaneId plane) const {
 }
 
 Polygon BlockOverlay::outline_of(PlaneId plane) {
-    const auto& corner = geometry_.plane(plane).corner;
-    PlanTriangle v;
-    for (std::size_t i = 0; i < 3; ++i)
-        v[i] = geometry_.space(corner[i]).plan;
-    const auto outline = triangle_outline(geometry_, v);
+    const auto outline = triangle_outline(geometry_, geometry_.plane(plane).plan);
     return {outline.begin(), outline.end()};
 }
 
-TriangleBounds BlockOverlay::part_bounds(std::size_t part) const {
-    const Scope scope(geometry_);
-    const TriangleBounds triangle = bounds_of(geometry_, parts_.plane[part]);
-    return {box_of(scope, parts_.outlines[part]), triangle.low, triangle.high};
+void BlockOverlay::add_outlines(std::span<const PlaneId> planes, PolygonPool& pool) {
+    constexpr std::size_t kAhead = 8;
+    for (std::size_t i = 0; i < planes.size() + kAhead; ++i) {
+        if (i < planes.size()) {
+            const auto& v = geometry_.plane(planes[i]).plan;
+            for (std::size_t j = 0; j < 3; ++j)
+                geometry_.prefetch_edge(v[j], v[(j + 1) % 3]);
+        }
+        if (i >= kAhead)
+            pool.add(triangle_outline(geometry_, geometry_.plane(planes[i - kAhead]).plan));
+    }
 }
 
 void BlockOverlay::start_region(const std::vector<PlanTriangle>& region,
@@ -90,7 +93,7 @@ void BlockOverlay::start_sky(const BlockLayer& layer) {
         poll(progress_, t);
         const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
         made_.is_exact[static_cast<std::size_t>(plane)] =
-            beside_border(bounds_of(geometry_, plane).box) ? 1 : 0;
+            beside_border(tiles_.span(bounds_of(geometry_, plane).box)) ? 1 : 0;
         whole_.push_back({plane, layer.number, kOutsideCell});
     }
 }
@@ -98,28 +101,27 @@ void BlockOverlay::start_sky(const BlockLayer& layer) {
 /// The triangles that may meet a facet looked at exactly, and where there are none at all.
 Layer BlockOverlay::needed_part(const BlockLayer& layer, Classified& c) {
     std::vector<std::uint8_t> is_needed(tiles_.size(), 0);
-    const auto need = [&](const PlanBox& box) {
-        tiles_.for_each(tiles_.span(box), [&](std::size_t tile) { is_needed[tile] = 1; });
+    const auto need = [&](const TileSpan& span) {
+        tiles_.for_each(span, [&](std::size_t tile) { is_needed[tile] = 1; });
     };
     for (std::size_t f = 0; f < whole_.size(); ++f) {
-        if (c.whole[f] == Classified::kExact) need(bounds_of(geometry_, whole_[f].plane).box);
+        if (c.whole[f] == Classified::kExact) need(whole_at_[f].span);
     }
     for (std::size_t f = 0; f < parts_.size(); ++f) {
-        if (c.part[f] == Classified::kExact && parts_.plane[f] >= 0) need(part_bounds(f).box);
+        if (c.part[f] == Classified::kExact && parts_.plane[f] >= 0) need(part_at_[f].span);
     }
     Layer part;
     c.polygon.assign(layer.size(), -1);
     for (std::size_t t = 0; t < layer.size(); ++t) {
         poll(progress_, t);
-        const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
-        const auto b = bounds_of(geometry_, plane);
         if (c.surface[t] != Classified::kUnclear &&
-            !tiles_.any(tiles_.span(b.box), [&](std::size_t tile) { return is_needed[tile] != 0; }))
+            !tiles_.any(surface_at_[t].span,
+                        [&](std::size_t tile) { return is_needed[tile] != 0; }))
             continue;
         c.polygon[t] = static_cast<std::int32_t>(part.plane.size());
-        part.polygons.add(outline_of(plane));
-        part.plane.push_back(plane);
+        part.plane.push_back(layer.first_plane + static_cast<PlaneId>(t));
     }
+    add_outlines(part.plane, part.polygons);
     for (const PlanTriangle& t : layer.empty) {
         part.polygons.add(triangle_outline(geometry_, t));
         part.plane.push_back(kVoid);
@@ -130,15 +132,21 @@ Layer BlockOverlay::needed_part(const BlockLayer& layer, Classified& c) {
 
 void BlockOverlay::overlay_exactly(const BlockLayer& layer, const Layer& part,
                                    const SurfaceTiles& surface, Classified& c) {
+    std::vector<PlaneId> planes;
+    for (std::size_t f = 0; f < whole_.size(); ++f) {
+        if (c.whole[f] == Classified::kExact) planes.push_back(whole_[f].plane);
+    }
+    PolygonPool outlines;
+    add_outlines(planes, outlines);
     ExactFacets exact;
     for (std::size_t f = 0; f < whole_.size(); ++f) {
         if (c.whole[f] != Classified::kExact) continue;
         const WholeFacet& facet = whole_[f];
         made_.is_exact[static_cast<std::size_t>(facet.plane)] = 1;
-        const Polygon outline = outline_of(facet.plane);
-        exact.facets.add_facet(outline, facet.plane, layer_of(facet.plane), facet.pending);
-        exact.facets.add_face(outline, facet.above);
-        exact.may_close.push_back(beside_border(bounds_of(geometry_, facet.plane).box) ? 0 : 1);
+        exact.facets.add_facet(outlines[exact.facets.size()], facet.plane, layer_of(facet.plane),
+                               facet.pending);
+        exact.facets.add_face(outlines[exact.facets.size() - 1], facet.above);
+        exact.may_close.push_back(beside_border(whole_at_[f].span) ? 0 : 1);
     }
     exact.whole = exact.facets.size();
     for (std::size_t f = 0; f < parts_.size(); ++f) {
@@ -146,15 +154,12 @@ void BlockOverlay::overlay_exactly(const BlockLayer& layer, const Layer& part,
         exact.facets.add_facet_of(parts_, f, parts_.pending[f]);
         bool complete = true;
         if (parts_.plane[f] < 0) {
-            const Scope scope(geometry_);
-            complete =
-                !tiles_.any(tiles_.span(box_of(scope, parts_.outlines[f])), [&](std::size_t tile) {
-                    return on_border_[tile] == 0 && surface.is_empty[tile] == 0;
-                });
+            complete = !tiles_.any(part_at_[f].span, [&](std::size_t tile) {
+                return on_border_[tile] == 0 && surface.is_empty[tile] == 0;
+            });
         }
         exact.is_complete.push_back(complete ? 1 : 0);
-        exact.may_close.push_back(parts_.plane[f] >= 0 && !beside_border(part_bounds(f).box) ? 1
-                                                                                             : 0);
+        exact.may_close.push_back(parts_.plane[f] >= 0 && !beside_border(part_at_[f].span) ? 1 : 0);
     }
     c.is_divided.assign(part.plane.size(), 0);
     const auto overlaid =
@@ -267,8 +272,7 @@ void BlockOverlay::add_surface(const BlockLayer& layer, const Layer& part, Class
         };
         // Beside a border the pieces stay apart, so that what stands there finds its foot.
         const bool alike =
-            !beside_border(bounds_of(geometry_, plane).box) &&
-            std::all_of(begin, end, [&](std::size_t i) {
+            !beside_border(surface_at_[t].span) && std::all_of(begin, end, [&](std::size_t i) {
                 return c.lowered[i].is_strict && block_above(i) == block_above(*begin);
             });
         if (c.is_divided[p] == 0 && alike) {
@@ -295,6 +299,7 @@ void BlockOverlay::add(std::int32_t number) {
         start_sky(layer);
         return;
     }
+    locate(layer);
     Classified c;
     SurfaceTiles surface(0);
     EnvelopeTiles envelope(0);
@@ -402,8 +407,7 @@ void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
     for (std::size_t t = 0; t < layer.size() && left > 0; ++t) {
         poll(progress_, t);
         if (c.surface[t] != Classified::kBelow) continue;
-        const auto b = bounds_of(geometry_, layer.first_plane + static_cast<PlaneId>(t));
-        tiles_.for_each(tiles_.span(b.box), [&](std::size_t tile) {
+        tiles_.for_each(surface_at_[t].span, [&](std::size_t tile) {
             if (is_awaited[tile] == 0) return;
             const auto range = std::equal_range(
                 waiting.begin(), waiting.end(), Waiting{tile, {}, 0},

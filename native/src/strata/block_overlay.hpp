@@ -21,6 +21,12 @@ struct TriangleBounds {
 };
 TriangleBounds bounds_of(const exact::PlanGeometry& geometry, PlaneId plane);
 
+/// The same, and the tiles that the box meets.
+struct TileBounds {
+    TriangleBounds bounds;
+    TileSpan span;
+};
+
 /// A triangle that is a facet of the envelope as a whole, with one face above it.
 struct WholeFacet {
     PlaneId plane;
@@ -76,6 +82,8 @@ public:
     std::array<PlaneId, 3> neighbours_of(PlaneId plane) const;
     /// A triangle's outline, its lines made where they are new.
     Polygon outline_of(PlaneId plane);
+    /// Adds those of several triangles.
+    void add_outlines(std::span<const PlaneId> planes, PolygonPool& pool);
 
     BlockConstruction& construction() { return made_; }
     const PlanTiles& tiles() const { return tiles_; }
@@ -86,6 +94,7 @@ private:
     struct EnvelopeTiles;
     struct Classified;
 
+    void locate(const BlockLayer& layer);
     SurfaceTiles surface_tiles(const BlockLayer& layer) const;
     EnvelopeTiles envelope_tiles() const;
     void start_sky(const BlockLayer& layer);
@@ -104,10 +113,11 @@ private:
         made_.node_block.push_back(block);
         return static_cast<std::int32_t>(made_.node_block.size()) - 1;
     }
-    TriangleBounds part_bounds(std::size_t part) const;
-    bool beside_border(const PlanBox& box) const {
-        return tiles_.any(tiles_.span(box),
-                          [&](std::size_t tile) { return on_border_[tile] != 0; });
+    TileBounds located(const TriangleBounds& bounds) const {
+        return {bounds, tiles_.span(bounds.box)};
+    }
+    bool beside_border(const TileSpan& span) const {
+        return tiles_.any(span, [&](std::size_t tile) { return on_border_[tile] != 0; });
     }
     std::int32_t block_of(std::int32_t node) const {
         return made_.node_block[static_cast<std::size_t>(node)];
@@ -124,6 +134,8 @@ private:
     bool started_ = false;
     std::vector<WholeFacet> whole_, next_whole_;
     Envelope parts_, next_parts_;  ///< facets that are parts of triangles; the sky, the outside
+    /// Of the triangles of the surface that is being added, and of the facets.
+    std::vector<TileBounds> surface_at_, whole_at_, part_at_;
     std::vector<std::uint8_t>
         cover_;  ///< of each tile without a border: what the envelope is there
 };
