@@ -29,6 +29,11 @@ void PlanGeometry::expect_vertices(std::size_t count) {
     space_table_.reserve(count);
 }
 
+void PlanGeometry::expect_planes(std::size_t count) {
+    planes_.reserve(count);
+    plane_filters_.reserve(count);
+}
+
 void PlanGeometry::expect_lines(std::size_t count) {
     lines_.reserve(count);
     line_table_.reserve(count);

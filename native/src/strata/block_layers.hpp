@@ -21,6 +21,9 @@ struct BlockLayer {
     std::vector<std::array<std::int32_t, 3>> neighbour;
     std::vector<PlanTriangle> empty;  ///< where in the frame the surface is not
     std::size_t size() const { return neighbour.size(); }
+    bool has(PlaneId plane) const {
+        return plane >= first_plane && plane < first_plane + static_cast<PlaneId>(size());
+    }
 };
 
 /// The region in triangles, and what lies around it.

@@ -348,11 +348,16 @@ void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
     const auto first_node = c.first_closed;
     const auto whole_count = c.closed_whole.size();
     DisjointParts sets(whole_count);
+    const BlockLayer* of_plane = nullptr;  // facets of one surface mostly follow each other
     for (std::size_t i = 0; i < whole_count; ++i) {
         poll(progress_, i);
         const PlaneId plane = c.closed_whole[i];
-        for (const PlaneId other : neighbours_of(plane)) {
-            if (other <= plane) continue;
+        if (of_plane == nullptr || !of_plane->has(plane))
+            of_plane = &layers_[static_cast<std::size_t>(layer_of(plane))];
+        for (const std::int32_t n :
+             of_plane->neighbour[static_cast<std::size_t>(plane - of_plane->first_plane)]) {
+            const PlaneId other = n + of_plane->first_plane;
+            if (n < 0 || other <= plane) continue;
             const std::int32_t node = made_.whole[static_cast<std::size_t>(other)].below;
             const std::int32_t j = node - first_node;
             const bool closed_now = node >= first_node &&
@@ -385,9 +390,14 @@ void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
     if (waiting.empty()) return;
     std::stable_sort(waiting.begin(), waiting.end(),
                      [](const Waiting& a, const Waiting& b) { return a.tile < b.tile; });
-    std::vector<std::uint8_t> is_awaited(tiles_.size(), 0);
-    for (const Waiting& w : waiting)
-        is_awaited[w.tile] = 1;
+    struct InTile {
+        std::size_t first = 0, left = 0;
+    };
+    std::vector<InTile> in_tile(tiles_.size());  // of those that wait
+    for (std::size_t w = waiting.size(); w-- > 0;) {
+        InTile& here = in_tile[waiting[w].tile];
+        here = {w, here.left + 1};
+    }
     std::vector<std::uint8_t> linked(waiting.size(), 0);
     std::size_t left = waiting.size();
     Scope scope(geometry_);
@@ -401,6 +411,7 @@ void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
             if (!clipper.overlap(waiting[w].outline, triangle)) continue;
             made_.links.emplace_back(waiting[w].node, c.node[t]);
             linked[w] = 1;
+            --in_tile[waiting[w].tile].left;
             --left;
         }
     };
@@ -408,12 +419,12 @@ void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
         poll(progress_, t);
         if (c.surface[t] != Classified::kBelow) continue;
         tiles_.for_each(surface_at_[t].span, [&](std::size_t tile) {
-            if (is_awaited[tile] == 0) return;
-            const auto range = std::equal_range(
-                waiting.begin(), waiting.end(), Waiting{tile, {}, 0},
-                [](const Waiting& a, const Waiting& d) { return a.tile < d.tile; });
-            link(t, static_cast<std::size_t>(range.first - waiting.begin()),
-                 static_cast<std::size_t>(range.second - waiting.begin()));
+            if (in_tile[tile].left == 0) return;
+            const std::size_t first = in_tile[tile].first;
+            std::size_t end = first;
+            while (end < waiting.size() && waiting[end].tile == tile)
+                ++end;
+            link(t, first, end);
         });
     }
     // where rounding put a middle into another tile

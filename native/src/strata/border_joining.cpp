@@ -49,21 +49,50 @@ struct Mesh {
     }
 };
 
-/// The edges that one triangle only has in plan, ascending.
-std::vector<PlanEdge> border_of(const Mesh& mesh, const Progress* progress) {
-    std::vector<std::array<std::int32_t, 2>> once;
+/// The edges that one triangle only has, by vertex numbers, the lower first.
+std::vector<std::array<std::int32_t, 2>> single_edges(const Mesh& mesh, const Progress* progress) {
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    triangles.reserve(mesh.size());
+    std::vector<std::int32_t> offsets(mesh.vertices.size() / mesh.columns + 1, 0);
+    const auto lower = [](const std::array<std::int32_t, 3>& v, std::size_t i) {
+        return static_cast<std::size_t>(std::min(v[i], v[(i + 1) % 3]));
+    };
     for (std::size_t t = 0; t < mesh.size(); ++t) {
         poll(progress, t);
         const auto v = mesh.corners(t);
         if (!v) continue;
+        triangles.push_back(*v);
+        for (std::size_t i = 0; i < 3; ++i)
+            ++offsets[lower(*v, i) + 1];
+    }
+    for (std::size_t i = 1; i < offsets.size(); ++i)
+        offsets[i] += offsets[i - 1];
+    std::vector<std::int32_t> higher(3 * triangles.size());
+    std::vector<std::int32_t> free(offsets.begin(), offsets.end() - 1);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        poll(progress, t);
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::int32_t a = (*v)[i], b = (*v)[(i + 1) % 3];
-            once.push_back({std::min(a, b), std::max(a, b)});
+            const auto& v = triangles[t];
+            higher[static_cast<std::size_t>(free[lower(v, i)]++)] = std::max(v[i], v[(i + 1) % 3]);
         }
     }
+    std::vector<std::array<std::int32_t, 2>> single;
+    std::vector<std::int32_t> of_vertex;
+    for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
+        poll(progress, i);
+        of_vertex.assign(higher.begin() + offsets[i], higher.begin() + offsets[i + 1]);
+        std::sort(of_vertex.begin(), of_vertex.end());
+        keep_single(of_vertex);
+        for (const std::int32_t other : of_vertex)
+            single.push_back({static_cast<std::int32_t>(i), other});
+    }
+    return single;
+}
+
+/// The edges that one triangle only has in plan, ascending.
+std::vector<PlanEdge> border_of(const Mesh& mesh, const Progress* progress) {
     // first by number, which leaves few; then by place, for vertices that are given several times
-    std::sort(once.begin(), once.end());
-    keep_single(once);
+    const auto once = single_edges(mesh, progress);
     std::vector<PlanEdge> edges;
     for (const auto& [a, b] : once)
         edges.push_back(edge_between(mesh.position(a), mesh.position(b)));

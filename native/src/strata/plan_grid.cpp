@@ -195,8 +195,8 @@ PlanGrid::PlanGrid(const exact::PlanGeometry& geometry, const PolygonPool& polyg
                     });
     cells = std::max(cells, polygons.size());
     inner_.fill(geometry, polygons, boxes_, inner, cells, threads, progress);
-    // fans of needles around the border: fine cells keep them apart
-    outer_.fill(geometry, polygons, boxes_, outer, cells, threads, progress);
+    // fans of needles around the border: finer cells keep them apart, but each is in many
+    outer_.fill(geometry, polygons, boxes_, outer, 8 * outer.size(), threads, progress);
 }
 
 void PlanGrid::candidates(const Scope& scope, PolygonView polygon,

@@ -351,12 +351,15 @@ CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping&
     site.progress = progress;
     std::vector<Warning> warnings;
     std::vector<EnteredRock> entered;
-    std::size_t vertices = 0;
+    std::size_t vertices = 0, triangles = 0;
     for (const StackInput& rock : rocks) {
-        for (const SurfaceView& surface : rock.surfaces)
+        for (const SurfaceView& surface : rock.surfaces) {
             vertices += surface.vertices.size() / 3;
+            triangles += surface.triangles.size() / 3;
+        }
     }
     site.geometry.expect_vertices(vertices);
+    site.geometry.expect_planes(triangles + rocks.size());
     std::int32_t surfaces = 0;
     for (const StackInput& rock : rocks) {
         entered.push_back(

@@ -159,8 +159,9 @@ public:
     PlanGeometry(const PlanGeometry&) = delete;
     PlanGeometry& operator=(const PlanGeometry&) = delete;
 
-    /// Makes room for so many vertices, or lines.
+    /// Makes room for so many vertices, planes, or lines.
     void expect_vertices(std::size_t count);
+    void expect_planes(std::size_t count);
     void expect_lines(std::size_t count);
     /// The vertex at (x, y), made where it is new. All vertices come before the first crossing.
     VertexId add_vertex(double x, double y);
