@@ -30,12 +30,27 @@ def register():
         for part in reversed(done):
             part.unregister()
         raise
+    _at_exit(True)
 
 
 def unregister():
     """Called by Blender when the add-on is disabled; nothing stays: no class, property, handler, timer."""
+    _at_exit(False)
     from . import handlers, operators, props, ui
     from .bl import display
 
     for part in (handlers, display, ui, operators, props):
         part.unregister()
+
+
+def _at_exit(wanted):
+    """Blender disables its add-ons when it ends; as the module bpy it does not, and then takes a minute to
+    free what they have registered."""
+    import atexit
+
+    import bpy
+
+    if getattr(bpy.app, "module", False):
+        atexit.unregister(unregister)
+        if wanted:
+            atexit.register(unregister)

@@ -5,7 +5,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import versioning
-from .bl import built_models, display, live, project_settings, stored_arrays, stored_project
+from .bl import built_models, display, live, project_settings, region_size, stored_arrays, stored_project
 from .core import RealModelError
 
 
@@ -97,5 +97,6 @@ def unregister():
         if handler in registered:
             registered.remove(handler)
     live.stop()
+    region_size.stop()
     built_models.forget()
     stored_arrays.forget()

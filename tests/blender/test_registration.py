@@ -12,15 +12,17 @@ def traces():
     handlers = {name: [f.__module__ for f in registered] for name, registered in _handler_lists()}
     classes = sorted(
         cls.__name__
-        for base in (bpy.types.Operator, bpy.types.Panel, bpy.types.UIList, bpy.types.PropertyGroup)
+        for base in (
+            bpy.types.Operator,
+            bpy.types.Panel,
+            bpy.types.UIList,
+            bpy.types.PropertyGroup,
+            bpy.types.Menu,
+        )
         for cls in base.__subclasses__()
         if cls.is_registered and cls.__module__.startswith("realmodel")
     )
-    menus = [
-        getattr(f, "__module__", "")
-        for menu in (bpy.types.TOPBAR_MT_file_import, bpy.types.TOPBAR_MT_file_export)
-        for f in menu._dyn_ui_initialize()
-    ]
+    menus = [getattr(f, "__module__", "") for menu in _MENUS for f in menu._dyn_ui_initialize()]
     properties = [hasattr(t, "realmodel") for t in (bpy.types.Scene, bpy.types.WindowManager)]
     return handlers, classes, menus, properties, dir(bpy.ops.realmodel)
 
@@ -30,6 +32,9 @@ def _handler_lists():
         registered = getattr(bpy.app.handlers, name)
         if isinstance(registered, list):
             yield name, registered
+
+
+_MENUS = (bpy.types.TOPBAR_MT_file_import, bpy.types.TOPBAR_MT_file_export, bpy.types.VIEW3D_MT_view)
 
 
 class Registration(unittest.TestCase):

@@ -56,10 +56,11 @@ def prepare(model, composed):
     surface = 0
     for r, rock in enumerate(model.project.rocks):
         for s in range(len(rock.surfaces)):
-            vertices, triangles = model.surface(surface)
-            given = offsets_from(origin, vertices)
-            triangles = meshes.without_repeated_corners(triangles)
-            prepared.interfaces[r, s] = (given, triangles, shapes.digest(given, triangles))
+            if not composed.from_object(r, s):
+                vertices, triangles = model.surface(surface)
+                given = offsets_from(origin, vertices)
+                triangles = meshes.without_repeated_corners(triangles)
+                prepared.interfaces[r, s] = (given, triangles, shapes.digest(given, triangles))
             surface += 1
     for number, block in enumerate(model.blocks):
         shell = model.block_boundary(number) if block.cells else None
@@ -161,11 +162,11 @@ def _new_interfaces(current, prepared, composed, created):
     found = {}
     for r, rock in enumerate(current.realmodel.rocks):
         for s, row in enumerate(rock.surfaces):
-            given, triangles, digest = prepared.interfaces[r, s]
             own = row.object if row.source == "MESH_OBJECT" else row.interface
-            if own is not None and (row.source == "MESH_OBJECT" or (r, s) in composed.edited):
+            if composed.from_object(r, s):
                 found[r, s] = (own, None, "")
                 continue
+            given, triangles, digest = prepared.interfaces[r, s]
             mesh = None
             if own is None or digest != row.interface_digest:
                 mesh = meshes.triangle_mesh(row.name, given, triangles)
@@ -277,7 +278,8 @@ def _place_blocks(current, prepared, tree, blocks, palette):
             continue
         item, mesh = made
         if mesh is None:
-            meshes.refill(item.data, *arrays)
+            if not meshes.holds(item.data, arrays[0], arrays[2]):
+                meshes.refill(item.data, *arrays)
         elif item.data != mesh:
             _change_mesh(item, mesh)
         _give_material(item, palette[int(block.property)])

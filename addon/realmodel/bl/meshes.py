@@ -60,6 +60,18 @@ def refill(mesh, coordinates, offsets, corners, face_surface=None):
     _fill(mesh, coordinates, offsets, corners, face_surface)
 
 
+def holds(mesh, coordinates, corners):
+    """Whether a mesh has these vertices and corners of polygons already: to look is a third of the work of
+    filling it."""
+    if len(mesh.vertices) != len(coordinates) or len(mesh.loops) != len(corners):
+        return False
+    if not np.array_equal(mesh_coordinates(mesh), coordinates):
+        return False
+    found = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", found)
+    return np.array_equal(found, corners)
+
+
 def _fill(mesh, coordinates, offsets, corners, face_surface):
     versions.fill_mesh(
         mesh,

@@ -32,6 +32,11 @@ class Composed:
     origin_is_free: bool
     read: dict = field(default_factory=dict)
     edited: list = field(default_factory=list)
+    objects: set = field(default_factory=set)
+
+    def from_object(self, rock, surface):
+        """Whether a surface is a mesh object of the scene just as it stands."""
+        return (rock, surface) in self.objects
 
 
 def model_origin(scene):
@@ -132,12 +137,13 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
     if row.source == "NONE":
         return
     if row.source in ("POINTS_OBJECT", "MESH_OBJECT"):
-        _from_object(composed, surface, row, depsgraph)
+        _from_object(composed, place, surface, row, depsgraph)
         return
     if row.interface_digest and in_use(row.interface):
         given, triangles = shapes.triangulation(row.interface, depsgraph)
         if shapes.digest(given, triangles) != row.interface_digest:
             composed.edited.append(place)
+            composed.objects.add(place)
             base = _made_of(scene, place, row)
             _take_mesh(composed, surface, row.interface, given, triangles, base)
             return
@@ -162,18 +168,24 @@ def _take_stored(surface, text):
         setattr(surface, key, array)
 
 
-def _from_object(composed, surface, row, depsgraph):
+def _from_object(composed, place, surface, row, depsgraph):
     if row.object is None:
         if row.source == "MESH_OBJECT" and row.stored_mesh:
             _take_stored(surface, row.stored_mesh)
             return
         raise InputRefused("it has no object", advice="choose the object that gives its shape")
+    if not in_use(row.object) and row.object.modifiers:
+        raise InputRefused(
+            f"object '{row.object.name}' was deleted from the scene",
+            advice="undo that, or choose another object",
+        )
     if row.source == "POINTS_OBJECT":
         surface.points = shapes.points(row.object, depsgraph) + composed.origin
         if not len(surface.points):
             raise InputRefused(f"object '{row.object.name}' has no vertices", advice="choose another object")
         return
     given, triangles = shapes.triangulation(row.object, depsgraph)
+    composed.objects.add(place)
     base = stored_arrays.unpack(row.stored_mesh) if row.stored_mesh else {}
     _take_mesh(composed, surface, row.object, given, triangles, base)
 

@@ -3,6 +3,7 @@
 
 import math
 
+import bpy
 import numpy as np
 
 from ..core import RealModelError
@@ -19,6 +20,27 @@ def expected_triangles(row):
         return None
     equilateral = math.sqrt(3.0) / 4.0 * row.edge_length**2
     return row.region_area / (_AREA_SHARE.get(row.mesher, 1.0) * equilateral)
+
+
+def ask():
+    """Has all regions measured that have not been, as soon as Blender lets data be changed: a panel that is
+    being drawn may not."""
+    if not bpy.app.timers.is_registered(_measure_all):
+        bpy.app.timers.register(_measure_all, first_interval=0.0)
+
+
+def stop():
+    """Ends what was asked for: the add-on is disabled."""
+    if bpy.app.timers.is_registered(_measure_all):
+        bpy.app.timers.unregister(_measure_all)
+
+
+def _measure_all():
+    for scene in bpy.data.scenes:
+        for row in scene.realmodel.rocks:
+            if row.region_area < 0.0 and scene.library is None:
+                layer = scene.view_layers[0]
+                measure(scene, row, layer.depsgraph)
 
 
 def measure(scene, row, depsgraph):

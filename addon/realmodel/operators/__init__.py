@@ -22,3 +22,13 @@ def unregister():
             module.unregister()
         for cls in reversed(module.CLASSES):
             bpy.utils.unregister_class(cls)
+
+
+def by_module():
+    """The operators of each module, for menus; those that make sense inside others only are left out."""
+    for module in _MODULES:
+        yield [
+            cls
+            for cls in module.CLASSES
+            if issubclass(cls, bpy.types.Operator) and "INTERNAL" not in getattr(cls, "bl_options", ())
+        ]

@@ -8,6 +8,7 @@ from bpy.props import EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..bl import built_scene, live, project_settings, samples, settings
+from ..bl.origin import KEY as ORIGIN_KEY
 from ..core import InputRefused, load_project
 from ..core.project_writer import save_project
 from .reporting import Reporting, needed_path
@@ -121,10 +122,11 @@ class REALMODEL_OT_from_selected(Reporting, bpy.types.Operator):
             raise InputRefused("no mesh object is selected", advice="select the surfaces of your model first")
         ordered = project_settings.oldest_first(chosen, depsgraph)
         scene = context.scene
-        origin = scene.get("realmodel_origin")
+        origin = project_settings.model_origin(scene)  # the objects stand where it says
+        had_one = ORIGIN_KEY in scene
         _begin(scene, "Model")
-        if origin is not None:
-            scene["realmodel_origin"] = origin
+        if had_one:
+            scene[ORIGIN_KEY] = [float(value) for value in origin]
         with settings.filling():
             rock = scene.realmodel.rocks.add()
             rock.name = "rock mass"

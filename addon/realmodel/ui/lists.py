@@ -12,8 +12,9 @@ class REALMODEL_UL_rocks(bpy.types.UIList):
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name):
         row = layout.row(align=True)
         row.prop(item, "name", text="", emboss=False, icon="OUTLINER_OB_VOLUME")
-        count = len(item.surfaces)
-        row.label(text=f"{count} surface{'' if count == 1 else 's'}")
+        count = row.row()
+        count.alignment = "RIGHT"
+        count.label(text=str(len(item.surfaces)))
 
 
 class REALMODEL_UL_surfaces(bpy.types.UIList):
@@ -27,7 +28,8 @@ class REALMODEL_UL_surfaces(bpy.types.UIList):
             swatch.scale_x = 0.3
             swatch.prop(entry, "color", text="")
         row.prop(item, "name", text="", emboss=False)
-        row.label(text=item.bl_rna.properties["rule"].enum_items[item.rule].name)
+        if item.rule != "erosional":
+            row.label(text=item.bl_rna.properties["rule"].enum_items[item.rule].name)
         row.prop(item, "hide", text="", emboss=False, icon="HIDE_ON" if item.hide else "HIDE_OFF")
 
     def filter_items(self, _context, data, name):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What all panels of the tab share."""
 
+import bpy
+
 
 class TabPanel:
     """A panel in the tab RealModel of the sidebar."""
@@ -24,8 +26,17 @@ def hint(layout, text):
         column.label(text=line)
 
 
-def wrapped(text, width=38):
-    """The lines of a text, none longer than about the width of the sidebar."""
+def _letters():
+    """How many letters fit into a line of the sidebar that is being drawn."""
+    region = bpy.context.region
+    if region is None:
+        return 40
+    return max(16, int((region.width / bpy.context.preferences.system.ui_scale - 45) / 5.9))
+
+
+def wrapped(text, width=None):
+    """The lines of a text, none longer than about the width of the sidebar (or `width` letters)."""
+    width = width or _letters()
     lines, line = [], ""
     for word in text.split():
         if line and len(line) + 1 + len(word) > width:

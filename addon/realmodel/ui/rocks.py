@@ -30,6 +30,8 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
             if rock.region_stored and not rock.region_file:
                 hint(layout, "Its outline is kept in this file.")
         layout.prop(rock, "edge_length")
+        if rock.region_area < 0.0:
+            region_size.ask()
         count = region_size.expected_triangles(rock)
         if count is not None:
             hint(layout, f"gives about {_rounded(count):,} triangles a surface")

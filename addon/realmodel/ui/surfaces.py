@@ -32,7 +32,7 @@ class REALMODEL_PT_surfaces(TabPanel, bpy.types.Panel):
                 layout,
                 "No surface yet. Begin with the oldest: from a file of points or a mesh, or from a mesh.",
             )
-        line = layout.row(align=True)
+        line = layout.column(align=True)
         line.operator("realmodel.surface_add", text="Add from File...", icon="FILE_FOLDER")
         line.operator("realmodel.surface_add", text="Add Active Mesh", icon="OBJECT_DATA").use_object = True
         surface = settings.active_surface(context.scene)

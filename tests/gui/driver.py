@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A person in front of Blender's window: mouse, keyboard, eyes.
+
+Steps are generators. They yield a condition - a function without arguments - and go on when it holds, however
+slow the machine is; a condition that does not hold in time ends the walk.
+"""
+
+import time
+import traceback
+
+import bpy
+import numpy as np
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+from mathutils import Vector
+
+PATIENCE = 60.0  # seconds for one condition
+LOOK = 0.02
+
+_KEYS = {" ": "SPACE", ".": "PERIOD", "-": "MINUS"}
+_DIGITS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
+
+
+class Walk:
+    """Runs steps in a window; `pictures` are the screenshots taken on the way."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.pictures = []
+        self.passed = []
+        self.failure = None
+        self._draws = 0
+
+    # -- running
+
+    def run(self, steps, at_end):
+        """steps: (name, generator function of the walk) in their order. at_end(walk) is called at the end."""
+        bpy.types.SpaceView3D.draw_handler_add(self._drawn, (), "WINDOW", "POST_PIXEL")
+        self._steps = iter(steps)
+        self._at_end = at_end
+        self._generator = None
+        self._condition = None
+        bpy.app.timers.register(self._tick, first_interval=0.5)
+
+    def _drawn(self):
+        self._draws += 1
+
+    def _tick(self):
+        try:
+            going_on = self._advance()
+        except BaseException:
+            self.failure = f"{self._name}: {traceback.format_exc()}"
+            going_on = False
+        if going_on:
+            return LOOK
+        self._at_end(self)
+        return None
+
+    def _advance(self):
+        if self._condition is not None:
+            if not self._condition():
+                if time.monotonic() > self._deadline:
+                    self.shot("failed")
+                    raise TimeoutError(f"waited {PATIENCE:.0f} s in vain at line {self._line()}")
+                return True
+            self._condition = None
+        if self._generator is None:
+            step = next(self._steps, None)
+            if step is None:
+                return False
+            self._name, function = step
+            self._generator = function(self)
+        try:
+            self._condition = next(self._generator)
+        except StopIteration:
+            self._generator = None
+            self.passed.append(self._name)
+            print(f"walk: {self._name}: ok", flush=True)
+        self._deadline = time.monotonic() + PATIENCE
+        return True
+
+    def _line(self):
+        frame = self._generator.gi_frame
+        while self._generator.gi_yieldfrom is not None and hasattr(self._generator.gi_yieldfrom, "gi_frame"):
+            return f"{frame.f_lineno}, {self._generator.gi_yieldfrom.gi_frame.f_lineno}"
+        return frame.f_lineno
+
+    # -- places
+
+    @property
+    def window(self):
+        return bpy.context.window_manager.windows[0]
+
+    @property
+    def area(self):
+        return next(a for a in self.window.screen.areas if a.type == "VIEW_3D")
+
+    def region(self, kind):
+        return next(r for r in self.area.regions if r.type == kind)
+
+    def pixel_of(self, place):
+        """Window pixel of a place (object coordinates of the world) in the 3D viewport."""
+        region = self.region("WINDOW")
+        at = location_3d_to_region_2d(region, self.area.spaces.active.region_3d, Vector(place))
+        return int(at.x) + region.x, int(at.y) + region.y
+
+    # -- hands
+
+    def move(self, x, y):
+        self._at = (int(x), int(y))
+        self.window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=self._at[0], y=self._at[1])
+
+    def click(self, x, y, button="LEFTMOUSE"):
+        self.move(x, y)
+        for value in ("PRESS", "RELEASE"):
+            self.window.event_simulate(type=button, value=value, x=self._at[0], y=self._at[1])
+
+    def key(self, name, **modifiers):
+        x, y = self._at
+        for value in ("PRESS", "RELEASE"):
+            self.window.event_simulate(type=name, value=value, x=x, y=y, **modifiers)
+
+    def write(self, text):
+        x, y = self._at
+        for letter in text:
+            key = _DIGITS[int(letter)] if letter.isdigit() else _KEYS.get(letter, letter.upper())
+            for value, unicode in (("PRESS", letter), ("RELEASE", None)):
+                self.window.event_simulate(type=key, value=value, unicode=unicode, x=x, y=y)
+
+    def over_viewport(self):
+        region = self.region("WINDOW")
+        self.move(region.x + region.width * 0.4, region.y + region.height * 0.5)
+
+    # -- eyes
+
+    def redrawn(self, times=2):
+        """A condition: the viewport has been drawn anew."""
+        before = self._draws
+
+        def drawn():
+            if self._draws >= before + times:
+                return True
+            for area in self.window.screen.areas:
+                area.tag_redraw()
+            return False
+
+        return drawn
+
+    def shot(self, name):
+        """A screenshot of the window, kept as NN_name.png; returns (height, width, 3) from 0 to 1, the bottom
+        row first."""
+        path = self.folder / f"{len(self.pictures):02d}_{name}.png"
+        with bpy.context.temp_override(window=self.window, screen=self.window.screen, area=self.area):
+            bpy.ops.screen.screenshot(filepath=str(path))
+        self.pictures.append(path)
+        return read_picture(path)
+
+    def colour_at(self, picture, place, size=3):
+        """Mean colour of a screenshot around where a place of the scene is drawn."""
+        x, y = self.pixel_of(place)
+        return picture[y - size : y + size + 1, x - size : x + size + 1].reshape(-1, 3).mean(axis=0)
+
+
+def read_picture(path):
+    """(height, width, 3) from 0 to 1, the bottom row first."""
+    image = bpy.data.images.load(str(path))
+    try:
+        width, height = image.size
+        flat = np.empty(width * height * image.channels, np.float32)
+        image.colorspace_settings.name = "Non-Color"
+        image.pixels.foreach_get(flat)
+    finally:
+        bpy.data.images.remove(image)
+    return flat.reshape(height, width, -1)[:, :, :3].copy()
+
+
+def hue_differs(first, second):
+    """How far apart two colours are, whatever the light: 0 the same hue, 1 as far as can be."""
+    first, second = (np.asarray(c, float) - min(c) + 1e-6 for c in (first, second))
+    return float(1.0 - first @ second / np.linalg.norm(first) / np.linalg.norm(second))
