@@ -3,29 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
-#include <tuple>
 
 #include "parallel_chunks.hpp"
+#include "track_curves.hpp"
 
 namespace realmodel::strata {
 
 using exact::PlanGeometry;
 
 namespace {
-
-/// A face edge over one interval of a track: a straight line in height between two verticals.
-struct Curve {
-    std::int32_t interval;
-    bool left;                  ///< the face lies left of the track
-    std::int32_t start, end;    ///< vertices on the two verticals; ascending means rising
-    std::int32_t layer;         ///< of equal curves on one side the younger is the upper
-    std::int32_t above, below;  ///< nodes
-    PlaneId plane;
-
-    std::pair<std::int32_t, std::int32_t> height() const { return {start, end}; }
-};
 
 struct ContactBatch {
     explicit ContactBatch(const PlanGeometry& geometry) : scope(geometry) {}
@@ -39,55 +26,27 @@ public:
     TrackComparison(const FaceList& faces, const std::vector<std::int32_t>& node_block,
                     const Tracks& tracks, const Loops& loops, const PlanTiles& tiles,
                     const std::vector<std::uint8_t>& on_border, ContactBatch& batch)
-        : faces_(faces),
-          node_block_(node_block),
-          tracks_(tracks),
+        : node_block_(node_block),
           loops_(loops),
           tiles_(tiles),
           on_border_(on_border),
+          curves_(faces, tracks, loops),
           batch_(batch) {}
 
     void process(std::size_t track) {
-        collect(track);
-        for (std::size_t i = 0; i < curves_.size();) {
-            std::size_t end = i + 1;
-            while (end < curves_.size() && curves_[end].interval == curves_[i].interval)
-                ++end;
-            if (may_have_walls(curves_[i])) {
-                compare_columns(track, i, end);
+        curves_.collect(track);
+        for (std::size_t i = 0; i < curves_.intervals(); ++i) {
+            const std::span<const Curve> curves = curves_.of_interval(i);
+            if (curves.empty()) continue;
+            if (may_have_walls(curves.front())) {
+                compare_columns(track, i, curves);
             } else {
-                continue_faces(i, end);
+                continue_faces(curves);
             }
-            i = end;
         }
     }
 
 private:
-    void collect(std::size_t track) {
-        curves_.clear();
-        for (auto i = tracks_.edge_offsets[track]; i < tracks_.edge_offsets[track + 1]; ++i) {
-            const TrackEdge& edge = tracks_.edges[i];
-            const auto face = static_cast<std::size_t>(edge.face);
-            const bool left = edge.from < edge.to;
-            const std::int32_t steps = std::abs(edge.to - edge.from);
-            std::uint32_t entry = loops_.edge_begin[edge.corner];
-            std::int32_t vertex = loops_.vertices[entry];
-            for (std::int32_t s = 0; s < steps; ++s) {
-                ++entry;
-                if (entry == loops_.face_offsets[face + 1]) entry = loops_.face_offsets[face];
-                const std::int32_t next = loops_.vertices[entry];
-                curves_.push_back({left ? edge.from + s : edge.from - s - 1, left,
-                                   left ? vertex : next, left ? next : vertex, faces_.layer[face],
-                                   faces_.above[face], faces_.below[face], faces_.plane[face]});
-                vertex = next;
-            }
-        }
-        std::sort(curves_.begin(), curves_.end(), [](const Curve& a, const Curve& b) {
-            return std::tuple(a.interval, a.start, a.end, a.left, a.layer) <
-                   std::tuple(b.interval, b.start, b.end, b.left, b.layer);
-        });
-    }
-
     bool may_have_walls(const Curve& curve) const {
         const auto& p = loops_.positions[static_cast<std::size_t>(curve.start)];
         const auto& q = loops_.positions[static_cast<std::size_t>(curve.end)];
@@ -107,49 +66,40 @@ private:
 
     /// No wall: what is above the uppermost face at a height, and what is below the lowest one,
     /// goes on beyond the track.
-    void continue_faces(std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end;) {
+    void continue_faces(std::span<const Curve> curves) {
+        for (std::size_t i = 0; i < curves.size();) {
             std::size_t right = i;  // the first curve to the left of the track at this height
-            while (right < end && curves_[right].height() == curves_[i].height() &&
-                   !curves_[right].left)
+            while (right < curves.size() && curves[right].as_high_as(curves[i]) &&
+                   !curves[right].left)
                 ++right;
             std::size_t level = right;
-            while (level < end && curves_[level].height() == curves_[i].height())
+            while (level < curves.size() && curves[level].as_high_as(curves[i]))
                 ++level;
             if (i < right && right < level) {
-                link(curves_[right - 1].above, curves_[level - 1].above);
-                link(curves_[i].below, curves_[right].below);
+                link(curves[right - 1].above, curves[level - 1].above);
+                link(curves[i].below, curves[right].below);
             }
             i = level;
         }
     }
 
-    void compare_columns(std::size_t track, std::size_t begin, std::size_t end) {
-        bool crossed = false;
-        for (std::size_t i = begin; i < end; ++i) {
-            for (std::size_t j = i + 1; j < end; ++j) {
-                if (curves_[i].start < curves_[j].start && curves_[i].end > curves_[j].end) {
-                    const LineId line = tracks_.representative[track];
-                    const LineId trace =
-                        exact::line_of(batch_.scope.trace(curves_[i].plane, curves_[j].plane));
-                    batch_.found.missing.push_back({line, batch_.scope.crossing(line, trace)});
-                    crossed = true;
-                }
-            }
-        }
-        if (crossed) return;
-        std::int32_t left = below_all(begin, end, true), right = below_all(begin, end, false);
-        for (std::size_t i = begin; i < end;) {
+    void compare_columns(std::size_t track, std::size_t interval, std::span<const Curve> curves) {
+        const std::size_t known = batch_.found.missing.size();
+        curves_.find_crossings(track, curves, batch_.scope, batch_.found.missing);
+        if (batch_.found.missing.size() > known) return;
+        std::int32_t left = TrackCurves::below_all(curves, true);
+        std::int32_t right = TrackCurves::below_all(curves, false);
+        for (std::size_t i = 0; i < curves.size();) {
             std::size_t level = i;  // past the curves at this height
-            for (; level < end && curves_[level].height() == curves_[i].height(); ++level) {
-                (curves_[level].left ? left : right) = curves_[level].above;
+            for (; level < curves.size() && curves[level].as_high_as(curves[i]); ++level) {
+                (curves[level].left ? left : right) = curves[level].above;
             }
-            if (level == end) break;
+            if (level == curves.size()) break;
             if (block(left) != block(right)) {
                 batch_.found.walls.push_back({static_cast<std::int32_t>(track),
-                                              curves_[i].interval,
-                                              {curves_[i].start, curves_[i].end},
-                                              {curves_[level].start, curves_[level].end},
+                                              static_cast<std::int32_t>(interval),
+                                              {curves[i].start, curves[i].end},
+                                              {curves[level].start, curves[level].end},
                                               left,
                                               right});
             } else {
@@ -159,21 +109,12 @@ private:
         }
     }
 
-    std::int32_t below_all(std::size_t begin, std::size_t end, bool left) const {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (curves_[i].left == left) return curves_[i].below;
-        }
-        return kOutsideCell;
-    }
-
-    const FaceList& faces_;
     const std::vector<std::int32_t>& node_block_;
-    const Tracks& tracks_;
     const Loops& loops_;
     const PlanTiles& tiles_;
     const std::vector<std::uint8_t>& on_border_;
+    TrackCurves curves_;
     ContactBatch& batch_;
-    std::vector<Curve> curves_;
 };
 
 }  // namespace
@@ -277,18 +218,8 @@ Walls join_walls(const std::vector<WallStretch>& stretches,
     }
     Walls walls;
     for (const OpenWall& wall : open) {
-        const auto add = [&](std::int32_t v) {
-            if (is_needed[static_cast<std::size_t>(v)] != 0) walls.vertices.push_back(v);
-        };
-        std::for_each(wall.lower.begin(), wall.lower.end(), add);
-        // up the far vertical and down the near one, through every vertex on them
-        for (std::int32_t v = wall.lower.back() + 1; v < wall.upper.back(); ++v)
-            add(v);
-        const std::ptrdiff_t skip = wall.upper.back() == wall.lower.back() ? 1 : 0;
-        const std::ptrdiff_t keep = wall.upper.front() == wall.lower.front() ? 1 : 0;
-        std::for_each(wall.upper.rbegin() + skip, wall.upper.rend() - keep, add);
-        for (std::int32_t v = wall.upper.front() - 1; v > wall.lower.front(); --v)
-            add(v);
+        add_wall_loop(wall.lower, wall.upper, walls.vertices,
+                      [&](std::int32_t v) { return is_needed[static_cast<std::size_t>(v)] != 0; });
         walls.offsets.push_back(static_cast<std::int64_t>(walls.vertices.size()));
         walls.cells.push_back({wall.left, wall.right});
     }
