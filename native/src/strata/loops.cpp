@@ -128,8 +128,7 @@ FacesOnPlaces sort_by_place(const FaceList& faces, const FlatArray<PlaceId>& pla
     }
 }
 
-/// Finds the heights on each place and turns planes into ranks. Equal doubles among the heights of
-/// one place are spread upward, so that all are different.
+/// Finds the heights on each place and turns planes into ranks.
 std::vector<std::vector<double>> find_heights(const PlanGeometry& geometry, const Places& places,
                                               FacesOnPlaces& on, Loops& loops, int threads,
                                               const Progress* progress) {
@@ -143,13 +142,9 @@ std::vector<std::vector<double>> find_heights(const PlanGeometry& geometry, cons
                 prefetch_points(geometry, places, p);
                 of_place.find(places.representative[p], {on.values.begin() + on.offsets[p],
                                                          on.values.begin() + on.offsets[p + 1]});
-                const std::size_t first = all.size();
-                for (double z : of_place.heights()) {
-                    if (all.size() > first && z <= all.back())
-                        z = std::nextafter(all.back(), HUGE_VAL);
-                    all.push_back(z);
-                }
-                loops.place_offsets[p] = static_cast<std::int32_t>(all.size() - first);
+                const auto& found = of_place.heights();
+                all.insert(all.end(), found.begin(), found.end());
+                loops.place_offsets[p] = static_cast<std::int32_t>(found.size());
             }
         });
     running_totals(loops.place_offsets, INT32_MAX, threads, progress);

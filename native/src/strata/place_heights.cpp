@@ -2,6 +2,7 @@
 #include "place_heights.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 
@@ -82,6 +83,33 @@ void PlaceHeights::rank_levels(PointId point) {
     for (std::size_t i = 0; i < order_.size(); ++i) {
         if (i == 0 || lower(order_[i - 1], order_[i])) heights_.push_back(level(order_[i]).z);
         level(order_[i]).rank = static_cast<std::int32_t>(heights_.size()) - 1;
+    }
+    separate();
+}
+
+/// Whether a height is known to be a double: that of an input vertex, of a level edge or plane.
+bool PlaceHeights::is_double(std::size_t rank) const {
+    const auto& geometry = scope_.shared();
+    const auto z = [&](exact::SpaceId s) { return geometry.space(s).z; };
+    return std::any_of(levels_.begin(), levels_.end(), [&](const Level& level) {
+        if (level.rank != static_cast<std::int32_t>(rank)) return false;
+        if (level.name.first >= 0) return z(level.name.first) == z(level.name.second);
+        const auto& corner = geometry.plane(level.plane).corner;
+        return z(corner[0]) == z(corner[1]) && z(corner[1]) == z(corner[2]);
+    });
+}
+
+void PlaceHeights::separate() {
+    for (std::size_t i = 1; i < heights_.size(); ++i) {
+        if (heights_[i] > heights_[i - 1]) continue;
+        std::size_t low = i;  // from here to i all are different
+        if (is_double(i)) {
+            for (; low > 0 && heights_[low - 1] >= heights_[low] && !is_double(low - 1); --low)
+                heights_[low - 1] = std::nextafter(heights_[low], -HUGE_VAL);
+        }
+        // up with all that is left no room below
+        for (; low > 0 && low <= i && heights_[low] <= heights_[low - 1]; ++low)
+            heights_[low] = std::nextafter(heights_[low - 1], HUGE_VAL);
     }
 }
 

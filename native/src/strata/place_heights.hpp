@@ -19,7 +19,9 @@ public:
     /// @param planes  of each of them; in its place comes which of the heights it has
     void find(PointId point, std::span<std::int32_t> planes);
 
-    /// The heights, rounded; not all different.
+    /// The heights, rounded, each a different double. Where several round to one, those that are
+    /// doubles themselves keep theirs (what is level, as a flat base, stays so) and the others move
+    /// to the next ones.
     const std::vector<double>& heights() const { return heights_; }
 
 private:
@@ -38,6 +40,8 @@ private:
     std::int32_t level_of(PointId point, PlaneId plane);
     void find_distinct(PointId point, std::span<const std::int32_t> planes);
     void rank_levels(PointId point);
+    bool is_double(std::size_t rank) const;
+    void separate();
 
     Scope scope_;
     std::vector<Plane> planes_;  ///< each once; ascending where there are many

@@ -105,5 +105,25 @@ TEST_P(PlaceHeightsOf, AgreesWithEachPairOfPlanes) {
 
 INSTANTIATE_TEST_SUITE_P(Numbers, PlaceHeightsOf, testing::Values(4, 12, 60));
 
+// Heights that round to that of a flat base leave it where it is.
+TEST(PlaceHeights, LevelPlanesKeepTheirHeight) {
+    PlanGeometry geometry;
+    const VertexId o = geometry.add_vertex(0, 0), x = geometry.add_vertex(3, 0),
+                   y = geometry.add_vertex(0, 3), at = geometry.add_vertex(1, 1);
+    const double up = std::nextafter(1.0, 2), down = std::nextafter(1.0, 0);
+    const auto corners = [&](double z) {
+        return std::array{geometry.add_space_vertex(o, 1), geometry.add_space_vertex(x, z),
+                          geometry.add_space_vertex(y, 1)};
+    };
+    const auto level = corners(1), rising = corners(up), falling = corners(down);
+    geometry.freeze_vertices();
+    std::vector<std::int32_t> planes{geometry.add_plane(level), geometry.add_plane(rising),
+                                     geometry.add_plane(falling)};
+    PlaceHeights of_place(geometry);
+    of_place.find(at, planes);
+    EXPECT_EQ(planes, (std::vector<std::int32_t>{1, 2, 0}));
+    EXPECT_EQ(of_place.heights(), (std::vector<double>{down, 1, up}));
+}
+
 }  // namespace
 }  // namespace realmodel::strata
