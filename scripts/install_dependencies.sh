@@ -3,7 +3,7 @@
 # Installs the Debian packages that RealModel needs and this machine lacks; with nothing missing it
 # does nothing. docs/dependencies.md says what each is for.
 #
-#   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|clang|tsan]...      (default: build)
+#   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|clang|tsan|versions]...      (default: build)
 set -euo pipefail
 
 # A package, or package=command where the command in any version on PATH does as well.
@@ -13,6 +13,7 @@ blender=(blender=blender python3-numpy libegl1)
 bpy=(libegl1 libgl1 libice6 libsm6 libx11-6 libxfixes3 libxi6 libxkbcommon0 libxrender1 libxxf86vm1)
 test=(clang-format=clang-format shellcheck=shellcheck git=git)
 tidy=(clang-tidy=clang-tidy)
+versions=(debootstrap)
 benchmark=(libmpfr-dev blender=blender python3-numpy)
 clang=(clang=clang++ libomp-dev)
 tsan=(clang=clang++ libclang-rt-dev libomp-dev)
@@ -38,8 +39,9 @@ for group in "$@"; do
         benchmark) wanted+=("${benchmark[@]}") ;;
         clang) wanted+=("${clang[@]}") ;;
         tsan) wanted+=("${tsan[@]}") ;;
+        versions) wanted+=("${versions[@]}") ;;
         *)
-            echo "install_dependencies.sh: no group '$group'; there are build, blender, bpy, test, tidy, benchmark, clang, tsan" >&2
+            echo "install_dependencies.sh: no group '$group'; there are build, blender, bpy, test, tidy, benchmark, clang, tsan, versions" >&2
             exit 2
             ;;
     esac

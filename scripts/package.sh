@@ -68,7 +68,7 @@ if ((${#missing[@]} > 0)); then
         echo "package.sh: the headers of Python ${missing[*]} cannot be had (reason above)" >&2
         exit 1
     fi
-    echo "package.sh: without modules for Python ${missing[*]}, whose headers cannot be had (reason above)"
+    echo "SKIPPED modules for Python ${missing[*]}, whose headers cannot be had (reason above)"
 fi
 if ((${#modules[@]} == 0)); then
     echo "package.sh: there is no module to put into the zip" >&2

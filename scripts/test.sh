@@ -8,7 +8,7 @@
 #   scripts/test.sh [--quick] [--only STEP]...
 #     --quick       without the sanitizer build, and without the comparison of builds
 #     --only STEP   only this step, and the build it needs:
-#                   format ruff shellcheck native core blender bpy asan builds;
+#                   format ruff shellcheck native core blender bpy package asan builds;
 #                   and two that are not run unless asked for: tidy tsan
 #
 # shellcheck disable=SC2317  # the functions are called by name, through step
@@ -16,15 +16,15 @@ set -uo pipefail # and not -e: one step that fails does not keep the others from
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 1
 
-all_steps=(format ruff shellcheck native core blender bpy asan builds)
+all_steps=(format ruff shellcheck native core blender bpy package asan builds)
 steps=("${all_steps[@]}")
 only=()
 while (($# > 0)); do
     case $1 in
-        --quick) steps=(format ruff shellcheck native core blender bpy) ;;
+        --quick) steps=(format ruff shellcheck native core blender bpy package) ;;
         --only)
             case ${2-} in
-                format | ruff | shellcheck | native | core | blender | bpy | asan | builds | tidy | tsan) only+=("$2") ;;
+                format | ruff | shellcheck | native | core | blender | bpy | package | asan | builds | tidy | tsan) only+=("$2") ;;
                 *)
                     echo "test.sh: --only needs a step: ${all_steps[*]} tidy tsan" >&2
                     exit 2
@@ -89,7 +89,7 @@ step() { # NAME COMMAND...: runs it, shows how long it took, counts it as failed
 }
 declare -A counted=(
     [native]=$logs/release.xml [asan]=$logs/asan.xml [tsan]=$logs/tsan.xml [core]=$logs/core.xml
-    [blender]=$logs/blender.log [bpy]=$logs/bpy.log)
+    [blender]=$logs/blender.log [bpy]=$logs/bpy.log [package]=$logs/package.xml)
 
 skip() { # NAME WHY
     echo "==== $1"
@@ -110,7 +110,7 @@ finish() {
 install() {
     local groups=(build)
     wants format shellcheck && groups+=(test)
-    wants blender && groups+=(blender)
+    wants blender package && groups+=(blender)
     wants bpy && groups+=(bpy)
     wants builds && groups+=(clang)
     wants tidy && groups+=(tidy)
@@ -148,6 +148,11 @@ test_blender() { in_time 15m blender -b --factory-startup --python-exit-code 1 -
 
 test_bpy() { in_time 15m "$venv_bpy/bin/python" tests/blender/run.py; }
 
+test_package() { # the zip with the modules that can be made here, installed as a user does
+    in_time 15m scripts/package.sh --skip-missing &&
+        in_time 10m "$venv/bin/python" -m pytest tests/package --junitxml="$logs/package.xml"
+}
+
 step install install || finish
 wants format && step format check_format
 wants ruff && step ruff check_ruff
@@ -165,6 +170,7 @@ if wants bpy; then
         step bpy test_bpy
     fi
 fi
+wants package && step package test_package
 wants asan && step asan test_sanitized asan
 if wants builds; then
     if command -v clang++ >/dev/null; then

@@ -5,6 +5,8 @@ The package is an add-on of Blender and a plain Python package at once: `realmod
 only. Nothing of Blender is imported before `register()` is called.
 """
 
+import sys
+
 bl_info = {
     "name": "RealModel",
     "author": "The RealModel authors",
@@ -18,6 +20,11 @@ bl_info = {
 
 def register():
     """Called by Blender when the add-on is enabled. What needs Blender is imported here and not before."""
+    if sys.version_info < (3, 11):  # noqa: UP036 (in Blender it is not ours to choose)
+        raise RuntimeError(
+            "RealModel needs Python 3.11 or newer, and this Blender has "
+            f"{sys.version_info.major}.{sys.version_info.minor}: use Blender 4.1 or newer"
+        )
     from . import handlers, operators, props, ui
     from .bl import display
 

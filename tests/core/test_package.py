@@ -5,8 +5,11 @@ import ast
 import subprocess
 import sys
 import tomllib
+from collections import namedtuple
 from pathlib import Path
+from types import SimpleNamespace
 
+import pytest
 import realmodel
 from realmodel import _native
 
@@ -59,3 +62,11 @@ def test_import_needs_neither_blender_nor_numpy():
     addon = str(Path(realmodel.__file__).resolve().parents[1])
     finished = subprocess.run([sys.executable, "-c", program], env={"PYTHONPATH": addon}, check=False)
     assert finished.returncode == 0
+
+
+def test_an_old_python_is_refused_in_words(monkeypatch):
+    """Official builds of Blender 3.4 to 4.0 have Python 3.10: nothing of the add-on can be imported there."""
+    old = namedtuple("version_info", "major minor micro")(3, 10, 8)
+    monkeypatch.setattr(realmodel, "sys", SimpleNamespace(version_info=old))
+    with pytest.raises(RuntimeError, match=r"this Blender has 3\.10: use Blender 4\.1"):
+        realmodel.register()

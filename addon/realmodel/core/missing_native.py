@@ -18,22 +18,25 @@ def explanation(error: ImportError, package: Path = PACKAGE) -> str:
     which Pythons it has modules for, or what keeps the one for this Python from being loaded.
     """
     version = f"{sys.version_info.major}.{sys.version_info.minor}"
-    missing = f"the native module for Python {version} cannot be loaded ({error})"
+    built_for = _versions(package)
+    if version in built_for:
+        missing = f"the native module for Python {version} cannot be loaded ({error})"
+    else:
+        missing = f"the native module for Python {version} is missing"
     if (package.parents[1] / "scripts" / "build.sh").is_file():
         # Inside Blender sys.executable may be another interpreter than the one that runs.
         python = f"python{version}" if "bpy" in sys.modules else sys.executable
         return f"{missing}; build it with scripts/build.sh {python}"
     if not (sys.platform.startswith("linux") and os.uname().machine == "x86_64"):
         return f"{missing}; {ZIP} is for Linux on x86-64 only: build it from source for this system"
-    built_for = _versions(package)
-    if not built_for:
-        return f"{missing}; this copy holds none: remove it, and install {ZIP} instead"
-    if version not in built_for:
+    if version in built_for:
+        return f"{missing}; it needs glibc 2.35, libstdc++ of GCC 11 and libgomp, or newer: install these"
+    if built_for:
         return (
             f"{missing}; this copy is for Python {', '.join(built_for)}: use a Blender with one of these, or "
             "install a newer zip of RealModel"
         )
-    return f"{missing}; it needs glibc 2.35, libstdc++ of GCC 11 and libgomp, or newer ones: install these"
+    return f"{missing}, as are those for others; remove this copy, and install {ZIP} instead"
 
 
 def _versions(package: Path) -> list[str]:
