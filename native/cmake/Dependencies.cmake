@@ -2,7 +2,10 @@
 # Libraries the native part stands on (docs/dependencies.md gives the reason of each).
 # What they bring is collected in the interface target realmodel_dependencies.
 
-find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(Eigen3 REQUIRED NO_MODULE) # 3.4 or 5: asked for 3.4, Eigen says no to 5
+if(Eigen3_VERSION VERSION_LESS 3.4)
+    message(FATAL_ERROR "RealModel needs Eigen 3.4 or newer; ${Eigen3_DIR} is ${Eigen3_VERSION}")
+endif()
 find_package(OpenMP REQUIRED COMPONENTS CXX)
 find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp REQUIRED)
 

@@ -2,7 +2,7 @@
 """Settings for a model that was built in batch, so that the panel can go on with it."""
 
 from ..core import InputRefused
-from . import project_settings, scene, settings, shapes, stored_project
+from . import project_settings, scene, settings, shapes, stored_project, versions
 from .origin import KEY as ORIGIN_KEY
 
 
@@ -76,7 +76,7 @@ def _results(current, objects):
 def _open_interfaces(current):
     """Batch closes the eye of the collection of interfaces; the panel hides the interfaces themselves."""
     for view_layer in current.view_layers:
-        for layer in _all_layers(view_layer.layer_collection):
+        for layer in _all_layers(versions.layer_collections(view_layer)):
             if layer.collection.get(scene.TAG) == "interfaces" and layer.hide_viewport:
                 layer.hide_viewport = False
     for rock in current.realmodel.rocks:

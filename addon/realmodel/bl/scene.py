@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from . import materials, meshes, origin, stored_project
+from . import materials, meshes, origin, stored_project, versions
 
 TAG = "realmodel"
 ROCK = "realmodel_rock"
@@ -256,7 +256,8 @@ def _new_collection(name, kind, created):
 def _hide_interfaces(scene):
     """Close the eye of the interfaces: they lie exactly on the blocks' faces and would flicker."""
     for view_layer in scene.view_layers:
-        project = next(c for c in view_layer.layer_collection.children if c.collection.get(TAG) == "project")
+        layers = versions.layer_collections(view_layer).children
+        project = next(c for c in layers if c.collection.get(TAG) == "project")
         for rock in project.children:
             for layer in rock.children:
                 layer.hide_viewport = layer.collection.get(TAG) == "interfaces"

@@ -39,6 +39,16 @@ def fill_mesh(mesh, coordinates, offsets, corners):
     mesh.update(calc_edges=True)
 
 
+def layer_collections(view_layer):
+    """The topmost bpy.types.LayerCollection of a view layer.
+
+    In 5.2 a scene that was never on screen has none before its first update.
+    """
+    if view_layer.layer_collection is None:
+        view_layer.update()
+    return view_layer.layer_collection
+
+
 def make_matt(principled):
     """Take the shine off a Principled shader; its socket was renamed in 4.0."""
     principled.inputs["Roughness"].default_value = 1.0
