@@ -4,8 +4,8 @@
 #   realmodel_warnings   warnings as errors
 
 if(NOT CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
-    message(FATAL_ERROR "RealModel builds with g++ or clang++; this is ${CMAKE_CXX_COMPILER_ID}. "
-        "Pass -DCMAKE_CXX_COMPILER=g++.")
+    message(FATAL_ERROR "RealModel builds with g++ or clang++, which have whole numbers of 128 bits; this is "
+        "${CMAKE_CXX_COMPILER_ID}. Pass -DCMAKE_CXX_COMPILER=g++ (on Windows that of MinGW, or LLVM's clang++).")
 endif()
 
 set(CMAKE_CXX_STANDARD 20)

@@ -49,9 +49,11 @@ They are all in `addon/realmodel/bl/versions.py`, each with the version it begin
 - Official builds of Blender from blender.org. Those of 4.1 and newer have Python 3.11 or 3.13 inside, and
   modules for both are in the zip. Those of 3.4 to 4.0 have Python 3.10, which RealModel does not run in:
   the add-on refuses to be enabled there and says so; Debian's 3.4 has 3.11.
-- Windows and macOS. The zip has no modules for them. CMake has nothing in it that stops it there - flags of
-  Linux's linker are used on Linux only - but it was run neither there nor with their compilers. On Windows it
-  asks for clang++ or g++ (MinGW): the exact arithmetic needs numbers of 128 bits, which MSVC does not have.
+- Windows and macOS. The zip has no modules for them. CMake should get through there - options of Linux's
+  linker are given on Linux only, what reads `/proc` does without it - but it was run neither there nor with
+  their compilers. It asks for g++ or clang++ (on Windows of MinGW or LLVM): the exact arithmetic needs
+  numbers of 128 bits, which MSVC does not have. On Windows, where `long` has 32 bits, compiling then stops at
+  a `static_assert` that says what has to be written first.
 """
 
 

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/base/memory.hpp"
 
+#if __has_include(<malloc.h>)
 #include <malloc.h>
+#endif
+#if __has_include(<sys/resource.h>)
 #include <sys/resource.h>
 #include <unistd.h>
+#endif
 
 #include <algorithm>
 #include <fstream>
@@ -84,11 +88,15 @@ std::uint64_t left_by_groups() {
 }
 
 std::uint64_t left_by_address_space() {
+#ifdef RLIMIT_AS
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return unlimited;
     const auto pages = only_number("/proc/self/statm");
     if (!pages) return unlimited;
     return left_of(limit.rlim_cur, *pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)));
+#else
+    return unlimited;
+#endif
 }
 
 }  // namespace

@@ -7,6 +7,10 @@
 
 namespace realmodel::exact {
 
+// GMP takes whole numbers as long. Where that has 32 bits, as on Windows, they would be cut short
+// here and in short_integer.hpp without a word.
+static_assert(sizeof(long) == 8, "whole numbers have to go into GMP in two halves here");
+
 namespace {
 
 // A finite double as mantissa * 2^exponent with an odd mantissa (0 for zero).

@@ -59,6 +59,14 @@ def check_picture(path):
     bpy.data.images.remove(image)
 
 
+def check_vendored(package):
+    """The packages of others are those that travel in the add-on."""
+    folder = Path(package.__file__).parent / "vendor"
+    for name in ("tifffile", "shapefile"):
+        module = installed.part("core.readers.vendored").vendored(name, name, "this test")
+        check(Path(module.__file__).is_relative_to(folder), f"{name} is {module.__file__}")
+
+
 def main(folder):
     package = installed.package()
     bpy.ops.wm.read_homefile(use_empty=True)
@@ -68,6 +76,7 @@ def main(folder):
     bpy.ops.realmodel.export(filepath=str(folder / "model.npz"))
     with np.load(folder / "model.npz") as arrays:
         check(len(arrays["block_names"]) == len(VOLUMES), "model.npz has other blocks")
+    check_vendored(package)
     installed.part("bl.batch").render(folder / "picture.png", size=(480, 300), samples=16)
     check_picture(folder / "picture.png")
 

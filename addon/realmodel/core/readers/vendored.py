@@ -8,17 +8,20 @@ from types import ModuleType
 
 from ..errors import BuildFailed
 
+# The add-on is "realmodel", or what Blender calls it as an extension.
+FOLDER = f"{__package__.removesuffix('.core.readers')}.vendor"
+
 
 def vendored(module: str, package: str, purpose: str) -> ModuleType:
     """A module of the folder vendor, or else the one that this Python has. Only what needs it imports it.
 
     Raises BuildFailed where there is neither.
     """
-    for name in (f"realmodel.vendor.{module}", module):
+    for name in (f"{FOLDER}.{module}", module):
         try:
             return importlib.import_module(name)
         except ModuleNotFoundError as error:
-            if error.name not in (name, "realmodel.vendor"):
+            if error.name not in (name, FOLDER):
                 raise BuildFailed(f"{package} cannot be loaded ({error})") from error
     raise BuildFailed(
         f"{purpose} needs the package {package}, which is not in addon/realmodel/vendor; "
