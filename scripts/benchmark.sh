@@ -7,7 +7,7 @@
 #   scripts/benchmark.sh              all sizes; writes the page and the constants
 #   scripts/benchmark.sh --quick      small sizes, each once, as a look; the page is left as it is
 #   scripts/benchmark.sh --fit        only fits the constants and compares estimates with builds
-#   scripts/benchmark.sh --only stacks|fit|watch, --memory GB, --write F.md, --help
+#   scripts/benchmark.sh --only stacks|fit|watch|blender, --memory GB, --write F.md, --help
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 python=/usr/bin/python3

@@ -8,11 +8,11 @@ import signal
 import sys
 from pathlib import Path
 
-from . import fitting, page, watching_table
+from . import blender_table, fitting, page, watching_table
 from .process import ROOT
 from .stacks_table import Limits, Row, StackRows
 
-PARTS = ("stacks", "fit", "watch")
+PARTS = ("stacks", "fit", "watch", "blender")
 _QUICK_TRIANGLES, _ALL_TRIANGLES = 800_000, 10_000_000
 
 
@@ -42,6 +42,9 @@ def main() -> int:
             "",
             *page.table(watching_table.CANCELS, cancels, 2),
         ]
+    if "blender" in parts:
+        rows = blender_table.measure(given.quick, memory, _say)
+        lines["blender"] = [machine, "", *page.table(blender_table.UPLOADS, rows)]
     if given.write:
         for name, part in lines.items():
             page.write_part(given.write, f"benchmark.sh {name}", part)
