@@ -109,6 +109,8 @@ void PlanGeometry::set_plane(PlaneId plane, const std::array<SpaceId, 3>& corner
 
 void PlanGeometry::freeze_vertices() {
     vertex_count_ = points_.size();
+    vertex_table_ = {};  // no more of them will be asked for
+    space_table_ = {};
     constexpr int kNone = 100000;
     plan_exponent_ = height_exponent_ = kNone;
     for (const Point& p : points_) {

@@ -15,6 +15,7 @@
 #include "parallel_chunks.hpp"
 #include "plan_snapping.hpp"
 #include "realmodel/base/errors.hpp"
+#include "realmodel/base/memory.hpp"
 #include "realmodel/exact/turn.hpp"
 #include "rock_footprints.hpp"
 #include "rules.hpp"
@@ -196,6 +197,9 @@ void check_base(const std::array<double, 3>& lowest, double base, std::int32_t o
 CellComplex conform(PlanGeometry& geometry, Construction& construction,
                     const std::vector<std::int32_t>& surface_of_plane, int threads,
                     Progress* progress) {
+    // The peak of memory is still to come, and what chunks of overlays were made in is free.
+    constexpr std::size_t kManyPoints = 1000000;
+    if (geometry.point_count() > kManyPoints) give_back_memory();
     std::vector<ExtraPoint> extra;
     const FaceList& faces = construction.faces;
     double done = kEnterShare + kOverlayShare;

@@ -173,7 +173,8 @@ public:
     /// any thread.
     PlaneId make_planes(std::size_t count);
     void set_plane(PlaneId plane, const std::array<SpaceId, 3>& corner);
-    /// To be called once, when all vertices are there and before any other question is asked.
+    /// To be called once, when all vertices are there and before any other question is asked. From
+    /// then on none may be added.
     void freeze_vertices();
 
     /// The line through two plan vertices, made where it is new, directed from `from` to `to`.
