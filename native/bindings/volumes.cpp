@@ -8,20 +8,13 @@
 #include "realmodel/base/progress.hpp"
 #include "realmodel/strata/cell_volumes.hpp"
 #include "rock_arrays.hpp"
+#include "rows.hpp"
 
 namespace py = pybind11;
 
 namespace realmodel::bindings {
 
 namespace {
-
-template <std::size_t N, class T>
-std::span<const std::array<T, N>> rows(const Array<T>& array, const char* argument) {
-    require_columns(array, N, argument);
-    static_assert(sizeof(std::array<T, N>) == N * sizeof(T));
-    return {reinterpret_cast<const std::array<T, N>*>(array.data()),
-            static_cast<std::size_t>(array.shape(0))};
-}
 
 Array<double> cell_volumes(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
                            const Indices& face_vertices, const Indices& face_cells,

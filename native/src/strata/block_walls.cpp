@@ -87,26 +87,19 @@ private:
         const std::size_t known = batch_.found.missing.size();
         curves_.find_crossings(track, curves, batch_.scope, batch_.found.missing);
         if (batch_.found.missing.size() > known) return;
-        std::int32_t left = TrackCurves::below_all(curves, true);
-        std::int32_t right = TrackCurves::below_all(curves, false);
-        for (std::size_t i = 0; i < curves.size();) {
-            std::size_t level = i;  // past the curves at this height
-            for (; level < curves.size() && curves[level].as_high_as(curves[i]); ++level) {
-                (curves[level].left ? left : right) = curves[level].above;
-            }
-            if (level == curves.size()) break;
+        for_each_gap(curves, [&](const Curve& low, const Curve& high, std::int32_t left,
+                                 std::int32_t right) {
             if (block(left) != block(right)) {
                 batch_.found.walls.push_back({static_cast<std::int32_t>(track),
                                               static_cast<std::int32_t>(interval),
-                                              {curves[i].start, curves[i].end},
-                                              {curves[level].start, curves[level].end},
+                                              {low.start, low.end},
+                                              {high.start, high.end},
                                               left,
                                               right});
             } else {
                 link(left, right);
             }
-            i = level;
-        }
+        });
     }
 
     const std::vector<std::int32_t>& node_block_;

@@ -86,7 +86,7 @@ void TrackCurves::add_curves(const TrackEdge& edge) {
     }
 }
 
-std::int32_t TrackCurves::below_all(std::span<const Curve> curves, bool left) {
+std::int32_t below_all(std::span<const Curve> curves, bool left) {
     const auto lowest = std::find_if(curves.begin(), curves.end(),
                                      [&](const Curve& curve) { return curve.left == left; });
     return lowest == curves.end() ? kOutsideCell : lowest->below;

@@ -32,8 +32,6 @@ public:
         return {curves_.data() + begins_[i], begins_[i + 1] - begins_[i]};
     }
 
-    /// What is below the lowest curve on one side; kOutsideCell where that has none.
-    static std::int32_t below_all(std::span<const Curve> curves, bool left);
     /// The points where curves of an interval cross in height, which the track must pass first.
     void find_crossings(std::size_t track, std::span<const Curve> curves, Scope& scope,
                         std::vector<ExtraPoint>& missing) const;
@@ -49,6 +47,25 @@ private:
     std::vector<Curve> curves_;
     std::vector<std::uint32_t> begins_, free_;  ///< curves of each interval, and where more go
 };
+
+/// What is below the lowest curve on one side; kOutsideCell where that has none.
+std::int32_t below_all(std::span<const Curve> curves, bool left);
+
+/// Calls visit(low, high, left, right) for each two neighbouring heights of an interval: a curve at
+/// either, and what lies between the two left and right of the track.
+template <class Visit>
+void for_each_gap(std::span<const Curve> curves, const Visit& visit) {
+    std::int32_t left = below_all(curves, true), right = below_all(curves, false);
+    for (std::size_t i = 0; i < curves.size();) {
+        std::size_t level = i;  // past the curves at this height
+        for (; level < curves.size() && curves[level].as_high_as(curves[i]); ++level) {
+            (curves[level].left ? left : right) = curves[level].above;
+        }
+        if (level == curves.size()) break;
+        visit(curves[i], curves[level], left, right);
+        i = level;
+    }
+}
 
 /// Adds a wall face: along its lower vertices, up the far vertical, back along the upper ones and
 /// down the near vertical, through every vertex on them that is to be kept.

@@ -51,17 +51,10 @@ private:
         const std::size_t known = batch_.missing.size();
         curves_.find_crossings(track, curves, batch_.scope, batch_.missing);
         if (batch_.missing.size() > known) return;
-        std::int32_t left = TrackCurves::below_all(curves, true);
-        std::int32_t right = TrackCurves::below_all(curves, false);
-        for (std::size_t i = 0; i < curves.size();) {
-            std::size_t level = i;  // past the curves at this height
-            for (; level < curves.size() && curves[level].as_high_as(curves[i]); ++level) {
-                (curves[level].left ? left : right) = curves[level].above;
-            }
-            if (level == curves.size()) break;
-            if (left != right) add_wall(curves[i], curves[level], left, right);
-            i = level;
-        }
+        for_each_gap(curves, [&](const Curve& low, const Curve& high, std::int32_t left,
+                                 std::int32_t right) {
+            if (left != right) add_wall(low, high, left, right);
+        });
     }
 
     /// A wall between two cells that may go on in the next interval.
