@@ -6,8 +6,9 @@
 #include <cmath>
 #include <set>
 
-#include "parallel_sort.hpp"
+#include "parallel_chunks.hpp"
 #include "realmodel/exact/turn.hpp"
+#include "sort_doubles.hpp"
 
 namespace realmodel::strata {
 
@@ -15,40 +16,64 @@ namespace {
 
 using PlanPosition = std::array<double, 2>;
 
-/// All plan positions and triangles of the input, of surfaces and regions alike; what the builder
-/// refuses later (numbers that are not finite, indices out of range) is passed over.
-template <class VisitVertex, class VisitTriangle>
-void for_each(std::span<const StackInput> rocks, const Progress* progress,
-              const VisitVertex& vertex, const VisitTriangle& triangle) {
-    const auto mesh = [&](std::span<const double> vertices, std::size_t columns,
-                          std::span<const std::int32_t> triangles) {
-        const std::size_t count = vertices.size() / columns;
-        const auto position = [&](std::size_t v) {
-            return PlanPosition{vertices[v * columns], vertices[v * columns + 1]};
-        };
-        for (std::size_t v = 0; v < count; ++v) {
+/// One mesh of the input, of a surface (three columns) or a region (two).
+struct PlanMesh {
+    std::span<const double> vertices;
+    std::size_t columns;
+    std::span<const std::int32_t> triangles;
+
+    std::size_t size() const { return vertices.size() / columns; }
+    PlanPosition position(std::size_t v) const {
+        return {vertices[v * columns], vertices[v * columns + 1]};
+    }
+};
+
+std::vector<PlanMesh> meshes_of(std::span<const StackInput> rocks) {
+    std::vector<PlanMesh> meshes;
+    for (const StackInput& rock : rocks) {
+        for (const SurfaceView& s : rock.surfaces)
+            meshes.push_back({s.vertices, 3, s.triangles});
+        if (rock.region) meshes.push_back({rock.region->vertices, 2, rock.region->triangles});
+    }
+    return meshes;
+}
+
+bool is_finite(const PlanPosition& p) {
+    return std::isfinite(p[0]) && std::isfinite(p[1]);
+}
+
+/// Calls visit(position) for all vertices; what the builder refuses later (numbers that are not
+/// finite) is passed over.
+template <class Visit>
+void for_each_vertex(std::span<const StackInput> rocks, const Progress* progress,
+                     const Visit& visit) {
+    for (const PlanMesh& mesh : meshes_of(rocks)) {
+        for (std::size_t v = 0; v < mesh.size(); ++v) {
             poll(progress, v);
-            const PlanPosition p = position(v);
-            if (std::isfinite(p[0]) && std::isfinite(p[1])) vertex(p);
+            const PlanPosition p = mesh.position(v);
+            if (is_finite(p)) visit(p);
         }
-        for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
+    }
+}
+
+/// Calls visit(corners) for all triangles; what the builder refuses later is passed over.
+template <class Visit>
+void for_each_triangle(std::span<const StackInput> rocks, const Progress* progress,
+                       const Visit& visit) {
+    for (const PlanMesh& mesh : meshes_of(rocks)) {
+        for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
             poll(progress, t);
             std::array<PlanPosition, 3> corners;
             bool sound = true;
             for (std::size_t i = 0; i < 3; ++i) {
-                const std::int32_t v = triangles[t + i];
-                sound = sound && v >= 0 && static_cast<std::size_t>(v) < count;
+                const std::int32_t v = mesh.triangles[t + i];
+                sound = sound && v >= 0 && static_cast<std::size_t>(v) < mesh.size();
                 if (!sound) break;
-                corners[i] = position(static_cast<std::size_t>(v));
-                sound = std::isfinite(corners[i][0]) && std::isfinite(corners[i][1]);
+                corners[i] = mesh.position(static_cast<std::size_t>(v));
+                sound = is_finite(corners[i]);
             }
-            if (sound) triangle(corners);
+            if (sound) visit(corners);
         }
-    };
-    for (const StackInput& rock : rocks) {
-        for (const SurfaceView& s : rock.surfaces)
-            mesh(s.vertices, 3, s.triangles);
-        if (rock.region) mesh(rock.region->vertices, 2, rock.region->triangles);
     }
 }
 
@@ -90,26 +115,15 @@ AxisSnapping join_close(const std::vector<double>& sorted, double reach,
 }  // namespace
 
 bool share_one_plan(std::span<const StackInput> rocks) {
-    std::vector<std::pair<std::span<const double>, std::size_t>> meshes;  // coordinates, columns
-    for (const StackInput& rock : rocks) {
-        for (const SurfaceView& s : rock.surfaces)
-            meshes.emplace_back(s.vertices, 3);
-        if (rock.region) meshes.emplace_back(rock.region->vertices, 2);
-    }
-    const auto same = [&](const auto& mesh) {
-        const auto& [first, first_columns] = meshes.front();
-        const auto& [other, columns] = mesh;
-        const std::size_t count = other.size() / columns;
-        if (first.size() / first_columns != count) return false;
-        for (std::size_t v = 0; v < count; ++v) {
-            if (first[v * first_columns] != other[v * columns] ||
-                first[v * first_columns + 1] != other[v * columns + 1]) {
-                return false;
-            }
+    const std::vector<PlanMesh> meshes = meshes_of(rocks);
+    return std::all_of(meshes.begin(), meshes.end(), [&](const PlanMesh& mesh) {
+        const PlanMesh& first = meshes.front();
+        if (first.size() != mesh.size()) return false;
+        for (std::size_t v = 0; v < mesh.size(); ++v) {
+            if (first.position(v) != mesh.position(v)) return false;
         }
         return true;
-    };
-    return std::all_of(meshes.begin(), meshes.end(), same);
+    });
 }
 
 double AxisSnapping::operator()(double value) const {
@@ -122,20 +136,17 @@ PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads,
                            const Progress* progress) {
     std::array<std::vector<double>, 2> values;
     std::array<double, 2> largest{0, 0};
-    for_each(
-        rocks, progress,
-        [&](const PlanPosition& p) {
-            for (std::size_t axis = 0; axis < 2; ++axis) {
-                values[axis].push_back(p[axis]);
-                largest[axis] = std::max(largest[axis], std::abs(p[axis]));
-            }
-        },
-        [](const std::array<PlanPosition, 3>&) {});
+    for_each_vertex(rocks, progress, [&](const PlanPosition& p) {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            values[axis].push_back(p[axis]);
+            largest[axis] = std::max(largest[axis], std::abs(p[axis]));
+        }
+    });
     std::array<double, 2> reach;
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-        parallel_sort(values[axis], std::less<>(), threads, progress);
+    parallel_chunks(2, threads, progress, [&](std::size_t axis) {
+        sort_doubles(values[axis], progress);
         reach[axis] = largest[axis] * 0x1p-51;  // two to four units in the last place
-    }
+    });
     // Values whose joining would turn a triangle are left alone, until none is turned. Input so
     // fine that this does not settle soon is taken as it is.
     constexpr int kRounds = 8;
@@ -145,20 +156,17 @@ PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads,
                               join_close(values[1], reach[1], left_alone[1])};
         if (snapping.empty()) return snapping;
         bool turned = false;
-        for_each(
-            rocks, progress, [](const PlanPosition&) {},
-            [&](const std::array<PlanPosition, 3>& p) {
-                std::array<PlanPosition, 3> q;
-                for (std::size_t i = 0; i < 3; ++i)
-                    q[i] = {snapping.x(p[i][0]), snapping.y(p[i][1])};
-                if (p == q || exact::turn(p[0], p[1], p[2]) == exact::turn(q[0], q[1], q[2]))
-                    return;
-                turned = true;
-                for (std::size_t i = 0; i < 3; ++i) {
-                    for (std::size_t axis = 0; axis < 2; ++axis)
-                        left_alone[axis].insert(p[i][axis]);
-                }
-            });
+        for_each_triangle(rocks, progress, [&](const std::array<PlanPosition, 3>& p) {
+            std::array<PlanPosition, 3> q;
+            for (std::size_t i = 0; i < 3; ++i)
+                q[i] = {snapping.x(p[i][0]), snapping.y(p[i][1])};
+            if (p == q || exact::turn(p[0], p[1], p[2]) == exact::turn(q[0], q[1], q[2])) return;
+            turned = true;
+            for (std::size_t i = 0; i < 3; ++i) {
+                for (std::size_t axis = 0; axis < 2; ++axis)
+                    left_alone[axis].insert(p[i][axis]);
+            }
+        });
         if (!turned) return snapping;
     }
     return {};
