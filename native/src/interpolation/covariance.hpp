@@ -2,48 +2,82 @@
 // Covariances of a variogram, in units of its sill. Private.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "interpolation/data_points.hpp"
+#include "interpolation/decay.hpp"
 #include "realmodel/interpolation/variogram.hpp"
 
 namespace realmodel::interpolation {
+
+/// One structure of a variogram, ready to be reckoned with: a difference of places in plan counts
+/// t = |(xx dx + xy dy, yx dx + yy dy)| ranges.
+struct CovariancePart {
+    VariogramModel model;
+    double xx, xy, yx, yy;
+    double share;  ///< of the sill
+};
+
+/// share (1 - f(t)). Same bytes as the lanes of lane_kernels.hpp.
+inline double covariance_of(const CovariancePart& part, double dx, double dy) {
+    const double along = part.xx * dx + part.xy * dy;
+    const double across = part.yx * dx + part.yy * dy;
+    const double square = along * along + across * across;
+    const double t = std::sqrt(square);
+    switch (part.model) {
+        case VariogramModel::spherical:
+            return part.share * (t < 1 ? 1 - t * (1.5 - 0.5 * square) : 0);
+        case VariogramModel::exponential:
+            return part.share * decay(3 * t);
+        case VariogramModel::gaussian:
+            return part.share * decay(3 * square);
+        case VariogramModel::cubic:
+            return part.share *
+                   (t < 1 ? 1 - square * (7 - t * (8.75 - square * (3.5 - 0.75 * square))) : 0);
+        case VariogramModel::matern32: {
+            const double s = matern32_scale * t;
+            return part.share * ((1 + s) * decay(s));
+        }
+        case VariogramModel::matern52: {
+            const double s = matern52_scale * t;
+            return part.share * ((1 + s * (1 + s * third)) * decay(s));
+        }
+    }
+    return 0;
+}
 
 /// 1 - gamma(h) / sill: kriging with it gives the same weights as with gamma, and the matrix of the
 /// data is positive definite (Chiles and Delfiner 2012, section 3.4).
 class Covariance {
 public:
-    explicit Covariance(const Variogram& variogram)
-        : first_(variogram.model, variogram.range, variogram.first_sill() / variogram.sill,
-                 variogram.anisotropy) {
-        for (const NestedStructure& nested : variogram.further) {
-            further_.emplace_back(nested.model, nested.range, nested.sill / variogram.sill,
-                                  nested.anisotropy);
-        }
+    explicit Covariance(const Variogram& variogram) {
+        add(variogram.model, variogram.range, variogram.first_sill() / variogram.sill,
+            variogram.anisotropy);
+        for (const NestedStructure& nested : variogram.further)
+            add(nested.model, nested.range, nested.sill / variogram.sill, nested.anisotropy);
     }
 
     /// Between two different places. (At one place it is 1, whatever the nugget.)
     double operator()(const Place& a, const Place& b) const {
         const double dx = a[0] - b[0], dy = a[1] - b[1];
-        double sum = first_(dx, dy);
-        for (const Part& part : further_)
-            sum += part(dx, dy);
+        double sum = covariance_of(parts_[0], dx, dy);
+        for (std::size_t part = 1; part < parts_.size(); ++part)
+            sum += covariance_of(parts_[part], dx, dy);
         return sum;
     }
 
+    /// At least one.
+    const std::vector<CovariancePart>& parts() const { return parts_; }
+
 private:
-    struct Part {
-        Part(VariogramModel of, double range, double sill_share, const Anisotropy& anisotropy)
-            : model(of), length(anisotropy), reach(range), share(sill_share) {}
-        double operator()(double dx, double dy) const {
-            return share * (1 - structure(model, length(dx, dy) / reach));
-        }
-        VariogramModel model;
-        AnisotropicLength length;
-        double reach, share;
-    };
-    Part first_;
-    std::vector<Part> further_;
+    void add(VariogramModel model, double range, double share, const Anisotropy& anisotropy) {
+        const AnisotropicLength length(anisotropy);
+        const auto [xx, xy] = length.along();
+        const auto [yx, yy] = length.across();
+        parts_.push_back({model, xx / range, xy / range, yx / range, yy / range, share});
+    }
+    std::vector<CovariancePart> parts_;
 };
 
 /// What kriging says of a place.
@@ -64,7 +98,7 @@ inline Estimate ordinary_kriging(double base, double uu, double us, double ut, d
                                  double st) {
     const double excess = us - 1;
     const double variance = 1 - uu + excess * excess / ss;
-    return {base + ut - excess / ss * st, variance > 0 ? variance : 0};
+    return {base + (ut - excess / ss * st), variance > 0 ? variance : 0};
 }
 
 }  // namespace realmodel::interpolation

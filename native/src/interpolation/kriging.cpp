@@ -9,9 +9,11 @@
 #include <utility>
 
 #include "interpolation/drift_kriging.hpp"
+#include "interpolation/lane_kriging.hpp"
 #include "interpolation/local_kriging.hpp"
 #include "interpolation/neighbour_search.hpp"
 #include "interpolation/node_chunks.hpp"
+#include "interpolation/node_order.hpp"
 #include "interpolation/tiled_cholesky.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/memory.hpp"
@@ -93,6 +95,40 @@ void krige_from_nearest(const Task& task, const LocalSystem& system) {
     };
     for_chunks(task.count(), 256, task.options.threads, task.progress, 0, "kriging", make);
     task.out.alone = alone;
+}
+
+constexpr std::size_t nodes_in_order = 1U << 22;  // put in order at a time: some tens of ms
+
+/// The nearest of all directions and distances, few enough: several systems at once.
+void krige_in_lanes(const Task& task) {
+    const auto neighbours = static_cast<std::size_t>(task.options.neighbours);
+    const std::size_t count = task.count();
+    std::vector<Place> places;
+    for (std::size_t first = 0; first < count; first += nodes_in_order) {
+        const std::size_t here = std::min(nodes_in_order, count - first);
+        places.resize(here);
+        for (std::size_t i = 0; i < here; ++i)
+            places[i] = task.node(first + i);
+        const std::vector<std::uint32_t> order = along_curve(places);
+        const auto make = [&](const StopSign&) {
+            return [&, nodes = std::vector<LaneKriging::Node>(),
+                    kriging = LaneKriging(task.data, task.tree, task.covariance, neighbours,
+                                          task.leaves_out(), lane_kernels().front())](
+                       std::size_t begin, std::size_t end) mutable {
+                nodes.clear();
+                for (std::size_t k = begin; k < end; ++k) {
+                    const std::size_t i = first + order[k];
+                    nodes.push_back(
+                        {places[order[k]], static_cast<std::uint32_t>(i), task.left_out(i)});
+                }
+                kriging.krige(nodes, [&](std::uint32_t i, const Estimate& estimate) {
+                    task.set(i, estimate);
+                });
+            };
+        };
+        for_chunks(here, 512, task.options.threads, task.progress,
+                   static_cast<double>(first) / static_cast<double>(count), "kriging", make);
+    }
 }
 
 /// All points, factored once.
@@ -229,6 +265,9 @@ Kriged krige_nodes(const DataPoints& data, std::span<const Place> nodes, const V
     const auto neighbours = static_cast<std::size_t>(options.neighbours);
     if (task.neighbourhood().plain() && (neighbours == 0 || neighbours >= data.local.size())) {
         krige_from_all(task);
+    } else if (task.neighbourhood().plain() && options.drift == Drift::constant &&
+               neighbours <= LaneKriging::most_neighbours) {
+        krige_in_lanes(task);
     } else if (options.drift == Drift::constant) {
         krige_from_nearest(task, LocalKriging(data, covariance));
     } else {

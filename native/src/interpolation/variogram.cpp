@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "interpolation/decay.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::interpolation {
@@ -47,8 +48,7 @@ VariogramModel variogram_model(std::string_view name) {
 }
 
 double structure(VariogramModel model, double t) {
-    // Solutions of f(1) = 0.95.
-    constexpr double a = 4.743864518390579, b = 5.918649346310188;
+    constexpr double a = matern32_scale, b = matern52_scale;
     switch (model) {
         case VariogramModel::spherical:
             return t < 1 ? t * (1.5 - 0.5 * t * t) : 1;

@@ -59,6 +59,29 @@ private:
     std::size_t count_;
 };
 
+/// Keeps all that are near enough.
+class NearEnough {
+public:
+    NearEnough(std::vector<Neighbour>& found, double squared_distance, std::size_t most)
+        : found_(found), squared_distance_(squared_distance), most_(most) {
+        found_.clear();
+    }
+    std::size_t size() const { return found_.size(); }
+    bool empty() const { return found_.empty(); }
+    bool full() const { return true; }
+    void sort() const {}
+    double worstDist() const { return squared_distance_; }
+    bool addPoint(double squared_distance, std::int32_t point) {
+        found_.push_back({squared_distance, point});
+        return found_.size() <= most_;
+    }
+
+private:
+    std::vector<Neighbour>& found_;
+    double squared_distance_;
+    std::size_t most_;
+};
+
 using KdTree = nanoflann::KDTreeSingleIndexAdaptor<
     nanoflann::L2_Simple_Adaptor<double, PlanPoints, double, std::int32_t>, PlanPoints, 2,
     std::int32_t>;
@@ -93,6 +116,15 @@ void NearestPoints::find(const std::array<double, 2>& place, std::size_t count,
     NearestSoFar nearest(found, std::min(count, size()));
     if (count == 0 || size() == 0) return;
     tree_->index.findNeighbors(nearest, place.data(), SearchParameters());
+}
+
+bool NearestPoints::within(const std::array<double, 2>& place, double distance, std::size_t most,
+                           std::vector<Neighbour>& found) const {
+    // nanoflann wants what is nearer than this, and bounds branches with rounding.
+    const double squared = distance * distance;
+    NearEnough near(found, squared + 1e-9 * squared + std::numeric_limits<double>::min(), most);
+    if (size() > 0) tree_->index.findNeighbors(near, place.data(), SearchParameters());
+    return found.size() <= most;
 }
 
 }  // namespace realmodel::spatial

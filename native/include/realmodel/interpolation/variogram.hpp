@@ -79,6 +79,10 @@ public:
     explicit AnisotropicLength(const Anisotropy& anisotropy);
     double operator()(double dx, double dy) const;
 
+    /// The length is that of (along . d, across . d).
+    std::array<double, 2> along() const { return {along_x_, along_y_}; }
+    std::array<double, 2> across() const { return {across_x_, across_y_}; }
+
 private:
     double along_x_, along_y_, across_x_, across_y_;
 };

@@ -34,6 +34,11 @@ public:
     void find(const std::array<double, 2>& place, std::size_t count,
               std::vector<Neighbour>& found) const;
 
+    /// The points no farther than this from a place, in any order, each once; a few a little
+    /// farther may be among them. Whether these are all: with more than `most` it gives up.
+    bool within(const std::array<double, 2>& place, double distance, std::size_t most,
+                std::vector<Neighbour>& found) const;
+
 private:
     struct Tree;
     std::unique_ptr<Tree> tree_;
