@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// krige, krige_left_out, fit_variogram, idw, idw_left_out, spline.
+// krige, krige_left_out, fit_variogram, idw, idw_left_out, spline, nearest_distance.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -12,6 +12,7 @@
 #include "realmodel/base/progress.hpp"
 #include "realmodel/interpolation/inverse_distance.hpp"
 #include "realmodel/interpolation/kriging.hpp"
+#include "realmodel/interpolation/nearest_distance.hpp"
 #include "realmodel/interpolation/thin_plate.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
 #include "rows.hpp"
@@ -120,14 +121,26 @@ Array<double> spline(const Array<double>& points, const Array<double>& nodes, do
     return to_array(std::move(z));
 }
 
-py::dict fit_variogram(const Array<double>& points, double ratio, double azimuth,
-                       const std::string& drift, Progress* control) {
+Array<double> nearest_distance(const Array<double>& points, const Array<double>& nodes, int threads,
+                               Progress* control) {
     const auto from = rows<3>(points, "points");
-    const interpolation::Drift trend = drift_of(drift);
+    const auto to = rows<2>(nodes, "nodes");
+    std::vector<double> distances;
+    {
+        const py::gil_scoped_release unlocked;
+        distances = interpolation::nearest_distances(from, to, threads, control);
+    }
+    return to_array(std::move(distances));
+}
+
+py::dict fit_variogram(const Array<double>& points, double ratio, double azimuth,
+                       const std::string& drift, int neighbours, int threads, Progress* control) {
+    const auto from = rows<3>(points, "points");
+    const interpolation::FitOptions options{drift_of(drift), neighbours, threads};
     interpolation::FittedVariogram fitted;
     {
         const py::gil_scoped_release unlocked;
-        fitted = interpolation::fit_variogram(from, {ratio, azimuth}, control, trend);
+        fitted = interpolation::fit_variogram(from, {ratio, azimuth}, control, options);
     }
     py::dict out;
     out["model"] = py::str(std::string(name_of(fitted.variogram.model)));
@@ -204,14 +217,23 @@ smoothing   added to the diagonal where distances count in the points' mean spac
 neighbours, octants, radius  as krige
 
 Returns z (N,) float64. Raises InputError as krige does; Cancelled.)");
+    module.def("nearest_distance", &nearest_distance, arg("points"), arg("nodes"),
+               arg("threads") = 0, arg("control") = py::none(),
+               R"(How far the nearest of points (P, 3) is from each node (N, 2), in plan.
+
+Returns (N,) float64. Raises InputError: kind "no_points", "not_finite"; Cancelled.)");
     module.def("fit_variogram", &fit_variogram, arg("points"), arg("anisotropy_ratio") = 1.0,
-               arg("anisotropy_azimuth") = 0.0, arg("drift") = "constant",
-               arg("control") = py::none(),
+               arg("anisotropy_azimuth") = 0.0, arg("drift") = "constant", arg("neighbours") = 32,
+               arg("threads") = 0, arg("control") = py::none(),
                R"(Fits a variogram to points (P, 3) float64, or to what a drift leaves of them.
 
-Returns a dict: model, range, sill, nugget as krige takes them, and the experimental values
-lags (L,), gamma (L,) float64 and pairs (L,) int64.
-Raises InputError: kind "no_points", "not_finite", "contradicting_points", "anisotropy"; Cancelled.)");
+neighbours  with which points that are left out are told, at most 64
+threads     0: as many as there are; the result does not depend on it
+
+Returns a dict: model, range, sill, nugget as krige takes them, the experimental values lags (L,),
+gamma (L,) float64 and pairs (L,) int64.
+Raises InputError: kind "no_points", "not_finite", "contradicting_points", "anisotropy", "option";
+Cancelled.)");
 }
 
 }  // namespace realmodel::bindings

@@ -12,7 +12,7 @@ from .heights import left_out_heights
 from .heights.run import LEAVE_ONE_OUT, heights
 from .interpolation import checked_nodes, checked_points, checked_triangles, method_settings
 from .method_options import check_threads
-from .methods import DEFAULT_NEIGHBOURS, METHODS
+from .methods import METHODS
 from .mis_ties import without_mis_ties
 from .variogram import Variogram
 from .work import Cancel, Progress, Work, native_module, run
@@ -50,7 +50,7 @@ class CrossValidation:
 def cross_validate(
     points,
     method: str = "kriging",
-    neighbours: int = DEFAULT_NEIGHBOURS,
+    neighbours: int | None = None,
     threads: int = 0,
     folds: int = DEFAULT_FOLDS,
     *,

@@ -8,7 +8,7 @@ import numpy as np
 from .errors import InputRefused, UsageError, place_text
 from .heights import Interpolation, heights
 from .method_options import check_threads
-from .methods import DEFAULT_NEIGHBOURS, METHODS, check_method, checked_options
+from .methods import METHODS, check_method, checked_options
 from .work import Cancel, Progress, Work, run
 
 
@@ -17,7 +17,7 @@ def interpolate(
     nodes,
     method: str = "kriging",
     triangles=None,
-    neighbours: int = DEFAULT_NEIGHBOURS,
+    neighbours: int | None = None,
     threads: int = 0,
     *,
     progress: Progress | None = None,
@@ -29,7 +29,8 @@ def interpolate(
     points: (P, 3) float64, model units; None for a method that does without. nodes: (N, 2).
     method and its options: docs/methods.md.
     triangles: (T, 3) of the nodes' mesh, where the method works on it.
-    neighbours: the nearest in plan that count at a node, 0 for all points. threads: 0 for all.
+    neighbours: the nearest in plan that count at a node, 0 for all points; None for the method's own number,
+    16, or 32 for kriging with a variogram that is fitted. threads: 0 for all.
 
     Points at one place count once; where their heights differ a little (mis-ties of measured lines, up to
     a twentieth of the whole height range) the mean is taken, with a warning, and larger ones are refused.
@@ -52,10 +53,10 @@ def interpolate(
     return run(task, progress, cancel)
 
 
-def method_settings(method: str, neighbours: int, options: dict) -> dict:
+def method_settings(method: str, neighbours: int | None, options: dict) -> dict:
     """The complete settings of a method from what a caller gave. Raises InputRefused."""
     check_method(method)
-    if neighbours != DEFAULT_NEIGHBOURS or "neighbours" in METHODS[method].options:
+    if neighbours is not None:
         options = {"neighbours": neighbours, **options}
     return checked_options(method, options)
 

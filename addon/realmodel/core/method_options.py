@@ -36,6 +36,10 @@ def neighbours(option: str, value) -> int:
     return int(value)
 
 
+def optional_neighbours(option: str, value) -> int | None:
+    return None if value is None else neighbours(option, value)
+
+
 def octants(option: str, value) -> int:
     if not _is_whole(value) or not 0 <= int(value) < 2**31:
         raise OptionRefused(

@@ -95,6 +95,21 @@ class Model:
         """By global surface index what interpolating it gave; None for ready meshes."""
         return [result for entry in self.rock_inputs for result in entry.interpolations]
 
+    def surface_attributes(self, number: int) -> dict[str, np.ndarray]:
+        """What is known of the vertices of one input surface, by its global index, (V,) float64 each:
+        `height`; `variance` of the error of an interpolated height, squared model units; `distance` in plan
+        to the nearest point that it was interpolated from. NaN where there is no such thing, as for all
+        vertices of a ready mesh."""
+        vertices, _ = self.surface(number)
+        unknown = np.full(len(vertices), np.nan)
+        told = [entry.told.get(k, {}) for entry in self.rock_inputs for k in range(len(entry.surfaces))]
+        known = told[number] if told else {}
+        return {
+            "height": vertices[:, 2].copy(),
+            "variance": known.get("variance", unknown),
+            "distance": known.get("distance", unknown),
+        }
+
     def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (V, 3) and triangles (T, 3) of one input surface by its global index."""
         v, t = self.surface_vertex_offsets, self.surface_triangle_offsets

@@ -28,7 +28,8 @@ class RockInput:
     rock: as given, but with arrays in the place of files. surfaces: (vertices (V, 3) float64, triangles
     (T, 3) int32), oldest first. region: its triangulation ((V, 2) float64, (T, 3) int32) or None.
     interpolations: what interpolating each surface gave, None for ready meshes. file_faces: for each
-    surface None, or the face of its file that each triangle is of. warnings: what reading and interpolating
+    surface None, or the face of its file that each triangle is of. told: of each interpolated surface what is
+    known of its vertices (surface_heights.told_of). warnings: what reading and interpolating
     had to tell. whole: of a stage, what it is a part of: its surfaces may be made from younger ones.
     """
 
@@ -39,6 +40,7 @@ class RockInput:
     file_faces: list[np.ndarray | None] = field(default_factory=list)
     warnings: list[BuildWarning] = field(default_factory=list)
     whole: RockInput | None = None
+    told: dict[int, dict[str, np.ndarray]] = field(default_factory=dict)
 
     def stage(self, m: int) -> RockInput:
         """The same with the surfaces up to m only; the region stays what it was. A surface made from one that
@@ -65,6 +67,7 @@ class RockInput:
             self.file_faces[: m + 1],
             [warning for warning in self.warnings if warning.surface not in gone],
             self,
+            {number: told for number, told in self.told.items() if number <= m},
         )
 
 

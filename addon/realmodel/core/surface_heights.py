@@ -7,7 +7,7 @@ import numpy as np
 
 from .build_warning import BuildWarning
 from .errors import InputRefused, place_text
-from .heights import heights
+from .heights import Interpolation, heights
 from .methods import SURFACE_OPTIONS, checked_options
 from .project import Rock, surface_item
 from .work import Work, native_module
@@ -55,6 +55,24 @@ def interpolation_order(rock: Rock, last: int | None = None) -> list[int]:
     return [number for number in order if rock.surfaces[number].interpolated]
 
 
+def told_of(
+    work: Work, points: np.ndarray, result: Interpolation, region: Triangulation, threads: int
+) -> dict:
+    """What interpolating points on a region's mesh tells of the vertices that `where_known` keeps, (V,) each:
+    `variance` of the height's error, NaN where it is not known, and `distance` in plan to the nearest of the
+    points, NaN where there are none."""
+    nodes, triangles = region
+    kept = np.isfinite(result.z)
+    if not kept.all():
+        kept = used_vertices(nodes, triangles[kept[triangles].all(axis=1)])
+    variance = np.full(len(nodes), np.nan) if result.variance is None else result.variance
+    if len(points):
+        distance = work.native(native_module().nearest_distance, points, nodes, threads=threads)
+    else:
+        distance = np.full(len(nodes), np.nan)
+    return {"variance": variance[kept], "distance": distance[kept]}
+
+
 def give_heights(work: Work, entry, number: int, threads: int) -> None:
     """Interpolates one surface of a RockInput on the mesh of its region, and keeps it above the older one
     where it has a minimum thickness."""
@@ -65,6 +83,7 @@ def give_heights(work: Work, entry, number: int, threads: int) -> None:
     try:
         result = heights(work, surface.points, nodes, method, settings, threads, triangles, others)
         shape = where_known(nodes, triangles, result.z)
+        told_of_vertices = told_of(work, surface.points, result, entry.region, threads)
         warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]
         if surface.minimum_thickness is not None:
             shape, told = _above_older(work, entry, number, shape, threads)
@@ -74,6 +93,7 @@ def give_heights(work: Work, entry, number: int, threads: int) -> None:
         raise error.within(surface_item(rock, surface), file=file, line=line) from error
     entry.surfaces[number] = shape
     entry.interpolations[number] = result
+    entry.told[number] = told_of_vertices
     entry.warnings += warnings
 
 

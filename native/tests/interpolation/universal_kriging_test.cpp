@@ -91,10 +91,15 @@ TEST(UniversalKriging, SameBytesForAnyNumberOfThreads) {
 
 TEST(UniversalKriging, TheVariogramIsThatOfTheResiduals) {
     Points points = hills(300, 100);
-    const Variogram plain = fit_variogram(points, {}, nullptr, Drift::linear).variogram;
+    // Rough enough that rounding, which a slope adds to, decides nothing.
+    std::mt19937 random(4);
+    std::normal_distribution<double> normal;
+    for (auto& p : points)
+        p[2] += normal(random);
+    const Variogram plain = fit_variogram(points, {}, nullptr, {Drift::linear}).variogram;
     for (auto& p : points)
         p[2] += 40 * p[0] - 25 * p[1];
-    const Variogram tilted = fit_variogram(points, {}, nullptr, Drift::linear).variogram;
+    const Variogram tilted = fit_variogram(points, {}, nullptr, {Drift::linear}).variogram;
     EXPECT_EQ(tilted.model, plain.model);
     EXPECT_NEAR(tilted.sill, plain.sill, 1e-6 * plain.sill);
     EXPECT_NEAR(tilted.range, plain.range, 1e-6 * plain.range);

@@ -16,6 +16,7 @@ _HEADER = 1024  # more than any header of an array
 def model_arrays(model) -> dict[str, np.ndarray]:
     """The arrays of docs/geometry.md by name, and what describes blocks, surfaces and rock masses."""
     blocks = model.blocks
+    told = [model.surface_attributes(number) for number in range(len(model.surface_names))]
     return {
         "vertices": model.vertices,
         "face_offsets": model.face_offsets,
@@ -35,9 +36,14 @@ def model_arrays(model) -> dict[str, np.ndarray]:
         "surface_triangles": model.surface_triangles,
         "surface_vertex_offsets": model.surface_vertex_offsets,
         "surface_triangle_offsets": model.surface_triangle_offsets,
+        **{f"surface_{name}": _joined(told, name) for name in ("variance", "distance")},
         "surface_names": _texts(model.surface_names),
         "rock_names": _texts(rock.name for rock in model.project.rocks),
     }
+
+
+def _joined(told: list[dict], name: str) -> np.ndarray:
+    return np.concatenate([np.empty(0), *(attributes[name] for attributes in told)])
 
 
 def _texts(texts) -> np.ndarray:

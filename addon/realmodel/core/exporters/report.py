@@ -134,6 +134,7 @@ def _surfaces(model) -> list[dict]:
                     "method_reason": (result.reason or None) if result else None,
                     "extrapolated": result.extrapolated if result else None,
                     "variogram": result.variogram.settings() if result and result.variogram else None,
+                    "neighbours": result.neighbours if result else None,
                     "variogram_fitted": result.variogram.fitted if result and result.variogram else None,
                 }
             )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from . import from_neighbours
 from .interpolation import Result, Task
 
 _FEW = 10  # points: below this a variogram shows nothing
@@ -29,65 +30,82 @@ class Candidate:
 
 _CANDIDATES = (
     Candidate("kriging", {}),
-    Candidate("kriging", {"neighbours": 32}),
-    Candidate("universal_kriging", {"neighbours": 32}),
+    Candidate("universal_kriging", {}),
     Candidate("spline", {"neighbours": 32}),
     Candidate("natural_neighbour", {}),
 )
 _OF_FEW = (Candidate("plane", {}), Candidate("spline", {}), Candidate("idw", {}))
 
 
+@dataclass(frozen=True)
+class Trial:
+    """A candidate made ready for some points. known: the variogram that kriging fits to all of them, once."""
+
+    candidate: Candidate
+    settings: dict
+    known: from_neighbours.Structure | None
+
+    def run(self, task: Task, points: np.ndarray, nodes: np.ndarray) -> Result:
+        from .run import RUNS  # this method runs others
+
+        task = replace(task, points=points, nodes=nodes, settings=self.settings)
+        if self.known is not None:
+            return from_neighbours.krige(task, self.known)
+        return RUNS[self.candidate.method](task)
+
+    def error(self, task: Task, points: np.ndarray) -> float:
+        """Root of the mean squared error at points that are left out; the same ones for every candidate."""
+        folds = len(points) if len(points) < _FEW else _FOLDS
+        step = max(folds, len(points) // _TOLD)
+        errors = []
+        for fold in range(1 if step > folds else folds):
+            task.work.check()
+            out = np.zeros(len(points), bool)
+            out[fold::step] = True
+            others, places = np.ascontiguousarray(points[~out]), np.ascontiguousarray(points[out, :2])
+            errors.append(self.run(task, others, places).z - points[out, 2])
+        return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
+
+
 def automatic(task: Task) -> tuple[str, str, Result]:
     """The method chosen, why, and what it gives."""
-    candidate, reason = choose(task)
-    return candidate.method, reason, _run(task, candidate, task.points, task.nodes)
+    trial, reason = choose(task)
+    return trial.candidate.method, reason, trial.run(task, task.points, task.nodes)
 
 
-def choose(task: Task) -> tuple[Candidate, str]:
+def choose(task: Task) -> tuple[Trial, str]:
     """The candidate, and why in one sentence."""
     places = np.unique(task.points[:, :2], axis=0)
     if len(places) == 1:
-        return Candidate("constant", {}), "there is one point only"
+        return _trial(task, Candidate("constant", {})), "there is one point only"
     if len(places) == 2:
-        return Candidate("plane", {}), "there are two points only: the slope between them is all they show"
+        why = "there are two points only: the slope between them is all they show"
+        return _trial(task, Candidate("plane", {})), why
     spread = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)
     if len(places) < _FEW and spread[1] < _IN_LINE * spread[0]:
-        return Candidate("plane", {}), f"there are {len(places)} points, nearly in one line"
+        why = f"there are {len(places)} points, nearly in one line"
+        return _trial(task, Candidate("plane", {})), why
     points = np.ascontiguousarray(task.points[np.sort(np.unique(task.points, axis=0, return_index=True)[1])])
-    candidates = _OF_FEW if len(places) < _FEW else _CANDIDATES
-    errors = [_error(task, candidate, points) for candidate in candidates]
+    trials = [_trial(task, candidate) for candidate in (_OF_FEW if len(places) < _FEW else _CANDIDATES)]
+    errors = [trial.error(task, points) for trial in trials]
     least = min(errors)
     best = next(
         (
-            number
-            for number, candidate in enumerate(candidates)
-            if errors[number] <= _AS_GOOD * least and "kriging" in candidate.method
+            trial
+            for trial, error in zip(trials, errors, strict=True)
+            if error <= _AS_GOOD * least and trial.known is not None
         ),
-        int(np.argmin(errors)),
+        trials[int(np.argmin(errors))],
     )
-    said = [f"{candidate.name} {error:.4g}" for candidate, error in zip(candidates, errors, strict=True)]
-    return candidates[
-        best
-    ], f"of {len(points)} points, root mean square errors of left-out ones: {', '.join(said)}"
+    said = [f"{trial.candidate.name} {error:.4g}" for trial, error in zip(trials, errors, strict=True)]
+    return best, f"of {len(points)} points, root mean square errors of left-out ones: {', '.join(said)}"
 
 
-def _error(task: Task, candidate: Candidate, points: np.ndarray) -> float:
-    """Root of the mean squared error at points that are left out; the same ones for every candidate."""
-    folds = len(points) if len(points) < _FEW else _FOLDS
-    step = max(folds, len(points) // _TOLD)
-    needed = 1 if step > folds else folds
-    errors = []
-    for fold in range(needed):
-        task.work.check()
-        out = np.zeros(len(points), bool)
-        out[fold::step] = True
-        others, places = np.ascontiguousarray(points[~out]), np.ascontiguousarray(points[out, :2])
-        errors.append(_run(task, candidate, others, places).z - points[out, 2])
-    return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
-
-
-def _run(task: Task, candidate: Candidate, points: np.ndarray, nodes: np.ndarray) -> Result:
-    from .run import RUNS, settings_of  # this method runs others
+def _trial(task: Task, candidate: Candidate) -> Trial:
+    from .run import settings_of
 
     settings = settings_of(candidate.method, candidate.options)
-    return RUNS[candidate.method](replace(task, points=points, nodes=nodes, settings=settings))
+    known = None
+    if "kriging" in candidate.method:
+        known = from_neighbours.structure(replace(task, settings=settings))
+    return Trial(candidate, settings, known)

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from ..methods import DEFAULT_NEIGHBOURS, NEIGHBOURS_OF_FITTED
 from ..variogram import Variogram, fit_warnings
 from ..work import native_module
 from .interpolation import Result, Task
@@ -18,26 +21,46 @@ def _neighbourhood(settings: dict) -> dict:
     }
 
 
-def krige(task: Task) -> Result:
-    """Ordinary kriging; universal kriging where the settings have a drift."""
+@dataclass(frozen=True)
+class Structure:
+    """What kriging knows of how heights differ: the variogram, the number of neighbours, and what to tell."""
+
+    variogram: Variogram
+    neighbours: int
+    warnings: tuple[str, ...] = ()
+
+
+def structure(task: Task) -> Structure:
+    """As the settings have it, or fitted to the points."""
+    settings = task.settings
+    asked, given = settings["neighbours"], settings["variogram"]
+    if given is not None:
+        return Structure(Variogram.from_settings(given), DEFAULT_NEIGHBOURS if asked is None else asked)
+    fitted = task.run(
+        native_module().fit_variogram,
+        task.points,
+        drift=settings.get("drift", "constant"),
+        anisotropy_ratio=settings["anisotropy"]["ratio"],
+        anisotropy_azimuth=settings["anisotropy"]["azimuth"],
+        neighbours=min(asked or NEIGHBOURS_OF_FITTED, NEIGHBOURS_OF_FITTED),
+    )
+    neighbours = NEIGHBOURS_OF_FITTED if asked is None else asked
+    variogram = Variogram(**fitted)
+    return Structure(variogram, neighbours, tuple(fit_warnings(variogram, task.points)))
+
+
+def krige(task: Task, known: Structure | None = None) -> Result:
+    """Ordinary kriging; universal kriging where the settings have a drift. known: what `structure` found."""
     native = native_module()
     settings = task.settings
-    anisotropy, drift = settings["anisotropy"], settings.get("drift", "constant")
-    given = settings["variogram"]
-    warnings = []
-    if given is None:
-        fitted = task.work.native(
-            native.fit_variogram,
-            task.points,
-            drift=drift,
-            anisotropy_ratio=anisotropy["ratio"],
-            anisotropy_azimuth=anisotropy["azimuth"],
-        )
-        variogram = Variogram(**fitted)
-        warnings = fit_warnings(variogram, task.points)
-    else:
-        variogram = Variogram.from_settings(given)
-    arguments = {**variogram.native(anisotropy), **_neighbourhood(settings), "drift": drift}
+    if known is None:
+        known = structure(task)
+    warnings = list(known.warnings)
+    arguments = {
+        **known.variogram.native(settings["anisotropy"]),
+        **_neighbourhood({**settings, "neighbours": known.neighbours}),
+        "drift": settings.get("drift", "constant"),
+    }
     if task.left_out:
         z, variance, alone = task.run(native.krige_left_out, task.points, **arguments)
     else:
@@ -47,7 +70,7 @@ def krige(task: Task) -> Result:
             f"{100 * alone / len(z):.3g} % of the nodes have no point within the radius: there the nearest "
             "point alone counts"
         )
-    return Result(z, variance, variogram, warnings)
+    return Result(z, variance, known.variogram, warnings, neighbours=known.neighbours)
 
 
 def nearest_heights(task: Task, nodes: np.ndarray) -> np.ndarray:

@@ -19,7 +19,8 @@ class Interpolation:
     sentences about the points.
 
     extrapolated: share of the nodes that lie outside the convex hull of the points, or outside a grid.
-    reason: why a method was chosen, where "auto" chose it.
+    reason: why a method was chosen, where "auto" chose it. neighbours: how many points at most counted at a
+    node, 0 for all, where kriging did it.
     """
 
     z: np.ndarray
@@ -29,6 +30,7 @@ class Interpolation:
     warnings: tuple[str, ...] = ()
     extrapolated: float = 0.0
     reason: str = ""
+    neighbours: int | None = None
 
 
 @dataclass(frozen=True)
@@ -54,10 +56,11 @@ class Task:
 @dataclass
 class Result:
     """z, variance and variogram as in Interpolation. outside: (N,) bool, the nodes that are extrapolated,
-    where the method knows better than the points' hull."""
+    where the method knows better than the points' hull. neighbours: as in Interpolation."""
 
     z: np.ndarray
     variance: np.ndarray | None = None
     variogram: Variogram | None = None
     warnings: list[str] = field(default_factory=list)
     outside: np.ndarray | None = None
+    neighbours: int | None = None

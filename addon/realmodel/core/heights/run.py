@@ -64,7 +64,16 @@ def heights(
         raise InputRefused(str(error), item="points", place=error.place) from error
     warnings = [*([mis_ties] if mis_ties else []), *few_points(points, method), *result.warnings]
     share = float(outside.mean()) if len(outside) else 0.0
-    return Interpolation(result.z, result.variance, method, result.variogram, tuple(warnings), share, reason)
+    return Interpolation(
+        result.z,
+        result.variance,
+        method,
+        result.variogram,
+        tuple(warnings),
+        share,
+        reason,
+        result.neighbours,
+    )
 
 
 def few_points(points: np.ndarray, method: str) -> list[str]:

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace realmodel {
+class Progress;
+}
+
+namespace realmodel::interpolation {
+
+/// How far the nearest point is from each node, in plan.
+/// @param points  x, y, z; at least one
+/// @param nodes   x, y
+/// @return        the same bytes for any number of threads
+/// Throws InputError of kind "no_points", "not_finite"; Cancelled.
+std::vector<double> nearest_distances(std::span<const std::array<double, 3>> points,
+                                      std::span<const std::array<double, 2>> nodes, int threads = 0,
+                                      Progress* progress = nullptr);
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "interpolation/weighted_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace realmodel::interpolation {
+
+namespace {
+
+constexpr int ranges_tried = 48;
+
+/// Weighted sums of 1, f, f^2, gamma and f gamma.
+struct Sums {
+    double w1 = 0, wf = 0, wff = 0, wg = 0, wfg = 0;
+
+    Sums(const ExperimentalVariogram& e, VariogramModel model, double range) {
+        for (std::size_t i = 0; i < e.lags.size(); ++i) {
+            const double weight = static_cast<double>(e.pairs[i]) / (e.lags[i] * e.lags[i]);
+            const double f = structure(model, e.lags[i] / range);
+            w1 += weight;
+            wf += weight * f;
+            wff += weight * f * f;
+            wg += weight * e.gamma[i];
+            wfg += weight * f * e.gamma[i];
+        }
+    }
+};
+
+void measure(const ExperimentalVariogram& e, CurveFit& fit) {
+    fit.misfit = 0;
+    for (std::size_t i = 0; i < e.lags.size(); ++i) {
+        const double weight = static_cast<double>(e.pairs[i]) / (e.lags[i] * e.lags[i]);
+        const double f = structure(fit.model, e.lags[i] / fit.range);
+        const double off = e.gamma[i] - fit.nugget - fit.partial_sill * f;
+        fit.misfit += weight * off * off;
+    }
+}
+
+/// Both not negative: a linear problem.
+CurveFit fit_for_range(const ExperimentalVariogram& e, VariogramModel model, double range,
+                       bool with_nugget) {
+    const Sums s(e, model, range);
+    CurveFit fit;
+    fit.model = model;
+    fit.range = range;
+    const double determinant = s.w1 * s.wff - s.wf * s.wf;
+    fit.nugget = with_nugget && determinant > 1e-12 * s.w1 * s.wff
+                     ? (s.wff * s.wg - s.wf * s.wfg) / determinant
+                     : 0;
+    fit.nugget = std::max(fit.nugget, 0.0);
+    fit.partial_sill = s.wff > 0 ? (s.wfg - fit.nugget * s.wf) / s.wff : 0;
+    if (fit.partial_sill < 0) {
+        fit.partial_sill = 0;
+        fit.nugget = with_nugget ? s.wg / s.w1 : 0;
+    }
+    measure(e, fit);
+    return fit;
+}
+
+}  // namespace
+
+CurveFit fit_sill(const ExperimentalVariogram& e, VariogramModel model, double range,
+                  double nugget) {
+    const Sums s(e, model, range);
+    CurveFit fit;
+    fit.model = model;
+    fit.range = range;
+    fit.nugget = nugget;
+    fit.partial_sill = s.wff > 0 ? std::max((s.wfg - nugget * s.wf) / s.wff, 0.0) : 0;
+    measure(e, fit);
+    return fit;
+}
+
+/// The best range: tried on a geometric scale, then narrowed by golden sections.
+CurveFit fit_curve(const ExperimentalVariogram& e, VariogramModel model, bool with_nugget) {
+    const double shortest = 0.5 * e.lags.front(), longest = 4 * e.lags.back();
+    const double step = std::pow(longest / shortest, 1.0 / ranges_tried);
+    const auto at = [&](double range) { return fit_for_range(e, model, range, with_nugget); };
+    CurveFit best;
+    for (int i = 0; i <= ranges_tried; ++i) {
+        const CurveFit fit = at(shortest * std::pow(step, i));
+        if (fit.misfit < best.misfit) best = fit;
+    }
+    constexpr double golden = 0.6180339887498949;
+    double low = best.range / step, high = std::min(best.range * step, longest);
+    for (int i = 0; i < 40; ++i) {
+        const double span = golden * (high - low);
+        const CurveFit a = at(high - span), b = at(low + span);
+        if (a.misfit < b.misfit) {
+            high = b.range;
+        } else {
+            low = a.range;
+        }
+        for (const CurveFit& fit : {a, b}) {
+            if (fit.misfit < best.misfit) best = fit;
+        }
+    }
+    return best;
+}
+
+}  // namespace realmodel::interpolation
