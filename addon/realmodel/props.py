@@ -20,6 +20,7 @@ from bpy.props import (
 from . import props_surface, props_view
 from .bl import changes, display, library_rows, results, settings
 from .core.project import MESHERS_HERE
+from .core.units import METRES, MODEL_UNIT
 
 _MESHERS = {
     "delaunay": ("Delaunay", "Triangles as equal as refinement of a Delaunay triangulation makes them"),
@@ -158,6 +159,13 @@ class RealModelSettings(bpy.types.PropertyGroup):
         name="Name", description="Name of the model; its collection is called so", update=changes.setting
     )
     exists: BoolProperty(options={"HIDDEN"})
+    units: EnumProperty(
+        name="Units",
+        description="Unit of the model's lengths; files in other units are brought to it",
+        items=[(unit, unit, "") for unit in METRES],
+        default=MODEL_UNIT,
+        update=changes.setting,
+    )
     project_file: StringProperty(
         name="Project file",
         description="The project file that the model was opened from or saved to",

@@ -85,6 +85,7 @@ class RealModelSurface(bpy.types.PropertyGroup):
     )
     interface: PointerProperty(type=bpy.types.Object, options={"HIDDEN"})
     interface_digest: StringProperty(options={"HIDDEN"})
+    reading: StringProperty(options={"HIDDEN"})
     stored: StringProperty(options={"HIDDEN"})
     stored_stamp: StringProperty(options={"HIDDEN"})
     stored_mesh: StringProperty(options={"HIDDEN"})

@@ -37,7 +37,7 @@ def source(surface, context):
     """Another source of a surface: it is made from that, whatever was done to its interface before."""
     if settings.is_filling():
         return
-    surface.interface_digest = ""
+    surface.interface_digest = surface.reading = ""
     if surface.source != "MESH_OBJECT":
         surface.stored_stamp = ""
     setting(surface, context)

@@ -7,6 +7,7 @@ there. No undo step is made of it: an undone edit is an edit again, and is built
 """
 
 import time
+from contextlib import contextmanager
 
 import bpy
 
@@ -17,7 +18,7 @@ _LOOK_SECONDS = 0.015  # between two looks at what goes on
 
 _changed_at = {}  # by the name of a scene: when something changed that has not been built from yet
 _jobs = {}  # by the name of a scene: (BuildJob, when its last change was)
-_just_put = set()  # names of scenes: Blender will tell of changes that are our own
+_at_work = False  # what Blender tells of now is our own doing
 measured = {}  # by the name of a scene: seconds from the last change to the new blocks
 
 
@@ -38,10 +39,8 @@ def switched():
 def changed(scene, depsgraph):
     """Blender has evaluated changed objects."""
     group = scene.realmodel
-    if not len(group.rocks):
+    if _at_work or not len(group.rocks):
         return
-    ours = scene.name in _just_put
-    _just_put.discard(scene.name)
     edited = {update.id.original.name_full for update in depsgraph.updates if _counts(update)}
     if not edited:
         return
@@ -51,7 +50,7 @@ def changed(scene, depsgraph):
             touch(scene)
         for surface in rock.surfaces:
             made = surface.interface if surface.interface_digest else None
-            if made is not None and not ours and _names(made) & edited:
+            if made is not None and _names(made) & edited:
                 touch(scene)
             source = surface.object if surface.source in ("MESH_OBJECT", "POINTS_OBJECT") else None
             if source is not None and _names(source) & edited:
@@ -86,7 +85,6 @@ def stop_work():
 def stop():
     """Ends everything: the add-on is disabled."""
     stop_work()
-    _just_put.clear()
     measured.clear()
     if bpy.app.timers.is_registered(_look):
         bpy.app.timers.unregister(_look)
@@ -119,15 +117,28 @@ def _look_at_job(name):
         return
     del _jobs[name]
     try:
-        job.finish(in_place=True)
+        with _our_own(bpy.data.scenes.get(name)):
+            job.finish(in_place=True)
     except Cancelled:
         return
     except Exception as error:
         _tell(error)
     else:
-        _just_put.add(name)
         measured[name] = time.perf_counter() - at
         _tell(None)
+
+
+@contextmanager
+def _our_own(scene):
+    """What is changed within is no edit. Blender's timers run when it has told of all edits before."""
+    global _at_work
+    _at_work = True
+    try:
+        yield
+    finally:
+        for layer in scene.view_layers if scene is not None else ():
+            layer.update()  # Blender tells of it now
+        _at_work = False
 
 
 def _begin(name):
@@ -139,9 +150,10 @@ def _begin(name):
         return
     layer = next((w.view_layer for w in bpy.context.window_manager.windows if w.scene == scene), None)
     layer = layer or scene.view_layers[0]
-    layer.update()
     try:
-        job = build_job.BuildJob(scene, layer.depsgraph, "blocks", whole=False)
+        with _our_own(scene):
+            layer.update()
+            job = build_job.BuildJob(scene, layer.depsgraph, "blocks", whole=False)
     except Exception as error:
         _tell(error)
         return

@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
+import dataclasses
+import json
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import bpy
 import numpy as np
 
-from ..core import InputRefused, Project, Rock, Surface
+from ..core import InputRefused, PointFile, Project, Rock, Surface
 from ..core.project import rock_item, surface_item
 from ..core.rock_input import read_rocks
 from ..core.work import run
@@ -65,7 +67,8 @@ def compose(scene, depsgraph, whole=True):
     naming the rock mass and the surface, for what cannot be built from.
     """
     origin = model_origin(scene)
-    project = Project(scene.realmodel.name, [], library_rows.library_of(scene))
+    group = scene.realmodel
+    project = Project(group.name, [], library_rows.library_of(scene), units=group.units)
     composed = Composed(project, origin, _origin_is_free(scene))
     for number, row in enumerate(scene.realmodel.rocks):
         rock = Rock(row.name, [], mesher=row.mesher)
@@ -149,7 +152,10 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
             return
     path, stored = absolute(row.filepath), stored_shape(row)
     if path is not None and (not stored or (whole and _changed(path, row.stored_stamp))):
-        setattr(surface, "points" if row.source == "POINTS_FILE" else "mesh", path)
+        if row.source == "POINTS_FILE":
+            surface.points = PointFile(path, **json.loads(row.reading or "{}"))
+        else:
+            surface.mesh = path
         composed.read[place] = stored_arrays.file_stamp(path)
     elif stored:
         _take_stored(surface, stored)
@@ -230,7 +236,7 @@ def read_project(composed):
     if not composed.read:
         return given
     inputs = run(lambda work: read_rocks(work, given))
-    return Project(given.name, [entry.rock for entry in inputs], given.library)
+    return replace(given, rocks=[entry.rock for entry in inputs])
 
 
 def in_use(item):
@@ -265,7 +271,7 @@ def fill(scene, project, stored=False):
         group.rocks.clear()
         group.results.clear()
         group.active_rock = group.stage = 0
-        group.name = project.name
+        group.name, group.units = project.name, project.units
         group.exists = True
         group.version = settings.VERSION
         group.project_file = str(project.path or "")
@@ -297,6 +303,14 @@ def add_rock(group, rock):
     return row
 
 
+def _reading(file):
+    """How a project file has a file of points read - columns, filters, units - as text; "" for the usual."""
+    usual = PointFile(file.file)
+    keys = (field.name for field in dataclasses.fields(PointFile) if field.name != "file")
+    given = {key: getattr(file, key) for key in keys if getattr(file, key) != getattr(usual, key)}
+    return json.dumps(given) if given else ""
+
+
 def fill_surface(row, surface):
     """Sets a surface's row from a realmodel.core.Surface."""
     with settings.filling():
@@ -311,6 +325,8 @@ def fill_surface(row, surface):
         if surface.input_file is not None:
             row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
             row.filepath = str(surface.input_file)
+            if surface.point_file is not None:
+                row.reading = _reading(surface.point_file)
         elif surface.interpolated and surface.points is None:
             row.source = "NONE"
         else:

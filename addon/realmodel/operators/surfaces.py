@@ -10,7 +10,7 @@ from bpy_extras.io_utils import ImportHelper
 from ..bl import built_scene, live, project_settings, settings
 from ..core import InputRefused, PointFile
 from ..core.readers import read_off, read_point_file
-from .reporting import Reporting, needed_rock, needed_surface
+from .reporting import Reporting, needed_surface
 from .rocks import add_rock
 
 _MESH_ENDINGS = (".off",)
@@ -103,8 +103,8 @@ class REALMODEL_OT_surface_copy(Reporting, bpy.types.Operator):
     bl_label = "Copy Surface"
 
     def act(self, context):
-        rock = needed_rock(context)
-        number = list(rock.surfaces).index(needed_surface(context))
+        rock, chosen = settings.active_rock(context.scene), needed_surface(context)
+        number = list(rock.surfaces).index(chosen)
         row = rock.surfaces.add()
         source = rock.surfaces[number]
         settings.copy_row(source, row)

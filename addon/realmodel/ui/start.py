@@ -22,6 +22,7 @@ class REALMODEL_PT_start(TabPanel, bpy.types.Panel):
                 box.label(text=line)
         if group.exists:
             layout.prop(group, "name")
+            layout.prop(group, "units")
         else:
             hint(
                 layout,

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The live rebuild: what starts it, what it keeps, and that it ends."""
+
+import bpy
+from blender_state import volume
+from panel_case import PanelCase, ops, raise_by, select, stack
+from realmodel.bl import live
+
+
+class Live(PanelCase):
+    def setUp(self):
+        super().setUp()
+        self.items = stack(0.0, 10.0, 20.0)
+        ops.build()
+        self.model.live = True
+        self.live_is_done()
+
+    def block(self):
+        return bpy.data.objects["S2 block"]
+
+    def test_an_edit(self):
+        raise_by(self.items[2], 5.0)
+        self.live_is_done()
+        self.assertAlmostEqual(volume(self.block().data), 15e4, delta=1.0)
+        self.assertAlmostEqual(self.volumes()["S2 block"], 15e4, delta=1.0)
+
+    def test_moving_the_object_and_a_setting(self):
+        self.items[2].location.z += 2.0
+        bpy.context.view_layer.update()
+        self.live_is_done()
+        self.assertAlmostEqual(volume(self.block().data), 12e4, delta=1.0)
+        self.model.rocks[0].surfaces[0].name = "renamed"
+        self.model.rocks[0].base_elevation = -1.0
+        self.live_is_done()
+        self.assertIn("base block", self.volumes())
+
+    def test_a_modifier(self):
+        modifier = self.items[2].modifiers.new("up", "DISPLACE")
+        modifier.direction, modifier.mid_level, modifier.strength = "Z", 0.0, 3.0
+        bpy.context.view_layer.update()
+        self.live_is_done()
+        self.assertAlmostEqual(volume(self.block().data), 13e4, delta=1.0)
+
+    def test_edit_mode(self):
+        self.items[2].hide_set(False)
+        select(self.items[2])
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+        bpy.ops.transform.translate(value=(0.0, 0.0, 4.0))
+        live.touch(self.scene)
+        self.live_is_done()
+        self.assertEqual(bpy.context.mode, "EDIT_MESH")
+        self.assertAlmostEqual(volume(self.block().data), 14e4, delta=1.0)
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+    def test_it_keeps_selection_and_materials(self):
+        mine = bpy.data.materials.new("mine")
+        self.block().data.materials[0] = mine
+        select(self.block())
+        mesh = self.block().data
+        raise_by(self.items[2], 5.0)
+        self.live_is_done()
+        self.assertEqual((self.block().data, self.block().data.materials[0]), (mesh, mine))
+        self.assertTrue(self.block().select_get())
+        self.assertEqual(bpy.context.view_layer.objects.active, self.block())
+
+    def test_a_refusal_is_told_and_mended(self):
+        co = self.items[1].data.vertices[6].co
+        co.x += 60.0
+        raise_by(self.items[1], 0.0)
+        self.live_is_done()
+        activity = bpy.context.window_manager.realmodel
+        self.assertIn("overlap in plan", activity.problem)
+        self.assertEqual(activity.problem_object, "S1")
+        self.assertAlmostEqual(volume(self.block().data), 1e5, delta=1.0)
+        co.x -= 60.0
+        raise_by(self.items[1], 1.0)
+        self.live_is_done()
+        self.assertEqual(activity.problem, "")
+        self.assertAlmostEqual(volume(self.block().data), 9e4, delta=1.0)
+
+    def test_the_bad_place_is_selected(self):
+        self.items[1].data.vertices[6].co.x += 60.0
+        raise_by(self.items[1], 0.0)
+        self.live_is_done()
+        ops.show_problem()
+        self.assertEqual((bpy.context.mode, bpy.context.object.name), ("EDIT_MESH", "S1"))
+        bpy.ops.object.mode_set(mode="OBJECT")
+        chosen = [p.index for p in self.items[1].data.polygons if p.select]
+        self.assertTrue(chosen)
+        self.assertLess(len(chosen), 16)
+
+    def test_switched_off_nothing_follows(self):
+        self.model.live = False
+        raise_by(self.items[2], 5.0)
+        self.assertIsNone(live._look())
+        self.assertAlmostEqual(volume(self.block().data), 1e5, delta=1.0)
+
+    def test_its_own_changes_start_nothing(self):
+        raise_by(self.items[2], 5.0)
+        self.live_is_done()
+        bpy.context.view_layer.update()
+        self.assertIsNone(live._look())
+
+    def test_an_interpolated_interface_follows_its_settings_and_hands(self):
+        ops.open_sample(sample="two_layers")
+        self.model.live = True
+        self.live_is_done()
+        row, before = self.model.rocks[0].surfaces[1], self.volumes()
+        self.assertTrue(before)
+        row.method = "idw"
+        self.live_is_done()
+        self.assertNotEqual(self.volumes(), before)
+        self.assertEqual(row.source, "POINTS_FILE")
+        bpy.context.view_layer.update()
+        self.live_is_done()
+        raise_by(row.interface, 1.0)
+        self.live_is_done()
+        self.assertEqual(row.source, "MESH_OBJECT")

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files of every version of the settings, opened today. tests/data/versions has one of each, written by
+make_version_fixture.py from the example two_layers, whose files are not beside it."""
+
+import math
+from pathlib import Path
+
+import bpy
+from blender_state import empty_file
+from panel_case import SAMPLES, PanelCase, ops, raise_by
+from realmodel import handlers, versioning
+from realmodel.bl import batch, settings
+from realmodel.core import build, load_project
+
+FILES = Path(__file__).resolve().parents[1] / "data" / "versions"
+CLAY, SAND = 104929.84, 25470.43
+
+
+class Versions(PanelCase):
+    def test_there_is_a_file_of_every_version(self):
+        self.assertEqual(
+            {path.name for path in FILES.glob("*.blend")},
+            {f"v{n}.blend" for n in range(settings.VERSION + 1)},
+        )
+        self.assertEqual(len(versioning._STEPS), settings.VERSION)
+
+    def test_each_can_be_gone_on_with(self):
+        for path in sorted(FILES.glob("*.blend")):
+            with self.subTest(path.name):
+                bpy.ops.wm.open_mainfile(filepath=str(path))
+                self.assertEqual(self.model.version, settings.VERSION)
+                self.assertEqual([s.name for s in self.model.rocks[0].surfaces], ["top of clay", "ground"])
+                self.assertEqual([e.name for e in self.model.library], ["Clay", "Sand"])
+                self.assert_volumes(CLAY, SAND)
+                before = sorted(o.name for o in self.scene.objects)
+                ops.build()
+                self.assertEqual(sorted(o.name for o in self.scene.objects), before)
+                self.assert_volumes(CLAY, SAND)
+                ground = self.model.rocks[0].surfaces[1].interface
+                raise_by(ground, 1.0)
+                ops.build()
+                self.assertAlmostEqual(sum(self.volumes().values()), CLAY + SAND + 6000.0, delta=0.05)
+
+    def assert_volumes(self, clay, sand):
+        volumes = self.volumes()
+        self.assertEqual(set(volumes), {"Clay", "Sand"})
+        for name, expected in (("Clay", clay), ("Sand", sand)):
+            self.assertTrue(math.isclose(volumes[name], expected, rel_tol=1e-6), volumes)
+
+    def test_a_model_of_batch_in_this_session(self):
+        empty_file()
+        batch.write_scene(build(load_project(SAMPLES / "two_layers" / "project.toml")))
+        handlers.migrate_all()
+        self.assert_volumes(CLAY, SAND)
+        handlers.migrate_all()
+        self.assertEqual(len(self.model.rocks), 1)
+
+    def test_damage_is_told_and_left_alone(self):
+        empty_file()
+        batch.write_scene(build(load_project(SAMPLES / "two_layers" / "project.toml")))
+        self.scene["realmodel_project"] = self.scene["realmodel_project"][:200]
+        handlers.migrate_all()
+        self.assertFalse(self.model.exists)
+        self.assertEqual(len([o for o in self.scene.objects if o.get("realmodel")]), 4)
+
+    def test_a_newer_file_is_left_alone(self):
+        ops.rock_add()
+        self.model.version = settings.VERSION + 1
+        handlers.migrate_all()
+        self.assertEqual(self.model.version, settings.VERSION + 1)
