@@ -12,7 +12,7 @@ from bpy.props import (
 )
 
 from .bl import changes, settings
-from .core.methods import DEFAULT_METHOD, EXTRAPOLATE, METHODS, THICKNESS_METHODS
+from .core.methods import DEFAULT_METHOD, DEFAULT_NEIGHBOURS, EXTRAPOLATE, METHODS, THICKNESS_METHODS
 from .core.variogram import VARIOGRAM_MODELS
 
 SOURCES = (
@@ -133,12 +133,17 @@ class RealModelSurface(bpy.types.PropertyGroup):
         default=DEFAULT_METHOD,
         update=changes.setting,
     )
+    use_neighbours: BoolProperty(
+        name="Choose neighbours",
+        description="Say how many points count at each place; off: as many as suit the method",
+        update=changes.setting,
+    )
     neighbours: IntProperty(
         name="Neighbours",
         description="How many points, the nearest in plan, count at each place; 0: all of them",
-        default=16,
+        default=DEFAULT_NEIGHBOURS,
         min=0,
-        update=changes.setting,
+        update=changes.neighbours,
     )
     octants: IntProperty(
         name="Per octant",

@@ -24,6 +24,13 @@ def base_elevation(rock, context):
         setting(rock, context)
 
 
+def neighbours(surface, context):
+    """Whoever gives a number of neighbours wants it."""
+    if not settings.is_filling():
+        surface.use_neighbours = True
+        setting(surface, context)
+
+
 def region(rock, context):
     """Another region: what was kept of the earlier one is worth nothing."""
     if settings.is_filling():

@@ -8,7 +8,7 @@ from .settings import number, set_number
 
 # Settings that the panel shows for an option: the switch before it, if it has one, and its own.
 SHOWN = {
-    "neighbours": (None, ("neighbours",)),
+    "neighbours": ("use_neighbours", ("neighbours",)),
     "octants": (None, ("octants",)),
     "radius": (None, ("radius",)),
     "power": (None, ("power",)),
@@ -52,6 +52,9 @@ def options_of(row):
 
 
 def _value(row, name):
+    switch, _ = SHOWN[name]
+    if switch is not None and not getattr(row, switch):
+        return None
     if name in _WORDS or name in _WHOLE:
         return getattr(row, name)
     if name in _SURFACES:
@@ -59,12 +62,9 @@ def _value(row, name):
     if name == "variogram":
         return None if row.fit_variogram else _variogram(row)
     if name == "anisotropy":
-        return _anisotropy(row) if row.use_anisotropy else None
+        return _anisotropy(row)
     if name == "dip_direction":
         return number(row, name) if row.use_dip else None
-    switch, _ = SHOWN[name]
-    if switch is not None and not getattr(row, switch):
-        return None
     value = number(row, name)
     return None if name in _NONE_IS_ZERO and value == 0.0 else value
 
@@ -103,6 +103,9 @@ def _set(row, name, value):
     """Whether the settings of a surface could take an option's value."""
     if value is None:
         return True
+    switch, _ = SHOWN.get(name, (None, ()))
+    if switch is not None:
+        setattr(row, switch, True)
     if name in _WORDS or name in _WHOLE:
         setattr(row, name, value)
     elif name in _SURFACES:
@@ -112,13 +115,9 @@ def _set(row, name, value):
     elif name == "variogram":
         return _set_variogram(row, value)
     elif name == "anisotropy":
-        row.use_anisotropy = True
         for key, part in value.items():
             set_number(row, f"anisotropy_{key}", part)
     elif name in SHOWN:
-        switch, _ = SHOWN[name]
-        if switch is not None:
-            setattr(row, switch, True)
         set_number(row, name, value)
     else:
         return False
