@@ -117,6 +117,11 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         help="tell cells, memory and time that it would take, and build nothing",
     )
     parser.add_argument(
+        "--surfaces-only",
+        action="store_true",
+        help="stop after the heights: --export then writes the surfaces with height, variance and distance",
+    )
+    parser.add_argument(
         "--eroded",
         action="store_true",
         help="tell what each surface removed of each block, in the table and the report",
@@ -135,6 +140,10 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
     for name in ("blend", "render"):
         if getattr(options, name) is not None and not IN_BLENDER:
             parser.error(f"--{name} needs Blender; run it as: {_BLENDER_USAGE}")
+    if options.surfaces_only:
+        for name in ("blend", "render", "estimate", "eroded", "check_model", "memory"):
+            if getattr(options, name):
+                parser.error(f"--surfaces-only goes without --{name.replace('_', '-')}")
     outputs = ("--blend", "--export", "--report", "--render")
     if options.estimate and any(getattr(options, name[2:]) for name in outputs):
         parser.error(f"--estimate builds nothing: it goes without {', '.join(outputs)}")
@@ -170,6 +179,9 @@ def _run(options: argparse.Namespace) -> None:
     if options.estimate:
         _estimate(options, project, progress)
         return
+    if options.surfaces_only:
+        _surfaces_only(options, project, progress)
+        return
     with Outputs() as outputs, _Interruptible(outputs):
         try:
             model = build(
@@ -194,6 +206,33 @@ def _run(options: argparse.Namespace) -> None:
             if options.check_model:
                 print(f"{validation}\n")
             print(volume_table(model, erosion), flush=True)
+
+
+def _surfaces_only(options: argparse.Namespace, project, progress) -> None:
+    from realmodel.core import build_surfaces
+    from realmodel.core.atomic import Outputs
+    from realmodel.core.exporters.surfaces import surface_writer_for, write_surfaces_report
+    from realmodel.core.table import surface_table
+
+    with Outputs() as outputs, _Interruptible(outputs):
+        try:
+            surfaces = build_surfaces(project, options.threads, progress, stage=options.stage)
+            for path in options.export:
+                with outputs.file(path) as file:
+                    progress(1.0, f"writing {path.name}")
+                    surface_writer_for(path)(surfaces, file)
+            if options.report is not None:
+                with outputs.file(options.report) as file:
+                    write_surfaces_report(surfaces, file)
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, signal.SIG_IGN)
+        finally:
+            progress.close()
+    if not options.quiet:
+        with contextlib.suppress(BrokenPipeError):
+            for warning in surfaces.warnings:
+                print(f"warning: {warning}")
+            print(surface_table(surfaces), flush=True)
 
 
 def _estimate(options: argparse.Namespace, project, progress) -> None:
@@ -250,9 +289,10 @@ def _checked_targets(options: argparse.Namespace) -> list[Path]:
     from realmodel.core import UsageError
     from realmodel.core.atomic import writable_target
     from realmodel.core.exporters import writer_for
+    from realmodel.core.exporters.surfaces import surface_writer_for
 
     for path in options.export:
-        writer_for(path)
+        surface_writer_for(path) if options.surfaces_only else writer_for(path)
     paths = [*options.export, *(p for p in (options.report, options.blend, options.render) if p is not None)]
     targets = [writable_target(path) for path in paths]
     for path, target in zip(paths, targets, strict=True):

@@ -23,6 +23,7 @@ from . import (
     settings,
     shapes,
     surface_figures,
+    uncertainty,
 )
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin, offsets_from
@@ -36,7 +37,8 @@ class Prepared:
     interfaces: by (rock, surface) numbers (offsets (V, 3) float32, triangles, digest). blocks: for each block
     of the model (offsets, face_offsets, face_vertices, face_surface), None where it has no cells. stored: by
     (rock, surface or None for the region) the text that its row is to keep of its file, and the stamp of the
-    file. figures: for each surface what surface_figures says of it.
+    file. figures: for each surface what surface_figures says of it. told: by (rock, surface) numbers
+    what is known of an interface's vertices (Model.surface_attributes).
     """
 
     model: object
@@ -45,6 +47,7 @@ class Prepared:
     blocks: list = field(default_factory=list)
     stored: dict = field(default_factory=dict)
     figures: list = field(default_factory=list)
+    told: dict = field(default_factory=dict)
 
 
 def prepare(model, composed):
@@ -61,6 +64,7 @@ def prepare(model, composed):
                 given = offsets_from(origin, vertices)
                 triangles = meshes.without_repeated_corners(triangles)
                 prepared.interfaces[r, s] = (given, triangles, shapes.digest(given, triangles))
+                prepared.told[r, s] = model.surface_attributes(surface)
             surface += 1
     for number, block in enumerate(model.blocks):
         shell = model.block_boundary(number) if block.cells else None
@@ -171,6 +175,7 @@ def _new_interfaces(current, prepared, composed, created):
             if own is None or digest != row.interface_digest:
                 mesh = meshes.triangle_mesh(row.name, given, triangles)
                 created.meshes.append(mesh)
+                uncertainty.add_attributes(mesh, prepared.told[r, s])
             if own is None:
                 own = bpy.data.objects.new(row.name, mesh)
                 created.objects.append(own)

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from . import materials, meshes, origin, stored_project, versions
+from . import materials, meshes, origin, stored_project, uncertainty, versions
 
 TAG = "realmodel"
 ROCK = "realmodel_rock"
@@ -187,6 +187,7 @@ def _interface(model, surface, rock, given, model_origin, created):
     vertices, triangles = model.surface(surface)
     mesh = meshes.triangle_mesh(given.name, origin.offsets_from(model_origin, vertices), triangles)
     made = _object(mesh, given.name, created)
+    uncertainty.add_attributes(mesh, model.surface_attributes(surface))
     made[TAG] = "interface"
     made[ROCK] = rock.name
     made[SURFACE] = given.name

@@ -25,6 +25,7 @@ from .point_file import PointFile
 from .project import Project, Rock, Surface
 from .project_file import load_project
 from .section import Fence, Section
+from .surface_set import SurfaceSet, build_surfaces
 from .validation import ValidationReport
 from .variogram import Structure, Variogram
 
@@ -53,10 +54,12 @@ __all__ = [
     "Section",
     "Structure",
     "Surface",
+    "SurfaceSet",
     "UsageError",
     "ValidationReport",
     "Variogram",
     "build",
+    "build_surfaces",
     "cross_validate",
     "estimate",
     "interpolate",

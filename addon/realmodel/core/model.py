@@ -17,6 +17,7 @@ from .errors import UsageError
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
+from .surface_set import vertex_attributes
 from .validation import PLACES_OF_CHECK, ValidationReport, validate
 from .work import Cancel, Progress, native_module
 
@@ -100,15 +101,7 @@ class Model:
         `height`; `variance` of the error of an interpolated height, squared model units; `distance` in plan
         to the nearest point that it was interpolated from. NaN where there is no such thing, as for all
         vertices of a ready mesh."""
-        vertices, _ = self.surface(number)
-        unknown = np.full(len(vertices), np.nan)
-        told = [entry.told.get(k, {}) for entry in self.rock_inputs for k in range(len(entry.surfaces))]
-        known = told[number] if told else {}
-        return {
-            "height": vertices[:, 2].copy(),
-            "variance": known.get("variance", unknown),
-            "distance": known.get("distance", unknown),
-        }
+        return vertex_attributes(self.rock_inputs, number, self.surface(number)[0])
 
     def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (V, 3) and triangles (T, 3) of one input surface by its global index."""

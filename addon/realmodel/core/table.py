@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from .erosion import Erosion
 
 _HEADINGS = ("block", "property", "rock", "volume", "share", "cells", "components", "largest")
@@ -46,6 +48,47 @@ def volume_table(model, erosion: Erosion | None = None) -> str:
     rule = "-" * (sum(widths) + 2 * (len(widths) - 1))
     lines = [_line(headings, widths), rule, *(_line(row, widths) for row in rows), rule, _line(sums, widths)]
     return "\n".join(lines)
+
+
+_HEADINGS_OF_SURFACES = (
+    "surface",
+    "rock",
+    "method",
+    "points",
+    "vertices",
+    "lowest",
+    "highest",
+    "least sure",
+    "beyond points",
+)
+
+
+def surface_table(surfaces) -> str:
+    """A line for each surface, youngest first. `least sure` is the largest deviation of a height where the
+    method tells one, `beyond points` the share of the vertices outside the hull of the points."""
+    rows = []
+    rocks = [entry.rock.name for entry in surfaces.rock_inputs for _ in entry.surfaces]
+    given = [surface for entry in surfaces.rock_inputs for surface in entry.rock.surfaces]
+    for number in reversed(range(len(surfaces.surface_names))):
+        result = surfaces.interpolations[number]
+        told = surfaces.surface_attributes(number)
+        known = told["variance"][np.isfinite(told["variance"])]
+        rows.append(
+            [
+                surfaces.surface_names[number],
+                rocks[number],
+                result.method if result else "ready mesh",
+                f"{len(given[number].points)}" if result else "",
+                f"{len(told['height'])}",
+                f"{told['height'].min():.7g}",
+                f"{told['height'].max():.7g}",
+                f"{known.max() ** 0.5:.3g}" if len(known) else "",
+                f"{100 * result.extrapolated:.3g} %" if result else "",
+            ]
+        )
+    widths = [max(len(row[i]) for row in (_HEADINGS_OF_SURFACES, *rows)) for i in range(len(rows[0]))]
+    rule = "-" * (sum(widths) + 2 * (len(widths) - 1))
+    return "\n".join([_line(_HEADINGS_OF_SURFACES, widths), rule, *(_line(row, widths) for row in rows)])
 
 
 def _share(part: float, whole: float) -> str:

@@ -16,7 +16,6 @@ _HEADER = 1024  # more than any header of an array
 def model_arrays(model) -> dict[str, np.ndarray]:
     """The arrays of docs/geometry.md by name, and what describes blocks, surfaces and rock masses."""
     blocks = model.blocks
-    told = [model.surface_attributes(number) for number in range(len(model.surface_names))]
     return {
         "vertices": model.vertices,
         "face_offsets": model.face_offsets,
@@ -25,7 +24,7 @@ def model_arrays(model) -> dict[str, np.ndarray]:
         "face_surface": model.face_surface,
         "cell_block": model.cell_block,
         "cell_kind": np.array(model.cell_kind),
-        "block_names": _texts(block.name for block in blocks),
+        "block_names": texts(block.name for block in blocks),
         "block_rock": np.array([block.rock for block in blocks], np.int32),
         "block_surface": np.array([block.surface for block in blocks], np.int32),
         "block_property": np.array([block.property for block in blocks], np.int32),
@@ -36,19 +35,22 @@ def model_arrays(model) -> dict[str, np.ndarray]:
         "surface_triangles": model.surface_triangles,
         "surface_vertex_offsets": model.surface_vertex_offsets,
         "surface_triangle_offsets": model.surface_triangle_offsets,
-        **{f"surface_{name}": _joined(told, name) for name in ("variance", "distance")},
-        "surface_names": _texts(model.surface_names),
-        "rock_names": _texts(rock.name for rock in model.project.rocks),
+        **{f"surface_{name}": joined_attributes(model, name) for name in ("variance", "distance")},
+        "surface_names": texts(model.surface_names),
+        "rock_names": texts(rock.name for rock in model.project.rocks),
     }
 
 
-def _joined(told: list[dict], name: str) -> np.ndarray:
-    return np.concatenate([np.empty(0), *(attributes[name] for attributes in told)])
+def joined_attributes(model, name: str) -> np.ndarray:
+    """(Vs,) float64: an attribute of the vertices of all surfaces, one surface after another."""
+    told = [model.surface_attributes(number)[name] for number in range(len(model.surface_names))]
+    return np.concatenate([np.empty(0), *told])
 
 
-def _texts(texts) -> np.ndarray:
-    texts = list(texts)
-    return np.array(texts) if texts else np.empty(0, "<U1")
+def texts(given) -> np.ndarray:
+    """(N,) fixed-width text."""
+    given = list(given)
+    return np.array(given) if given else np.empty(0, "<U1")
 
 
 def write_npz(model, file: BinaryIO, step: Callable[[float], None]) -> None:

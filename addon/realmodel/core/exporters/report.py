@@ -53,11 +53,8 @@ def model_report(
         "cell_kind": model.cell_kind,
         "volume": total,
         "blocks": [_block(model, number, total) for number in range(len(model.blocks))],
-        "surfaces": _surfaces(model),
-        "warnings": [
-            {"kind": w.kind, "rock": w.rock, "surface": w.surface, "items": list(w.items), "text": w.text}
-            for w in model.warnings
-        ],
+        "surfaces": surface_entries(model),
+        "warnings": warning_entries(model),
         "validation": validation.to_json(),
         "timings": model.timings,
         "threads": model.threads,
@@ -113,9 +110,18 @@ def _block(model, number: int, total: float) -> dict:
     }
 
 
-def _surfaces(model) -> list[dict]:
+def warning_entries(model) -> list[dict]:
+    """What was told of a model, or of surfaces."""
+    return [
+        {"kind": w.kind, "rock": w.rock, "surface": w.surface, "items": list(w.items), "text": w.text}
+        for w in model.warnings
+    ]
+
+
+def surface_entries(model) -> list[dict]:
+    """What is told of each surface of a model, or of a SurfaceSet."""
     entries = []
-    for rock in model.project.rocks:
+    for rock in (entry.rock for entry in model.rock_inputs):
         for surface in rock.surfaces:
             number = len(entries)
             vertices, triangles = model.surface(number)

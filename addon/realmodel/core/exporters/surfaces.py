@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces with their heights, before they bound anything: .npz, .vtu of triangles, and a report."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from ..atomic import Outputs
+from ..errors import UsageError
+from .npz import joined_attributes, texts, write_arrays
+from .report import SCHEMA, surface_entries, versions, warning_entries
+
+_TRIANGLE = 5  # VTK's number
+ATTRIBUTES = ("height", "variance", "distance")
+
+
+def surface_arrays(surfaces) -> dict[str, np.ndarray]:
+    """By the names that the arrays of a model have: surface_vertices (Vs, 3), surface_triangles (Ts, 3)
+    within their own surface, offsets (S+1,), surface_names, and for each vertex surface_height,
+    surface_variance and surface_distance (Vs,), NaN where there is none."""
+    shapes = [surfaces.surface(number) for number in range(len(surfaces.surface_names))]
+    arrays = {
+        "surface_vertices": np.concatenate([vertices for vertices, _ in shapes]),
+        "surface_triangles": np.concatenate([triangles for _, triangles in shapes]),
+    }
+    for name, column in (("surface_vertex_offsets", 0), ("surface_triangle_offsets", 1)):
+        arrays[name] = np.cumsum([0, *(len(shape[column]) for shape in shapes)], dtype=np.int64)
+    return {
+        **arrays,
+        **{f"surface_{name}": joined_attributes(surfaces, name) for name in ATTRIBUTES},
+        "surface_names": texts(surfaces.surface_names),
+    }
+
+
+def write_surfaces_npz(surfaces, file: BinaryIO) -> None:
+    """Writes the arrays."""
+    write_arrays(surface_arrays(surfaces), file)
+
+
+def write_surfaces_vtu(surfaces, file: BinaryIO) -> None:
+    """Writes all triangles as one unstructured grid (VTK File Formats, XML), with the point arrays height,
+    variance and distance (NaN where there is none) and the cell array `surface`, the number of each one's."""
+    arrays = surface_arrays(surfaces)
+    first = np.repeat(arrays["surface_vertex_offsets"][:-1], np.diff(arrays["surface_triangle_offsets"]))
+    corners = arrays["surface_triangles"].astype("<i8") + first[:, None]
+    number = np.repeat(
+        np.arange(len(surfaces.surface_names), dtype="<i4"), np.diff(arrays["surface_triangle_offsets"])
+    )
+    count = len(corners)
+    blocks: list[np.ndarray] = []
+    at = 0
+
+    def tag(name: str, kind: str, values: np.ndarray, width: int = 1) -> str:
+        nonlocal at
+        several = f' NumberOfComponents="{width}"' if width > 1 else ""
+        text = f'<DataArray type="{kind}" Name="{name}"{several} format="appended" offset="{at}"/>'
+        blocks.append(np.ascontiguousarray(values))
+        at += 8 + blocks[-1].nbytes
+        return text
+
+    points = tag("Points", "Float64", arrays["surface_vertices"].astype("<f8"), 3)
+    of_points = [tag(name, "Float64", arrays[f"surface_{name}"].astype("<f8")) for name in ATTRIBUTES]
+    cells = [
+        tag("connectivity", "Int64", corners),
+        tag("offsets", "Int64", 3 * np.arange(1, count + 1, dtype="<i8")),
+        tag("types", "UInt8", np.full(count, _TRIANGLE, np.uint8)),
+    ]
+    of_cells = tag("surface", "Int32", number)
+    lines = [
+        '<?xml version="1.0"?>',
+        '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">',
+        "<UnstructuredGrid>",
+        f'<Piece NumberOfPoints="{len(arrays["surface_vertices"])}" NumberOfCells="{count}">',
+        f"<Points>{points}</Points>",
+        f"<Cells>{''.join(cells)}</Cells>",
+        f'<PointData Scalars="height">{"".join(of_points)}</PointData>',
+        f'<CellData Scalars="surface">{of_cells}</CellData>',
+        "</Piece>",
+        "</UnstructuredGrid>",
+        '<AppendedData encoding="raw">',
+        "_",
+    ]
+    file.write("\n".join(lines).encode("ascii"))
+    for block in blocks:
+        file.write(np.array([block.nbytes], "<u8").tobytes())
+        file.write(block)
+    file.write(b"\n</AppendedData>\n</VTKFile>\n")
+
+
+WRITERS: dict[str, Callable[..., None]] = {".npz": write_surfaces_npz, ".vtu": write_surfaces_vtu}
+
+
+def surface_writer_for(path: str | Path) -> Callable[..., None]:
+    """The function (surfaces, file) that writes files of this ending. Raises UsageError."""
+    ending = Path(path).suffix.lower()
+    if ending not in WRITERS:
+        raise UsageError(f"{path}: surfaces are written to {' or '.join(WRITERS)} files")
+    return WRITERS[ending]
+
+
+def save_surfaces(surfaces, path: str | Path) -> None:
+    """Writes surfaces to a file that appears whole or not at all."""
+    writer = surface_writer_for(path)
+    with Outputs() as outputs, outputs.file(path) as file:
+        writer(surfaces, file)
+
+
+def write_surfaces_report(surfaces, file: BinaryIO) -> None:
+    """Writes the part of a model's report that is known before anything is intersected, as UTF-8 JSON."""
+    report = {
+        "schema": SCHEMA,
+        "project": {
+            "name": surfaces.project.name,
+            "file": str(surfaces.project.path) if surfaces.project.path else None,
+        },
+        "surfaces": surface_entries(surfaces),
+        "warnings": warning_entries(surfaces),
+        "versions": versions(),
+    }
+    file.write(f"{json.dumps(report, indent=2, ensure_ascii=False, allow_nan=False)}\n".encode())

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The surfaces of a project with their heights, before anything is intersected."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from .build_options import check_stage
+from .build_warning import BuildWarning
+from .errors import UsageError
+from .heights import Interpolation
+from .method_options import check_threads
+from .project import Project, check_project
+from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
+from .work import Cancel, Progress, Work, native_module, run
+
+_READ, _MESHED = 0.2, 0.4  # shares of the time
+
+
+@dataclass(eq=False)
+class SurfaceSet:
+    """Surfaces as the model would take them: interpolated ones on the mesh of their region, ready meshes as
+    they are, unclipped. `surface_names` and all numbers go through the rock masses in order, oldest first.
+    `project` holds the arrays in the place of files.
+    """
+
+    project: Project
+    rock_inputs: list[RockInput] = field(repr=False)
+    surface_names: list[str]
+    warnings: list[BuildWarning]
+
+    @property
+    def interpolations(self) -> list[Interpolation | None]:
+        """What interpolating each surface gave; None for ready meshes."""
+        return [result for entry in self.rock_inputs for result in entry.interpolations]
+
+    def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
+        """Vertices (V, 3) float64 and triangles (T, 3) int32 of one surface."""
+        return [shape for entry in self.rock_inputs for shape in entry.surfaces][number]
+
+    def surface_attributes(self, number: int) -> dict[str, np.ndarray]:
+        """As Model.surface_attributes."""
+        return vertex_attributes(self.rock_inputs, number, self.surface(number)[0])
+
+    def save(self, path: str | Path) -> None:
+        """Writes the surfaces to a file, by its ending (.npz, .vtu). It appears whole or not at all.
+
+        Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
+        """
+        from .exporters.surfaces import save_surfaces
+
+        save_surfaces(self, path)
+
+
+def vertex_attributes(inputs: list[RockInput], number: int, vertices: np.ndarray) -> dict[str, np.ndarray]:
+    """What is known of the vertices (V, 3) of one surface, by its global index: `height`, and `variance` and
+    `distance`, NaN where there are none."""
+    told = [entry.told.get(k, {}) for entry in inputs for k in range(len(entry.surfaces))]
+    known = told[number] if told else {}
+    unknown = np.full(len(vertices), np.nan)
+    return {
+        "height": vertices[:, 2].copy(),
+        "variance": known.get("variance", unknown),
+        "distance": known.get("distance", unknown),
+    }
+
+
+def build_surfaces(
+    project: Project,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    *,
+    stage: int | None = None,
+) -> SurfaceSet:
+    """Reads, meshes and interpolates the surfaces of a project, and stops there.
+
+    Arguments as `build`; stage: only the surfaces up to this one (from 0) of each rock mass.
+    Raises InputRefused, UsageError, Cancelled.
+    """
+    threads = check_threads(threads)
+    check_project(project)
+    if stage is not None:
+        check_stage(project, stage)
+    if not any(rock.surfaces for rock in project.rocks):
+        raise UsageError("the project has no surfaces")
+    native_module()
+    return run(lambda work: _build(work, project, threads, stage), progress, cancel)
+
+
+def _build(work: Work, project: Project, threads: int, stage: int | None) -> SurfaceSet:
+    with work.phase(0.0, _READ, "reading"):
+        inputs = read_rocks(work, project)
+    count = len(inputs)
+    for number, entry in enumerate(inputs):
+        begin, end = (_READ + (_MESHED - _READ) * k / count for k in (number, number + 1))
+        with work.phase(begin, end, f"meshing the region of {entry.rock.name}"):
+            mesh_rock(work, entry)
+    for number, entry in enumerate(inputs):
+        begin, end = (_MESHED + (1.0 - _MESHED) * k / count for k in (number, number + 1))
+        interpolate_rock(work, entry, begin, end, threads, stage)
+    if stage is not None:
+        inputs = [entry.stage(stage) for entry in inputs]
+    return SurfaceSet(
+        project,
+        inputs,
+        [surface.name for entry in inputs for surface in entry.rock.surfaces],
+        [warning for entry in inputs for warning in entry.warnings],
+    )

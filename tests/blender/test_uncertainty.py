@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is known of the heights of interpolated interfaces, as attributes of their meshes."""
+
+import unittest
+
+import bpy
+import numpy as np
+from blender_state import empty_file
+from made_projects import interpolated, two_rocks
+from realmodel.bl import scene, uncertainty
+from realmodel.core import build
+
+
+def values(mesh, name):
+    read = np.empty(len(mesh.vertices), np.float32)
+    mesh.attributes[name].data.foreach_get("value", read)
+    return read
+
+
+class Uncertainty(unittest.TestCase):
+    def setUp(self):
+        empty_file()
+
+    def test_interpolated_interfaces_have_variance_distance_and_colour(self):
+        model = build(interpolated())
+        scene.write_model(bpy.context.scene, model)
+        interfaces = scene.model_objects(bpy.context.scene, "interface")
+        self.assertEqual(len(interfaces), 3)
+        for number, item in enumerate(interfaces):
+            told = model.surface_attributes(number)
+            distance = values(item.data, "distance")
+            np.testing.assert_allclose(distance, told["distance"], rtol=1e-6)
+            self.assertGreater(distance.max(), 1.0)
+            if number == 2:  # inverse distance tells no variance
+                self.assertNotIn("variance", item.data.attributes)
+                self.assertNotIn("uncertainty", item.data.color_attributes)
+                continue
+            variance = values(item.data, "variance")
+            np.testing.assert_allclose(variance, told["variance"], rtol=1e-6)
+            layer = item.data.color_attributes["uncertainty"]
+            colours = np.empty(4 * len(variance), np.float32)
+            layer.data.foreach_get("color_srgb", colours)
+            colours = colours.reshape(-1, 4)
+            surest, least_sure = colours[variance.argmin()], colours[variance.argmax()]
+            self.assertGreater(least_sure[:3].sum(), surest[:3].sum() + 0.5)
+            np.testing.assert_allclose(least_sure, (0.995, 0.910, 0.215, 1.0), atol=0.01)
+
+    def test_ready_meshes_have_none(self):
+        scene.write_model(bpy.context.scene, build(two_rocks()))
+        for item in scene.model_objects(bpy.context.scene, "interface"):
+            self.assertFalse({"variance", "distance", "uncertainty"} & set(item.data.attributes.keys()))
+
+    def test_colours_of_what_is_not_known(self):
+        found = uncertainty.colours(np.array([0.0, np.nan, 4.0]))
+        self.assertEqual(found.shape, (3, 4))
+        np.testing.assert_allclose(found[1], (0.35, 0.35, 0.35, 1.0), atol=1e-6)
+        sure = uncertainty.colours(np.zeros(2))
+        np.testing.assert_allclose(sure, [(0.0, 0.135, 0.305, 1.0)] * 2, atol=1e-6)
