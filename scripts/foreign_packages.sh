@@ -14,10 +14,11 @@ fail() {
 }
 
 command -v apt-get >/dev/null || fail "this is not Debian: there is no apt-get"
-# Also where the sources list other archives than Debian's own.
+# Also where the sources list other archives than Debian's own; and where no list was ever fetched.
 # shellcheck disable=SC2016  # the names in the format are those of apt
 mirror=$(apt-get indextargets --format '$(LABEL) $(REPO_URI)' 'Created-By: Packages' | awk '$1 == "Debian" {print $2; exit}')
-[[ -n $mirror ]] || fail "the sources of apt name no archive of Debian, or its lists were never fetched (apt-get update)"
+[[ -n $mirror ]] || mirror=$(apt-get --print-uris update | sed -n "s|^'\(.*/debian/*\)/dists/.*|\1|p" | head -n 1)
+[[ -n $mirror ]] || fail "the sources of apt name no archive of Debian"
 if [[ ${1-} == --mirror ]]; then
     echo "$mirror"
     exit 0

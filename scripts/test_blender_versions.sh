@@ -126,12 +126,14 @@ compile() { # VERSION
     local packages=(g++ cmake ninja-build python3-dev pybind11-dev libcgal-dev libeigen3-dev libnanoflann-dev libgmp-dev libgtest-dev)
     "$root/scripts/debian_chroot.sh" make sid "$cache/debian-sid" "${packages[@]}" || return 1
     mkdir -p "$cache/build-sid"
-    "$root/scripts/debian_chroot.sh" run "$cache/debian-sid" --bind "$root:/repository" --bind "$cache/build-sid:/build" bash -c "
+    # shellcheck disable=SC2016  # it is the shell in there that fills in these variables
+    "$root/scripts/debian_chroot.sh" run "$cache/debian-sid" --bind "$root:/repository" --bind "$cache/build-sid:/build" bash -c '
         g++ --version | head -n 1
+        include=$(python3 -c "import sysconfig; print(sysconfig.get_path(\"include\"))")
         cmake -S /repository -B /build -G Ninja -DCMAKE_BUILD_TYPE=Release --log-level=WARNING \
-            -DREALMODEL_PACKAGED_PYTHONS=sid.so=/usr/include/python3.14 &&
-            cmake --build /build -j $("$root/scripts/build_jobs.sh") --target realmodel_tests stack_fuzzer build_digests packaged_modules &&
-            ctest --test-dir /build -j 2 --output-on-failure"
+            "-DREALMODEL_PACKAGED_PYTHONS=sid.so=$include" &&
+            cmake --build /build -j "$1" --target realmodel_tests stack_fuzzer build_digests packaged_modules &&
+            ctest --test-dir /build -j 2 --output-on-failure' compile "$("$root/scripts/build_jobs.sh")"
 }
 
 failed=0

@@ -8,7 +8,6 @@ The zip is written whole or not at all, and the same files give the same bytes.
 """
 
 import os
-import subprocess
 import sys
 import zipfile
 from pathlib import Path
@@ -21,22 +20,23 @@ INSTALLERS_NOTES = {"made_from", "RECORD", "INSTALLER", "REQUESTED"}  # of this 
 EARLIEST = (1980, 1, 1, 0, 0, 0)  # the time of every file in the zip: the zero of the format
 
 
-def tracked_files(folder):
-    """The files of a folder that git knows or would add, without what it ignores."""
-    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", "--", str(folder)]
-    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True).stdout
-    names = {name for name in listed.decode().split("\0") if name}
-    return [ROOT / name for name in names if (ROOT / name).is_file()]
+def files_below(folder):
+    """All files of a folder, without what Python, builds and editors leave there."""
+    for path in sorted(folder.rglob("*")):
+        parts = path.relative_to(folder).parts
+        left_behind = any(part == "__pycache__" or part.startswith((".", "vendor.")) for part in parts)
+        if path.is_file() and not left_behind and path.name not in INSTALLERS_NOTES:
+            yield path
 
 
 def contents(modules):
     """{name in the zip: file}."""
-    files = {f"{TOP}/{path.relative_to(ADDON).as_posix()}": path for path in tracked_files(ADDON)}
-    vendored = ADDON / "vendor"  # made by scripts/build.sh, not in the repository
-    for path in vendored.rglob("*"):
-        if path.is_file() and "__pycache__" not in path.parts and path.name not in INSTALLERS_NOTES:
-            files[f"{TOP}/{path.relative_to(ADDON).as_posix()}"] = path
-    for path in tracked_files(ROOT / "blend_samples"):
+    files = {
+        f"{TOP}/{path.relative_to(ADDON).as_posix()}": path
+        for path in files_below(ADDON)
+        if not path.name.startswith("_native.")
+    }
+    for path in files_below(ROOT / "blend_samples"):
         files[f"{TOP}/{path.relative_to(ROOT).as_posix()}"] = path
     files[f"{TOP}/LICENSE"] = ROOT / "LICENSE"
     for module in modules:
