@@ -33,9 +33,9 @@ if(REALMODEL_SANITIZE)
     target_link_options(realmodel_settings INTERFACE -fsanitize=${REALMODEL_SANITIZE})
 endif()
 
-# A module is loaded into a process that runs already. Its few thread-local variables (a few dozen bytes;
-# the C library keeps room for that) are addressed directly, not through a call of the dynamic
-# linker, which the module would then need by name.
+# What goes into a module that is loaded into a running process: its own thread-local variables (a few bytes;
+# the C library keeps room for that) are addressed directly. Not so in the bindings: there the C++ library's
+# variables are meant too, for which there is no room where that library was itself loaded late (module bpy).
 add_library(realmodel_loaded_late INTERFACE)
 if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
     target_compile_options(realmodel_loaded_late INTERFACE -ftls-model=initial-exec)

@@ -16,7 +16,8 @@ ROOT = Path(__file__).resolve().parents[2]
 VERSION = (ROOT / "VERSION").read_text(encoding="utf-8").strip()
 
 # What a module may need of the system it runs on, and how old that may be (Ubuntu 22.04's).
-SYSTEM = {"libc.so.6", "libm.so.6", "libgcc_s.so.1", "libstdc++.so.6", "libgomp.so.1"}
+# The first is the C library's own part that loads all others.
+SYSTEM = {"ld-linux-x86-64.so.2", "libc.so.6", "libm.so.6", "libgcc_s.so.1", "libstdc++.so.6", "libgomp.so.1"}
 NEWEST = {"GLIBC": (2, 35), "GLIBCXX": (3, 4, 30), "GCC": (12,), "CXXABI": (1, 3, 13)}
 
 
