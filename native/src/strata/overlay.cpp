@@ -261,6 +261,7 @@ public:
         end_.lowered.make_room(lowered.outlines);
         lowered.polygon.resize(end_.lowered.polygon);
         lowered.cell_above.resize(end_.lowered.polygon);
+        make_room_for_surface(next);
         end_.facet.make_room(next.outlines);
         for (auto* list : {&next.plane, &next.layer, &next.pending})
             list->resize(end_.facet.polygon);
@@ -276,6 +277,19 @@ public:
     }
 
 private:
+    /// Each lowered piece becomes a face, and a facet or part of one, behind what is kept.
+    void make_room_for_surface(Envelope& next) const {
+        const PoolStart &facet = end_.facet, &face = end_.facet_face, &more = end_.lowered;
+        next.outlines.offsets.reserve(facet.polygon + more.polygon + 1);
+        next.outlines.corners.reserve(facet.corner + more.corner);
+        for (auto* list : {&next.plane, &next.layer, &next.pending})
+            list->reserve(facet.polygon + more.polygon);
+        next.face_offsets.reserve(facet.polygon + more.polygon + 1);
+        next.face_polygons.offsets.reserve(face.polygon + more.polygon + 1);
+        next.face_polygons.corners.reserve(face.corner + more.corner);
+        next.face_above.reserve(face.polygon + more.polygon);
+    }
+
     void put_chunk(const ChunkResult& chunk, const ChunkStart& at, Envelope& next,
                    LoweredPieces& lowered) {
         const auto shared_cell = [&](std::int32_t cell) {
@@ -323,12 +337,13 @@ void add_surface_facets(const Layer& layer, const std::vector<std::uint8_t>& who
         ++offsets[static_cast<std::size_t>(p) + 1];
     for (std::size_t p = 0; p < layer.plane.size(); ++p)
         offsets[p + 1] += offsets[p];
-    std::vector<std::size_t> of_polygon(lowered.polygon.size());
+    std::vector<std::uint32_t> of_polygon(lowered.polygon.size());
     {
         auto free = offsets;
         for (std::size_t i = 0; i < lowered.polygon.size(); ++i) {
             of_polygon[static_cast<std::size_t>(
-                free[static_cast<std::size_t>(lowered.polygon[i])]++)] = i;
+                free[static_cast<std::size_t>(lowered.polygon[i])]++)] =
+                static_cast<std::uint32_t>(i);
         }
     }
     for (std::size_t p = 0; p < layer.plane.size(); ++p) {
