@@ -145,6 +145,22 @@ std::optional<double> near_height(const PlanGeometry& g, PlaneId plane, const Ne
     return nearest_sum(corner.z, -quotient(determinant(n.a, dx, -n.b, dy), n.c));
 }
 
+std::optional<double> near_edge_height(const PlanGeometry& g, SpaceId from, SpaceId to,
+                                       const NearPoint& point) {
+    const SpaceVertex &s = g.space(from), &t = g.space(to);
+    const Point &p = g.point(s.plan), &q = g.point(t.plan), &o = g.point(point.origin);
+    const Near along_x = difference(p.x, q.x), along_y = difference(p.y, q.y);
+    const bool is_x = size(along_x.value) >= size(along_y.value);
+    const Near way = is_x ? sum(difference(p.x, o.x), point.x) : sum(difference(p.y, o.y), point.y);
+    const Near rise = difference(s.z, t.z);
+    const Extended product = way.value * rise.value;
+    const double error = size(way.value) * rise.error +
+                         (size(rise.value) + rise.error) * way.error + kUnit * size(product);
+    const bool exact = error == 0 && product == 0;
+    return nearest_sum(s.z,
+                       quotient({product, exact ? 0 : error + kTiny}, is_x ? along_x : along_y));
+}
+
 std::optional<std::array<double, 3>> near_line_key(const NearLine& l) {
     if (!kExtended) return std::nullopt;
     const double a = size(l.a.value), b = size(l.b.value);

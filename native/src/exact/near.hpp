@@ -26,6 +26,11 @@ std::optional<double> nearest_sum(double from, const Near& value);
 std::optional<double> near_height(const PlanGeometry& geometry, PlaneId plane,
                                   const NearPoint& point);
 
+/// The height of an input edge above a point of it, likewise: the same as that of every plane that
+/// stands on the edge, in a third of the time.
+std::optional<double> near_edge_height(const PlanGeometry& geometry, SpaceId from, SpaceId to,
+                                       const NearPoint& point);
+
 /// Scope::line_key of a line relative to the origin of the keys, likewise.
 std::optional<std::array<double, 3>> near_line_key(const NearLine& line);
 

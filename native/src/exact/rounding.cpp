@@ -58,6 +58,15 @@ double Scope::rounded_height(PlaneId plane, PointId id) {
     return rounded_height(plane, id, near(id));
 }
 
+double Scope::rounded_height(PlaneId plane, const HeightName& name, PointId id,
+                             const NearPoint& close) {
+    if (name.first >= 0) {
+        if (name.first == name.second) return shared_.space(name.first).z;
+        if (const auto z = near_edge_height(shared_, name.first, name.second, close)) return *z;
+    }
+    return rounded_height(plane, id, close);
+}
+
 double Scope::rounded_height(PlaneId plane_id, PointId id, const NearPoint& close) {
     const SpaceVertex& corner = shared_.space(shared_.plane(plane_id).corner[0]);
     if (is_vertex(id)) {

@@ -65,7 +65,7 @@ void PlaceHeights::rank_levels(PointId point) {
             level.z = scope_.shared().space(level.name.first).z;
         } else {
             if (!near) near = scope_.near(point);
-            level.z = scope_.rounded_height(level.plane, point, *near);
+            level.z = scope_.rounded_height(level.plane, level.name, point, *near);
         }
     }
     const auto level = [&](std::int32_t i) -> Level& {

@@ -32,7 +32,7 @@ TEST(Near, HeightsAreThoseOfRationalsAndNearlyAlwaysKnown) {
     std::mt19937_64 random(3);
     const auto uniform = [&] { return std::uniform_real_distribution<double>(0, 1)(random); };
     for (const double origin : {0.0, 5.3e6}) {
-        int asked = 0, known = 0;
+        int asked = 0, known = 0, known_on_edge = 0;
         for (int round = 0; round < 300; ++round) {
             PlanGeometry g;
             std::array<std::array<double, 3>, 7> p;
@@ -76,11 +76,18 @@ TEST(Near, HeightsAreThoseOfRationalsAndNearlyAlwaysKnown) {
                 EXPECT_EQ(*close, nearest(z));
             }
             EXPECT_EQ(scope.rounded_height(plane, point), nearest(z));
+
+            const mpq_class on_edge = e[3][2] + share * (e[4][2] - e[3][2]);
+            if (const auto close = near_edge_height(g, s[3], s[4], scope.near(point))) {
+                ++known_on_edge;
+                EXPECT_EQ(*close, nearest(on_edge));
+            }
         }
         EXPECT_GT(asked, 200);
         // elsewhere there may be no such numbers: then nothing is known, and that is right too
         if (nearest_sum(1.0, {0.0L, 0.0})) {
             EXPECT_GT(known, asked * 9 / 10);
+            EXPECT_GT(known_on_edge, asked * 9 / 10);
         }
     }
 }
