@@ -13,7 +13,7 @@ import numpy as np
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 from mathutils import Vector
 
-PATIENCE = 60.0  # seconds for one condition
+PATIENCE = 150.0  # seconds for one condition
 LOOK = 0.02
 
 _KEYS = {" ": "SPACE", ".": "PERIOD", "-": "MINUS"}
@@ -39,7 +39,7 @@ class Walk:
         self._at_end = at_end
         self._generator = None
         self._condition = None
-        bpy.app.timers.register(self._tick, first_interval=0.5)
+        bpy.app.timers.register(self._tick, first_interval=0.5, persistent=True)
 
     def _drawn(self):
         self._draws += 1
@@ -79,10 +79,9 @@ class Walk:
         return True
 
     def _line(self):
-        frame = self._generator.gi_frame
-        while self._generator.gi_yieldfrom is not None and hasattr(self._generator.gi_yieldfrom, "gi_frame"):
-            return f"{frame.f_lineno}, {self._generator.gi_yieldfrom.gi_frame.f_lineno}"
-        return frame.f_lineno
+        inner = self._generator.gi_yieldfrom
+        within = f", within at line {inner.gi_frame.f_lineno}" if hasattr(inner, "gi_frame") else ""
+        return f"{self._generator.gi_frame.f_lineno}{within}"
 
     # -- places
 
@@ -130,9 +129,20 @@ class Walk:
         region = self.region("WINDOW")
         self.move(region.x + region.width * 0.4, region.y + region.height * 0.5)
 
+    def command(self, words):
+        """Runs an operator as a person does who knows its name: F3, the words, Enter."""
+        self.over_viewport()
+        yield self.redrawn()
+        self.key("F3")
+        yield self.redrawn()
+        self.write(words)
+        yield self.redrawn()
+        self.key("RET")
+        yield self.redrawn()
+
     # -- eyes
 
-    def redrawn(self, times=2):
+    def redrawn(self, times=1):
         """A condition: the viewport has been drawn anew."""
         before = self._draws
 
@@ -153,6 +163,23 @@ class Walk:
             bpy.ops.screen.screenshot(filepath=str(path))
         self.pictures.append(path)
         return read_picture(path)
+
+    def visible_place(self, name):
+        """A place of an object that nothing hides: the middle of one of its faces."""
+        item = bpy.data.objects[name]
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        view = self.area.spaces.active.region_3d
+        eye = view.view_matrix.inverted().translation
+        region = self.region("WINDOW")
+        for polygon in sorted(item.data.polygons, key=lambda p: -p.area):
+            place = item.matrix_world @ polygon.center
+            at = location_3d_to_region_2d(region, view, place)
+            if at is None or not (60 < at.x < region.width - 320 and 60 < at.y < region.height - 120):
+                continue
+            hit, _, _, _, seen, _ = bpy.context.scene.ray_cast(depsgraph, eye, (place - eye).normalized())
+            if hit and seen.name == name:
+                return place
+        raise AssertionError(f"{name} cannot be seen")
 
     def colour_at(self, picture, place, size=3):
         """Mean colour of a screenshot around where a place of the scene is drawn."""

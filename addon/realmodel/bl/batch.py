@@ -25,7 +25,7 @@ def write_scene(model):
     project = scene.write_model(current, model)
     if not bpy.data.filepath:
         _remove_startup_objects(current, project)
-    _frame_viewports(current)
+    frame_viewports(current)
 
 
 def save_blend(path):
@@ -92,7 +92,7 @@ def _remove_startup_objects(current, project):
             store.remove(datablock)
 
 
-def _frame_viewports(current):
+def frame_viewports(current):
     """Turn the 3D viewports of the file to the model, and let them see that far."""
     corners = [
         item.matrix_world @ Vector(corner)

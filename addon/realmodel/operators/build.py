@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import build_job, built_scene, live, problems
+from ..bl import batch, build_job, built_scene, live, problems
 from ..core import Cancelled, RealModelError
 from .reporting import Reporting, needed_model
 
@@ -19,6 +19,7 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
 
     _job = None
     _timer = None
+    _had_blocks = False
 
     @classmethod
     def poll(cls, context):
@@ -27,6 +28,7 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
     def act(self, context):
         live.stop_work()
         problems.forget(context)
+        self._had_blocks = len(context.scene.realmodel.results) > 0
         job = build_job.BuildJob(context.scene, context.evaluated_depsgraph_get())
         self._tell_done(job.run())
 
@@ -35,6 +37,7 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
             return self.execute(context)
         live.stop_work()
         problems.forget(context)
+        self._had_blocks = len(context.scene.realmodel.results) > 0
         try:
             self._job = build_job.BuildJob(context.scene, context.evaluated_depsgraph_get())
         except RealModelError as error:
@@ -104,6 +107,8 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
         return {"CANCELLED"}
 
     def _tell_done(self, model):
+        if not self._had_blocks:
+            batch.frame_viewports(bpy.context.scene)
         present = sum(block.cells > 0 for block in model.blocks)
         for warning in model.warnings:
             self.report({"WARNING"}, str(warning))
