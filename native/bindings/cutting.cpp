@@ -156,13 +156,13 @@ InputError kinds not_finite, bad_plane, bad_model, and Cancelled.)");
         py::arg("triangles"), py::arg("threads") = 0, py::arg("control") = nullptr,
         R"(A model cut by a triangulated surface, vertices (N, 3) float64, triangles (T, 3) int32, that
 parts it; as cut_by_plane. Above is the surface's upper side, or the outside of a closed one. Raises
-InputError kinds not_finite, bad_index, no_triangles, branching, one_sided, ends_inside, unresolved,
+InputError kinds not_finite, bad_index, no_triangles, branching, one_sided, ends_inside, two_sides,
 bad_model, and Cancelled.)");
     module.def(
         "cut_by_block", &cut_by_block, py::arg("model"), py::arg("other"), py::arg("block"),
         py::arg("threads") = 0, py::arg("control") = nullptr,
         R"(A model cut by the boundary of a block of another model, or of itself; as cut_by_plane,
-"below" is what is inside. Raises InputError kinds no_block, unresolved, bad_model, and Cancelled.)");
+"below" is what is inside. Raises InputError kinds no_block, bad_model, and Cancelled.)");
     module.def(
         "section_by_plane", &section_by_plane, py::arg("model"), py::arg("point"),
         py::arg("normal"), py::arg("threads") = 0, py::arg("control") = nullptr,

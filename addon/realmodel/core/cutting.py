@@ -124,7 +124,7 @@ _ADVICE = {
     "ends_inside": "extend it beyond the model, or close it",
     "branching": "leave the triangles out that make it branch",
     "one_sided": "leave triangles out until it has an upper and a lower side",
-    "unresolved": "mend the surface where it crosses itself",
+    "two_sides": "cut by one part after the other",
     "no_block": "choose one that has cells",
 }
 

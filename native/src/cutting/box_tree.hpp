@@ -37,6 +37,12 @@ struct Box {
         }
         return true;
     }
+    bool contains(const Position& p) const {
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (p[k] < low[k] || p[k] > high[k]) return false;
+        }
+        return true;
+    }
     bool meets(const Box& other) const {
         for (std::size_t k = 0; k < 3; ++k) {
             if (other.high[k] < low[k] || other.low[k] > high[k]) return false;

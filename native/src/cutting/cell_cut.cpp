@@ -2,38 +2,9 @@
 #include "cell_cut.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 
-#include "realmodel/exact/turn.hpp"
-
 namespace realmodel::cutting {
-
-namespace {
-
-using exact::Ball;
-
-/// The sign of the volume of the tetrahedron a, b, c, d; 0 where twice the precision of doubles
-/// cannot tell.
-int tetrahedron_sign(const Position& a, const Position& b, const Position& c, const Position& d) {
-    const auto difference = [&a](const Position& p, std::size_t k) {
-        return Ball::difference(p[k], a[k]);
-    };
-    Ball sum;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-        sum = sum + difference(b, k) *
-                        (difference(c, l) * difference(d, m) - difference(c, m) * difference(d, l));
-    }
-    return sum.sign().value_or(0);
-}
-
-}  // namespace
-
-Position CellCutter::position(NodeId node) const {
-    return crossings_.is_crossing(node) ? crossings_.position(index(node - crossings_.first_node()))
-                                        : model_.vertex(node);
-}
 
 void CellCutter::cap(std::span<const PieceRef> refs, CellCut& result) {
     collect_uses(refs, true);
@@ -44,10 +15,11 @@ void CellCutter::close(std::span<const PieceRef> refs, CellCut& result) {
     collect_open_edges(refs);
     trace_loops();
     result.caps.clear();
+    result.is_clean = true;
     if (whole_loops_) {
         take_whole_loops(result.caps);
     } else if (!loops_.empty()) {
-        divide_convex(loops_, rounding_, slits_, result.caps);
+        result.is_clean = divide_convex(loops_, rounding_, slits_, result.caps, points_);
     }
 }
 
@@ -120,9 +92,8 @@ bool CellCutter::caps_on_both_sides(std::span<const Use> uses,
                 continue;
             }
             // seen along the edge, angles are counted from the right over the top to the left
-            const int turned = tetrahedron_sign(position(use.edge[0]), position(use.edge[1]),
-                                                position(far_node(*flattest, refs)),
-                                                position(far_node(use, refs)));
+            const int turned = points_.tetrahedron(use.edge[0], use.edge[1],
+                                                   far_node(*flattest, refs), far_node(use, refs));
             if (turned * side > 0) flattest = &use;
         }
         if (flattest == nullptr) continue;
@@ -172,12 +143,12 @@ std::size_t CellCutter::next_edge(const DirectedEdge& arriving,
                          [](const DirectedEdge& e, NodeId node) { return e.from < node; }) -
         open_.begin());
     std::size_t best = open_.size();
-    PlanePosition at{}, back{};
-    const auto half = [&](const PlanePosition& p) {
-        const int turned = exact::turn(at, back, p);
+    LoopCorner at{}, back{};
+    const auto half = [&](const LoopCorner& p) {
+        const int turned = points_(at, back, p);
         if (turned != 0) return turned < 0 ? 0 : 2;
-        const double along =
-            (p[0] - at[0]) * (back[0] - at[0]) + (p[1] - at[1]) * (back[1] - at[1]);
+        const double along = (p.at[0] - at.at[0]) * (back.at[0] - at.at[0]) +
+                             (p.at[1] - at.at[1]) * (back.at[1] - at.at[1]);
         return along < 0 ? 1 : 3;
     };
     for (std::size_t e = begin; e < open_.size() && open_[e].from == arriving.to; ++e) {
@@ -186,11 +157,11 @@ std::size_t CellCutter::next_edge(const DirectedEdge& arriving,
             best = e;
             continue;
         }
-        at = view_(position(arriving.to));
-        back = view_(position(arriving.from));
-        const PlanePosition p = view_(position(open_[best].to)), q = view_(position(open_[e].to));
+        at = corner(arriving.to);
+        back = corner(arriving.from);
+        const LoopCorner p = corner(open_[best].to), q = corner(open_[e].to);
         const int first = half(p), second = half(q);
-        if (second < first || (second == first && exact::turn(at, q, p) < 0)) best = e;
+        if (second < first || (second == first && points_(at, q, p) < 0)) best = e;
     }
     return best;
 }
@@ -209,8 +180,8 @@ void CellCutter::trace_loops() {
         for (std::size_t e = start; e < open_.size(); e = next_edge(open_[e], taken)) {
             if (taken[e]) break;
             taken[e] = true;
-            positions.push_back(position(open_[e].from));
-            loop.push_back({open_[e].from, view_(positions.back())});
+            positions.push_back(points_.rounded(open_[e].from));
+            loop.push_back(corner(open_[e].from));
             if (open_[e].to == open_[start].from) {
                 // further on only where the region goes on round this node
                 const bool tied = std::count_if(open_.begin(), open_.end(), [&](const auto& o) {
@@ -224,7 +195,7 @@ void CellCutter::trace_loops() {
             }
         }
     }
-    rounding_ = rounding_of(positions);
+    rounding_ = points_.view().rounding(positions);
 }
 
 }  // namespace realmodel::cutting

@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "pieces.hpp"
-#include "triangulate.hpp"
+#include "plane_points.hpp"
 
 namespace realmodel::cutting {
 
 /// How a plane divides one cell.
 struct CellCut {
-    Polygons caps;  ///< counter-clockwise seen from above
+    Polygons caps;         ///< counter-clockwise seen from above
+    bool is_clean = true;  ///< false: what bounds them crosses itself, or runs back along itself
     /// The part of the cell that each of its pieces belongs to, then, cap after cap, the part below
     /// it and the part above it. Parts are counted in the order of their first piece.
     std::vector<std::int32_t> part;
@@ -27,8 +28,12 @@ struct CellCut {
 class CellCutter {
 public:
     CellCutter(const ComplexView& model, const std::vector<std::int8_t>& sides,
-               const Crossings& crossings, const Pieces& pieces, const Position& normal)
-        : model_(model), sides_(sides), crossings_(crossings), pieces_(pieces), view_(normal) {}
+               const Crossings& crossings, const Pieces& pieces, const PlaneDistance& distance)
+        : model_(model),
+          sides_(sides),
+          crossings_(crossings),
+          pieces_(pieces),
+          points_(model, distance, crossings) {}
 
     /// The caps alone.
     void cap(std::span<const PieceRef> refs, CellCut& result);
@@ -48,7 +53,8 @@ private:
         NodeId from, to;
     };
 
-    Position position(NodeId node) const;
+    Position position(NodeId node) const { return points_.rounded(node); }
+    LoopCorner corner(NodeId node) const { return {node, points_.view()(points_.rounded(node))}; }
     bool in_plane(NodeId node) const {
         return crossings_.is_crossing(node) || sides_[index(node)] == kOn;
     }
@@ -69,14 +75,14 @@ private:
     const std::vector<std::int8_t>& sides_;
     const Crossings& crossings_;
     const Pieces& pieces_;
-    View view_;
+    PlanePoints points_;
 
     std::vector<Use> uses_;
     std::vector<DirectedEdge> open_;
     std::vector<std::array<NodeId, 2>> slits_, dissolved_;
     std::vector<Loop> loops_;
     bool whole_loops_ = false;
-    double rounding_ = 0;
+    PlanePosition rounding_{0, 0};
 };
 
 }  // namespace realmodel::cutting

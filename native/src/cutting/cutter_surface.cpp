@@ -2,8 +2,6 @@
 #include "cutter_surface.hpp"
 
 #include <algorithm>
-#include <map>
-#include <string>
 
 #include "plane_sides.hpp"
 #include "realmodel/base/errors.hpp"
@@ -49,46 +47,6 @@ Position nearest_in_triangle(const Position& p, const Position& a, const Positio
     return along(along(a, ab, vb * share), ac, vc * share);
 }
 
-/// Adds a seam around an open surface, as wide as rounding may move things a hundred times over: a
-/// surface that ends on the outside of a model then ends beyond it, whichever way that was rounded.
-/// `border`: for each border edge, as its triangle turns, its ends and the third corner.
-void extend_border(CutterSurface& surface, const std::vector<std::array<NodeId, 3>>& border) {
-    const double width = 256 * rounding_of(surface.vertices);
-    std::map<NodeId, Position> outward;
-    for (const auto& [a, b, c] : border) {
-        const Position o = surface.vertices[index(a)];
-        const Position along = minus(surface.vertices[index(b)], o),
-                       inward = minus(surface.vertices[index(c)], o);
-        const double share = dot(inward, along) / dot(along, along);
-        Position away;
-        for (std::size_t k = 0; k < 3; ++k)
-            away[k] = share * along[k] - inward[k];
-        const double size = std::sqrt(dot(away, away));
-        if (!(size > 0)) continue;
-        for (const NodeId v : {a, b}) {
-            Position& sum = outward.try_emplace(v, Position{0, 0, 0}).first->second;
-            for (std::size_t k = 0; k < 3; ++k)
-                sum[k] += away[k] / size;
-        }
-    }
-    std::map<NodeId, NodeId> beyond;
-    for (const auto& [v, way] : outward) {
-        const double size = std::sqrt(dot(way, way));
-        if (size < 0.1) continue;  // the border turns back: it is a slit there
-        Position p = surface.vertices[index(v)];
-        for (std::size_t k = 0; k < 3; ++k)
-            p[k] += width * way[k] / size;
-        beyond[v] = static_cast<NodeId>(surface.vertices.size());
-        surface.vertices.push_back(p);
-    }
-    for (const auto& [a, b, c] : border) {
-        const auto at_a = beyond.find(a), at_b = beyond.find(b);
-        if (at_a != beyond.end()) surface.triangles.push_back({b, a, at_a->second});
-        if (at_b != beyond.end())
-            surface.triangles.push_back({b, at_a == beyond.end() ? a : at_a->second, at_b->second});
-    }
-}
-
 }  // namespace
 
 std::int8_t side_of_nearest(const CutterSurface& surface, const Position& p) {
@@ -112,6 +70,28 @@ std::int8_t side_of_nearest(const CutterSurface& surface, const Position& p) {
     return side;
 }
 
+namespace {
+
+/// A face as a loop in the view along its normal, and the rounding of its corners.
+std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::size_t face) {
+    const auto corners = model.face(face);
+    std::vector<Position> positions;
+    for (const NodeId v : corners)
+        positions.push_back(model.vertex(v));
+    const View view(polygon_normal(positions));
+    Loop loop;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        loop.push_back({corners[i], view(positions[i])});
+    return {std::move(loop), view.rounding(positions)};
+}
+
+}  // namespace
+
+void divide_face(const ComplexView& model, std::size_t face, Polygons& polygons) {
+    const auto [loop, rounding] = loop_of(model, face);
+    divide_convex(std::span(&loop, 1), rounding, {}, polygons);
+}
+
 void triangulate_face(const ComplexView& model, std::size_t face,
                       std::vector<std::array<std::int32_t, 3>>& triangles) {
     const auto corners = model.face(face);
@@ -120,15 +100,9 @@ void triangulate_face(const ComplexView& model, std::size_t face,
         triangles.push_back({corners[0], corners[1], corners[2]});
         return;
     }
-    std::vector<Position> positions;
-    for (const NodeId v : corners)
-        positions.push_back(model.vertex(v));
-    const View view(polygon_normal(positions));
-    Loop loop;
-    for (std::size_t i = 0; i < corners.size(); ++i)
-        loop.push_back({corners[i], view(positions[i])});
+    const auto [loop, rounding] = loop_of(model, face);
     std::vector<std::array<LoopCorner, 3>> found;
-    triangulate(std::span(&loop, 1), rounding_of(positions), found);
+    triangulate(std::span(&loop, 1), rounding, found);
     for (const auto& t : found)
         triangles.push_back({t[0].node, t[1].node, t[2].node});
 }
@@ -155,117 +129,9 @@ CutterSurface block_boundary(const ComplexView& model, std::int32_t block) {
             surface.triangles.push_back(t);
         }
     }
+    surface.is_closed = true;
     if (surface.triangles.empty())
         throw InputError("no_block", "the block that is to cut has no cells", -1, {block});
-    return surface;
-}
-
-CutterSurface oriented_surface(const TriangleView& given) {
-    CutterSurface surface;
-    const auto count = static_cast<std::int32_t>(given.vertices.size() / 3);
-    for (std::int32_t v = 0; v < count; ++v) {
-        const auto i = 3 * index(v);
-        surface.vertices.push_back(
-            {given.vertices[i], given.vertices[i + 1], given.vertices[i + 2]});
-        for (const double x : surface.vertices.back()) {
-            if (!std::isfinite(x))
-                throw InputError("not_finite", "a vertex of the surface is not finite", -1, {v});
-        }
-    }
-    std::map<Position, NodeId> same;
-    std::vector<NodeId> first;
-    for (std::int32_t v = 0; v < count; ++v)
-        first.push_back(same.try_emplace(surface.vertices[index(v)], v).first->second);
-    std::vector<std::int64_t> original;
-    std::map<std::array<NodeId, 2>, std::vector<std::int32_t>> of_edge;
-    for (std::size_t t = 0; t + 2 < given.triangles.size(); t += 3) {
-        std::array<std::int32_t, 3> corners{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::int32_t v = given.triangles[t + i];
-            if (v < 0 || v >= count)
-                throw InputError("bad_index", "a triangle of the surface names no vertex", -1,
-                                 {static_cast<std::int64_t>(t / 3)});
-            corners[i] = first[index(v)];
-        }
-        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[0] == corners[2])
-            continue;
-        const auto number = static_cast<std::int32_t>(surface.triangles.size());
-        surface.triangles.push_back(corners);
-        original.push_back(static_cast<std::int64_t>(t / 3));
-        for (std::size_t i = 0; i < 3; ++i) {
-            const NodeId a = corners[i], b = corners[(i + 1) % 3];
-            of_edge[{std::min(a, b), std::max(a, b)}].push_back(number);
-        }
-    }
-    if (surface.triangles.empty())
-        throw InputError("no_triangles", "the surface that is to cut has no triangles");
-    const auto place = [&](NodeId v) { return surface.vertices[index(v)]; };
-    for (const auto& [edge, users] : of_edge) {
-        if (users.size() < 3) continue;
-        throw InputError(
-            "branching", "more than two triangles of the surface share an edge", -1,
-            {original[index(users[0])], original[index(users[1])], original[index(users[2])]},
-            place(edge[0]));
-    }
-    const auto runs = [&](std::int32_t t, NodeId a, NodeId b) {
-        const auto& c = surface.triangles[index(t)];
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (c[i] == a && c[(i + 1) % 3] == b) return true;
-        }
-        return false;
-    };
-    std::vector<bool> done(surface.triangles.size(), false);
-    for (std::size_t start = 0; start < done.size(); ++start) {
-        if (done[start]) continue;
-        std::vector<std::int32_t> part{static_cast<std::int32_t>(start)};
-        done[start] = true;
-        bool closed = true;
-        for (std::size_t i = 0; i < part.size(); ++i) {
-            const auto corners = surface.triangles[index(part[i])];
-            for (std::size_t k = 0; k < 3; ++k) {
-                const NodeId a = corners[k], b = corners[(k + 1) % 3];
-                const auto& users = of_edge.at({std::min(a, b), std::max(a, b)});
-                closed = closed && users.size() == 2;
-                for (const std::int32_t other : users) {
-                    if (other == part[i]) continue;
-                    if (done[index(other)]) {
-                        if (!runs(other, a, b)) continue;
-                        throw InputError("one_sided", "the surface has no two sides", -1,
-                                         {original[index(part[i])], original[index(other)]},
-                                         place(a));
-                    }
-                    if (runs(other, a, b))
-                        std::swap(surface.triangles[index(other)][1],
-                                  surface.triangles[index(other)][2]);
-                    done[index(other)] = true;
-                    part.push_back(other);
-                }
-            }
-        }
-        double upward = 0, volume = 0;
-        const Position origin = place(surface.triangles[start][0]);
-        for (const std::int32_t t : part) {
-            const auto& c = surface.triangles[index(t)];
-            const std::array corners{place(c[0]), place(c[1]), place(c[2])};
-            const Position normal = polygon_normal(corners);
-            upward += normal[2];
-            volume += dot(normal, minus(corners[0], origin));
-        }
-        if ((closed ? volume : upward) >= 0) continue;
-        for (const std::int32_t t : part)
-            std::swap(surface.triangles[index(t)][1], surface.triangles[index(t)][2]);
-    }
-    std::vector<std::array<NodeId, 3>> border;
-    for (const auto& [edge, users] : of_edge) {
-        if (users.size() != 1) continue;
-        const auto& t = surface.triangles[index(users[0])];
-        std::size_t i = 0;
-        while (std::min(t[i], t[(i + 1) % 3]) != edge[0] ||
-               std::max(t[i], t[(i + 1) % 3]) != edge[1])
-            ++i;
-        border.push_back({t[i], t[(i + 1) % 3], t[(i + 2) % 3]});
-    }
-    extend_border(surface, border);
     return surface;
 }
 

@@ -9,19 +9,21 @@
 
 namespace realmodel::cutting {
 
-/// Triangles that cut a model. They turn counter-clockwise seen from above (or outside).
+/// Triangles that cut a model. Those of an open surface turn counter-clockwise seen from above.
 struct CutterSurface {
     std::vector<Position> vertices;
     std::vector<std::array<std::int32_t, 3>> triangles;
+    bool is_closed = false;  ///< every edge has an even number of triangles
 };
 
-/// A surface as a user gives it: checked, and each connected part turned one way: upward on the
-/// whole, outward where it is closed.
+/// A surface as a user gives it: checked, triangles that are there twice left out of an open one,
+/// its parts turned upward on the whole. Where a border runs along another the edges are divided so
+/// that they are shared; other borders are extended by a seam, wider than rounding.
 /// @throws InputError kinds not_finite, bad_index, no_triangles, branching (an edge of three or
-///         more triangles; items: they), one_sided (items: two neighbours)
+///         more triangles of an open surface; items: they), one_sided (items: two neighbours)
 CutterSurface oriented_surface(const TriangleView& surface);
 
-/// The boundary of a block, turned outward.
+/// The boundary of a block.
 /// @throws InputError kind no_block where the model has no cell of it
 CutterSurface block_boundary(const ComplexView& model, std::int32_t block);
 
@@ -31,5 +33,8 @@ std::int8_t side_of_nearest(const CutterSurface& surface, const Position& p);
 /// A face divided into triangles, always the same ones for the same face: numbers of its corners.
 void triangulate_face(const ComplexView& model, std::size_t face,
                       std::vector<std::array<std::int32_t, 3>>& triangles);
+
+/// A face in convex polygons, which are added.
+void divide_face(const ComplexView& model, std::size_t face, Polygons& polygons);
 
 }  // namespace realmodel::cutting

@@ -7,8 +7,10 @@
 
 namespace realmodel::cutting {
 
-/// The position nearest to one that no other has, counted in units in the last place; it is entered
-/// among those taken.
-Position free_position_beside(const Position& p, std::set<Position>& taken);
+/// Where a place may move to: anywhere, on its height only, or rather up and down than aside.
+enum class Freedom { kAny, kLevel, kUpright };
+
+/// A place as near to p as doubles allow that is not taken yet; it is then.
+Position free_position_beside(const Position& p, Freedom freedom, std::set<Position>& taken);
 
 }  // namespace realmodel::cutting

@@ -177,4 +177,44 @@ NodeId ExactPoints::dropped(std::size_t axis, NodeId p, NodeId a, NodeId b) {
                          mpq_class(o[2] + share * u[2])});
 }
 
+int ExactPoints::ray_passes(std::size_t axis, NodeId p, const std::array<NodeId, 3>& corners,
+                            bool from_below) const {
+    const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
+    for (const std::size_t across : {k, l}) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (const NodeId c : corners) {
+            low = std::min(low, rounded(c)[across]);
+            high = std::max(high, rounded(c)[across]);
+        }
+        if (rounded(p)[across] < low || rounded(p)[across] > high) return 0;
+    }
+    const int turned = turn(axis, corners[0], corners[1], corners[2]);
+    if (turned == 0) return 0;
+    // edges to the right of p, which is taken to be a little to the right and less upward from here
+    bool inside = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        NodeId a = corners[i], b = corners[(i + 1) % 3];
+        const bool above_a = compare(l, a, p) > 0, above_b = compare(l, b, p) > 0;
+        if (above_a == above_b) continue;
+        if (above_a) std::swap(a, b);
+        if (turn(axis, a, b, p) > 0) inside = !inside;
+    }
+    if (!inside) return 0;
+    const int side = turned * orientation(corners[0], corners[1], corners[2], p);
+    return side < 0 || (side == 0 && from_below) ? turned : 0;
+}
+
+NodeId ExactPoints::middle(const std::array<NodeId, 3>& corners) {
+    const Fractions a = exact(corners[0]), b = exact(corners[1]), c = exact(corners[2]);
+    Fractions sum;
+    for (std::size_t k = 0; k < 3; ++k)
+        sum[k] = (a[k] + b[k] + c[k]) / 3;
+    return add(std::move(sum));
+}
+
+bool ExactPoints::is_farther(std::size_t axis, NodeId a, NodeId b, NodeId p, NodeId q) const {
+    const Fractions o = exact(a), way = minus(exact(b), o);
+    return abs(cross(way, minus(exact(p), o), axis)) > abs(cross(way, minus(exact(q), o), axis));
+}
+
 }  // namespace realmodel::cutting

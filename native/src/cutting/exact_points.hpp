@@ -48,6 +48,18 @@ public:
     /// The point of the line through a and b that has p's coordinate `axis`.
     NodeId dropped(std::size_t axis, NodeId p, NodeId a, NodeId b);
 
+    /// Whether a ray from p in the direction of `axis` passes a triangle: 1 where that turns left
+    /// seen from where the ray goes to, -1 where it turns right, 0 where it is passed by. A
+    /// triangle that p lies on is passed where `from_below`: p is then just before it. Of triangles
+    /// that share an edge the ray passes the same as one a little beside it would.
+    int ray_passes(std::size_t axis, NodeId p, const std::array<NodeId, 3>& corners,
+                   bool from_below) const;
+    /// The middle of three points.
+    NodeId middle(const std::array<NodeId, 3>& corners);
+    /// Whether p is farther than q from the line through a and b, in the view along `axis`; both
+    /// are on one side of it.
+    bool is_farther(std::size_t axis, NodeId a, NodeId b, NodeId p, NodeId q) const;
+
 private:
     struct Hash {
         std::size_t operator()(const Position& p) const;

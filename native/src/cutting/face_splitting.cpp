@@ -66,7 +66,7 @@ void FaceSplitter::split_by_triangles(std::span<const NodeId> face, FaceParts& p
     for (std::size_t i = 0; i < face.size(); ++i)
         loop.push_back({face[i], view(corners[i])});
     std::vector<std::array<LoopCorner, 3>> triangles;
-    triangulate(std::span(&loop, 1), rounding_of(corners), triangles);
+    triangulate(std::span(&loop, 1), view.rounding(corners), triangles);
 
     // parts of triangles; those in the plane take the side of a neighbour further down. Crossings
     // of diagonals are named by negative numbers, for no one else knows them.

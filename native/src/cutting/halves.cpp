@@ -67,8 +67,9 @@ void assemble(const ComplexView& model, const std::vector<Position>& new_positio
         complex.face_offsets.push_back(static_cast<std::int64_t>(complex.face_vertices.size()));
         complex.face_cells.push_back(turned ? std::array{own[1], -1} : own);
         const bool laid_bare = (own[0] < 0 || own[1] < 0) && pieces.cells[p][1] >= 0;
-        complex.face_surface.push_back(laid_bare ? strata::kCutFace
-                                                 : model.face_surface[index(pieces.face[p])]);
+        complex.face_surface.push_back(laid_bare || pieces.face[p] < 0
+                                           ? strata::kCutFace
+                                           : model.face_surface[index(pieces.face[p])]);
     }
 }
 

@@ -54,6 +54,46 @@ void Overlay::share(std::int32_t one, std::int32_t other, NodeId p, NodeId q) {
     }
 }
 
+bool Overlay::may_meet(std::int32_t one, std::int32_t other) const {
+    const Triangle &a = triangles_[index(one)], &b = triangles_[index(other)];
+    if (a.turned == 0 || b.turned == 0) return false;
+    std::size_t shared = 0;
+    for (const NodeId p : a.corners)
+        shared += static_cast<std::size_t>(std::count(b.corners.begin(), b.corners.end(), p));
+    std::array<int, 2> nonzero{0, 0};
+    for (std::size_t which = 0; which < 2; ++which) {
+        const Triangle &own = which == 0 ? a : b, &plane = which == 0 ? b : a;
+        int above = 0, below = 0;
+        for (const NodeId p : own.corners) {
+            const int side =
+                points_.orientation(plane.corners[0], plane.corners[1], plane.corners[2], p);
+            above += side > 0;
+            below += side < 0;
+        }
+        if (above == 3 || below == 3) return false;
+        if (shared == 1 && std::max(above, below) == 2 && std::min(above, below) == 0) return false;
+        nonzero[which] = above + below;
+    }
+    if (shared < 2) return true;
+    if (nonzero[0] != 0) return false;  // an edge is all that they have in common
+    if (shared == 3) return true;
+    // in one plane, with an edge in common: whether one is folded over the other
+    std::array<NodeId, 2> edge{}, tip{};
+    std::size_t found = 0;
+    for (const NodeId p : a.corners) {
+        const bool both = std::find(b.corners.begin(), b.corners.end(), p) != b.corners.end();
+        if (both) {
+            edge[found++] = p;
+        } else {
+            tip[0] = p;
+        }
+    }
+    for (const NodeId p : b.corners) {
+        if (p != edge[0] && p != edge[1]) tip[1] = p;
+    }
+    return turn(a, edge[0], edge[1], tip[0]) == turn(a, edge[0], edge[1], tip[1]);
+}
+
 void Overlay::meet(std::int32_t one, std::int32_t other) {
     const Triangle &a = triangles_[index(one)], &b = triangles_[index(other)];
     if (a.turned == 0 || b.turned == 0) return;
@@ -96,27 +136,49 @@ void Overlay::meet(std::int32_t one, std::int32_t other) {
 void Overlay::meet_in_plane(std::int32_t one, std::int32_t other) {
     clip_edges(one, other);
     clip_edges(other, one);
+    in_one_plane_.push_back({one, other});
 }
 
 /// Where the edges of one triangle run over another in its plane.
 void Overlay::clip_edges(std::int32_t edges_of, std::int32_t into) {
     const auto corners = triangles_[index(edges_of)].corners;
+    for (std::size_t i = 0; i < 3; ++i)
+        clip_segment(corners[i], corners[(i + 1) % 3], edges_of, into);
+}
+
+/// Where a stretch of one triangle runs over another in its plane.
+void Overlay::clip_segment(NodeId p, NodeId q, std::int32_t of, std::int32_t into) {
     const Triangle& t = triangles_[index(into)];
-    for (std::size_t i = 0; i < 3; ++i) {
-        NodeId p = corners[i], q = corners[(i + 1) % 3];
-        bool outside = false;
-        for (std::size_t k = 0; k < 3 && !outside; ++k) {
-            const NodeId a = t.corners[k], b = t.corners[(k + 1) % 3];
-            const int first = turn(t, a, b, p), second = turn(t, a, b, q);
-            if (first < 0 && second < 0) outside = true;
-            if (first < 0 && second == 0) p = q;
-            if (first == 0 && second < 0) q = p;
-            if (first * second >= 0) continue;
-            const NodeId c = points_.crossing(t.axis, p, q, a, b);
-            (first < 0 ? p : q) = c;
-        }
-        if (!outside) share(edges_of, into, p, q);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const NodeId a = t.corners[k], b = t.corners[(k + 1) % 3];
+        const int first = turn(t, a, b, p), second = turn(t, a, b, q);
+        if (first < 0 && second < 0) return;
+        if (first < 0 && second == 0) p = q;
+        if (first == 0 && second < 0) q = p;
+        if (first * second >= 0) continue;
+        const NodeId c = points_.crossing(t.axis, p, q, a, b);
+        (first < 0 ? p : q) = c;
     }
+    share(of, into, p, q);
+}
+
+/// Where two triangles lie in one plane, what meets one of them there divides the other as well,
+/// whether or not the two were asked for.
+void Overlay::exchange_segments() {
+    struct Found {
+        Segment segment;
+        std::int32_t of, into;
+    };
+    std::vector<Found> found;
+    for (const auto& [one, other] : in_one_plane_) {
+        for (const auto& [of, into] : {std::pair(one, other), std::pair(other, one)}) {
+            for (const Segment& s : triangles_[index(of)].segments) {
+                if (s.other != into) found.push_back({s, of, into});
+            }
+        }
+    }
+    for (const auto& [segment, of, into] : found)
+        clip_segment(segment.ends[0], segment.ends[1], of, into);
 }
 
 /// Whether a point lies between two others, both of them counted out.
@@ -214,6 +276,7 @@ void Overlay::spread_points(const Progress* progress) {
 }
 
 void Overlay::divide(const Progress* progress) {
+    exchange_segments();
     spread_points(progress);
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
         if (progress != nullptr && (t & 0xff) == 0) progress->check();

@@ -20,14 +20,16 @@ struct Region {
 
 /// Triangles that cross each other, divided where they do so, exactly: every region's edges are
 /// edges of all regions that meet there, and every point of one triangle on another is a node of
-/// both, be the position as special as it may. The triangles of one group are taken not to cross
-/// each other.
+/// both, be the position as special as it may. Pairs that are not asked for are taken not to cross,
+/// but on triangles that both meet.
 class Overlay {
 public:
     explicit Overlay(ExactPoints& points) : points_(points) {}
 
     /// The number of the triangle. One without area stays an edge that others share.
     std::int32_t add(const std::array<NodeId, 3>& corners);
+    /// Whether two triangles may have something in common beside corners and edges that they share.
+    bool may_meet(std::int32_t one, std::int32_t other) const;
     /// Finds where two triangles meet.
     void meet(std::int32_t one, std::int32_t other);
     /// Divides all triangles. With it no more can be added.
@@ -37,7 +39,10 @@ public:
     const std::array<NodeId, 3>& corners(std::int32_t triangle) const {
         return triangles_[index(triangle)].corners;
     }
-    bool has_area(std::int32_t triangle) const { return triangles_[index(triangle)].turned != 0; }
+    /// The axis along which a triangle is seen best, and which way it turns: 0 it has no area.
+    std::pair<std::size_t, int> view_of(std::int32_t triangle) const {
+        return {triangles_[index(triangle)].axis, triangles_[index(triangle)].turned};
+    }
     /// A corner of a triangle to the left of a line in it.
     NodeId left_corner(std::int32_t triangle, NodeId from, NodeId to) const;
 
@@ -61,6 +66,8 @@ private:
     void share(std::int32_t one, std::int32_t other, NodeId p, NodeId q);
     void meet_in_plane(std::int32_t one, std::int32_t other);
     void clip_edges(std::int32_t edges_of, std::int32_t into);
+    void clip_segment(NodeId p, NodeId q, std::int32_t of, std::int32_t into);
+    void exchange_segments();
     bool on_segment(NodeId p, NodeId a, NodeId b) const;
     std::vector<NodeId> nodes_on(const Triangle& t, NodeId a, NodeId b) const;
     void spread_points(const Progress* progress);
@@ -71,6 +78,7 @@ private:
     std::vector<Triangle> triangles_;
     std::map<std::array<NodeId, 2>, std::vector<std::int32_t>> of_edge_;
     std::vector<Region> regions_;
+    std::vector<std::array<std::int32_t, 2>> in_one_plane_;
 };
 
 }  // namespace realmodel::cutting

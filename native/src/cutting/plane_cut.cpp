@@ -8,10 +8,11 @@
 #include <utility>
 
 #include "cell_cut.hpp"
-#include "distinct.hpp"
+#include "cutter_surface.hpp"
 #include "face_splitting.hpp"
 #include "halves.hpp"
 #include "model_check.hpp"
+#include "part_rounding.hpp"
 #include "strata/parallel_chunks.hpp"
 
 namespace realmodel::cutting {
@@ -42,25 +43,33 @@ public:
     Section section() {
         divide_faces(false);
         cut_cells(false);
+        const bool clean = std::all_of(cell_cuts_.begin(), cell_cuts_.end(),
+                                       [](const CellCut& cut) { return cut.is_clean; });
+        if (!clean)
+            divide();  // a cell as thin as rounding: its parts tell what it has in the plane
         return assemble_section(model_, positions(), pieces_);
     }
 
     Cut cut() {
+        divide();
+        report(0.7, "putting the halves together");
+        PieceParts parts;
+        std::vector<HalfCell> half_cells;
+        number_cells(parts, half_cells);
+        positions();
+        PartRounding(model_, new_positions_, pieces_, parts, half_cells, {false, false}).run();
+        return assemble_halves(model_, new_positions_, pieces_, parts, half_cells, threads_,
+                               progress_);
+    }
+
+private:
+    void divide() {
         do {
             divide_faces(true);
             report(0.4, "closing the parts");
             cut_cells(true);
         } while (settle());
-        make_distinct();
-        report(0.7, "putting the halves together");
-        PieceParts parts;
-        std::vector<HalfCell> half_cells;
-        number_cells(parts, half_cells);
-        return assemble_halves(model_, positions(), pieces_, parts, half_cells, threads_,
-                               progress_);
     }
-
-private:
     void report(double share, const char* text) {
         if (progress_ == nullptr) return;
         progress_->check();
@@ -80,7 +89,6 @@ private:
     void cut_cells(bool parts);
     bool settle();
     bool settle_part(std::int32_t part, const CellCut& cut, std::span<const PieceRef> refs);
-    void make_distinct();
     void number_cells(PieceParts& parts, std::vector<HalfCell>& half_cells) const;
     Position position(NodeId node) const {
         return crossings_->is_crossing(node)
@@ -140,15 +148,20 @@ void PlaneCutter::find_crossings() {
             }
         }
         crossings_ = std::make_unique<Crossings>(model_, distance_, std::move(edges));
-        // An edge that ends just beside the plane may be cut in the very double where it ends.
+        // An edge that ends just beside the plane may be cut in the very doubles where it ends.
+        // Then it is contracted to its end, and with it all that is as near: what stands on one
+        // vertical stays together.
         bool moved = false;
-        for (std::size_t i = 0; i < crossings_->size(); ++i) {
-            for (const NodeId v : crossings_->edge(i)) {
-                const Position p = model_.vertex(v);
-                if (p != crossings_->position(i) ||
-                    std::abs(distance_.at(p).high) > kNear * distance_.rounding(p))
+        for (std::size_t i = 0; i < crossings_->size() && !moved; ++i) {
+            for (const NodeId v : crossings_->edge(i))
+                moved = moved || model_.vertex(v) == crossings_->position(i);
+        }
+        if (moved) {
+            moved = false;
+            for (std::size_t v = 0; v < sides_.size(); ++v) {
+                if (sides_[v] == kOn || !distance_.is_beside(model_.vertex(static_cast<NodeId>(v))))
                     continue;
-                sides_[index(v)] = kOn;
+                sides_[v] = kOn;
                 moved = true;
             }
         }
@@ -196,11 +209,12 @@ void PlaneCutter::divide_faces(bool all) {
             parts.clear();
             if (face_sides_[f] == kCut) {
                 splitter.split(face, parts);
+            } else if (face_sides_[f] == 0) {
+                divide_face(model_, f, parts.polygons);
+                parts.sides.assign(parts.polygons.size(), kOn);
             } else {
                 parts.polygons.add(face);
-                parts.sides.push_back(face_sides_[f] == kHasAbove   ? kAbove
-                                      : face_sides_[f] == kHasBelow ? kBelow
-                                                                    : kOn);
+                parts.sides.push_back(face_sides_[f] == kHasAbove ? kAbove : kBelow);
             }
             for (std::size_t p = 0; p < parts.sides.size(); ++p) {
                 if (parts.polygons[p].size() < 3) continue;
@@ -268,7 +282,7 @@ void PlaneCutter::cut_cells(bool parts) {
 
     cell_cuts_.assign(count, {});
     parallel_chunks(chunks(count, kCells), threads_, progress_, [&](std::size_t c) {
-        CellCutter cutter(model_, sides_, *crossings_, pieces_, distance_.normal());
+        CellCutter cutter(model_, sides_, *crossings_, pieces_, distance_);
         for (std::size_t i = c * kCells; i < std::min(count, (c + 1) * kCells); ++i) {
             if (parts) {
                 cutter.cut(cell_pieces_[i], cell_cuts_[i]);
@@ -349,36 +363,6 @@ bool PlaneCutter::settle() {
             moved |= settle_part(static_cast<std::int32_t>(part), cell_cuts_[i], cell_pieces_[i]);
     }
     return moved;
-}
-
-/// Gives places that rounded to one position, or to that of a vertex, positions of their own.
-void PlaneCutter::make_distinct() {
-    std::vector<Position> taken;
-    for (std::size_t v = 0; v < sides_.size(); ++v) {
-        poll(progress_, v);
-        const Position p = model_.vertex(static_cast<NodeId>(v));
-        if (sides_[v] == kOn || distance_.is_near(p)) taken.push_back(p);
-    }
-    std::vector<std::size_t> order(crossings_->size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        order[i] = i;
-    std::sort(taken.begin(), taken.end());
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return std::pair(crossings_->position(a), a) < std::pair(crossings_->position(b), b);
-    });
-    std::vector<std::size_t> equal;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const Position& p = crossings_->position(order[i]);
-        if ((i > 0 && p == crossings_->position(order[i - 1])) ||
-            std::binary_search(taken.begin(), taken.end(), p))
-            equal.push_back(order[i]);
-    }
-    if (equal.empty()) return;
-    std::set<Position> all(taken.begin(), taken.end());
-    for (std::size_t i = 0; i < crossings_->size(); ++i)
-        all.insert(crossings_->position(i));
-    for (const std::size_t i : equal)
-        crossings_->position(i) = free_position_beside(crossings_->position(i), all);
 }
 
 void PlaneCutter::number_cells(PieceParts& parts, std::vector<HalfCell>& half_cells) const {

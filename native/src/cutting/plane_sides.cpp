@@ -65,29 +65,31 @@ Position PlaneDistance::crossing(const Position& p, const Position& q) const {
 }
 
 std::int8_t PlaneDistance::side(const Position& p) const {
-    double sum = 0, size = 0, largest = 0;
+    double sum = 0, size = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const double term = normal_[k] * (p[k] - point_[k]);
         sum += term;
         size += std::abs(term);
-        largest = std::max(largest, std::abs(p[k]));
     }
-    // twice the rounding of the sum and of its terms, and more than rounding() can be
-    if (std::abs(sum) > 0x1p-50 * size + 0x1p-47 * largest) return sum > 0 ? kAbove : kBelow;
-    const Ball true_sum = at(p);
-    if (std::abs(true_sum.high) <= rounding(p)) return kOn;
-    return true_sum.high > 0 ? kAbove : kBelow;
+    if (std::abs(sum) > 0x1p-50 * size + 1e-280) return sum > 0 ? kAbove : kBelow;
+    const auto sign = at(p).sign();
+    const int found = sign ? *sign : sgn(exact(p));
+    return found > 0 ? kAbove : found < 0 ? kBelow : kOn;
 }
 
-bool PlaneDistance::is_near(const Position& p) const {
-    double sum = 0, size = 0, largest = 0;
+bool PlaneDistance::is_beside(const Position& p) const {
+    const double distance = std::abs(at(p).high);
     for (std::size_t k = 0; k < 3; ++k) {
-        const double term = normal_[k] * (p[k] - point_[k]);
-        sum += term;
-        size += std::abs(term);
-        largest = std::max(largest, std::abs(p[k]));
+        if (distance <= std::abs(normal_[k]) * unit_in_last_place(p[k]) / 2) return true;
     }
-    return std::abs(sum) <= 0x1p-46 * (size + largest);
+    return false;
+}
+
+mpq_class PlaneDistance::exact(const Position& p) const {
+    mpq_class sum = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        sum += mpq_class(normal_[k]) * (mpq_class(p[k]) - mpq_class(point_[k]));
+    return sum;
 }
 
 std::vector<std::int8_t> vertex_sides(const ComplexView& model, const PlaneDistance& distance,

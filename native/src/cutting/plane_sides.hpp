@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <gmpxx.h>
+
 #include <cstdint>
 #include <vector>
 
@@ -19,13 +21,14 @@ public:
     /// @throws InputError kinds not_finite, bad_plane
     explicit PlaneDistance(const Plane& plane);
 
-    /// kAbove, kBelow, or kOn where the distance is within the rounding of the vertex.
+    /// kAbove, kBelow, or kOn where the distance is exactly zero.
     std::int8_t side(const Position& p) const;
-    /// Whether it may round to where the plane does: never false where it does.
-    bool is_near(const Position& p) const;
     /// How far rounding may put a position from the plane.
     double rounding(const Position& p) const;
+    /// Whether the plane passes within half a unit in the last place of one of its coordinates.
+    bool is_beside(const Position& p) const;
     exact::Ball at(const Position& p) const;
+    mpq_class exact(const Position& p) const;
     /// Where the line from p to q, which lie on different sides, passes through the plane.
     Position crossing(const Position& p, const Position& q) const;
     const Position& normal() const { return normal_; }

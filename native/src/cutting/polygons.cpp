@@ -17,6 +17,17 @@ View::View(const Position& normal) {
     if (normal[axis] < 0) std::swap(u_, v_);
 }
 
+PlanePosition View::rounding(std::span<const Position> positions) const {
+    PlanePosition largest{0, 0};
+    for (const Position& p : positions) {
+        largest[0] = std::max(largest[0], std::abs(p[u_]));
+        largest[1] = std::max(largest[1], std::abs(p[v_]));
+    }
+    for (double& x : largest)
+        x = 4 * (std::nextafter(x, HUGE_VAL) - x);
+    return largest;
+}
+
 Position polygon_normal(std::span<const Position> corners) {
     Position sum{0, 0, 0};
     const Position& o = corners[0];

@@ -43,6 +43,12 @@ class View {
 public:
     explicit View(const Position& normal);
     PlanePosition operator()(const Position& p) const { return {p[u_], p[v_]}; }
+    /// How far apart on either axis rounding may put things that are in one place: a few units in
+    /// the last place of the largest coordinates.
+    PlanePosition rounding(std::span<const Position> positions) const;
+    /// The axis, and 1 where the view is from its positive end, -1 from its negative.
+    std::size_t axis() const { return 3 - u_ - v_; }
+    int sign() const { return v_ == (axis() + 2) % 3 ? 1 : -1; }
 
 private:
     std::size_t u_, v_;

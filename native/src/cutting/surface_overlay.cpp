@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The exact overlay of a model's faces with the triangles of a surface.
+#include "surface_overlay.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "realmodel/base/errors.hpp"
+#include "realmodel/exact/turn.hpp"
 #include "strata/parallel_chunks.hpp"
-#include "surface_cut.hpp"
 
 namespace realmodel::cutting {
 
@@ -20,8 +21,17 @@ double last_places(double x) {
 
 }  // namespace
 
+SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& surface, int threads,
+                               Progress* progress)
+    : model_(model), surface_(surface), threads_(threads), progress_(progress), overlay_(points_) {
+    find_active_faces();
+    name_vertices();
+    overlay_all();
+    name_nodes();
+}
+
 /// The faces that come near the surface.
-void SurfaceCut::find_active_faces() {
+void SurfaceOverlay::find_active_faces() {
     std::vector<Box> boxes;
     margin_ = rounding_of(surface_.vertices);
     for (const auto& t : surface_.triangles) {
@@ -36,7 +46,9 @@ void SurfaceCut::find_active_faces() {
     for (std::size_t v = 0; v < model_.vertex_count(); ++v) {
         for (const double x : model_.vertex(static_cast<NodeId>(v)))
             margin_ = std::max(margin_, 4 * last_places(x));
+        model_box_.include(model_.vertex(static_cast<NodeId>(v)));
     }
+    model_box_.widen(margin_);
     for (Box& box : boxes)
         box.widen(margin_);
     whole.widen(margin_);
@@ -59,15 +71,20 @@ void SurfaceCut::find_active_faces() {
 
 /// The place on the surface that a vertex is at but for its rounding; none where it is elsewhere.
 /// Corners of the surface come first, then its edges, then its triangles.
-std::optional<NodeId> SurfaceCut::place_on_surface(const Position& p) {
+std::optional<NodeId> SurfaceOverlay::place_on_surface(const Position& p) {
     Position reach;
     for (std::size_t k = 0; k < 3; ++k)
         reach[k] = last_places(p[k]);
-    const auto same = [&](const Position& q) {
+    const auto is_within = [&](const Position& q, double times) {
         for (std::size_t k = 0; k < 3; ++k) {
-            if (std::abs(q[k] - p[k]) > reach[k]) return false;
+            if (std::abs(q[k] - p[k]) > times * reach[k]) return false;
         }
         return true;
+    };
+    /// A place found in floating point, if it is indeed as near as that said.
+    const auto confirmed = [&](NodeId found) -> std::optional<NodeId> {
+        if (!is_within(points_.rounded(found), 3)) return std::nullopt;
+        return found;
     };
     Box box;
     box.include(p);
@@ -79,77 +96,136 @@ std::optional<NodeId> SurfaceCut::place_on_surface(const Position& p) {
     };
     for (const std::int32_t t : near) {
         for (std::size_t i = 0; i < 3; ++i) {
-            if (same(corner(t, i))) return points_.add(corner(t, i));
+            if (is_within(corner(t, i), 1)) return points_.add(corner(t, i));
         }
     }
-    const auto widest = [](const Position& d) {
+    const auto coarsest = [&reach](const Position& d) {
         std::size_t axis = 0;
         for (std::size_t k = 1; k < 3; ++k) {
-            if (std::abs(d[k]) > std::abs(d[axis])) axis = k;
+            if (std::abs(d[k]) * reach[k] > std::abs(d[axis]) * reach[axis]) axis = k;
         }
         return axis;
     };
     for (const std::int32_t t : near) {
         for (std::size_t i = 0; i < 3; ++i) {
+            // the stretch of the edge that is within reach on every axis, and the axis that has it
+            // shortest: there the place keeps the vertex's coordinate
             const Position a = corner(t, i), b = corner(t, i + 1);
-            const Position way{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-            const std::size_t axis = widest(way);
-            const double share = (p[axis] - a[axis]) / way[axis];
-            if (!(share > 0 && share < 1)) continue;
-            if (same({a[0] + share * way[0], a[1] + share * way[1], a[2] + share * way[2]}))
-                return points_.dropped(axis, points_.add(p), points_.add(a), points_.add(b));
+            double from = 0, to = 1, shortest = HUGE_VAL;
+            std::size_t axis = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double way = b[k] - a[k], off = p[k] - a[k];
+                if (way == 0) {
+                    if (std::abs(off) > reach[k]) to = -1;
+                    continue;
+                }
+                from = std::max(from, std::min((off - reach[k]) / way, (off + reach[k]) / way));
+                to = std::min(to, std::max((off - reach[k]) / way, (off + reach[k]) / way));
+                if (reach[k] / std::abs(way) >= shortest) continue;
+                shortest = reach[k] / std::abs(way);
+                axis = k;
+            }
+            const double share = (p[axis] - a[axis]) / (b[axis] - a[axis]);
+            if (from > to || !(share > 0 && share < 1)) continue;
+            const auto found =
+                confirmed(points_.dropped(axis, points_.add(p), points_.add(a), points_.add(b)));
+            if (found) return found;
         }
     }
     for (const std::int32_t t : near) {
         const std::array corners{corner(t, 0), corner(t, 1), corner(t, 2)};
         const Position normal = polygon_normal(corners);
-        double off = 0, allowed = 0;
+        double off = 0, allowed = 0, size = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             off += normal[k] * (p[k] - corners[0][k]);
+            size += std::abs(normal[k] * (p[k] - corners[0][k]));
             allowed += std::abs(normal[k]) * reach[k];
         }
-        if (!(std::abs(off) <= allowed) || allowed == 0) continue;
+        if (!(std::abs(off) <= allowed + 0x1p-50 * size) || allowed == 0) continue;
         const View view(normal);
         bool inside = true;
         const PlanePosition at = view(p);
-        for (std::size_t i = 0; i < 3; ++i) {
-            const PlanePosition a = view(corner(t, i)), b = view(corner(t, i + 1));
-            inside = inside && (b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0]) > 0;
-        }
+        for (std::size_t i = 0; i < 3; ++i)
+            inside = inside && exact::turn(view(corner(t, i)), view(corner(t, i + 1)), at) > 0;
         if (!inside) continue;
-        return points_.dropped(widest(normal), points_.add(p), points_.add(corners[0]),
-                               points_.add(corners[1]), points_.add(corners[2]));
+        const auto found =
+            confirmed(points_.dropped(coarsest(normal), points_.add(p), points_.add(corners[0]),
+                                      points_.add(corners[1]), points_.add(corners[2])));
+        if (found) return found;
     }
     return std::nullopt;
 }
 
 /// Exact points for the vertices of faces near the surface: where they are, or where they are but
 /// for their rounding. No two share one.
-void SurfaceCut::name_vertices() {
+void SurfaceOverlay::name_vertices() {
+    vertex_node_.assign(model_.vertex_count(), -1);
+    name_vertices_of(active_faces_);
+    activate_beside_flat_triangles();
+}
+
+void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     std::vector<NodeId> vertices;
-    for (const std::int32_t f : active_faces_) {
-        for (const NodeId v : model_.face(index(f)))
-            vertices.push_back(v);
+    for (const std::int32_t f : faces) {
+        for (const NodeId v : model_.face(index(f))) {
+            if (vertex_node_[index(v)] < 0) vertices.push_back(v);
+        }
     }
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    std::map<NodeId, NodeId> owner;
-    for (const NodeId v : vertices) {
-        vertex_node_[index(v)] = points_.add(model_.vertex(v));
-        owner[vertex_node_[index(v)]] = v;
-    }
+    const auto take = [this](NodeId p) -> std::uint8_t& {
+        if (is_taken_.size() <= index(p)) is_taken_.resize(points_.size());
+        return is_taken_[index(p)];
+    };
+    for (const NodeId v : vertices)
+        take(vertex_node_[index(v)] = points_.add(model_.vertex(v))) = 1;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-        strata::poll(progress_, i);
-        const NodeId v = vertices[i];
-        const auto place = place_on_surface(model_.vertex(v));
-        if (!place || *place == vertex_node_[index(v)] || owner.contains(*place)) continue;
-        owner.erase(vertex_node_[index(v)]);
-        owner[*place] = v;
-        vertex_node_[index(v)] = *place;
+        strata::poll(progress_, 16 * i);
+        NodeId& node = vertex_node_[index(vertices[i])];
+        const auto place = place_on_surface(model_.vertex(vertices[i]));
+        if (!place || *place == node || take(*place) != 0) continue;
+        take(node) = 0;
+        take(*place) = 1;
+        node = *place;
     }
 }
 
-void SurfaceCut::overlay_all() {
+/// A triangle without area is gone in the overlay: the corner in its middle comes to lie on its
+/// long edge, and so on an edge of the face beyond, which must know it.
+void SurfaceOverlay::activate_beside_flat_triangles() {
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    std::vector<std::int32_t> fresh = active_faces_;
+    while (!fresh.empty()) {
+        std::set<std::array<NodeId, 2>> edges;
+        for (const std::int32_t f : fresh) {
+            triangulate_face(model_, index(f), triangles);
+            for (const auto& t : triangles) {
+                const NodeId a = exact(t[0]), b = exact(t[1]), c = exact(t[2]);
+                bool flat = true;
+                for (std::size_t axis = 0; axis < 3 && flat; ++axis)
+                    flat = points_.turn(axis, a, b, c) == 0;
+                for (std::size_t i = 0; flat && i < 3; ++i)
+                    edges.insert({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
+            }
+        }
+        fresh.clear();
+        if (edges.empty()) return;
+        for (std::size_t f = 0; f < model_.face_count(); ++f) {
+            const auto face = model_.face(f);
+            for (std::size_t i = 0; i < face.size() && active_[f] == 0; ++i) {
+                const NodeId a = face[i], b = face[i + 1 < face.size() ? i + 1 : 0];
+                if (!edges.contains({std::min(a, b), std::max(a, b)})) continue;
+                active_[f] = 1;
+                fresh.push_back(static_cast<std::int32_t>(f));
+            }
+        }
+        name_vertices_of(fresh);
+        active_faces_.insert(active_faces_.end(), fresh.begin(), fresh.end());
+    }
+    std::sort(active_faces_.begin(), active_faces_.end());
+}
+
+void SurfaceOverlay::overlay_all() {
     std::vector<std::array<std::int32_t, 3>> triangles;
     for (const std::int32_t f : active_faces_) {
         triangulate_face(model_, index(f), triangles);
@@ -166,41 +242,99 @@ void SurfaceCut::overlay_all() {
             corners[i] = points_.add(surface_.vertices[index(t[i])]);
         overlay_.add(corners);
     }
-    for (std::int32_t t = 0; t < first_cutter_; ++t) {
-        if (progress_ != nullptr && (t & 0xff) == 0) {
-            progress_->check();
-            progress_->report(0.1 + 0.4 * t / first_cutter_,
-                              "finding where surface and faces meet");
+    // Which meet is found out on all threads; where they do is entered in order.
+    const auto count = index(first_cutter_) + surface_.triangles.size();
+    constexpr std::size_t kChunk = 1 << 8;
+    std::vector<std::vector<std::array<std::int32_t, 2>>> meeting((count + kChunk - 1) / kChunk);
+    if (progress_ != nullptr) progress_->begin(0.1, 0.3, "finding where surface and faces meet");
+    strata::parallel_chunks(meeting.size(), threads_, progress_, [&](std::size_t chunk) {
+        for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
+            const auto t = static_cast<std::int32_t>(i);
+            Box box;
+            for (const NodeId p : overlay_.corners(t))
+                box.include(points_.rounded(p));
+            if (t >= first_cutter_ && !box.meets(model_box_)) continue;
+            tree_->find(box, [&](std::int32_t c) {
+                const std::int32_t other = first_cutter_ + c;
+                if (other > t && overlay_.may_meet(t, other)) meeting[chunk].push_back({t, other});
+            });
         }
-        Box box;
-        for (const NodeId p : overlay_.corners(t))
-            box.include(points_.rounded(p));
-        tree_->find(box, [&](std::int32_t c) { overlay_.meet(t, first_cutter_ + c); });
+    });
+    if (progress_ != nullptr) progress_->begin(0.3, 0.55, "dividing faces and surface");
+    for (std::size_t chunk = 0; chunk < meeting.size(); ++chunk) {
+        if (progress_ != nullptr) progress_->check();
+        for (const auto& [t, other] : meeting[chunk])
+            overlay_.meet(t, other);
     }
     overlay_.divide(progress_);
 }
 
 /// Numbers all nodes: the model's vertices keep theirs, the others follow.
-void SurfaceCut::name_nodes() {
-    out_.assign(points_.size(), -1);
+void SurfaceOverlay::name_nodes() {
+    std::vector<NodeId> out(points_.size(), -1);
     for (std::size_t v = 0; v < vertex_node_.size(); ++v) {
-        if (vertex_node_[v] >= 0) out_[index(vertex_node_[v])] = static_cast<NodeId>(v);
+        if (vertex_node_[v] >= 0) out[index(vertex_node_[v])] = static_cast<NodeId>(v);
     }
     const auto vertices = static_cast<NodeId>(model_.vertex_count());
-    for (const Region& region : regions()) {
+    for (const Region& region : overlay_.regions()) {
         auto& loops = loops_.emplace_back(region.loops);
         for (auto& loop : loops) {
             for (NodeId& p : loop) {
-                NodeId& out = out_[index(p)];
-                if (out < 0) {
-                    out = vertices + static_cast<NodeId>(new_positions_.size());
+                NodeId& node = out[index(p)];
+                if (node < 0) {
+                    node = vertices + static_cast<NodeId>(new_positions_.size());
                     new_positions_.push_back(points_.rounded(p));
                     exact_of_new_.push_back(p);
                 }
-                p = out;
+                p = node;
             }
         }
     }
+}
+
+NodeId SurfaceOverlay::exact(NodeId node) {
+    const auto vertices = static_cast<NodeId>(model_.vertex_count());
+    if (node >= vertices) return exact_of_new_[index(node - vertices)];
+    const NodeId known = vertex_node_[index(node)];
+    return known >= 0 ? known : points_.add(model_.vertex(node));
+}
+
+/// Of a corner that turns left, the middle of the triangle that it cuts off; where the outline or a
+/// hole reaches into that, the middle between the corner and what reaches in farthest.
+NodeId SurfaceOverlay::inner_point(std::size_t region) {
+    const auto [axis, turned] = view_of(region);
+    const auto& outline = loops_[region][0];
+    const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
+    std::vector<NodeId> own;
+    for (const NodeId node : outline)
+        own.push_back(exact(node));
+    std::size_t lowest = 0;
+    for (std::size_t i = 1; i < own.size(); ++i) {
+        const int x = points_.compare(k, own[i], own[lowest]);
+        if (x < 0 || (x == 0 && points_.compare(l, own[i], own[lowest]) < 0)) lowest = i;
+    }
+    // an outline may pass its lowest node twice: of the corners there, one that turns left
+    NodeId a = -1, c = -1;
+    const NodeId b = own[lowest];
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        if (own[i] != b) continue;
+        a = own[(i + own.size() - 1) % own.size()];
+        c = own[(i + 1) % own.size()];
+        if (turned * points_.turn(axis, a, b, c) > 0) break;
+    }
+    NodeId farthest = -1;
+    for (const auto& loop : loops_[region]) {
+        for (const NodeId node : loop) {
+            const NodeId p = exact(node);
+            if (p == a || p == b || p == c) continue;
+            if (turned * points_.turn(axis, a, b, p) < 0 ||
+                turned * points_.turn(axis, b, c, p) < 0 ||
+                turned * points_.turn(axis, c, a, p) < 0)
+                continue;
+            if (farthest < 0 || points_.is_farther(axis, c, a, p, farthest)) farthest = p;
+        }
+    }
+    return farthest < 0 ? points_.middle({a, b, c}) : points_.middle({b, b, farthest});
 }
 
 }  // namespace realmodel::cutting

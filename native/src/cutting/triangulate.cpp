@@ -6,15 +6,12 @@
 #include <limits>
 #include <numeric>
 
+#include "plane_cross.hpp"
 #include "realmodel/exact/turn.hpp"
 
 namespace realmodel::cutting {
 
 namespace {
-
-double cross(const PlanePosition& a, const PlanePosition& b, const PlanePosition& c) {
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
 
 double length(const PlanePosition& a, const PlanePosition& b) {
     return std::hypot(b[0] - a[0], b[1] - a[1]);
@@ -32,12 +29,14 @@ class Ring {
 public:
     using Triangle = std::array<LoopCorner, 3>;
 
-    Ring(double rounding, std::vector<Triangle>& triangles)
-        : rounding_(rounding), triangles_(triangles) {}
+    Ring(const PlanePosition& rounding, const CornerTurns& turns, std::vector<Triangle>& triangles)
+        : rounding_(rounding), turns_(turns), triangles_(triangles) {}
 
     void take(const Loop& outline) { entry_ = append(outline); }
-    void join_hole(const Loop& hole);
-    void cut_ears();
+    /// `others`: loops that the bridge must not cross, the hole among them.
+    void join_hole(const Loop& hole, std::span<const Loop> others);
+    /// False where an ear had to be cut off that is none.
+    bool cut_ears();
 
 private:
     struct Link {
@@ -54,15 +53,20 @@ private:
     NodeId node(std::int32_t i) { return link(i).corner.node; }
 
     std::int32_t append(const Loop& loop);
-    std::int32_t find_bridge(const PlanePosition& from);
-    bool inside_corner(std::int32_t corner, const PlanePosition& p);
+    std::int32_t find_bridge(const LoopCorner& from, std::span<const Loop> others);
+    bool inside_corner(std::int32_t corner, const LoopCorner& p);
+    bool is_hidden(const LoopCorner& p, const LoopCorner& q, std::span<const Loop> others);
+    int turn(std::int32_t a, std::int32_t b, std::int32_t c) {
+        return turns_(link(a).corner, link(b).corner, link(c).corner);
+    }
     bool is_ear(std::int32_t tip, Care care);
     bool blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int32_t c, Care care);
     void lay_curve();
     std::uint32_t curve_value(const PlanePosition& p) const;
     void remove(std::int32_t i);
 
-    double rounding_;
+    PlanePosition rounding_;
+    const CornerTurns& turns_;
     std::vector<Triangle>& triangles_;
     std::vector<Link> links_;
     std::int32_t entry_ = -1;
@@ -83,60 +87,72 @@ std::int32_t Ring::append(const Loop& loop) {
 }
 
 /// Whether the way from a corner towards p begins inside of the ring.
-bool Ring::inside_corner(std::int32_t corner, const PlanePosition& p) {
-    const PlanePosition &a = at(link(corner).previous), &b = at(corner), &c = at(link(corner).next);
-    if (exact::turn(a, b, c) > 0) return exact::turn(a, b, p) > 0 && exact::turn(b, c, p) > 0;
-    return exact::turn(a, b, p) > 0 || exact::turn(b, c, p) > 0;
+bool Ring::inside_corner(std::int32_t corner, const LoopCorner& p) {
+    const LoopCorner &a = link(link(corner).previous).corner, &b = link(corner).corner,
+                     &c = link(link(corner).next).corner;
+    if (turns_(a, b, c) > 0) return turns_(a, b, p) > 0 && turns_(b, c, p) > 0;
+    return turns_(a, b, p) > 0 || turns_(b, c, p) > 0;
 }
 
-/// The corner that a hole's leftmost corner can be joined with: seen from there to the left, the
-/// edge that is met first, and of its left end and what hides it the corner nearest in direction.
-std::int32_t Ring::find_bridge(const PlanePosition& from) {
-    std::int32_t best = -1;
-    double met = -HUGE_VAL;
+/// Whether an edge of the ring, or of the other loops, crosses the way from p to q or ends on it.
+bool Ring::is_hidden(const LoopCorner& p, const LoopCorner& q, std::span<const Loop> others) {
+    const auto crosses = [&](const LoopCorner& a, const LoopCorner& b) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (std::max(a.at[k], b.at[k]) < std::min(p.at[k], q.at[k]) ||
+                std::min(a.at[k], b.at[k]) > std::max(p.at[k], q.at[k]))
+                return false;
+        }
+        const bool a_is_end = a.node == p.node || a.node == q.node;
+        const bool b_is_end = b.node == p.node || b.node == q.node;
+        if (a_is_end && b_is_end) return true;
+        if (a_is_end || b_is_end) {  // only an edge along the way hides its other end
+            const LoopCorner& other = a_is_end ? b : a;
+            if (turns_(p, q, other) != 0) return false;
+            for (std::size_t k = 0; k < 2; ++k) {
+                if (p.at[k] != q.at[k])
+                    return (other.at[k] > std::min(p.at[k], q.at[k])) &&
+                           (other.at[k] < std::max(p.at[k], q.at[k]));
+            }
+            return false;
+        }
+        return turns_(p, q, a) * turns_(p, q, b) <= 0 && turns_(a, b, p) * turns_(a, b, q) <= 0;
+    };
     std::int32_t i = entry_;
     do {
-        const PlanePosition &p = at(i), &q = at(link(i).next);
-        if (from[1] <= p[1] && from[1] >= q[1] && p[1] != q[1]) {  // runs down, has its left inside
-            const double x = p[0] + (from[1] - p[1]) * (q[0] - p[0]) / (q[1] - p[1]);
-            if (x <= from[0] && x > met) {
-                met = x;
-                best = p[0] < q[0] ? i : link(i).next;
-            }
-        }
+        if (crosses(link(i).corner, link(link(i).next).corner)) return true;
         i = link(i).next;
     } while (i != entry_);
-    if (best < 0) return entry_;
-    const PlanePosition target = at(best), hit{met, from[1]};
-    const bool target_below = target[1] < from[1];
-    double flattest = HUGE_VAL;
-    std::int32_t chosen = best;
-    i = entry_;
-    do {
-        const PlanePosition& p = at(i);
-        if (p[0] <= from[0] && p[0] >= target[0] && p != from) {
-            const PlanePosition &a = target_below ? from : hit, &b = target_below ? hit : from;
-            const bool within = exact::turn(a, b, p) >= 0 && exact::turn(b, target, p) >= 0 &&
-                                exact::turn(target, a, p) >= 0;
-            if (within && inside_corner(i, from)) {
-                const double slope = std::abs(from[1] - p[1]) / (from[0] - p[0]);
-                if (slope < flattest || (slope == flattest && p[0] > at(chosen)[0])) {
-                    flattest = slope;
-                    chosen = i;
-                }
-            }
+    for (const Loop& loop : others) {
+        for (std::size_t k = 0; k < loop.size(); ++k) {
+            if (crosses(loop[k], loop[k + 1 < loop.size() ? k + 1 : 0])) return true;
         }
-        i = link(i).next;
-    } while (i != entry_);
-    return chosen;
+    }
+    return false;
 }
 
-void Ring::join_hole(const Loop& hole) {
+/// The nearest corner of the ring that a hole's corner can be joined with.
+std::int32_t Ring::find_bridge(const LoopCorner& from, std::span<const Loop> others) {
+    std::vector<std::pair<double, std::int32_t>> nearest;
+    std::int32_t i = entry_;
+    do {
+        if (node(i) == from.node) return i;  // the hole touches the ring
+        nearest.push_back({length(at(i), from.at), i});
+        i = link(i).next;
+    } while (i != entry_);
+    std::sort(nearest.begin(), nearest.end());
+    for (const auto& [distance, corner] : nearest) {
+        if (inside_corner(corner, from) && !is_hidden(from, link(corner).corner, others))
+            return corner;
+    }
+    return nearest[0].second;  // rounding has put the hole over the outline
+}
+
+void Ring::join_hole(const Loop& hole, std::span<const Loop> others) {
     std::size_t leftmost = 0;
     for (std::size_t i = 1; i < hole.size(); ++i) {
         if (hole[i].at < hole[leftmost].at) leftmost = i;
     }
-    const std::int32_t outer = find_bridge(hole[leftmost].at);
+    const std::int32_t outer = find_bridge(hole[leftmost], others);
     const std::int32_t inner = append(hole) + static_cast<std::int32_t>(leftmost);
     // both ends of the bridge stand in the ring twice, once for each of its sides
     const auto outer_again = static_cast<std::int32_t>(links_.size());
@@ -208,28 +224,25 @@ bool Ring::blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int
     if (other == a || other == tip || other == c) return false;
     const NodeId own = node(other);
     if (own == node(a) || own == node(tip) || own == node(c)) return false;
-    const PlanePosition& p = at(other);
-    const int ab = exact::turn(at(a), at(tip), p);
+    const int ab = turn(a, tip, other);
     if (ab < 0) return false;
-    const int bc = exact::turn(at(tip), at(c), p);
+    const int bc = turn(tip, c, other);
     if (bc < 0) return false;
-    const int ca = exact::turn(at(c), at(a), p);
+    const int ca = turn(c, a, other);
     if (ca < 0) return false;
     if (care == Care::kStrict && (ab == 0 || bc == 0 || ca == 0)) return false;
     // where a corner that turns left lies inside, one that does not lies inside as well
-    return exact::turn(at(link(other).previous), p, at(link(other).next)) <= 0;
+    return turn(link(other).previous, other, link(other).next) <= 0;
 }
 
 bool Ring::is_ear(std::int32_t tip, Care care) {
     const std::int32_t a = link(tip).previous, c = link(tip).next;
     if (node(a) == node(tip) || node(tip) == node(c) || node(a) == node(c)) return false;
     if (care == Care::kNone) return true;
-    if (exact::turn(at(a), at(tip), at(c)) <= 0) return false;
-    if (care == Care::kFat) {
-        const double longest =
-            std::max({length(at(a), at(tip)), length(at(tip), at(c)), length(at(c), at(a))});
-        if (cross(at(a), at(tip), at(c)) <= rounding_ * longest) return false;
-    }
+    if (turn(a, tip, c) <= 0) return false;
+    if (care == Care::kFat &&
+        cross(at(a), at(tip), at(c)) <= slack(at(a), at(tip), at(c), rounding_))
+        return false;
     if (!has_curve_) {
         for (std::int32_t other = link(c).next; other != a; other = link(other).next) {
             if (blocks(other, a, tip, c, care)) return false;
@@ -253,7 +266,8 @@ bool Ring::is_ear(std::int32_t tip, Care care) {
     return true;
 }
 
-void Ring::cut_ears() {
+bool Ring::cut_ears() {
+    bool clean = true;
     lay_curve();
     Care care = Care::kFat;
     std::int32_t tip = entry_, stop = entry_;
@@ -261,6 +275,7 @@ void Ring::cut_ears() {
         if (is_ear(tip, care)) {
             const std::int32_t a = link(tip).previous, c = link(tip).next;
             triangles_.push_back({link(a).corner, link(tip).corner, link(c).corner});
+            clean = clean && care != Care::kNone;
             remove(tip);
             care = Care::kFat;
             tip = stop = link(c).next;  // leaving out the next corner makes fewer needles
@@ -272,6 +287,7 @@ void Ring::cut_ears() {
             care = static_cast<Care>(static_cast<int>(care) + 1);
             continue;
         }
+        clean = false;
         // Only paths that run back over themselves are left: from such a turn both edges go.
         while (node(tip) != node(link(tip).next) &&
                node(link(tip).previous) != node(link(tip).next))
@@ -283,19 +299,15 @@ void Ring::cut_ears() {
         tip = stop;
         care = Care::kFat;
     }
+    return clean;
 }
 
-bool left_or_straight(const PlanePosition& a, const PlanePosition& b, const PlanePosition& c,
-                      double rounding) {
-    return cross(a, b, c) >= -rounding * std::max(length(a, b), length(b, c));
-}
-
-bool contains(const Loop& loop, const PlanePosition& p) {
+bool contains(const Loop& loop, const LoopCorner& p, const CornerTurns& turns) {
     bool inside = false;
     for (std::size_t i = 0; i < loop.size(); ++i) {
-        const PlanePosition &a = loop[i].at, &b = loop[(i + 1) % loop.size()].at;
-        if ((a[1] > p[1]) == (b[1] > p[1])) continue;
-        if ((exact::turn(a, b, p) > 0) == (b[1] > a[1])) inside = !inside;
+        const LoopCorner &a = loop[i], &b = loop[(i + 1) % loop.size()];
+        if ((a.at[1] > p.at[1]) == (b.at[1] > p.at[1])) continue;
+        if ((turns(a, b, p) > 0) == (b.at[1] > a.at[1])) inside = !inside;
     }
     return inside;
 }
@@ -303,11 +315,15 @@ bool contains(const Loop& loop, const PlanePosition& p) {
 /// The outline of least area around a hole; the number of loops where there is none. What has some
 /// area is a hole of the only outline even where rounding put its first corner just outside.
 std::size_t outline_around(std::span<const Loop> loops, const std::vector<double>& areas,
-                           std::size_t hole, double rounding) {
+                           std::size_t hole, const PlanePosition& rounding,
+                           const CornerTurns& turns) {
     std::size_t found = loops.size(), only = loops.size(), outlines = 0;
-    double around = 0;
-    for (std::size_t i = 0; i < loops[hole].size(); ++i)
-        around += length(loops[hole][i].at, loops[hole][(i + 1) % loops[hole].size()].at);
+    double allowed = 0;
+    for (std::size_t i = 0; i < loops[hole].size(); ++i) {
+        const PlanePosition &p = loops[hole][i].at,
+                            &q = loops[hole][(i + 1) % loops[hole].size()].at;
+        allowed += slack(p, q, q, rounding);
+    }
     const LoopCorner& corner =
         *std::min_element(loops[hole].begin(), loops[hole].end(),
                           [](const LoopCorner& a, const LoopCorner& b) { return a.at < b.at; });
@@ -317,150 +333,39 @@ std::size_t outline_around(std::span<const Loop> loops, const std::vector<double
         only = i;
         const bool touches = std::any_of(loops[i].begin(), loops[i].end(),
                                          [&](const auto& c) { return c.node == corner.node; });
-        if (!touches && !contains(loops[i], corner.at)) continue;
+        if (!touches && !contains(loops[i], corner, turns)) continue;
         if (found == loops.size() || areas[i] < areas[found]) found = i;
     }
-    if (found == loops.size() && outlines == 1 && areas[hole] < -rounding * around) return only;
+    if (found == loops.size() && outlines == 1 && areas[hole] < -allowed) return only;
     return found;
 }
 
-/// Convex polygons grown from triangles.
-class Merger {
-public:
-    Merger(const std::vector<std::array<LoopCorner, 3>>& triangles, double rounding)
-        : rounding_(rounding), owner_(triangles.size()) {
-        std::iota(owner_.begin(), owner_.end(), 0);
-        for (const auto& t : triangles)
-            polygons_.push_back({t.begin(), t.end()});
-        for (std::size_t t = 0; t < triangles.size(); ++t) {
-            for (std::size_t i = 0; i < 3; ++i) {
-                const NodeId a = triangles[t][i].node, b = triangles[t][(i + 1) % 3].node;
-                edges_.push_back(
-                    {std::min(a, b), std::max(a, b), static_cast<std::int32_t>(t), a < b});
-            }
-        }
-        std::sort(edges_.begin(), edges_.end());
-    }
-
-    void merge(std::span<const std::array<NodeId, 2>> slits) {
-        for (std::size_t i = 0; i + 1 < edges_.size(); ++i) {
-            const Edge &e = edges_[i], &f = edges_[i + 1];
-            if (e.low != f.low || e.high != f.high) continue;
-            const bool pair = (i == 0 || !same(edges_[i - 1], e)) &&
-                              (i + 2 == edges_.size() || !same(edges_[i + 2], e));
-            if (!pair || e.forward == f.forward) continue;
-            if (std::binary_search(slits.begin(), slits.end(), std::array{e.low, e.high})) continue;
-            join(find(e.triangle), find(f.triangle), e.low, e.high);
-        }
-    }
-
-    void write(Polygons& result) {
-        for (std::size_t i = 0; i < polygons_.size(); ++i) {
-            if (find(static_cast<std::int32_t>(i)) != static_cast<std::int32_t>(i)) continue;
-            for (const LoopCorner& c : polygons_[i])
-                result.nodes.push_back(c.node);
-            result.close();
-        }
-    }
-
-private:
-    struct Edge {
-        NodeId low, high;
-        std::int32_t triangle;
-        bool forward;
-        auto operator<=>(const Edge&) const = default;
-    };
-    static bool same(const Edge& a, const Edge& b) { return a.low == b.low && a.high == b.high; }
-
-    std::int32_t find(std::int32_t i) {
-        while (owner_[index(i)] != i)
-            i = owner_[index(i)] = owner_[index(owner_[index(i)])];
-        return i;
-    }
-
-    void join(std::int32_t one, std::int32_t two, NodeId p, NodeId q) {
-        if (one == two) return;
-        const Loop &a = polygons_[index(one)], &b = polygons_[index(two)];
-        // the shared edge runs from a[i] to its next, and against that in b from j to its next
-        const auto find_edge = [p, q](const Loop& loop) {
-            for (std::size_t i = 0; i < loop.size(); ++i) {
-                const NodeId m = loop[i].node, n = loop[(i + 1) % loop.size()].node;
-                if ((m == p && n == q) || (m == q && n == p)) return i;
-            }
-            return loop.size();
-        };
-        const std::size_t i = find_edge(a), j = find_edge(b);
-        if (i == a.size() || j == b.size()) return;
-        Loop merged;
-        for (std::size_t k = 1; k <= a.size(); ++k)
-            merged.push_back(a[(i + k) % a.size()]);
-        const std::size_t seam = merged.size() - 1;
-        for (std::size_t k = 2; k < b.size(); ++k)
-            merged.push_back(b[(j + k) % b.size()]);
-        const std::size_t n = merged.size();
-        const auto turns = [&](std::size_t k) {
-            return left_or_straight(merged[(k + n - 1) % n].at, merged[k].at,
-                                    merged[(k + 1) % n].at, rounding_);
-        };
-        if (!turns(0) || !turns(seam)) return;
-        for (std::size_t k = seam + 1; k < n; ++k) {
-            for (std::size_t l = 0; l <= seam; ++l) {
-                if (merged[k].node == merged[l].node) return;
-            }
-        }
-        polygons_[index(one)] = std::move(merged);
-        polygons_[index(two)].clear();
-        owner_[index(two)] = one;
-    }
-
-    double rounding_;
-    std::vector<std::int32_t> owner_;
-    std::vector<Loop> polygons_;
-    std::vector<Edge> edges_;
-};
-
 }  // namespace
 
-bool is_convex(const Loop& loop, double rounding) {
-    const std::size_t n = loop.size();
-    if (n < 3) return false;
-    // Turning left everywhere may still wind round twice: along a convex loop the x rise once only.
-    int changes = 0;
-    double last = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        const PlanePosition &a = loop[i].at, &b = loop[(i + 1) % n].at, &c = loop[(i + 2) % n].at;
-        if (!left_or_straight(a, b, c, rounding)) return false;
-        const double step = b[0] - a[0];
-        if (std::abs(step) <= rounding) continue;
-        if (last != 0 && (step > 0) != (last > 0)) ++changes;
-        last = step;
-    }
-    if (changes > 2) return false;
-    std::vector<NodeId> nodes;
-    for (const LoopCorner& c : loop)
-        nodes.push_back(c.node);
-    std::sort(nodes.begin(), nodes.end());
-    return std::adjacent_find(nodes.begin(), nodes.end()) == nodes.end();
+int CornerTurns::operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const {
+    return exact::turn(a.at, b.at, c.at);
 }
 
-void triangulate(std::span<const Loop> loops, double rounding,
-                 std::vector<std::array<LoopCorner, 3>>& triangles) {
+bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,
+                 std::vector<std::array<LoopCorner, 3>>& triangles, const CornerTurns& turns) {
+    bool clean = true;
     std::vector<double> areas;
     for (const Loop& loop : loops)
         areas.push_back(twice_area(loop));
     std::vector<std::vector<std::size_t>> holes(loops.size());
     for (std::size_t i = 0; i < loops.size(); ++i) {
         if (areas[i] > 0) continue;
-        const std::size_t outline = outline_around(loops, areas, i, rounding);
+        const std::size_t outline = outline_around(loops, areas, i, rounding, turns);
         if (outline < loops.size()) {
             holes[outline].push_back(i);
         } else {
+            clean = false;
             areas[i] = 1;  // no region around it: rounding has turned it over, so it is one itself
         }
     }
     for (std::size_t i = 0; i < loops.size(); ++i) {
         if (areas[i] <= 0) continue;
-        Ring ring(rounding, triangles);
+        Ring ring(rounding, turns, triangles);
         ring.take(loops[i]);
         const auto left = [&](std::size_t hole) {
             return std::min_element(
@@ -471,25 +376,14 @@ void triangulate(std::span<const Loop> loops, double rounding,
         std::sort(holes[i].begin(), holes[i].end(), [&](std::size_t a, std::size_t b) {
             return std::pair(left(a), a) < std::pair(left(b), b);
         });
+        std::vector<Loop> others;
         for (const std::size_t hole : holes[i])
-            ring.join_hole(loops[hole]);
-        ring.cut_ears();
+            others.push_back(loops[hole]);
+        for (const std::size_t hole : holes[i])
+            ring.join_hole(loops[hole], others);
+        clean = ring.cut_ears() && clean;
     }
-}
-
-void divide_convex(std::span<const Loop> loops, double rounding,
-                   std::span<const std::array<NodeId, 2>> slits, Polygons& result) {
-    if (loops.size() == 1 && is_convex(loops[0], rounding)) {
-        for (const LoopCorner& c : loops[0])
-            result.nodes.push_back(c.node);
-        result.close();
-        return;
-    }
-    std::vector<std::array<LoopCorner, 3>> triangles;
-    triangulate(loops, rounding, triangles);
-    Merger merger(triangles, rounding);
-    merger.merge(slits);
-    merger.write(result);
+    return clean;
 }
 
 }  // namespace realmodel::cutting

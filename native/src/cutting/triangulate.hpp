@@ -15,6 +15,14 @@ struct LoopCorner {
 };
 using Loop = std::vector<LoopCorner>;
 
+/// Which way corners turn: 1 left, -1 right, 0 straight on. By itself it tells that of the places
+/// in the view, exactly; others know better where the corners are than their rounded places say.
+class CornerTurns {
+public:
+    virtual ~CornerTurns() = default;
+    virtual int operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const;
+};
+
 /// Divides the region that loops bound (outlines counter-clockwise, holes clockwise; a hole may be
 /// a slit of two corners) into triangles without new nodes, by cutting off ears (G. H. Meisters
 /// 1975), with holes joined to their outline by bridges (D. Eberly, "Triangulation by ear
@@ -22,18 +30,20 @@ using Loop = std::vector<LoopCorner>;
 ///
 /// Each edge of each loop belongs to exactly one triangle, and every other edge to two, whatever
 /// the loops look like: where rounding has made them cross, triangles may overlap by as much, but
-/// nothing gapes. `rounding` is the distance below which a triangle counts as thin: others are
-/// preferred.
-void triangulate(std::span<const Loop> loops, double rounding,
-                 std::vector<std::array<LoopCorner, 3>>& triangles);
+/// nothing gapes. `rounding` is how far corners may be from their places on either axis:
+/// triangles that have an area whatever it does are preferred. False where loops do cross, or
+/// pass over themselves.
+bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,
+                 std::vector<std::array<LoopCorner, 3>>& triangles, const CornerTurns& turns = {});
 
 /// The same region in convex polygons, up to `rounding`: triangles merged wherever that leaves a
 /// convex one (S. Hertel and K. Mehlhorn 1983). `slits` are edges that must stay, as (lesser,
 /// greater) node, sorted.
-void divide_convex(std::span<const Loop> loops, double rounding,
-                   std::span<const std::array<NodeId, 2>> slits, Polygons& result);
+bool divide_convex(std::span<const Loop> loops, const PlanePosition& rounding,
+                   std::span<const std::array<NodeId, 2>> slits, Polygons& result,
+                   const CornerTurns& turns = {});
 
 /// Whether a loop turns left everywhere, up to `rounding`, and passes no node twice.
-bool is_convex(const Loop& loop, double rounding);
+bool is_convex(const Loop& loop, const PlanePosition& rounding);
 
 }  // namespace realmodel::cutting

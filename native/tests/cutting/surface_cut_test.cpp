@@ -144,6 +144,80 @@ TEST(SurfaceCut, ABoxAcrossCornersAndFaces) {
     EXPECT_DOUBLE_EQ(sum(checked_cut(c, box({5, 5, 5}, {6, 6, 6})).below.volumes), 0.0);
 }
 
+OwnedSurface joined(const OwnedSurface& one, const OwnedSurface& other) {
+    OwnedSurface both = one;
+    const auto first = static_cast<std::int32_t>(one.vertices.size() / 3);
+    both.vertices.insert(both.vertices.end(), other.vertices.begin(), other.vertices.end());
+    for (const std::int32_t v : other.triangles)
+        both.triangles.push_back(first + v);
+    return both;
+}
+
+TEST(SurfaceCut, OfClosedShellsInsideIsWhatAnOddNumberIsRound) {
+    const CellComplex c = level_layers({0, 1, 4}, 4, 3);
+    const OwnedSurface outer = box({0.5, 0.5, 0.5}, {3.5, 3.5, 3.5});
+    EXPECT_DOUBLE_EQ(sum(checked_cut(c, joined(outer, box({1, 1, 1}, {2, 2, 2}))).below.volumes),
+                     26.0);  // a hollow
+    EXPECT_DOUBLE_EQ(
+        sum(checked_cut(c, joined(box({1, 1, 1}, {2, 2, 2}), box({2, 1, 1}, {3, 2, 2})))
+                .below.volumes),
+        2.0);  // a wall in common
+    EXPECT_DOUBLE_EQ(
+        sum(checked_cut(c, joined(box({1, 1, 1}, {2, 2, 2}), box({2, 2, 1}, {3, 3, 2})))
+                .below.volumes),
+        2.0);  // an edge in common
+    EXPECT_DOUBLE_EQ(
+        sum(checked_cut(c, joined(box({1, 1, 1}, {3, 3, 3}), box({2, 2, 2}, {4, 4, 4})))
+                .below.volumes),
+        14.0);  // they cross
+}
+
+TEST(SurfaceCut, BordersThatRunAlongOneAnotherAreJoined) {
+    // one long edge against two short ones, whose common corner is off the line by rounding
+    const CellComplex c = level_layers({0, 1}, 3, 3);
+    OwnedSurface bricks;
+    bricks.vertex(-1, -1, 0.1);
+    bricks.vertex(4, -1, 0.2);
+    bricks.vertex(4, 1.1, 0.3);
+    bricks.vertex(-1, 1.1, 0.7);
+    bricks.triangle(0, 1, 2);
+    bricks.triangle(0, 2, 3);
+    const double share = 1.0 / 3;
+    bricks.vertex(-1 + 5 * share, 1.1, 0.7 + (0.3 - 0.7) * share);
+    bricks.vertex(1, 4, 0.4);
+    bricks.vertex(5, 4, 0.4);
+    bricks.vertex(-2, 4, 0.4);
+    bricks.triangle(3, 4, 7);
+    bricks.triangle(4, 5, 7);
+    bricks.triangle(4, 2, 5);
+    bricks.triangle(2, 6, 5);
+    const Cut cut = checked_cut(c, bricks);
+    EXPECT_GT(sum(cut.below.volumes), 2.0);
+    EXPECT_LT(sum(cut.below.volumes), 7.0);
+}
+
+TEST(SurfaceCut, ASurfaceThatIsThereTwiceCutsOnce) {
+    const CellComplex c = level_layers({0, 1});
+    const OwnedSurface s = grid(2, 2, -1, -1, 3, 3, [](double x, double) { return 0.5 + x / 8; });
+    EXPECT_DOUBLE_EQ(sum(checked_cut(c, joined(s, s)).below.volumes),
+                     sum(checked_cut(c, s).below.volumes));
+}
+
+TEST(SurfaceCut, AModelWhoseFacesCrossByRoundingIsCut) {
+    // the middle layer is two units in the last place thick, and its top crosses its bottom
+    CellComplex c = level_layers({0, 0.5, 1}, 2, 2);
+    for (auto& p : c.vertices) {
+        if (p[2] != 0.5) continue;
+        p[2] = p[0] < 1.5 ? 0.5 : 1.0 + 0x1p-52;
+    }
+    for (const double z : {0.25, 0.5, 0.75, 1.0}) {
+        const Cut cut = cut_by_surface(
+            view(c), view(grid(1, 1, -1, -1, 3, 3, [z](double, double) { return z; })), 1, nullptr);
+        strata::expect_valid(cut.above, true);
+        strata::expect_valid(cut.below, true);
+    }
+}
+
 TEST(SurfaceCut, BesideTheModelTheNearestSideCounts) {
     const CellComplex c = level_layers({0, 1});
     for (const double z : {-1.0, 2.0}) {
@@ -180,6 +254,10 @@ TEST(SurfaceCut, RefusesWhatDoesNotPartTheModel) {
     branching.triangle(0, 2, top);
     branching.triangle(0, 3, top);
     EXPECT_EQ(refusal(c, branching), "branching");
+    const auto level = [](double z) {
+        return grid(1, 1, -1, -1, 3, 3, [z](double, double) { return z; });
+    };
+    EXPECT_EQ(refusal(c, joined(level(0.25), level(0.5))), "two_sides");
     EXPECT_EQ(refusal(c, OwnedSurface{}), "no_triangles");
     OwnedSurface wrong = box({0, 0, 0}, {1, 1, 1});
     wrong.triangles[0] = 9;

@@ -40,7 +40,7 @@ double signed_area(const std::vector<PlanePosition>& p) {
 void expect_tiles(const Corners& corners, const std::vector<Loop>& loops, double expected,
                   std::span<const std::array<NodeId, 2>> slits = {}) {
     Polygons polygons;
-    divide_convex(loops, 1e-12, slits, polygons);
+    divide_convex(loops, {1e-12, 1e-12}, slits, polygons);
     double total = 0;
     std::map<std::array<NodeId, 2>, int> edges;
     for (const Loop& loop : loops) {
@@ -54,7 +54,7 @@ void expect_tiles(const Corners& corners, const std::vector<Loop>& loops, double
             loop.push_back({node, corners.at(node)});
             positions.push_back(corners.at(node));
         }
-        EXPECT_TRUE(is_convex(loop, 1e-12));
+        EXPECT_TRUE(is_convex(loop, {1e-12, 1e-12}));
         EXPECT_GT(signed_area(positions), 0);
         total += signed_area(positions);
         for (std::size_t i = 0; i < loop.size(); ++i)
@@ -69,7 +69,7 @@ TEST(Triangulate, AConvexLoopStaysWhole) {
     Corners corners;
     Polygons polygons;
     const std::vector<Loop> loops{corners.loop({{0, 0}, {1, 0}, {2, 0}, {2, 2}, {0, 2}})};
-    divide_convex(loops, 1e-12, {}, polygons);
+    divide_convex(loops, {1e-12, 1e-12}, {}, polygons);
     EXPECT_EQ(polygons.size(), 1u);
     EXPECT_EQ(polygons[0].size(), 5u);
 }
@@ -96,7 +96,7 @@ TEST(Triangulate, ASlitStays) {
     const std::array<NodeId, 2> slit{loops[1][0].node, loops[1][1].node};
     expect_tiles(corners, loops, 16, std::span(&slit, 1));
     Polygons polygons;
-    divide_convex(loops, 1e-12, std::span(&slit, 1), polygons);
+    divide_convex(loops, {1e-12, 1e-12}, std::span(&slit, 1), polygons);
     int ahead = 0, back = 0;
     for (std::size_t k = 0; k < polygons.size(); ++k) {
         for (std::size_t i = 0; i < polygons[k].size(); ++i) {
@@ -133,7 +133,7 @@ TEST(Triangulate, WhatRoundingHasFoldedOverStaysClosed) {
     const std::vector<Loop> loops{
         corners.loop({{0, 0}, {4, 0}, {4, 4}, {2, -1e-9}, {0, 4}})};  // its dent pokes through
     Polygons polygons;
-    divide_convex(loops, 1e-8, {}, polygons);
+    divide_convex(loops, {1e-8, 1e-8}, {}, polygons);
     std::map<std::array<NodeId, 2>, int> edges;
     for (std::size_t i = 0; i < loops[0].size(); ++i)
         --edges[std::array{loops[0][i].node, loops[0][(i + 1) % loops[0].size()].node}];

@@ -66,10 +66,10 @@ struct Cut {
     Section section;
 };
 
-/// Cuts a model by a plane. A vertex lies on the plane where it is no farther from it than the
-/// rounding of its own coordinates (four units in the last place on each axis), above or below
-/// otherwise; that is decided beyond doubt. All else follows from these sides: an edge is cut once
-/// where its ends lie on different sides, a face along the straight lines between such places.
+/// Cuts a model by a plane. A vertex lies above it, below it, or exactly on it; all else follows
+/// from these sides: an edge is cut once where its ends lie on different sides, a face along the
+/// straight lines between such places. Where a place rounds to an end of its edge, vertices within
+/// half a unit in the last place of the plane are contracted to it.
 /// @throws InputError kinds not_finite, bad_plane (the normal is zero), bad_model
 /// @throws Cancelled
 Cut cut_by_plane(const ComplexView& model, const Plane& plane, int threads, Progress* progress);
@@ -85,18 +85,20 @@ struct TriangleView {
 };
 
 /// Cuts a model by a triangulated surface that parts it: open, and ending outside of the model or
-/// on its outside, or closed. Above is where it turns its upper side (on the whole), or outside of
-/// a closed one. Where surface and faces meet is decided exactly, on the model's coordinates and
-/// the surface's; vertices of the model within their own rounding of the surface are taken to lie
-/// on it.
-/// @throws InputError kinds not_finite, bad_index, no_triangles, branching, one_sided, bad_model;
-///         ends_inside (it does not part the model; the place), unresolved (it crosses itself)
+/// on its outside, or closed. Above is where an open one turns its upper side (on the whole);
+/// below, or inside, of a closed one is what a way out leaves through it an odd number of times.
+/// Where surface and faces meet is decided exactly, on the model's coordinates and the surface's;
+/// vertices of the model within their own rounding of the surface are taken to lie on it. The
+/// model's cells may overlap by rounding (docs/geometry.md, "Cutting").
+/// @throws InputError kinds not_finite, bad_index, no_triangles, bad_model; of open surfaces
+///         branching, one_sided, ends_inside (it does not part the model; the place), two_sides (a
+///         place is above one part of it and below another)
 /// @throws Cancelled
 Cut cut_by_surface(const ComplexView& model, const TriangleView& surface, int threads,
                    Progress* progress);
 
 /// Cuts a model by the boundary of a block of another, or of its own: below is what is inside.
-/// @throws InputError kinds no_block, bad_model, unresolved
+/// @throws InputError kinds no_block, bad_model
 /// @throws Cancelled
 Cut cut_by_block(const ComplexView& model, const ComplexView& other, std::int32_t block,
                  int threads, Progress* progress);

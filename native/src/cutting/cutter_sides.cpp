@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cutter_sides.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "realmodel/base/errors.hpp"
+#include "strata/parallel_chunks.hpp"
+
+namespace realmodel::cutting {
+
+CutterSides::Sets::Sets(std::size_t count) : parent_(count), opposite_(count, 0) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+}
+
+std::pair<std::int32_t, bool> CutterSides::Sets::find(std::int32_t i) {
+    std::int32_t root = i;
+    std::uint8_t turned = 0;
+    while (parent_[index(root)] != root) {
+        turned ^= opposite_[index(root)];
+        root = parent_[index(root)];
+    }
+    const bool result = turned != 0;
+    while (parent_[index(i)] != i) {  // the next time it is one step
+        const std::int32_t next = parent_[index(i)];
+        const std::uint8_t own = opposite_[index(i)];
+        parent_[index(i)] = root;
+        opposite_[index(i)] = turned;
+        turned ^= own;
+        i = next;
+    }
+    return {root, result};
+}
+
+bool CutterSides::Sets::join(std::int32_t a, std::int32_t b, bool opposite) {
+    const auto [root_a, turned_a] = find(a);
+    const auto [root_b, turned_b] = find(b);
+    const bool turned = (turned_a != turned_b) != opposite;
+    if (root_a == root_b) return !turned;
+    const auto [low, high] = std::minmax(root_a, root_b);
+    parent_[index(high)] = low;
+    opposite_[index(high)] = turned ? 1 : 0;
+    return true;
+}
+
+CutterSides::CutterSides(SurfaceOverlay& overlay, const CutterWinding& winding, Progress* progress)
+    : overlay_(overlay),
+      winding_(winding),
+      sets_(overlay.size() + overlay.model().face_count()),
+      reaches_(overlay.model().cell_block.size(), 0) {
+    find_reached_cells();
+    refuse_borders();
+    hand_on();
+    for (std::size_t e = 0; e < winding.edge_count(); ++e) {
+        strata::poll(progress, e);
+        go_round(e);
+    }
+    settle();
+}
+
+void CutterSides::refuse(const char* kind, const char* text,
+                         const std::array<NodeId, 2>& edge) const {
+    const Position p = overlay_.position(edge[0]), q = overlay_.position(edge[1]);
+    Position middle;
+    for (std::size_t k = 0; k < 3; ++k)
+        middle[k] = p[k] + (q[k] - p[k]) / 2;
+    throw InputError(kind, text, -1, {}, middle);
+}
+
+/// Cells with a face near the surface, and those that it lies in. Of the others each is on one side
+/// as a whole; of a cell that rounding has flattened away where the surface passes it no face need
+/// meet the surface, though it has faces on both sides.
+void CutterSides::find_reached_cells() {
+    const auto reach = [this](std::int32_t cell) {
+        if (cell >= 0) reaches_[index(cell)] = 1;
+    };
+    for (const std::int32_t f : overlay_.active_faces()) {
+        for (std::size_t k = 0; k < 2; ++k)
+            reach(overlay_.model().cell(index(f), k));
+    }
+    for (std::size_t r = 0; r < overlay_.size(); ++r) {
+        if (!winding_.counts(r)) continue;
+        for (std::size_t k = 0; k < 2; ++k) {
+            for (const auto& [cell, times] : winding_.around(r, k))
+                reach(cell);
+        }
+    }
+}
+
+/// An edge in the model at which an odd number of regions meet: the surface ends there.
+void CutterSides::refuse_borders() const {
+    for (std::size_t e = 0; e < winding_.edge_count(); ++e) {
+        const auto uses = winding_.edge(e);
+        const auto own = std::count_if(uses.begin(), uses.end(), [this](const EdgeUse& use) {
+            return overlay_.of_cutter(index(use.item));
+        });
+        const auto& windings = winding_.sectors(e).windings;
+        if (own % 2 == 0 || std::count(windings.begin(), windings.end(), 0) > 0) continue;
+        refuse("ends_inside", "the surface does not part the model: it ends inside of it",
+               uses[0].edge);
+    }
+}
+
+/// Faces around a cell that is not reached are on one side of the surface; so are regions that meet
+/// at an edge that is none of the surface's.
+void CutterSides::hand_on() {
+    const ComplexView& model = overlay_.model();
+    std::vector<std::int32_t> first(reaches_.size(), -1);
+    std::vector<EdgeUse> uses;
+    const auto take = [&](std::int32_t item, std::size_t face, const auto& loops) {
+        bool reached = false;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::int32_t cell = model.cell(face, k);
+            if (cell < 0) continue;
+            if (reaches(cell)) {
+                reached = true;
+                continue;
+            }
+            auto& known = first[index(cell)];
+            if (known < 0) known = item;
+            sets_.join(known, item, false);
+        }
+        if (reached) each_edge(loops, item, [&](const EdgeUse& use) { uses.push_back(use); });
+    };
+    for (std::size_t r = 0; r < overlay_.size(); ++r) {
+        if (!overlay_.of_cutter(r) && winding_.level(r) < 0)
+            take(static_cast<std::int32_t>(r), overlay_.face_of(r), overlay_.loops(r));
+    }
+    for (std::size_t f = 0; f < model.face_count(); ++f) {
+        if (!overlay_.is_active(f))
+            take(static_cast<std::int32_t>(overlay_.size() + f), f, std::array{model.face(f)});
+    }
+    std::sort(uses.begin(), uses.end());
+    std::size_t edge = 0;
+    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+        while (edge < winding_.edge_count() && winding_.edge(edge)[0].edge < uses[begin].edge)
+            ++edge;
+        const bool own =
+            edge < winding_.edge_count() && winding_.edge(edge)[0].edge == uses[begin].edge;
+        for (; end < uses.size() && uses[end].edge == uses[begin].edge; ++end) {
+            if (!own) sets_.join(uses[begin].item, uses[end].item, false);
+        }
+    }
+}
+
+/// Around an edge of the surface what bounds one sector within the model is on one side. In sectors
+/// outside of it this is said of an open surface that does not end there, for the sake of cells
+/// that rounding flattened away; of a closed one it need not be said.
+void CutterSides::go_round(std::size_t e) {
+    const auto uses = winding_.edge(e);
+    const auto& [fan, windings] = winding_.sectors(e);
+    /// Hands one of a blade's items on, with its side as seen from behind or from ahead.
+    const auto each = [&](std::size_t blade, bool ahead, const auto& visit) {
+        for (const std::size_t i : fan.blade(blade)) {
+            const EdgeUse& use = uses[i];
+            const auto region = index(use.item);
+            if (!overlay_.of_cutter(region)) {
+                if (winding_.level(region) < 0) visit(use.item, false);
+            } else if (winding_.touches_model(region)) {
+                visit(use.item, (ahead ? use.ahead() : use.behind()) == 1);
+            }
+        }
+    };
+    const auto own = std::count_if(uses.begin(), uses.end(), [this](const EdgeUse& use) {
+        return overlay_.of_cutter(index(use.item));
+    });
+    for (std::size_t b = 0; b < fan.blades(); ++b) {
+        if (windings[b] == 0 && (own % 2 == 1 || overlay_.surface().is_closed)) continue;
+        std::int32_t known = -1;
+        bool known_turned = false;
+        const auto join = [&](std::int32_t item, bool turned) {
+            if (known >= 0) {
+                if (!sets_.join(known, item, known_turned != turned))
+                    refuse("ends_inside",
+                           "the surface does not part the model: a way leads round it",
+                           uses[0].edge);
+                return;
+            }
+            known = item;
+            known_turned = turned;
+        };
+        each(b, true, join);
+        each((b + 1) % fan.blades(), false, join);
+    }
+}
+
+/// The side of something that is not joined with the surface, or of one of its regions.
+std::int8_t CutterSides::side_at(std::size_t item, bool of_cutter) {
+    const bool is_region = item < overlay_.size();
+    if (!overlay_.surface().is_closed) {
+        if (of_cutter) return kBelow;
+        Position middle{0, 0, 0};
+        const auto face =
+            overlay_.model().face(is_region ? overlay_.face_of(item) : item - overlay_.size());
+        for (const NodeId v : face) {
+            for (std::size_t k = 0; k < 3; ++k)
+                middle[k] += overlay_.position(v)[k] / static_cast<double>(face.size());
+        }
+        return side_of_nearest(overlay_.surface(), middle);
+    }
+    ExactPoints& points = overlay_.points();
+    const std::pair<std::size_t, int> seen = is_region ? overlay_.view_of(item) : std::pair{2UL, 1};
+    const NodeId p = is_region ? overlay_.inner_point(item)
+                               : overlay_.exact(overlay_.model().face(item - overlay_.size())[0]);
+    bool inside = false;
+    for (const auto& t : overlay_.surface().triangles) {
+        std::array<NodeId, 3> corners;
+        for (std::size_t i = 0; i < 3; ++i)
+            corners[i] = points.add(overlay_.surface().vertices[index(t[i])]);
+        if (points.ray_passes(seen.first, p, corners, of_cutter && seen.second > 0) != 0)
+            inside = !inside;
+    }
+    return inside ? kBelow : kAbove;
+}
+
+void CutterSides::settle() {
+    const std::size_t count = overlay_.size() + overlay_.model().face_count();
+    side_.assign(count, kOn);
+    std::vector<std::int8_t> of_set(count, kOn);
+    const auto turned = [](std::int8_t side, bool opposite) {
+        return static_cast<std::int8_t>(opposite ? -side : side);
+    };
+    for (std::size_t r = 0; r < overlay_.size(); ++r) {
+        if (!winding_.counts(r) || !winding_.touches_model(r)) continue;
+        const auto [root, opposite] = sets_.find(static_cast<std::int32_t>(r));
+        auto& known = of_set[index(root)];
+        if (known == kOn) known = turned(side_at(r, true), opposite);
+        if (!overlay_.surface().is_closed && known != turned(kBelow, opposite)) {
+            const auto& outline = overlay_.loops(r)[0];
+            refuse("two_sides",
+                   "a place in the model is above one part of the surface and below another",
+                   {outline[0], outline[1]});
+        }
+    }
+    const auto take = [&](std::size_t item) {
+        const auto [root, opposite] = sets_.find(static_cast<std::int32_t>(item));
+        auto& known = of_set[index(root)];
+        if (known == kOn) known = turned(side_at(item, false), opposite);
+        side_[item] = turned(known, opposite);
+    };
+    for (std::size_t r = 0; r < overlay_.size(); ++r) {
+        if (!overlay_.of_cutter(r)) {
+            if (winding_.level(r) < 0) take(r);
+        } else if (winding_.counts(r) && winding_.touches_model(r)) {
+            take(r);
+        }
+    }
+    for (std::size_t f = 0; f < overlay_.model().face_count(); ++f) {
+        if (!overlay_.is_active(f)) take(overlay_.size() + f);
+    }
+}
+
+}  // namespace realmodel::cutting

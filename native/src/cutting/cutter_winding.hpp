@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "edge_fan.hpp"
+
+namespace realmodel::cutting {
+
+/// How often the boundary of each cell goes round a place: once around what is within the cell.
+/// Where rounding has put faces through each other, cells may overlap (two are there), be inside
+/// out (-1 times), or leave gaps. Cells that do not go round it are left out.
+using Winding = std::vector<std::pair<std::int32_t, std::int32_t>>;
+
+/// Which regions of a surface count, which regions of faces lie on them, and how often each cell
+/// goes round either side of them.
+///
+/// That is decided exactly and without asking that the cells fit together: known on one side of one
+/// region, it changes around each edge by the faces that are passed.
+class CutterWinding {
+public:
+    CutterWinding(SurfaceOverlay& overlay, Progress* progress);
+
+    /// Regions of the surface that are boundaries: of several in one place one is, or none where a
+    /// closed surface is there an even number of times.
+    bool counts(std::size_t region) const { return counts_[region] != 0; }
+    /// The region of the surface that a face's region lies on, -1 none, and whether both turn the
+    /// same way (1) or not (-1).
+    std::int32_t level(std::size_t region) const { return level_[region]; }
+    std::int8_t level_turn(std::size_t region) const { return level_turn_[region]; }
+    /// What is just below (side 0, where it is seen clockwise from) or above a region that counts.
+    const Winding& around(std::size_t region, std::size_t side) const {
+        return known_[index(winding_[2 * region + side])];
+    }
+    bool touches_model(std::size_t region) const {
+        return !around(region, 0).empty() || !around(region, 1).empty();
+    }
+
+    /// The edges of the regions that count, in order: all uses of each by these and by faces'
+    /// regions.
+    std::size_t edge_count() const { return edge_begins_.size() - 1; }
+    std::span<const EdgeUse> edge(std::size_t i) const {
+        return {uses_.data() + edge_begins_[i], edge_begins_[i + 1] - edge_begins_[i]};
+    }
+    /// The fan of an edge, and for each of its blades what is between it and the next.
+    struct Sectors {
+        EdgeFan fan;
+        std::vector<std::int32_t> windings;  ///< numbers; 0: no cell is there
+    };
+    const Sectors& sectors(std::size_t edge) const { return sectors_[edge]; }
+    /// Whether an edge is one of these.
+    bool is_edge(const std::array<NodeId, 2>& edge) const;
+
+private:
+    void find_coinciding();
+    void collect_uses();
+    void spread(std::size_t edge, Progress* progress);
+    std::int32_t number(Winding&& winding);
+    void pass(Winding& winding, std::size_t region, std::size_t entered) const;
+    Winding cast(std::size_t region);
+
+    SurfaceOverlay& overlay_;
+    std::vector<std::uint8_t> counts_;
+    std::vector<std::int32_t> level_;
+    std::vector<std::int8_t> level_turn_;
+    std::vector<EdgeUse> uses_;
+    std::vector<std::size_t> edge_begins_{0};
+    std::vector<Sectors> sectors_;
+    std::vector<std::int32_t> winding_;  ///< of both sides of regions, -1 not yet known
+    std::vector<Winding> known_;
+    std::map<Winding, std::int32_t> number_;
+    std::vector<std::vector<std::int32_t>> lying_on_;  ///< faces' regions on each of the surface's
+    std::vector<std::vector<std::int32_t>> edges_of_;  ///< of regions that count
+};
+
+}  // namespace realmodel::cutting

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "part_rounding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "box_tree.hpp"
+#include "distinct.hpp"
+
+namespace realmodel::cutting {
+
+PartRounding::PartRounding(const ComplexView& model, std::vector<Position>& new_positions,
+                           Pieces& pieces, PieceParts& parts, std::vector<HalfCell>& half_cells,
+                           const std::array<bool, 2>& touches)
+    : model_(model),
+      new_positions_(new_positions),
+      pieces_(pieces),
+      parts_(parts),
+      half_cells_(half_cells),
+      touches_(touches) {
+    vertices_.reserve(model.vertex_count());
+    for (std::size_t v = 0; v < model.vertex_count(); ++v)
+        vertices_.push_back(model.vertex(static_cast<NodeId>(v)));
+    parts_of_.assign(model.cell_block.size(), 0);
+    for (const HalfCell& part : half_cells) {
+        auto& count = parts_of_[index(part.cell)];
+        count = static_cast<std::uint8_t>(std::min(count + 1, 2));
+    }
+}
+
+const Position& PartRounding::at(NodeId node) const {
+    return is_new(node) ? new_positions_[index(node) - model_.vertex_count()]
+                        : vertices_[index(node)];
+}
+
+/// Whether a part is less than the model's cell, which was sound.
+bool PartRounding::is_changed(std::int32_t part) const {
+    return parts_of_[index(half_cells_[index(part)].cell)] > 1;
+}
+
+bool PartRounding::is_wall(std::size_t piece) const {
+    const std::int32_t face = pieces_.face[piece];
+    return face >= 0 && model_.face_surface[index(face)] == strata::kWall;
+}
+
+void PartRounding::run() {
+    find_pieces_of_parts();
+    level_base();
+    contract();
+    set_apart();
+    give_extents();
+    glue_doubled();
+    divide_bent();
+    drop_empty();
+}
+
+void PartRounding::find_pieces_of_parts() {
+    const std::size_t nodes = model_.vertex_count() + new_positions_.size();
+    on_base_.assign(nodes, 0);
+    on_wall_.assign(nodes, 0);
+    is_near_.assign(nodes, 0);
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        const bool changed =
+            std::any_of(parts_[p].begin(), parts_[p].end(),
+                        [this](std::int32_t part) { return part >= 0 && is_changed(part); });
+        if (!changed) continue;
+        for (const NodeId node : pieces_.polygons[p])
+            is_near_[index(node)] = 1;
+    }
+    first_.assign(half_cells_.size() + 1, 0);
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        for (const std::int32_t part : parts_[p]) {
+            if (part >= 0) ++first_[index(part) + 1];
+        }
+        const std::int32_t face = pieces_.face[p];
+        if (face < 0) continue;
+        const std::int32_t surface = model_.face_surface[index(face)];
+        if (surface != strata::kBase && surface != strata::kWall) continue;
+        for (const NodeId node : pieces_.polygons[p])
+            (surface == strata::kBase ? on_base_ : on_wall_)[index(node)] = 1;
+    }
+    for (std::size_t part = 0; part < half_cells_.size(); ++part)
+        first_[part + 1] += first_[part];
+    pieces_of_.resize(static_cast<std::size_t>(first_.back()));
+    std::vector<std::int64_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        for (const std::int32_t part : parts_[p]) {
+            if (part >= 0)
+                pieces_of_[static_cast<std::size_t>(next[index(part)]++)] =
+                    static_cast<std::int32_t>(p);
+        }
+    }
+}
+
+/// A cutter that runs along the base but for rounding is taken to run along it: so do its nodes.
+void PartRounding::level_base() {
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        const std::int32_t face = pieces_.face[p];
+        if (face < 0 || model_.face_surface[index(face)] != strata::kBase) continue;
+        const double height = vertices_[index(model_.face(index(face))[0])][2];
+        for (const NodeId node : pieces_.polygons[p]) {
+            if (is_new(node)) moving(node)[2] = height;
+        }
+    }
+}
+
+/// A piece without the nodes that became the one before; empty where it vanishes.
+std::vector<NodeId> PartRounding::contracted(std::size_t piece) const {
+    std::vector<NodeId> loop;
+    for (const NodeId node : pieces_.polygons[piece]) {
+        const NodeId now = becomes_[index(node)];
+        if (loop.empty() || loop.back() != now) loop.push_back(now);
+    }
+    while (loop.size() > 1 && loop.front() == loop.back())
+        loop.pop_back();
+    if (loop.size() < 3) loop.clear();
+    return loop;
+}
+
+/// Whether a part would still be closed, with polygons that pass no node twice, none of them twice
+/// there, and an extent.
+bool PartRounding::stays_sound(std::int32_t part) const {
+    struct Use {
+        NodeId low, high;
+        int direction;
+        auto operator<=>(const Use&) const = default;
+    };
+    std::vector<Use> uses;
+    std::vector<std::vector<NodeId>> faces;
+    Box box;
+    for (auto i = first_[index(part)]; i < first_[index(part) + 1]; ++i) {
+        const auto piece = index(pieces_of_[static_cast<std::size_t>(i)]);
+        std::vector<NodeId> loop = contracted(piece);
+        if (loop.empty()) continue;
+        const int turned = parts_[piece][0] == part ? 1 : -1;
+        for (std::size_t k = 0; k < loop.size(); ++k) {
+            const NodeId a = loop[k], b = loop[(k + 1) % loop.size()];
+            uses.push_back({std::min(a, b), std::max(a, b), a < b ? turned : -turned});
+            box.include(at(a));
+        }
+        std::sort(loop.begin(), loop.end());
+        if (std::adjacent_find(loop.begin(), loop.end()) != loop.end()) return false;
+        faces.push_back(std::move(loop));
+    }
+    if (faces.size() < 4) return false;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (box.low[k] == box.high[k]) return false;
+    }
+    std::sort(faces.begin(), faces.end());
+    if (std::adjacent_find(faces.begin(), faces.end()) != faces.end()) return false;
+    if (model_.cells_are_blocks || touches_[half_cells_[index(part)].side == kAbove ? 1 : 0])
+        return true;
+    std::sort(uses.begin(), uses.end());
+    for (std::size_t i = 2; i < uses.size(); ++i) {
+        if (uses[i].low == uses[i - 2].low && uses[i].high == uses[i - 2].high) return false;
+    }
+    return true;
+}
+
+void PartRounding::contract() {
+    std::map<Position, NodeId>
+        first_at;  // of the places of new nodes: the model's vertex, or the first
+    becomes_.resize(model_.vertex_count() + new_positions_.size());
+    for (std::size_t n = 0; n < becomes_.size(); ++n)
+        becomes_[n] = static_cast<NodeId>(n);
+    for (const Position& p : new_positions_)
+        first_at.try_emplace(p, -1);
+    for (std::size_t v = 0; v < vertices_.size(); ++v) {
+        const auto found = first_at.find(vertices_[v]);
+        if (found != first_at.end()) found->second = static_cast<NodeId>(v);
+    }
+    std::vector<NodeId> gone;
+    for (std::size_t i = 0; i < new_positions_.size(); ++i) {
+        const auto node = static_cast<NodeId>(vertices_.size() + i);
+        NodeId& first = first_at.find(new_positions_[i])->second;
+        if (first < 0) {
+            first = node;
+        } else {
+            becomes_[index(node)] = first;
+            gone.push_back(node);
+        }
+    }
+    if (gone.empty()) return;
+    std::vector<std::uint8_t> is_involved(becomes_.size(), 0);
+    for (const NodeId node : gone)
+        is_involved[index(node)] = is_involved[index(becomes_[index(node)])] = 1;
+    std::set<std::int32_t> open;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        const auto nodes = pieces_.polygons[p];
+        if (std::none_of(nodes.begin(), nodes.end(),
+                         [&](NodeId node) { return is_involved[index(node)] != 0; }))
+            continue;
+        for (const std::int32_t part : parts_[p]) {
+            if (part >= 0) open.insert(part);
+        }
+    }
+    std::map<NodeId, std::set<std::int32_t>> parts_at;  // by nodes that go: the parts around them
+    for (const std::int32_t part : open) {
+        for (auto i = first_[index(part)]; i < first_[index(part) + 1]; ++i) {
+            for (const NodeId node :
+                 pieces_.polygons[index(pieces_of_[static_cast<std::size_t>(i)])]) {
+                if (becomes_[index(node)] != node) parts_at[node].insert(part);
+            }
+        }
+    }
+    while (!open.empty()) {
+        const std::int32_t part = *open.begin();
+        open.erase(open.begin());
+        if (stays_sound(part)) continue;
+        // its nodes stay apart; the parts around these are looked at again
+        for (auto i = first_[index(part)]; i < first_[index(part) + 1]; ++i) {
+            for (const NodeId node :
+                 pieces_.polygons[index(pieces_of_[static_cast<std::size_t>(i)])]) {
+                if (becomes_[index(node)] == node) continue;
+                becomes_[index(node)] = node;
+                open.insert(parts_at[node].begin(), parts_at[node].end());
+            }
+        }
+        open.erase(part);
+    }
+    take_over_contractions();
+}
+
+void PartRounding::take_over_contractions() {
+    Pieces kept;
+    PieceParts parts;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        const std::vector<NodeId> loop = contracted(p);
+        if (loop.empty()) continue;
+        kept.polygons.add(loop);
+        kept.face.push_back(pieces_.face[p]);
+        kept.cells.push_back(pieces_.cells[p]);
+        kept.sides.push_back(pieces_.sides[p]);
+        kept.level.push_back(pieces_.level[p]);
+        parts.push_back(parts_[p]);
+    }
+    pieces_ = std::move(kept);
+    parts_ = std::move(parts);
+    find_pieces_of_parts();
+}
+
+/// The nearest free place beside a node that its faces allow.
+void PartRounding::move_aside(NodeId node) {
+    Position& p = moving(node);
+    const bool fixed = on_base_[index(node)] != 0;
+    const Freedom freedom = fixed                        ? Freedom::kLevel
+                            : on_wall_[index(node)] != 0 ? Freedom::kUpright
+                                                         : Freedom::kAny;
+    p = free_position_beside(p, freedom, taken_);
+}
+
+void PartRounding::set_apart() {
+    Box box;
+    for (const Position& p : new_positions_)
+        box.include(p);
+    if (!new_positions_.empty()) box.widen(16 * rounding_of(std::array{box.low, box.high}));
+    for (const Position& p : vertices_) {
+        if (box.contains(p)) taken_.insert(p);
+    }
+    std::vector<std::uint8_t> is_used(new_positions_.size(), 0);
+    for (const NodeId node : pieces_.polygons.nodes) {
+        if (is_new(node)) is_used[index(node) - vertices_.size()] = 1;
+    }
+    for (std::size_t i = 0; i < new_positions_.size(); ++i) {
+        if (is_used[i] == 0) continue;
+        const auto node = static_cast<NodeId>(vertices_.size() + i);
+        if (!taken_.insert(new_positions_[i]).second) move_aside(node);
+    }
+}
+
+/// Gives parts without thickness on an axis, and walls without extent in plan, one unit of it.
+void PartRounding::give_extents() {
+    const auto widen = [this](std::span<const NodeId> nodes, std::size_t axis, bool free_only) {
+        for (const NodeId node : nodes) {
+            if (!is_new(node)) continue;
+            if (free_only && (axis == 2 ? on_base_ : on_wall_)[index(node)] != 0) continue;
+            Position to = at(node);
+            for (int i = 0; i < 3; ++i) {
+                to[axis] = std::nextafter(to[axis], HUGE_VAL);
+                if (!taken_.insert(to).second) continue;
+                moving(node) = to;
+                return true;
+            }
+        }
+        return false;
+    };
+    std::vector<NodeId> nodes;
+    for (std::size_t part = 0; part < half_cells_.size(); ++part) {
+        if (!is_changed(static_cast<std::int32_t>(part))) continue;
+        nodes.clear();
+        Box box;
+        for (auto i = first_[part]; i < first_[part + 1]; ++i) {
+            for (const NodeId node :
+                 pieces_.polygons[index(pieces_of_[static_cast<std::size_t>(i)])]) {
+                nodes.push_back(node);
+                box.include(at(node));
+            }
+        }
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (box.low[axis] == box.high[axis] && !widen(nodes, axis, true))
+                widen(nodes, axis, false);
+        }
+    }
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        if (!is_wall(p)) continue;
+        const auto corners = pieces_.polygons[p];
+        const bool upright = std::all_of(corners.begin(), corners.end(), [&](NodeId node) {
+            return at(node)[0] == at(corners[0])[0] && at(node)[1] == at(corners[0])[1];
+        });
+        if (upright && !widen(corners, 0, false)) widen(corners, 1, false);
+    }
+}
+
+/// Parts that lost all of their polygons to others are no more.
+void PartRounding::drop_empty() {
+    std::vector<std::int32_t> number(half_cells_.size(), -1);
+    for (const auto& part : parts_) {
+        for (const std::int32_t own : part) {
+            if (own >= 0) number[index(own)] = 0;
+        }
+    }
+    std::vector<HalfCell> kept;
+    for (std::size_t part = 0; part < number.size(); ++part) {
+        if (number[part] < 0) continue;
+        number[part] = static_cast<std::int32_t>(kept.size());
+        kept.push_back(half_cells_[part]);
+    }
+    half_cells_ = std::move(kept);
+    for (auto& part : parts_) {
+        for (std::int32_t& own : part) {
+            if (own >= 0) own = number[index(own)];
+        }
+    }
+}
+
+}  // namespace realmodel::cutting

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <set>
+#include <vector>
+
+#include "halves.hpp"
+
+namespace realmodel::cutting {
+
+/// Makes sound parts of exact ones whose nodes were rounded to doubles.
+///
+/// Nodes that came to lie in one place become one, and polygons between them vanish, wherever the
+/// parts around stay closed and keep an extent. Others get places beside it, parts and upright
+/// walls without extent are given one, all by single units in the last place; nodes on the flat
+/// base stay on it, and those on walls move up or down before they move aside. Last, polygons that
+/// are no longer convex are divided.
+class PartRounding {
+public:
+    /// @param new_positions  of nodes after the model's vertices; they may move
+    /// @param touches        whether parts below, above may use an edge more than twice
+    PartRounding(const ComplexView& model, std::vector<Position>& new_positions, Pieces& pieces,
+                 PieceParts& parts, std::vector<HalfCell>& half_cells,
+                 const std::array<bool, 2>& touches);
+    void run();
+
+private:
+    bool is_new(NodeId node) const { return index(node) >= model_.vertex_count(); }
+    const Position& at(NodeId node) const;
+    Position& moving(NodeId node) { return new_positions_[index(node) - model_.vertex_count()]; }
+    bool is_changed(std::int32_t part) const;
+    bool is_wall(std::size_t piece) const;
+
+    void find_pieces_of_parts();
+    void level_base();
+    void contract();
+    bool stays_sound(std::int32_t part) const;
+    std::vector<NodeId> contracted(std::size_t piece) const;
+    void take_over_contractions();
+    void set_apart();
+    void move_aside(NodeId node);
+    void give_extents();
+    void glue_doubled();
+    void divide_bent();
+    void drop_empty();
+
+    const ComplexView& model_;
+    std::vector<Position>& new_positions_;
+    Pieces& pieces_;
+    PieceParts& parts_;
+    std::vector<HalfCell>& half_cells_;
+    std::array<bool, 2> touches_;
+
+    std::vector<Position> vertices_;      ///< of the model, as `at` gives them
+    std::vector<std::uint8_t> parts_of_;  ///< of the model's cells: how many, 2 for more
+    std::vector<NodeId> becomes_;         ///< of nodes: the one that they are contracted to
+    std::vector<std::uint8_t> on_base_, on_wall_;  ///< of nodes
+    std::vector<std::uint8_t> is_near_;     ///< of nodes: of a part that is less than its cell
+    std::vector<std::uint8_t> is_doubled_;  ///< of pieces  ///< of nodes
+    std::vector<std::int64_t> first_;       ///< of parts, in pieces_of_
+    std::vector<std::int32_t> pieces_of_;
+    std::set<Position> taken_;
+};
+
+}  // namespace realmodel::cutting

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "box_tree.hpp"
+#include "cutter_surface.hpp"
+#include "overlay.hpp"
+
+namespace realmodel::cutting {
+
+/// A model's faces near a surface, and the surface, divided along one another exactly. Nodes are
+/// the model's vertices, then the places where they meet.
+///
+/// Vertices of the model that are on the surface but for their own rounding are taken to lie on it:
+/// with that the model's cells may come to overlap by as much, which whoever uses this must bear.
+class SurfaceOverlay {
+public:
+    SurfaceOverlay(const ComplexView& model, const CutterSurface& surface, int threads,
+                   Progress* progress);
+
+    const ComplexView& model() const { return model_; }
+    const CutterSurface& surface() const { return surface_; }
+    std::size_t size() const { return overlay_.regions().size(); }
+    bool of_cutter(std::size_t region) const { return triangle(region) >= first_cutter_; }
+    /// The face that a region is part of.
+    std::size_t face_of(std::size_t region) const {
+        return index(face_of_[index(triangle(region))]);
+    }
+    /// The region's outline, then its holes, in nodes.
+    const std::vector<std::vector<NodeId>>& loops(std::size_t region) const {
+        return loops_[region];
+    }
+    /// Whether a face has regions; the others are away from the surface.
+    bool is_active(std::size_t face) const { return active_[face] != 0; }
+    const std::vector<std::int32_t>& active_faces() const { return active_faces_; }
+
+    Position position(NodeId node) const {
+        const auto vertices = static_cast<NodeId>(model_.vertex_count());
+        return node < vertices ? model_.vertex(node) : new_positions_[index(node - vertices)];
+    }
+    std::vector<Position>& new_positions() { return new_positions_; }
+    /// A node somewhere, of which no exact point is known.
+    NodeId add_node(const Position& p) {
+        new_positions_.push_back(p);
+        return static_cast<NodeId>(model_.vertex_count() + new_positions_.size()) - 1;
+    }
+    bool is_near(NodeId vertex) const { return vertex_node_[index(vertex)] >= 0; }
+
+    /// The exact point of a node.
+    NodeId exact(NodeId node);
+    ExactPoints& points() { return points_; }
+    /// The corners, as exact points, of the triangle that a region is part of.
+    const std::array<NodeId, 3>& corners(std::size_t region) const {
+        return overlay_.corners(triangle(region));
+    }
+    /// A corner of that triangle to the left of a line in it; all as exact points.
+    NodeId left_corner(std::size_t region, NodeId from, NodeId to) const {
+        return overlay_.left_corner(triangle(region), from, to);
+    }
+    /// A place within a region, on none of its edges.
+    NodeId inner_point(std::size_t region);
+    /// The axis along which a region is seen best, and which way it turns seen along it.
+    std::pair<std::size_t, int> view_of(std::size_t region) const {
+        return overlay_.view_of(triangle(region));
+    }
+    /// Calls visit(face, corners as exact points) for the triangles of all faces, those away from
+    /// the surface only where the line along `axis` through `p` may meet them.
+    template <class Visit>
+    void each_triangle(std::size_t axis, NodeId p, const Visit& visit);
+    /// Around the whole model, and a little wider.
+    const Box& model_box() const { return model_box_; }
+
+private:
+    std::int32_t triangle(std::size_t region) const { return overlay_.regions()[region].triangle; }
+    void find_active_faces();
+    void name_vertices();
+    void name_vertices_of(std::span<const std::int32_t> faces);
+    void activate_beside_flat_triangles();
+    std::optional<NodeId> place_on_surface(const Position& p);
+    void overlay_all();
+    void name_nodes();
+
+    const ComplexView& model_;
+    const CutterSurface& surface_;
+    int threads_;
+    Progress* progress_;
+
+    ExactPoints points_;
+    Overlay overlay_;
+    std::unique_ptr<BoxTree> tree_;
+    double margin_ = 0;
+    Box model_box_;
+    std::vector<std::uint8_t> active_;
+    std::vector<std::int32_t> active_faces_;
+    std::vector<NodeId> vertex_node_;     ///< of the model's vertices, -1 away from the surface
+    std::vector<std::uint8_t> is_taken_;  ///< of exact points: a vertex stands for it
+    std::vector<std::int32_t> face_of_;   ///< of the model's triangles in the overlay
+    std::int32_t first_cutter_ = 0;       ///< the overlay's first triangle of the surface
+    std::vector<NodeId> exact_of_new_;    ///< the exact point of each new node
+    std::vector<Position> new_positions_;
+    std::vector<std::vector<std::vector<NodeId>>> loops_;  ///< of regions, in nodes
+};
+
+template <class Visit>
+void SurfaceOverlay::each_triangle(std::size_t axis, NodeId p, const Visit& visit) {
+    const Position at = points_.rounded(p);
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    for (std::size_t f = 0; f < model_.face_count(); ++f) {
+        bool meets = true;
+        for (std::size_t k = 1; k < 3 && meets; ++k) {
+            double low = HUGE_VAL, high = -HUGE_VAL;
+            for (const NodeId v : model_.face(f)) {
+                const double x = model_.vertices[3 * index(v) + (axis + k) % 3];
+                low = std::min(low, x);
+                high = std::max(high, x);
+            }
+            meets = at[(axis + k) % 3] >= low - margin_ && at[(axis + k) % 3] <= high + margin_;
+        }
+        if (!meets) continue;
+        triangulate_face(model_, f, triangles);
+        for (const auto& t : triangles)
+            visit(f, std::array{exact(t[0]), exact(t[1]), exact(t[2])});
+    }
+}
+
+}  // namespace realmodel::cutting

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "cutter_sides.hpp"
+#include "halves.hpp"
+
+namespace realmodel::cutting {
+
+/// The parts that a surface divides cells into, and the polygons around them: a face's regions that
+/// nothing of the surface lies between, joined again, and for each region of the surface a cap for
+/// whatever it goes through. A part has all that bounds its cell on one side, and as many caps as
+/// the cell's boundary goes round them: so every part is closed, whatever rounding made of the
+/// cell.
+class SurfaceParts {
+public:
+    SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding, const CutterSides& sides,
+                 Progress* progress);
+
+    Pieces pieces;
+    PieceParts parts;
+    std::vector<HalfCell> half_cells;
+    /// Of cells below and above: whether some use an edge more than twice.
+    std::array<bool, 2> touches{false, false};
+
+private:
+    /// What bounds a part: a patch of a face, a whole face, or a cap, as its cell sees it.
+    struct Slot {
+        std::int32_t cell;
+        std::int8_t half;
+        std::int8_t
+            sign;  ///< 1: turns counter-clockwise seen from outside of the cell, -1 does not
+    };
+    /// Regions of one face that no edge of the surface lies between.
+    struct Patch {
+        std::int32_t face;
+        std::vector<std::int32_t> regions;  ///< none: the whole face, which has none
+        std::int8_t half;
+        std::vector<std::vector<NodeId>> loops;
+        std::array<std::int32_t, 2> slots{-1, -1};
+    };
+    /// The slots of one region of the surface: what is below it, then what is above.
+    struct Caps {
+        std::int32_t region;
+        std::array<std::vector<std::int32_t>, 2> slots;
+    };
+    /// A slot at one of its edges.
+    struct SlotUse {
+        std::int32_t cell;
+        std::int8_t half;
+        EdgeUse use;
+        std::int32_t slot;
+        auto operator<=>(const SlotUse&) const = default;
+    };
+
+    void make_patches(Progress* progress);
+    void divide_face(std::size_t face, std::span<const std::int32_t> regions);
+    void make_caps();
+    std::int32_t add_slot(std::int32_t cell, std::int8_t half, std::int8_t sign);
+    void use_edge(std::int32_t slot, const EdgeUse& use);
+    void join_parts(Progress* progress);
+    void join_round_edge(std::span<const SlotUse> uses);
+    void attach_hollows();
+    void number_parts();
+    void write_patches();
+    void write_caps();
+    void write(const Polygons& polygons, bool reversed, std::int32_t face,
+               std::array<std::int32_t, 2> slots, bool level);
+    void find_touches();
+    std::int32_t find(std::int32_t slot);
+
+    SurfaceOverlay& overlay_;
+    const CutterWinding& winding_;
+    const CutterSides& sides_;
+    std::vector<Slot> slots_;
+    std::vector<Patch> patches_;
+    std::vector<Caps> caps_;
+    std::vector<SlotUse> uses_;
+    std::vector<std::int32_t> owner_;  ///< of slots: another of the same part
+    std::vector<std::int32_t> part_;   ///< of slots
+};
+
+/// The region that some of the overlay's loops bound, in convex polygons (`is_wall`: one polygon if
+/// it has one outline), which are added. `normal` is that of the face or triangle they lie on.
+/// False where they cross each other as seen along it: rounding has bent the face over itself.
+bool divide_loops(SurfaceOverlay& overlay, const Position& normal,
+                  const std::vector<std::vector<NodeId>>& loops, bool is_wall, Polygons& polygons);
+
+}  // namespace realmodel::cutting

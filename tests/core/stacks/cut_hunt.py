@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hunts for cuts that fail or are refused: python -m tests.core.stacks.cut_hunt CASES [SEED] [FAMILY ...]
+
+Every case has a number: the same number makes the same stack and cutter (--only N runs it alone).
+Ends with a table of what was refused, by family and kind of cutter, and the numbers of what failed.
+"""
+
+import argparse
+import collections
+import random
+import sys
+import time
+
+from . import places
+from .cutters import random_cutter
+from .cutting import cut_failures, native_arrays
+from .generate import FAMILIES, random_stack
+from .model_view import built
+
+
+def case(seed, number, families, kind=None):
+    """Model and cutter number `number`: (family, kind, model, arguments), or None where there is none."""
+    rng = random.Random(f"{seed}/{number}")
+    family = families[number % len(families)]
+    stack = random_stack(rng, family)
+    cells = rng.choice(("columns", "blocks"))
+    model = native_arrays(stack, built(stack, cells=cells, threads=1), cells)
+    if not len(model["cell_block"]):
+        return None
+    found = random_cutter(rng, stack, family, model, cells, kind)
+    return None if found is None else (family, found[0], model, found[1])
+
+
+def judged(model, kind, cutter):
+    """What is wrong with the cut, and why it was refused."""
+    native = places.native()
+    function = native.cut_by_block if kind.endswith("block") else native.cut_by_surface
+    try:
+        cut = function(model, *cutter, 1)
+    except native.InputError as error:
+        return [], error.kind
+    except RuntimeError as error:
+        return [f"defect: {error}"], None
+    return cut_failures(model, cut), None
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("cases", type=int)
+    parser.add_argument("seed", type=int, nargs="?", default=1)
+    parser.add_argument("family", nargs="*", default=sorted(FAMILIES))
+    parser.add_argument("--kind")
+    parser.add_argument("--only", type=int)
+    parser.add_argument("--first", type=int, default=0)
+    options = parser.parse_args()
+    numbers = range(options.first, options.cases) if options.only is None else [options.only]
+    made, refused, failed, slowest = 0, collections.Counter(), [], (0.0, -1)
+    by = collections.defaultdict(list)
+    for number in numbers:
+        found = case(options.seed, number, options.family, options.kind)
+        if found is None:
+            continue
+        family, kind, model, cutter = found
+        made += 1
+        began = time.perf_counter()
+        failures, why = judged(model, kind, cutter)
+        slowest = max(slowest, (time.perf_counter() - began, number))
+        if why is not None:
+            refused[kind, why] += 1
+            by[kind, why].append((number, family))
+        if failures:
+            failed.append((number, family, kind, failures))
+            print(number, family, kind, failures, flush=True)
+    for key, count in sorted(refused.items()):
+        print(f"{count:6} refused {key}: {by[key][:8]}")
+    print(f"{made} cuts, {sum(refused.values())} refused, {len(failed)} failed; slowest {slowest}")
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
