@@ -113,8 +113,8 @@ def _region(composed, number, rock, row, depsgraph, whole):
             rings = _stored_rings(composed, number, rock, row, whole)
     except InputRefused as error:
         raise error.within(rock_item(rock)) from error
-    if rings:
-        rock.region, rock.holes = rings[0], rings[1:]
+    if rings:  # which of them are holes is not said: they count even-odd
+        rock.region = rings if len(rings) > 1 else rings[0]
 
 
 def _stored_rings(composed, number, rock, row, whole):
@@ -256,7 +256,7 @@ def packed(surface):
 
 def packed_region(rock):
     """The text that a row keeps of the outlines of a realmodel.core.Rock with arrays."""
-    rings = [np.asarray(ring, np.float64) for ring in (rock.region, *rock.holes)]
+    rings = rock.rings()
     return stored_arrays.pack(**{f"ring{n}": ring for n, ring in enumerate(rings)})
 
 

@@ -9,8 +9,9 @@ be read without RealModel:
     settings = json.loads(archive["settings"].tobytes())
 
 `settings` is UTF-8 JSON: {"format": 1, "name", "rocks": [{"name", "edge_length", "mesher",
-"base_elevation", "holes": count, "surfaces": [{"name", "method", "options", "rule", "property",
-"block"}]}], "library": [...] or null, "units": "m"}. Numbers keep every bit: JSON's are written with
+"base_elevation", "holes": count, "several": true where these are outlines as the region is and count
+even-odd with it, "surfaces": [{"name", "method", "options", "rule", "property", "block"}]}],
+"library": [...] or null, "units": "m"}. Numbers keep every bit: JSON's are written with
 as many digits as it takes, arrays are float64 and int32 in model units. Rock r's arrays are `r/region`
 (N, 2), `r/hole/h`, and for surface s either `r/s/points` (P, 3) or `r/s/vertices` (V, 3) with
 `r/s/triangles` (T, 3).
@@ -26,6 +27,7 @@ import zlib
 import numpy as np
 
 from ..core import InputRefused, Library, Project, Property, Rock, Surface
+from ..core.region_rings import is_several
 from ..core.units import MODEL_UNIT
 
 KEY = "realmodel_project"
@@ -48,11 +50,11 @@ def pack(project):
     rocks = []
     for r, rock in enumerate(project.rocks):
         entry = {key: getattr(rock, key) for key in _ROCK_KEYS}
-        entry["holes"] = len(rock.holes)
-        if rock.region is not None:
-            arrays[f"{r}/region"] = _array(rock.region, np.float64)
-        for h, hole in enumerate(rock.holes):
-            arrays[f"{r}/hole/{h}"] = _array(hole, np.float64)
+        rings = _rings(rock)
+        entry["holes"] = max(len(rings) - 1, 0)
+        entry["several"] = is_several(rock.region)
+        for h, ring in enumerate(rings, -1):
+            arrays[f"{r}/region" if h < 0 else f"{r}/hole/{h}"] = _array(ring, np.float64)
         entry["surfaces"] = []
         for s, surface in enumerate(rock.surfaces):
             entry["surfaces"].append({key: getattr(surface, key) for key in _SURFACE_KEYS})
@@ -111,6 +113,8 @@ def store(scene, project):
 def _rock(archive, r, entry):
     holes = [archive[f"{r}/hole/{h}"] for h in range(entry["holes"])]
     region = archive[f"{r}/region"] if f"{r}/region" in archive else None
+    if entry.get("several"):
+        region, holes = [region, *holes], []
     surfaces = []
     for s, given in enumerate(entry["surfaces"]):
         shape = {
@@ -133,6 +137,14 @@ def _archive(arrays):
             entry = zipfile.ZipInfo(f"{name}.npy")  # dated 1980: the same project gives the same text
             archive.writestr(entry, member.getbuffer(), zipfile.ZIP_DEFLATED, compresslevel=1)
     return base64.b64encode(file.getvalue()).decode("ascii")
+
+
+def _rings(rock):
+    if rock.region is None:
+        return []
+    if isinstance(rock.region, str) or rock.region_file is not None:
+        raise TypeError(f"{rock.region!r} is not an array: store the project of a built model, Model.project")
+    return rock.rings()
 
 
 def _array(given, dtype):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """RealModel without Blender: from a project to a model of polyhedral cells, and out of it to files."""
 
+from .boreholes import Boreholes
 from .build import build
 from .build_warning import BuildWarning
 from .cross_validation import CrossValidation, cross_validate
@@ -19,6 +20,7 @@ from .estimate import Estimate, estimate
 from .heights import Interpolation
 from .interpolation import interpolate
 from .library import Library, Property, load_library
+from .map_layer import MapLayer
 from .model import Block, BlockBoundary, Model
 from .planar_mesh import mesh_region
 from .point_file import PointFile
@@ -32,6 +34,7 @@ from .variogram import Structure, Variogram
 __all__ = [
     "Block",
     "BlockBoundary",
+    "Boreholes",
     "BuildFailed",
     "BuildWarning",
     "Cancelled",
@@ -43,6 +46,7 @@ __all__ = [
     "InputRefused",
     "Interpolation",
     "Library",
+    "MapLayer",
     "Model",
     "NotEnoughMemory",
     "OutputFailed",

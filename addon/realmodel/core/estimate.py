@@ -202,7 +202,7 @@ def sampled(work: Work, entry: RockInput, cells: str, threads: int, scaled: bool
     """Samples one rock mass that is read and meshed. Not scaled: the seconds are those of the sample."""
     rock = entry.rock
     plans = _plans(entry)
-    rings = None if rock.region is None else [rock.region, *rock.holes]
+    rings = None if rock.region is None else rock.rings()
     windows, used = sample_windows(plans, rings, cells)
     found, in_windows, built_corners, seconds = Counts(), 0, 0, 0.0
     interpolating = _Interpolating(work, entry, threads)

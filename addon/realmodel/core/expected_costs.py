@@ -13,8 +13,8 @@ import numpy as np
 from .errors import InputRefused
 from .measured_costs import COSTS
 from .methods import METHODS
+from .plan_input import shapes_of
 from .project import Project, Rock, Surface
-from .readers import read_region
 from .rock_input import RockInput
 
 _BYTES_PER_TRIANGLE = 40  # of a mesh as text
@@ -42,7 +42,7 @@ def expected_costs(inputs: Sequence[RockInput], cells: str) -> list[Costs]:
         rock = entry.rock
         triangles = sum(len(shape[1]) for shape in entry.surfaces if shape is not None)
         waiting = [surface for surface in rock.surfaces if surface.interpolated]
-        meshed = _meshed_triangles(rock, [rock.region, *rock.holes]) if waiting else 0.0
+        meshed = _meshed_triangles(rock, rock.rings()) if waiting else 0.0
         fitted = [len(surface.points) for surface in waiting if _fits_variogram(surface)]
         costs.append(_costs(cells, triangles, meshed, len(waiting), fitted))
     return costs
@@ -112,11 +112,13 @@ def _size(file: Path) -> int:
 
 
 def _rings(rock: Rock) -> Sequence[np.ndarray]:
-    if rock.region_file is None:
-        return [np.asarray(rock.region, float)]
+    """The rings as they are given, unchecked; reading them in their turn says what is wrong."""
     try:
-        return read_region(rock.region_file)[0]
-    except InputRefused:  # told with its place when the region is read in its turn
+        shapes = shapes_of(rock.region)
+        if shapes is None:
+            return rock.rings()
+        return [ring for polygon in shapes.polygons for ring in polygon.rings] or [np.zeros((1, 2))]
+    except (InputRefused, ValueError, TypeError, IndexError):
         return [np.zeros((1, 2))]
 
 

@@ -17,7 +17,7 @@ def native_rocks(model, stage: int | None = None) -> list[tuple]:
         if model.rock_inputs:
             region = model.rock_inputs[number].region
         else:
-            region = triangulate_rings([rock.region, *rock.holes]) if rock.region is not None else None
+            region = triangulate_rings(rock.rings()) if rock.region is not None else None
         rules = [surface.rule for surface in rock.surfaces[:kept]]
         rocks.append((surfaces, region, rock.base_elevation, rules))
         first += count

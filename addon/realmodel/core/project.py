@@ -10,9 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
+from .boreholes import Boreholes
 from .errors import InputRefused
 from .finite import is_finite
 from .library import Library
+from .map_layer import MapLayer
 from .methods import (
     DEFAULT_METHOD,
     METHODS,
@@ -21,8 +23,10 @@ from .methods import (
     check_method,
     checked_options,
 )
+from .plan_input import check_layer, layer_files, map_layer
 from .point_file import PointFile, ReadingRefused
 from .readers.point_input import companions
+from .region_rings import is_several
 from .toml_table import TomlDocument
 from .units import METRES, MODEL_UNIT
 
@@ -72,8 +76,9 @@ class Surface:
 
     @builtins.property  # a field of this class is called property
     def interpolated(self) -> bool:
+        """Whether its heights are made: from points, by a method that needs none, or from boreholes."""
         return self.points is not None or (
-            self.method is not None and self.mesh is None and self.vertices is None
+            self.mesh is None and self.vertices is None and self.triangles is None
         )
 
     @builtins.property  # a field of this class is called property
@@ -120,25 +125,34 @@ class Surface:
 class Rock:
     """A rock mass: a region in plan, and surfaces oldest first.
 
-    `region` is an outline (N, 2) or a GeoJSON file, `holes` are outlines inside it; the rings count
-    even-odd. `edge_length` (model units) is that of the planar mesh on which points are interpolated.
+    `region` is an outline (N, 2), a list of several, well-known text, or a file (GeoJSON, WKT, shapefile,
+    GeoPackage) or a MapLayer of one; `holes` lie inside an outline of coordinates; the rings count even-odd.
+    `edge_length` (model units) is that of the planar mesh on which points are interpolated.
+    `boreholes` give points to every surface that is not a ready mesh, beside its own.
     With `base_elevation` there is a block between this height and the oldest surface.
     `shape_file` is the file that the rings were read from, if any: messages name it.
     """
 
     name: str
     surfaces: list[Surface]
-    region: np.ndarray | str | Path | None = None
+    region: np.ndarray | Sequence | str | Path | MapLayer | None = None
     holes: Sequence = ()
     edge_length: float | None = None
     mesher: str = "delaunay"
     base_elevation: float | None = None
+    boreholes: Boreholes | None = None
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False)
 
     @property
     def region_file(self) -> Path | None:
-        return Path(self.region) if isinstance(self.region, (str, Path)) else None
+        layer = map_layer(self.region)
+        return None if layer is None else Path(layer.file)
+
+    def rings(self) -> list[np.ndarray]:
+        """The rings (N, 2) of a region of arrays, outlines and holes alike; they count even-odd."""
+        outlines = self.region if is_several(self.region) else [self.region]
+        return [np.asarray(ring, float) for ring in (*outlines, *self.holes)]
 
     def region_source(self) -> tuple[Path | None, int | None]:
         """Where the region comes from, for messages: its file, or its line in the project file."""
@@ -176,7 +190,8 @@ class Project:
         """Every file that this project reads, itself included."""
         files = [self.path, self.library.path if self.library else None]
         for rock in self.rocks:
-            files += [rock.region_file, *(surface.input_file for surface in rock.surfaces)]
+            files += [*layer_files(rock.region), *(surface.input_file for surface in rock.surfaces)]
+            files += rock.boreholes.files if rock.boreholes is not None else []
             for surface in rock.surfaces:
                 if surface.point_file is not None:
                     files += companions(Path(surface.point_file.file))
@@ -257,12 +272,12 @@ def _check_rock(project: Project, rock: Rock) -> None:
         raise refuse(f"base_elevation must be a finite number, not {rock.base_elevation!r}", "base_elevation")
     if rock.region is None and len(rock.holes):
         raise refuse("it has holes but no region", "holes", "add the outline as region")
-    if rock.region_file is not None and len(rock.holes):
+    if isinstance(rock.region, (str, Path, MapLayer)) and len(rock.holes):
         raise refuse(
             "holes go with an outline of coordinates", "holes", "put the holes into the region's file"
         )
-    if rock.region_file is not None and not is_file(rock.region_file):
-        raise refuse(f"there is no file {rock.region_file}", "region", "check the path")
+    check_layer(rock.region, "region", refuse, is_file)
+    _check_boreholes(rock, refuse)
     names: set[str] = set()
     for surface in rock.surfaces:
         _check_surface(project, rock, surface)
@@ -276,6 +291,20 @@ def _check_rock(project: Project, rock: Rock) -> None:
             )
         names.add(surface.name)
     _check_references(rock)
+
+
+def _check_boreholes(rock: Rock, refuse) -> None:
+    if rock.boreholes is None:
+        return
+    try:
+        rock.boreholes.check()
+    except ReadingRefused as error:
+        raise refuse(f"boreholes: {error.what}", "boreholes", error.advice) from error
+    for file in rock.boreholes.files:
+        if not is_file(file):
+            raise refuse(f"there is no file {file}", "boreholes", "check the path")
+    if not rock.interpolates:
+        raise refuse("boreholes give points, and no surface is made from points", "boreholes")
 
 
 def _is_number(value) -> bool:
@@ -311,7 +340,8 @@ def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
         )
         if given
     ]
-    if not shapes and not surface.interpolated:
+    no_points = not shapes and rock.boreholes is None
+    if no_points and surface.method is None:
         raise refuse("it has neither points nor a mesh", advice="add points = ... or mesh = ...")
     if len(shapes) > 1:
         raise refuse(f"it has both {shapes[0]} and {shapes[1]}", shapes[1], "keep one of them")
@@ -333,7 +363,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
         raise refuse(error.what, error.key, error.advice) from error
     try:
         check_method(surface.method or DEFAULT_METHOD)
-        if not shapes and surface.needs_points:
+        if no_points and surface.needs_points:
             option = METHODS[surface.method].instead_of_points
             either = f", or {option} = ..." if option else ""
             raise refuse(f"method '{surface.method}' needs points", "method", f"add points = ...{either}")

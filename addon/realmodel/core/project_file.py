@@ -7,8 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
+from .boreholes import Boreholes
 from .finite import is_finite
 from .library import load_library
+from .map_layer import MapLayer, is_wkt
 from .methods import ALL_OPTIONS
 from .point_file import PointFile
 from .project import Project, Rock, Source, Surface, check_project, is_file
@@ -17,8 +19,9 @@ from .units import METRES, MODEL_UNIT
 
 FORMAT = 1
 _PROJECT_KEYS = ("format", "name", "units", "library", "rock")
-_ROCK_KEYS = ("name", "region", "holes", "edge_length", "mesher", "base_elevation", "surface")
+_ROCK_KEYS = ("name", "region", "holes", "edge_length", "mesher", "base_elevation", "boreholes", "surface")
 _READING_KEYS = ("columns", "where", "separator", "decimal", "nodata", "units")  # of a file of points
+_BOREHOLES = 'write boreholes = { collars = "collars.csv", picks = "picks.csv" }'
 _SURFACE_KEYS = (
     "name",
     "points",
@@ -74,20 +77,64 @@ def _read_rock(table: Table, folder: Path) -> Rock:
         edge_length=table.number("edge_length"),
         mesher=table.text("mesher") or "delaunay",
         base_elevation=table.number("base_elevation"),
+        boreholes=_read_boreholes(table, folder),
         source=Source(table.document, table.path),
     )
 
 
 def _read_region(table: Table, folder: Path):
     region = table.content.get("region")
-    if region is not None and not isinstance(region, list):
-        region = folder / table.text("region")
-    elif region is not None:
+    if isinstance(region, list) and _is_list_of_rings(region):
+        region = [_read_ring(table, ring, ("region", number)) for number, ring in enumerate(region)]
+    elif isinstance(region, list):
         region = _read_ring(table, region, ("region",))
+    elif region is not None:
+        region = _read_layer(table, "region", region, folder)
     holes = table.content.get("holes", [])
     if not isinstance(holes, list):
         raise table.refuse("'holes' must be a list of outlines", "holes", "write [[[x, y], ...], ...]")
     return region, [_read_ring(table, ring, ("holes", number)) for number, ring in enumerate(holes)]
+
+
+def _is_list_of_rings(region: list) -> bool:
+    def is_ring(ring) -> bool:
+        return isinstance(ring, list) and bool(ring) and all(isinstance(corner, list) for corner in ring)
+
+    return bool(region) and all(map(is_ring, region))
+
+
+def _read_layer(table: Table, key: str, given, folder: Path):
+    """A file, well-known text, or a table that says more about a file."""
+    if isinstance(given, str) and is_wkt(given):
+        return given
+    if not isinstance(given, dict):
+        return folder / table.text(key)
+    keys = _inner(table, key, given)
+    keys.allow_only(("file", "layer", "where", "units"))
+    values = {name: given[name] for name in ("where", "units") if name in given}
+    return MapLayer(folder / keys.text("file", required=True), keys.text("layer"), **values)
+
+
+def _read_boreholes(table: Table, folder: Path) -> Boreholes | None:
+    given = table.content.get("boreholes")
+    if given is None:
+        return None
+    if isinstance(given, str):
+        return Boreholes(folder / table.text("boreholes"))
+    if not isinstance(given, dict):
+        raise table.refuse("'boreholes' must be a file or a table", "boreholes", _BOREHOLES)
+    keys = _inner(table, "boreholes", given)
+    keys.allow_only(("picks", "collars", "columns", "separator", "decimal", "units"))
+    collars = keys.text("collars")
+    values = {name: given[name] for name in ("columns", "separator", "decimal", "units") if name in given}
+    return Boreholes(
+        folder / keys.text("picks", required=True), None if collars is None else folder / collars, **values
+    )
+
+
+def _inner(table: Table, key: str, content: dict) -> Table:
+    """A table within one, for reading its keys."""
+    return Table(table.document, content, (*table.path, key), f"{table.item}, {key}")
 
 
 def _read_ring(table: Table, ring, path: tuple) -> np.ndarray:

@@ -18,6 +18,7 @@ from .atomic import Outputs
 from .errors import UsageError
 from .library import Library, Property
 from .project import Project, Rock, Surface, check_project
+from .region_rings import is_several
 from .rock_input import checked_triangulation
 from .units import MODEL_UNIT
 
@@ -100,13 +101,17 @@ def _rock_lines(rock: Rock) -> list[str]:
         }
     )
     if rock.region is not None:
-        if rock.region_file is not None:
+        if rock.region_file is not None or isinstance(rock.region, str):
             raise UsageError(f"rock '{rock.name}': its region has not been read; build the model first")
-        lines.append(f"region = {_ring_text(rock.region)}")
+        several = is_several(rock.region)
+        lines.append(f"region = {_rings_text(rock.region) if several else _ring_text(rock.region)}")
         if len(rock.holes):
-            holes = ",\n  ".join(_ring_text(hole) for hole in rock.holes)
-            lines.append(f"holes = [\n  {holes},\n]")
+            lines.append(f"holes = {_rings_text(rock.holes)}")
     return lines
+
+
+def _rings_text(rings) -> str:
+    return "[\n  " + ",\n  ".join(_ring_text(ring) for ring in rings) + ",\n]"
 
 
 def _ring_text(ring) -> str:

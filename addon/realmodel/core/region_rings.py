@@ -1,34 +1,161 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rings that bound a region in plan: outlines and holes, counted even-odd."""
+"""The rings that bound a region in plan: checked, and what is wrong with them in words."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from .errors import InputRefused, place_text
+from .readers.shapes import Shapes
+from .work import native_module
+
+
+@dataclass(frozen=True)
+class NamedRing:
+    """A ring (N, 2) float64 of a polygon, and what to call it in messages."""
+
+    name: str
+    corners: np.ndarray
+    polygon: int
+    hole: bool
 
 
 def checked_ring(ring, item: str) -> np.ndarray:
     """One ring as (N, 2) float64, neither closed by repeating its first corner nor with repeated corners
     in a row. Raises InputRefused where it bounds nothing."""
+    corners = _corners(ring, item)
+    _require_corners(corners, item)
+    return _without_repetition(corners)
+
+
+def _corners(ring, item: str) -> np.ndarray:
     try:
         corners = np.array(ring, np.float64)
     except (TypeError, ValueError) as error:
         raise InputRefused("an outline must be corners [x, y]", item=item) from error
     if corners.ndim != 2 or corners.shape[1] != 2:
         raise InputRefused(f"an outline must be an array (N, 2), not {corners.shape}", item=item)
-    bad = np.flatnonzero(~np.isfinite(corners).all(axis=1))
-    if len(bad):
-        raise InputRefused(f"corner {bad[0]} is {place_text(corners[bad[0]])}, not finite", item=item)
-    corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]
-    if len(np.unique(corners, axis=0)) < 3:
-        raise InputRefused("an outline needs at least three different corners", item=item)
     return corners
 
 
+def _require_corners(corners: np.ndarray, item: str) -> None:
+    bad = np.flatnonzero(~np.isfinite(corners).all(axis=1))
+    if len(bad):
+        what = f"corner {bad[0]} is {place_text(corners[bad[0]])}, not finite"
+        raise InputRefused(what, item=item)
+    if len(np.unique(corners, axis=0)) < 3:
+        near = f", near {place_text(corners[0])}" if len(corners) else ""
+        place = tuple(corners[0]) if len(corners) else None
+        raise InputRefused(f"an outline needs at least three different corners{near}", item=item, place=place)
+
+
+def _without_repetition(corners: np.ndarray) -> np.ndarray:
+    return corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]
+
+
+def is_several(outline) -> bool:
+    """Whether what is given as an outline is a list of them."""
+    if isinstance(outline, np.ndarray):
+        return outline.ndim == 3
+    try:
+        return np.ndim(outline[0]) == 2
+    except (TypeError, IndexError, KeyError, ValueError):
+        return False
+
+
+def given_rings(outline, holes: Iterable = ()) -> list[NamedRing]:
+    """Rings from arrays: one outline (N, 2) or several, which count even-odd, and holes in them."""
+    if not is_several(outline):
+        rings = [NamedRing("region", _corners(outline, "region"), 0, False)]
+    else:
+        names = [f"outline {number}" for number in range(1, len(outline) + 1)]
+        pairs = zip(names, outline, strict=True)
+        rings = [NamedRing(name, _corners(ring, name), 0, False) for name, ring in pairs]
+    for number, hole in enumerate(holes, 1):
+        rings.append(NamedRing(f"hole {number}", _corners(hole, f"hole {number}"), 0, True))
+    return rings
+
+
+def rings_of_shapes(shapes: Shapes) -> list[NamedRing]:
+    """The rings of polygons that were read."""
+    rings = []
+    for polygon, shape in enumerate(shapes.polygons):
+        item = shape.item or ("outline" if len(shapes.polygons) == 1 else f"polygon {polygon + 1}")
+        for number, corners in enumerate(shape.rings):
+            hole = shape.has_roles and number > 0
+            if hole:
+                name = f"{item}, hole {number}"
+            elif len(shape.rings) > 1 and not shape.has_roles:
+                name = f"{item}, ring {number + 1}"
+            else:
+                name = item
+            rings.append(NamedRing(name, corners, polygon, hole))
+    return rings
+
+
+def checked_region(rings: Sequence[NamedRing]) -> list[np.ndarray]:
+    """Rings that touch in points at most, count even-odd, and have no corner repeated in a row.
+
+    Outlines may touch themselves and each other in points, go either way round, repeat corners; islands may
+    lie in holes; polygons of their own may share borders, which vanish. Raises InputRefused with the place
+    where outlines cross or run along each other, where a hole does not lie in its outline, and where a ring
+    bounds nothing.
+    """
+    for ring in rings:
+        _require_corners(ring.corners, ring.name)
+    native = native_module()
+    try:
+        checked = native.check_region(
+            [ring.corners for ring in rings], [ring.polygon for ring in rings], [ring.hole for ring in rings]
+        )
+    except native.InputError as error:
+        raise refused_rings(
+            error, [ring.name for ring in rings], [len(ring.corners) for ring in rings]
+        ) from error
+    return [_without_repetition(ring) for ring in checked]
+
+
 def region_rings(outline, holes: Iterable = ()) -> list[np.ndarray]:
-    """The checked rings of an outline with its holes."""
-    rings = [checked_ring(outline, "region")]
-    return rings + [checked_ring(hole, f"hole {number}") for number, hole in enumerate(holes, 1)]
+    """The checked rings of an outline (N, 2), or of several, with holes."""
+    return checked_region(given_rings(outline, holes))
+
+
+def refused_rings(error, names: Sequence[str], counts: Sequence[int] = ()) -> InputRefused:
+    """What the native part found wrong with rings, in the words of who drew them. Corners count from 0."""
+    place = tuple(error.place[:2]) if error.place is not None else None
+    at = f" at {place_text(place)}" if place is not None else ""
+    items = error.items
+    if error.kind in ("outline_crosses", "outline_overlaps"):
+        verb = "crosses" if error.kind == "outline_crosses" else "runs along"
+        (ring, corner), (other, further) = sorted([tuple(items[:2]), tuple(items[2:])])
+        whom = "itself" if ring == other else f"{_called(names[other])}"
+        edges = (_edge(corner, counts, ring), _edge(further, counts, other))
+        between = f"between corners {edges[0]} and {edges[1]}"
+        if ring != other:
+            between = f"between its corners {edges[0]} and the other's {edges[1]}"
+        what = f"the outline {verb} {whom}{at} ({between})"
+        advice = "outlines may touch in points, but not cross or share an edge"
+        return InputRefused(what, item=names[ring], place=place, advice=advice)
+    if error.kind == "hole_outside":
+        what = f"this hole does not lie inside its outline{at}"
+        advice = "holes lie in their outline; an outline of its own is a polygon of its own"
+        return InputRefused(what, item=names[items[0]], place=place, advice=advice)
+    if error.kind == "outline_degenerate":
+        what = f"an outline needs three corners that are not in one line; all of its lie in one{at}"
+        return InputRefused(what, item=names[items[0]], place=place)
+    return InputRefused(str(error), item="region", place=place)
+
+
+def _called(name: str) -> str:
+    return "that of the region" if name == "region" else name
+
+
+def _edge(corner: int, counts: Sequence[int], ring: int) -> str:
+    """The corners at the ends of an edge."""
+    following = corner + 1
+    if ring < len(counts) and following == counts[ring]:
+        following = 0
+    return f"{corner} to {following}"

@@ -4,19 +4,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
 from .build_warning import BuildWarning
-from .errors import InputRefused, place_text
+from .errors import InputRefused, number_list, place_text
 from .heights import Interpolation
 from .interpolation import checked_points
+from .plan_input import map_layer, read_rings, ring_path
 from .planar_mesh import mesh_rings, triangulate_rings
+from .point_file import PointFile
 from .project import Project, Rock, Surface, rock_item, surface_item
-from .readers import read_off, read_point_file, read_region
-from .region_rings import checked_ring
+from .readers import Picks, read_boreholes, read_off, read_point_file
+from .readers.text import no_step
 from .surface_heights import Triangulation, give_heights, interpolation_order, named_surfaces
-from .work import Work
+from .work import Work, run
 
 _EDGE_LENGTH_KINDS = ("edge_length", "too_large", "too_close")  # what native meshing lays to the edge length
 
@@ -78,7 +81,9 @@ def read_rocks(work: Work, project: Project) -> list[RockInput]:
     done = 0
     inputs = []
     for rock in project.rocks:
-        rock, warnings = _read_region(rock)
+        rock, warnings = _read_region(rock, project.units)
+        picks = _read_picks(rock, project.units)
+        warnings += [BuildWarning(text, "points", rock.name) for text in picks.warnings]
         done += 1
         surfaces, shapes, faces = [], [], []
         for surface in rock.surfaces:
@@ -88,48 +93,90 @@ def read_rocks(work: Work, project: Project) -> list[RockInput]:
                 work.step((first + share) / total)
 
             step(0.0)
-            surface, shape, face, told = _read_surface(rock, surface, project.units, step)
+            met = picks.points.pop(surface.name, None) if surface.interpolated else None
+            surface, shape, face, told = _read_surface(rock, surface, met, project.units, step)
             warnings += [BuildWarning(text, "points", rock.name, surface.name) for text in told]
             surfaces.append(surface)
             shapes.append(shape)
             faces.append(face)
             done += 1
-        rock = replace(rock, surfaces=surfaces)
+        if picks.points:
+            what = f"the boreholes met {number_list(picks.points)}, which is no surface made from points here"
+            warnings.append(BuildWarning(what, "points", rock.name))
+        rock = replace(rock, surfaces=surfaces, boreholes=None)
         inputs.append(RockInput(rock, shapes, None, [None] * len(shapes), faces, warnings))
     return inputs
 
 
-def _read_region(rock: Rock) -> tuple[Rock, list[BuildWarning]]:
+def with_arrays(project: Project) -> Project:
+    """A project in which files stay that are named by nothing but their path; what needs more to be read -
+    columns, layers, units, boreholes - is read. For those who keep paths only. Raises InputRefused."""
+
+    def is_plain(given) -> bool:
+        return given is None or (isinstance(given, (str, Path)) and map_layer(given) is not None)
+
+    def task(_work: Work) -> list[Rock]:
+        rocks = []
+        for rock in project.rocks:
+            if not is_plain(rock.region):
+                rock, _ = _read_region(rock, project.units)
+            picks = _read_picks(rock, project.units)
+            surfaces = []
+            for surface in rock.surfaces:
+                met = picks.points.get(surface.name) if surface.interpolated else None
+                if met is not None or isinstance(surface.points, PointFile):
+                    surface = _read_surface(rock, surface, met, project.units, no_step)[0]
+                surfaces.append(surface)
+            rocks.append(replace(rock, surfaces=surfaces, boreholes=None))
+        return rocks
+
+    return replace(project, rocks=run(task))
+
+
+def _read_region(rock: Rock, units: str) -> tuple[Rock, list[BuildWarning]]:
     if rock.region is None:
         return rock, []
-    file, line, left_out = None, None, []
     try:
-        if rock.region_file is not None:
-            file = rock.region_file
-            rings, left_out = read_region(file)
-            rings = [checked_ring(ring, f"outline {number}") for number, ring in enumerate(rings, 1)]
-        else:
-            if rock.source is not None:
-                file, line = rock.source.document.file, rock.source.line("region")
-            rings = [checked_ring(rock.region, "region")]
-            rings += [checked_ring(hole, f"hole {number}") for number, hole in enumerate(rock.holes, 1)]
+        region, holes, left_out = read_rings(rock.region, rock.holes, units)
     except InputRefused as error:
+        file, line = rock.region_file, None
+        if file is None and rock.source is not None:
+            document = rock.source.document
+            path = ring_path(rock.region, getattr(error.__cause__, "items", ()))
+            file, line = document.file, document.line((*rock.source.path, *path))
         raise error.within(rock_item(rock), file=file, line=line) from error
-    rock = replace(rock, region=rings[0], holes=rings[1:], shape_file=rock.region_file or rock.shape_file)
+    rock = replace(rock, region=region, holes=holes, shape_file=rock.region_file or rock.shape_file)
     return rock, [BuildWarning(text, "left_out", rock.name) for text in left_out]
 
 
+def _read_picks(rock: Rock, units: str) -> Picks:
+    """What the boreholes of a rock mass met."""
+    if rock.boreholes is None:
+        return Picks()
+    try:
+        return read_boreholes(rock.boreholes, units)
+    except InputRefused as error:
+        raise error.within(rock_item(rock)) from error
+
+
 def _read_surface(
-    rock: Rock, surface: Surface, units: str, step
+    rock: Rock, surface: Surface, met: np.ndarray | None, units: str, step
 ) -> tuple[Surface, Triangulation | None, np.ndarray | None, list[str]]:
     """The surface with arrays in it, its triangulation if it is a ready mesh, the faces of its file, and what
-    there is to tell."""
-    faces = None
+    there is to tell. met: its points in boreholes."""
+    faces, shape_file = None, surface.input_file or surface.shape_file
+    if shape_file is None and surface.points is None and rock.boreholes is not None:
+        shape_file = rock.boreholes.files[-1]
     try:
         if surface.interpolated:
             points, told = surface.points, []
             if surface.point_file is not None:
                 points, told = read_point_file(surface.point_file, units, step)
+            if met is not None:
+                own = np.empty((0, 3)) if points is None else checked_points(points)
+                points = np.concatenate([own, met])
+            if points is None and surface.needs_points:
+                raise InputRefused("the boreholes did not meet it, and it has no points", file=shape_file)
             if points is None or (not len(points) and not surface.needs_points):
                 points = np.empty((0, 3))
             else:
@@ -138,7 +185,7 @@ def _read_surface(
                 replace(
                     surface,
                     points=points,
-                    shape_file=surface.input_file or surface.shape_file,
+                    shape_file=shape_file,
                 ),
                 None,
                 None,
@@ -156,7 +203,7 @@ def _read_surface(
         vertices=vertices,
         triangles=triangles,
         mesh=None,
-        shape_file=surface.input_file or surface.shape_file,
+        shape_file=shape_file,
     )
     return surface, (vertices, triangles), faces, []
 
@@ -194,9 +241,9 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
         return
     try:
         if rock.interpolates:
-            entry.region = mesh_rings(work, [rock.region, *rock.holes], float(rock.edge_length), rock.mesher)
+            entry.region = mesh_rings(work, rock.rings(), float(rock.edge_length), rock.mesher)
         else:
-            entry.region = triangulate_rings([rock.region, *rock.holes])
+            entry.region = triangulate_rings(rock.rings())
     except InputRefused as error:
         about_edges = getattr(error.__cause__, "kind", "") in _EDGE_LENGTH_KINDS
         file, line = rock.edge_length_source() if about_edges else rock.region_source()

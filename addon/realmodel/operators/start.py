@@ -11,6 +11,7 @@ from ..bl import built_scene, live, project_settings, samples, settings
 from ..bl.origin import KEY as ORIGIN_KEY
 from ..core import InputRefused, load_project
 from ..core.project_writer import save_project
+from ..core.rock_input import with_arrays
 from .reporting import Reporting, needed_path
 
 
@@ -61,7 +62,7 @@ class REALMODEL_OT_open_project(Reporting, bpy.types.Operator, ImportHelper):
 
 
 def _open(scene, path):
-    project = load_project(path)
+    project = with_arrays(load_project(path))
     _begin(scene, project.name)
     project_settings.fill(scene, project)
     live.touch(scene)

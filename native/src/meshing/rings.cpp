@@ -8,6 +8,7 @@
 
 #include "meshing/constrained_delaunay.hpp"
 #include "meshing/plan_predicates.hpp"
+#include "meshing/ring_graph.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
 
@@ -87,48 +88,6 @@ std::vector<std::int32_t> number_places(const std::vector<PlanPoint>& corners,
     return number;
 }
 
-RingGraph graph_of(std::span<const Ring> rings) {
-    if (rings.empty()) throw InputError("no_outline", "the region has no outline");
-    RingGraph graph;
-    std::vector<PlanPoint> corners;
-    std::vector<std::array<std::size_t, 2>> corner_range;
-    for (std::size_t r = 0; r < rings.size(); ++r) {
-        const auto ring_number = static_cast<std::int64_t>(r);
-        const std::vector<Corner> ring = distinct_corners(rings[r], ring_number);
-        require_area(ring, ring_number);
-        corner_range.push_back({corners.size(), corners.size() + ring.size()});
-        for (const Corner& corner : ring) {
-            corners.push_back(corner.place);
-            graph.origin.push_back({ring_number, corner.number});
-        }
-    }
-    const std::vector<std::int32_t> number = number_places(corners, graph.points);
-    graph.segments.reserve(corners.size());
-    for (const auto [begin, end] : corner_range) {
-        for (std::size_t i = begin; i < end; ++i) {
-            graph.segments.push_back({number[i], number[i + 1 < end ? i + 1 : begin]});
-        }
-    }
-    return graph;
-}
-
-/// Refuses two edges of the graph, given by their segments.
-[[noreturn]] void refuse_edges(const RingGraph& graph, std::int64_t first, std::int64_t second,
-                               const std::string& kind, const std::string& verb,
-                               const PlanPoint& place) {
-    const auto [first_ring, first_corner] = graph.origin[first];
-    const auto [second_ring, second_corner] = graph.origin[second];
-    const auto edge = [](std::int64_t ring, std::int64_t corner) {
-        return "the edge after corner " + std::to_string(corner) + " of outline " +
-               std::to_string(ring);
-    };
-    throw InputError(kind,
-                     edge(first_ring, first_corner) + " " + verb + " " +
-                         edge(second_ring, second_corner) + " at " + text_of(place),
-                     -1, {first_ring, first_corner, second_ring, second_corner},
-                     std::array{place[0], place[1], 0.0});
-}
-
 void refuse_overlaps(const RingGraph& graph, const std::vector<CoveredEdge>& edges) {
     const CoveredEdge* worst = nullptr;
     const CoveredEdge* partner = nullptr;
@@ -176,8 +135,48 @@ std::vector<bool> inside_rings(const ConstrainedTriangulation& mesh) {
 
 }  // namespace
 
+RingGraph ring_graph(std::span<const Ring> rings) {
+    if (rings.empty()) throw InputError("no_outline", "the region has no outline");
+    RingGraph graph;
+    std::vector<PlanPoint> corners;
+    std::vector<std::array<std::size_t, 2>> corner_range;
+    for (std::size_t r = 0; r < rings.size(); ++r) {
+        const auto ring_number = static_cast<std::int64_t>(r);
+        const std::vector<Corner> ring = distinct_corners(rings[r], ring_number);
+        require_area(ring, ring_number);
+        corner_range.push_back({corners.size(), corners.size() + ring.size()});
+        for (const Corner& corner : ring) {
+            corners.push_back(corner.place);
+            graph.origin.push_back({ring_number, corner.number});
+        }
+    }
+    const std::vector<std::int32_t> number = number_places(corners, graph.points);
+    graph.segments.reserve(corners.size());
+    for (const auto [begin, end] : corner_range) {
+        for (std::size_t i = begin; i < end; ++i) {
+            graph.segments.push_back({number[i], number[i + 1 < end ? i + 1 : begin]});
+        }
+    }
+    return graph;
+}
+
+void refuse_edges(const RingGraph& graph, std::int64_t first, std::int64_t second,
+                  const std::string& kind, const std::string& verb, const PlanPoint& place) {
+    const auto [first_ring, first_corner] = graph.origin[first];
+    const auto [second_ring, second_corner] = graph.origin[second];
+    const auto edge = [](std::int64_t ring, std::int64_t corner) {
+        return "the edge after corner " + std::to_string(corner) + " of outline " +
+               std::to_string(ring);
+    };
+    throw InputError(kind,
+                     edge(first_ring, first_corner) + " " + verb + " " +
+                         edge(second_ring, second_corner) + " at " + text_of(place),
+                     -1, {first_ring, first_corner, second_ring, second_corner},
+                     std::array{place[0], place[1], 0.0});
+}
+
 RingTriangulation triangulate_region(std::span<const Ring> rings, const Progress* progress) {
-    RingTriangulation out{graph_of(rings), {}, {}};
+    RingTriangulation out{ring_graph(rings), {}, {}};
     const RingGraph& graph = out.graph;
     const Check check = [progress](double) {
         if (progress != nullptr) progress->check();

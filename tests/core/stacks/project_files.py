@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Project files with OFF meshes and CSV points in which every double is exact."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -90,11 +91,29 @@ def stack_project(folder, masses):
         rings = [] if stack.region is None else border_rings(*stack.region)
         if rings is None:
             return None
-        region, holes = (rings[0], rings[1:]) if rings else (None, ())
-        rows += rock_table(f"rock {number}", region, holes, base_elevation=stack.base_elevation)
+        outlines = [ring for ring in rings if _is_counter_clockwise(ring)]
+        if len(outlines) > 1:  # which holes lie in which outline does not matter: rings count even-odd
+            write_rings(folder / f"r{number}.geojson", rings)
+            rows += rock_table(f"rock {number}", base_elevation=stack.base_elevation)
+            rows[-1] += f'\nregion = "r{number}.geojson"'
+        else:
+            holes = [ring for ring in rings if not _is_counter_clockwise(ring)]
+            region = outlines[0] if rings else None
+            rows += rock_table(f"rock {number}", region, holes, base_elevation=stack.base_elevation)
         meshes = {f"S{k}": surface for k, surface in enumerate(stack.surfaces)}
         rows += mesh_rows(folder, meshes, stack.all_rules(), f"r{number}_")
     return write_project(folder, "stacks", rows)
+
+
+def _is_counter_clockwise(ring):
+    x, y = (ring - ring[0]).T
+    return (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() > 0
+
+
+def write_rings(path, rings):
+    """GeoJSON in which each ring is a polygon."""
+    polygons = [{"type": "Polygon", "coordinates": [[*ring.tolist(), ring[0].tolist()]]} for ring in rings]
+    path.write_text(json.dumps({"type": "GeometryCollection", "geometries": polygons}), encoding="utf-8")
 
 
 def border_rings(vertices, triangles):

@@ -1,9 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Readers of the files that geologists bring: points, meshes, regions."""
 
+from .boreholes import Picks, read_boreholes
+from .map_input import read_region, read_shapes
 from .off import read_off
 from .point_input import read_point_file
 from .points import read_points
-from .region import read_region
 
-__all__ = ["read_off", "read_point_file", "read_points", "read_region"]
+__all__ = [
+    "Picks",
+    "read_boreholes",
+    "read_off",
+    "read_point_file",
+    "read_points",
+    "read_region",
+    "read_shapes",
+]

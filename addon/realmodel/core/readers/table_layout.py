@@ -41,7 +41,10 @@ def fields(line: str, separator: str) -> list[str]:
     """What stands in a line, without blanks and quotes around it."""
     if '"' in line:
         given = re.sub(r"\s+", " ", line.strip()) if separator == " " else line
-        return [entry.strip() for entry in next(csv.reader([given], delimiter=separator))]
+        try:
+            return [entry.strip() for entry in next(csv.reader([given], delimiter=separator))]
+        except csv.Error:  # quotes that do not fit together in a long line: they are no quotes
+            pass
     if separator == " ":
         return line.split()
     return [entry.strip() for entry in line.split(separator)]

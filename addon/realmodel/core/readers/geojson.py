@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Regions from GeoJSON (RFC 7946): the rings of its polygons, outlines and holes alike."""
+"""GeoJSON (RFC 7946): polygons, lines and points, and the properties by which features are chosen."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputRefused
 from ..finite import is_finite
+from .shapes import Selection, Shapes
 
-_LINES_AND_POINTS = ("Point", "MultiPoint", "LineString", "MultiLineString")
 
-
-def read_region(file: str | Path) -> tuple[list[np.ndarray], list[str]]:
-    """The rings (N, 2) float64 of all polygons of a GeoJSON file, not repeated at their end; they count
-    even-odd. Points and lines have no area: they are left out, and the second result says so.
+def read_geojson(file: str | Path, where: Mapping | None = None) -> Shapes:
+    """What a GeoJSON file holds; heights of positions are left out.
 
     Raises InputRefused naming the file and the line, or the feature.
     """
@@ -37,13 +36,10 @@ def read_region(file: str | Path) -> tuple[list[np.ndarray], list[str]]:
     except (RecursionError, ValueError) as error:
         what = "lists nested too deep" if isinstance(error, RecursionError) else "a number of too many digits"
         raise InputRefused(f"not a file to be read: {what}", file=file) from error
-    walk = _Walk(file)
+    walk = _Walk(file, where or {})
     walk.node(content, "")
-    if not walk.rings:
-        raise InputRefused(
-            "there is no polygon in it", file=file, advice="a region needs Polygon or MultiPolygon"
-        )
-    return walk.rings, walk.left_out
+    walk.selection.require_some()
+    return walk.shapes
 
 
 class _NotANumber(ValueError):
@@ -55,10 +51,10 @@ def _refuse_constant(name: str):
 
 
 class _Walk:
-    def __init__(self, file: Path):
+    def __init__(self, file: Path, where: Mapping):
         self.file = file
-        self.rings: list[np.ndarray] = []
-        self.left_out: list[str] = []
+        self.selection = Selection(file, where)
+        self.shapes = Shapes()
 
     def refuse(self, what: str, item: str) -> InputRefused:
         return InputRefused(what, file=self.file, item=item or None)
@@ -71,7 +67,9 @@ class _Walk:
         elif kind == "Feature":
             if "geometry" not in node:
                 raise self.refuse("a Feature has no geometry", item)
-            if node["geometry"] is not None:
+            properties = node.get("properties")
+            taken = self.selection.takes(properties if isinstance(properties, dict) else {})
+            if taken and node["geometry"] is not None:
                 self.node(node["geometry"], item)
         elif kind == "GeometryCollection":
             for number, part in enumerate(self.members(node, "geometries", item), 1):
@@ -81,8 +79,16 @@ class _Walk:
         elif kind == "MultiPolygon":
             for polygon in self.members(node, "coordinates", item):
                 self.polygon(polygon, item)
-        elif kind in _LINES_AND_POINTS:
-            self.left_out.append(f"{self.file}: {item or 'it'} is a {kind}, which bounds no area: left out")
+        elif kind == "LineString":
+            self.shapes.lines.append((item, self.positions(self.members(node, "coordinates", item), item, 2)))
+        elif kind == "MultiLineString":
+            for line in self.members(node, "coordinates", item):
+                self.shapes.lines.append((item, self.positions(line, item, 2)))
+        elif kind == "Point":
+            self.shapes.points.append((item, self.positions([node.get("coordinates")], item, 1)[0]))
+        elif kind == "MultiPoint":
+            places = self.positions(self.members(node, "coordinates", item), item, 0)
+            self.shapes.points += [(item, place) for place in places]
         else:
             raise self.refuse(f"not GeoJSON: an object of type {kind!r}", item)
 
@@ -95,13 +101,20 @@ class _Walk:
     def polygon(self, rings, item: str) -> None:
         if not isinstance(rings, list):
             raise self.refuse("the coordinates of a Polygon must be a list of rings", item)
+        found = []
         for number, ring in enumerate(rings, 1):
             where = f"{item}, ring {number}" if item else f"ring {number}"
             if not isinstance(ring, list) or len(ring) < 3:
                 raise self.refuse("a ring needs at least 3 corners", where)
-            corners = np.array([self.position(p, where, i) for i, p in enumerate(ring, 1)], np.float64)
-            closed = (corners[0] == corners[-1]).all()  # as the format asks; many writers forget it
-            self.rings.append(corners[:-1] if closed else corners)
+            found.append(self.positions(ring, where, 3))
+        self.shapes.add_polygon(item, found)
+
+    def positions(self, places, item: str, least: int) -> np.ndarray:
+        """(N, 2) float64 of a list of at least so many positions."""
+        if not isinstance(places, list) or len(places) < least:
+            raise self.refuse(f"a list of at least {least} positions is needed", item)
+        found = [self.position(place, item, number) for number, place in enumerate(places, 1)]
+        return np.array(found, np.float64).reshape(-1, 2)
 
     def position(self, position, item: str, number: int) -> tuple[float, float]:
         plain = isinstance(position, list) and len(position) >= 2

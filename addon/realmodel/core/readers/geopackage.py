@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Layers of GeoPackages (OGC 12-128r18), by Python's sqlite3 and a reader of well-known binary."""
+
+from __future__ import annotations
+
+import sqlite3
+import struct
+from collections.abc import Mapping
+from contextlib import closing
+from pathlib import Path
+from urllib.parse import quote
+
+import numpy as np
+
+from ..errors import InputRefused
+from .shapes import Selection, Shapes
+from .table_layout import names_shown
+from .text import Step, no_step
+
+_MAGIC = b"SQLite format 3\0"
+_ENVELOPES = (0, 32, 48, 48, 64)  # bytes of the bounding box, by what the flags say
+_POINT, _LINE, _POLYGON = 1, 2, 3
+_COLLECTIONS = (4, 5, 6, 7)  # several points, lines, polygons; several of any kind
+_DEEPEST = 50
+_STEP = 1000  # features
+
+
+def is_geopackage(head: bytes) -> bool:
+    """Whether a file that begins so is one."""
+    return head.startswith(_MAGIC)
+
+
+def read_geopackage(
+    file: str | Path, layer: str | None = None, where: Mapping | None = None, step: Step = no_step
+) -> Shapes:
+    """The features of one layer: of `layer`, or of the only one. Raises InputRefused naming both."""
+    file = Path(file)
+    address = f"file:{quote(str(file.resolve()))}?mode=ro&immutable=1"
+    try:
+        with closing(sqlite3.connect(address, uri=True)) as base:
+            return _read(file, base, layer, where or {}, step)
+    except sqlite3.Error as error:
+        raise InputRefused(f"not a GeoPackage that can be read: {error}", file=file) from error
+
+
+def _read(file: Path, base: sqlite3.Connection, layer: str | None, where: Mapping, step: Step) -> Shapes:
+    try:
+        layers = dict(
+            base.execute("SELECT table_name, column_name FROM gpkg_geometry_columns ORDER BY rowid")
+        )
+    except sqlite3.OperationalError as error:  # there is no such table
+        raise InputRefused("it has no layers of features", file=file) from error
+    if not layers:
+        raise InputRefused("it has no layers of features", file=file)
+    if layer is None and len(layers) > 1:
+        advice = f'say which: layer = "..."; it has {names_shown(list(layers))}'
+        raise InputRefused(f"it has {len(layers)} layers", file=file, advice=advice)
+    table = layer if layer is not None else next(iter(layers))
+    if table not in layers:
+        what = f"it has no layer '{layer}'"
+        raise InputRefused(what, file=file, advice=f"it has {names_shown(list(layers))}")
+    selection, shapes = Selection(file, where, table), Shapes()
+    rows = base.execute(f"SELECT * FROM {_quoted(table)} ORDER BY rowid")
+    names = [entry[0] for entry in rows.description]
+    if layers[table] not in names:
+        raise InputRefused(f"layer '{table}' has no column '{layers[table]}'", file=file)
+    at = names.index(layers[table])
+    for number, row in enumerate(rows, 1):
+        if number % _STEP == 0:
+            step(1 - _STEP / (number + _STEP))
+        attributes = {name: value for name, value in zip(names, row, strict=True) if name != layers[table]}
+        if not selection.takes(attributes) or row[at] is None:
+            continue
+        item = f"feature {number}"
+        try:
+            _geometry(bytes(row[at]), item, shapes)
+        except (ValueError, struct.error, IndexError, TypeError) as error:
+            what = f"its geometry cannot be read: {error}"
+            raise InputRefused(what, file=file, item=f"layer '{table}', {item}") from error
+    selection.require_some()
+    return shapes
+
+
+def _quoted(name: str) -> str:
+    return '"' + name.replace('"', '""') + '"'
+
+
+def _geometry(blob: bytes, item: str, shapes: Shapes) -> None:
+    """A geometry as a GeoPackage has it: a header, then well-known binary."""
+    if blob[:2] != b"GP":
+        raise ValueError("it does not begin with GP")
+    flags = blob[3]
+    envelope = flags >> 1 & 7
+    if flags & 0x20:
+        raise ValueError("an extended geometry")
+    if flags & 0x10 or envelope >= len(_ENVELOPES):  # empty, or not known
+        if flags & 0x10:
+            return
+        raise ValueError("an unknown envelope")
+    reader = _WellKnownBinary(blob, 8 + _ENVELOPES[envelope])
+    reader.geometry(item, shapes, 0)
+
+
+class _WellKnownBinary:
+    def __init__(self, blob: bytes, at: int):
+        self.blob, self.at = blob, at
+
+    def number(self, order: str) -> int:
+        (value,) = struct.unpack_from(f"{order}I", self.blob, self.at)
+        self.at += 4
+        return value
+
+    def places(self, order: str, count: int, size: int) -> np.ndarray:
+        """(count, 2) of positions of `size` numbers."""
+        if count * size * 8 > len(self.blob) - self.at:
+            raise ValueError("it is cut off")
+        numbers = np.frombuffer(self.blob, f"{order}f8", count * size, self.at)
+        self.at += 8 * count * size
+        places = np.ascontiguousarray(numbers.reshape(count, size)[:, :2], np.float64)
+        if not np.isfinite(places).all():
+            raise ValueError("a position is not finite")
+        return places
+
+    def geometry(self, item: str, shapes: Shapes, depth: int) -> None:
+        if depth > _DEEPEST:
+            raise ValueError("collections nested too deep")
+        order = "<" if self.blob[self.at] else ">"
+        self.at += 1
+        code = self.number(order)
+        plain, more = code & 0x0FFFFFFF, 2
+        more += bool(code & 0x80000000) + bool(code & 0x40000000)  # as PostGIS marks Z and M
+        more += (0, 1, 1, 2)[plain // 1000] if plain // 1000 < 4 else 0
+        kind = plain % 1000
+        if kind == _POINT:
+            numbers = np.frombuffer(self.blob, f"{order}f8", more, self.at)
+            self.at += 8 * more
+            if not np.isnan(numbers[:2]).all():  # NaN is how an empty point is written
+                shapes.points.append((item, numbers[:2].astype(np.float64)))
+        elif kind == _LINE:
+            if len(line := self.places(order, self.number(order), more)):
+                shapes.lines.append((item, line))
+        elif kind == _POLYGON:
+            rings = [self.places(order, self.number(order), more) for _ in range(self.number(order))]
+            shapes.add_polygon(item, [ring for ring in rings if len(ring)])
+        elif kind in _COLLECTIONS:
+            for _ in range(self.number(order)):
+                self.geometry(item, shapes, depth + 1)
+        else:
+            raise ValueError(f"a geometry of kind {kind}, which is not read")

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Outlines, lines and points from any file that holds some: what kind it is, is told from what it holds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputRefused
+from ..map_layer import MapLayer, begins_as_wkt
+from ..units import MODEL_UNIT, factor
+from .geojson import read_geojson
+from .geopackage import is_geopackage, read_geopackage
+from .shapefile_reader import beside, is_shapefile, read_shapefile
+from .shapes import Shapes
+from .text import Step, no_step, read_text
+from .wkt import parse_wkt
+
+_HEAD = 512
+_JSON = (".json", ".geojson")
+
+
+def read_shapes(given: MapLayer, model_unit: str = MODEL_UNIT, step: Step = no_step) -> Shapes:
+    """What a file holds, in the model's unit. Raises InputRefused naming the file."""
+    file = Path(given.file)
+    try:
+        with file.open("rb") as opened:
+            head = opened.read(_HEAD)
+    except OSError as error:
+        raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
+    if is_geopackage(head):
+        shapes = read_geopackage(file, given.layer, given.where, step)
+    elif given.layer is not None:
+        what = f"it is no GeoPackage, so it has no layer '{given.layer}'"
+        raise InputRefused(what, file=file, advice="take 'layer' out")
+    elif is_shapefile(head):
+        shapes = read_shapefile(file, given.where, step)
+    elif file.suffix.lower() in _JSON or head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"["):
+        shapes = read_geojson(file, given.where)
+    else:
+        text = read_text(file)
+        if not begins_as_wkt(text):
+            raise InputRefused(
+                "neither GeoJSON, well-known text, a shapefile (.shp) nor a GeoPackage", file=file
+            )
+        if given.where:
+            raise InputRefused("well-known text has no attributes, so 'where' has no meaning here", file=file)
+        shapes = parse_wkt(text, file)
+    return shapes.scaled(factor(given.units, model_unit))
+
+
+def read_region(file: str | Path | MapLayer) -> tuple[list[np.ndarray], list[str]]:
+    """The rings (N, 2) float64 of all polygons of a file, not repeated at their end, as they are; they count
+    even-odd. Lines and points have no area: they are left out, and the second result says so.
+
+    Raises InputRefused naming the file and the line, or the feature.
+    """
+    given = file if isinstance(file, MapLayer) else MapLayer(file)
+    shapes = read_shapes(given)
+    require_polygons(shapes, Path(given.file))
+    rings = [ring for polygon in shapes.polygons for ring in polygon.rings]
+    return rings, shapes.without_area(Path(given.file))
+
+
+def require_polygons(shapes: Shapes, file: Path | None) -> None:
+    """Refuses what bounds no region."""
+    if not shapes.polygons:
+        advice = "a region needs polygons: Polygon or MultiPolygon"
+        raise InputRefused("there is no polygon in it", file=file, advice=advice)
+
+
+def map_companions(file: Path) -> list[Path]:
+    """Files beside one of outlines that are read with it."""
+    return beside(file) if file.suffix.lower() == ".shp" else []

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shapefiles (ESRI, July 1998), by pyshp: outlines, lines and points, and the table beside them."""
+
+from __future__ import annotations
+
+import struct
+import warnings
+from collections.abc import Mapping
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputRefused
+from .shapes import Selection, Shapes
+from .text import Step, no_step
+from .vendored import vendored
+
+_MAGIC = b"\0\0\x27\x0a"
+_POINTS, _LINES, _POLYGONS, _MULTIPOINTS = (1, 11, 21), (3, 13, 23), (5, 15, 25), (8, 18, 28)
+_STEP = 1000  # features
+
+
+def is_shapefile(head: bytes) -> bool:
+    """Whether a file that begins so is the .shp of one."""
+    return head.startswith(_MAGIC)
+
+
+def beside(file: Path) -> list[Path]:
+    """The files beside a .shp that are read with it."""
+    endings = (".dbf", ".DBF", ".shx", ".SHX")
+    return [path for ending in endings if (path := file.with_suffix(ending)).is_file()]
+
+
+def read_shapefile(file: str | Path, where: Mapping | None = None, step: Step = no_step) -> Shapes:
+    """What a shapefile holds. Rings count even-odd, whichever way they go round: many writers get the
+    directions wrong that are to tell outlines from holes. Raises InputRefused, BuildFailed without pyshp."""
+    file, where = Path(file), where or {}
+    shapefile = vendored("shapefile", "pyshp", "reading shapefiles")
+    files = {path.suffix.lower(): path for path in beside(file)}
+    if where and ".dbf" not in files:
+        what = "there is no .dbf beside it, which holds the attributes"
+        raise InputRefused(what, file=file, advice="bring it along, or leave out 'where'")
+    selection, shapes = Selection(file, where), Shapes()
+    try:
+        with open(file, "rb") as shp, _opened(files.get(".dbf") if where else None) as dbf:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # of sizes in headers that many writers get wrong
+                reader = shapefile.Reader(shp=shp, dbf=dbf, encoding="utf-8", encodingErrors="replace")
+            records = reader.iterRecords() if where else None
+            for number, shape in enumerate(reader.iterShapes(), 1):
+                if number % _STEP == 0:
+                    step(1 - _STEP / (number + _STEP))
+                attributes = next(records).as_dict() if records is not None else {}
+                if selection.takes(attributes):
+                    _add(shape, f"feature {number}", shapes)
+    except OSError as error:
+        what = f"cannot be read: {error.strerror or error}"
+        raise InputRefused(what, file=file, advice="check the path") from error
+    except InputRefused:
+        raise
+    except (shapefile.ShapefileException, struct.error, ValueError, IndexError, TypeError, KeyError) as error:
+        raise InputRefused(f"a damaged shapefile: {error}", file=file) from error
+    except (StopIteration, AssertionError, AttributeError, MemoryError, OverflowError) as error:
+        raise InputRefused("a damaged shapefile", file=file) from error
+    selection.require_some()
+    return shapes
+
+
+class _opened:
+    """A file, or None where there is none."""
+
+    def __init__(self, path: Path | None):
+        self.file = None if path is None else path.open("rb")
+
+    def __enter__(self):
+        return self.file
+
+    def __exit__(self, *_error):
+        if self.file is not None:
+            self.file.close()
+
+
+def _add(shape, item: str, shapes: Shapes) -> None:
+    if shape.shapeType == 0:  # a feature without a shape
+        return
+    places = np.array([point[:2] for point in shape.points], np.float64).reshape(-1, 2)
+    if not np.isfinite(places).all():
+        raise ValueError(f"{item} has a position that is not finite")
+    if shape.shapeType in (*_POINTS, *_MULTIPOINTS):
+        shapes.points += [(item, place) for place in places]
+        return
+    starts = [*shape.parts, len(places)]
+    parts = [places[begin:end] for begin, end in pairwise(starts) if end > begin]
+    if shape.shapeType in _LINES:
+        shapes.lines += [(item, part) for part in parts]
+    elif shape.shapeType in _POLYGONS:
+        shapes.add_polygon(item, parts, has_roles=False)
+    else:
+        raise ValueError(f"{item} is of kind {shape.shapeTypeName}, which is not read")

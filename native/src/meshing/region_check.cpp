@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/meshing/region_check.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "meshing/constrained_delaunay.hpp"
+#include "meshing/plan_predicates.hpp"
+#include "meshing/ring_graph.hpp"
+#include "realmodel/base/errors.hpp"
+#include "realmodel/base/progress.hpp"
+
+namespace realmodel::meshing {
+
+namespace {
+
+constexpr std::int32_t none = -1;
+
+/// Finds the rings that run along an edge of the triangulation.
+class RingsOfEdges {
+public:
+    RingsOfEdges(const RingGraph& graph, std::span<const RegionRing> rings,
+                 std::vector<CoveredEdge> edges)
+        : graph_(graph), edges_(std::move(edges)) {
+        for (std::size_t i = 1; i < edges_.size(); ++i) {
+            const CoveredEdge &a = edges_[i - 1], &b = edges_[i];
+            if (a.from != b.from || a.to != b.to) continue;
+            shared_ = true;
+            if (rings[ring_of(a)].polygon != rings[ring_of(b)].polygon) continue;
+            if (same_ == none || b.segment < edges_[same_].segment)
+                same_ = static_cast<std::int32_t>(i);
+        }
+    }
+
+    /// Whether polygons share borders.
+    bool shared() const { return shared_; }
+
+    /// Refuses rings of one polygon that share a stretch, the first such one.
+    void require_apart() const {
+        if (same_ == none) return;
+        const CoveredEdge& edge = edges_[same_];
+        const PlanPoint &a = graph_.points[edge.from], &b = graph_.points[edge.to];
+        const PlanPoint middle{a[0] + 0.5 * (b[0] - a[0]), a[1] + 0.5 * (b[1] - a[1])};
+        refuse_edges(graph_, edges_[same_ - 1].segment, edge.segment, "outline_overlaps",
+                     "runs along", middle);
+    }
+
+    /// Calls visit(ring) for each ring along the edge between two points.
+    template <class Visit>
+    void visit(std::int32_t a, std::int32_t b, Visit&& visit) const {
+        const CoveredEdge wanted{std::min(a, b), std::max(a, b), none};
+        for (auto at = std::lower_bound(edges_.begin(), edges_.end(), wanted);
+             at != edges_.end() && at->from == wanted.from && at->to == wanted.to; ++at) {
+            visit(ring_of(*at));
+        }
+    }
+
+private:
+    std::int32_t ring_of(const CoveredEdge& edge) const {
+        return static_cast<std::int32_t>(graph_.origin[edge.segment][0]);
+    }
+
+    const RingGraph& graph_;
+    std::vector<CoveredEdge> edges_;
+    bool shared_ = false;
+    std::int32_t same_ = none;
+};
+
+/// How rings lie in each other, told by walking over the triangles from the outside.
+struct Nesting {
+    std::vector<bool> inside;           ///< of triangles: in an odd number of rings
+    std::vector<std::int32_t> parents;  ///< of rings: the innermost other one around it, or none
+};
+
+/// The innermost ring around a place, after an edge is crossed along which rings run.
+std::int32_t cross(const RingsOfEdges& rings, std::int32_t a, std::int32_t b,
+                   std::int32_t innermost, Nesting& nesting, std::vector<bool>& met, bool& odd) {
+    std::vector<std::int32_t> entered;
+    bool more = true;
+    std::vector<std::int32_t> along;
+    rings.visit(a, b, [&](std::int32_t ring) { along.push_back(ring); });
+    odd = along.size() % 2 != 0;
+    while (more) {  // leave the innermost ones first, in whatever order they are listed
+        more = false;
+        for (std::int32_t& ring : along) {
+            if (ring == none || ring != innermost) continue;
+            innermost = nesting.parents[ring];
+            ring = none;
+            more = true;
+        }
+    }
+    for (const std::int32_t ring : along) {
+        if (ring == none) continue;
+        if (!met[ring]) nesting.parents[ring] = innermost;
+        met[ring] = true;
+        innermost = ring;
+    }
+    return innermost;
+}
+
+Nesting nesting_of(const ConstrainedTriangulation& mesh, const RingsOfEdges& rings,
+                   std::size_t ring_count) {
+    constexpr signed char unknown = -1;
+    Nesting nesting{{}, std::vector<std::int32_t>(ring_count, none)};
+    std::vector<bool> met(ring_count);
+    std::vector<signed char> parity(mesh.triangles.size(), unknown);
+    std::vector<std::int32_t> innermost(mesh.triangles.size(), none), open;
+    const auto reach = [&](std::int32_t triangle, const std::array<std::int32_t, 3>& corners, int i,
+                           std::int32_t around, bool constrained, signed char value) {
+        if (parity[triangle] != unknown) return;
+        bool odd = false;
+        if (constrained) {
+            around = cross(rings, corners[i], corners[(i + 1) % 3], around, nesting, met, odd);
+        }
+        innermost[triangle] = around;
+        parity[triangle] = static_cast<signed char>(odd ? 1 - value : value);
+        open.push_back(triangle);
+    };
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        for (int i = 0; i < 3; ++i) {
+            if (mesh.neighbours[t][i] >= 0) continue;
+            reach(static_cast<std::int32_t>(t), mesh.triangles[t], i, none, mesh.constrained[t][i],
+                  0);
+        }
+        while (!open.empty()) {
+            const std::int32_t from = open.back();
+            open.pop_back();
+            for (int i = 0; i < 3; ++i) {
+                const std::int32_t to = mesh.neighbours[from][i];
+                if (to < 0) continue;
+                reach(to, mesh.triangles[from], i, innermost[from], mesh.constrained[from][i],
+                      parity[from]);
+            }
+        }
+    }
+    nesting.inside.assign(parity.begin(), parity.end());
+    return nesting;
+}
+
+/// Refuses the first hole that does not lie inside the outline of its polygon.
+void require_holes_inside(std::span<const RegionRing> rings, const Nesting& nesting) {
+    for (std::size_t r = 0; r < rings.size(); ++r) {
+        if (!rings[r].hole) continue;
+        bool found = false;
+        std::size_t steps = 0;
+        for (std::int32_t around = nesting.parents[r]; around != none && steps <= rings.size();
+             around = nesting.parents[around], ++steps) {
+            found = found || (rings[around].polygon == rings[r].polygon && !rings[around].hole);
+        }
+        if (found) continue;
+        const PlanPoint& place = rings[r].corners.front();
+        throw InputError("hole_outside",
+                         "outline " + std::to_string(r) +
+                             ", a hole, does not lie inside its outline, at " + text_of(place),
+                         -1, {static_cast<std::int64_t>(r), 0},
+                         std::array{place[0], place[1], 0.0});
+    }
+}
+
+/// The border of what is inside as rings, each simple, with the inside on the left.
+std::vector<Ring> border_rings(const RingGraph& graph, const ConstrainedTriangulation& mesh,
+                               const std::vector<bool>& inside) {
+    const auto is_border = [&](std::int32_t t, int i) {
+        const std::int32_t across = mesh.neighbours[t][i];
+        return across < 0 || !inside[across];
+    };
+    std::vector<std::array<bool, 3>> taken(mesh.triangles.size());
+    std::vector<Ring> rings;
+    for (std::size_t first = 0; first < mesh.triangles.size(); ++first) {
+        if (!inside[first]) continue;
+        for (int edge = 0; edge < 3; ++edge) {
+            auto t = static_cast<std::int32_t>(first);
+            int i = edge;
+            if (taken[t][i] || !is_border(t, i)) continue;
+            Ring& ring = rings.emplace_back();
+            while (!taken[t][i]) {
+                taken[t][i] = true;
+                ring.push_back(graph.points[mesh.triangles[t][i]]);
+                // Around the end of the edge, over triangles inside, to the next edge of the
+                // border.
+                const std::int32_t pivot = mesh.triangles[t][(i + 1) % 3];
+                i = (i + 1) % 3;
+                while (!is_border(t, i)) {
+                    t = mesh.neighbours[t][i];
+                    i = 0;
+                    while (mesh.triangles[t][i] != pivot)
+                        ++i;
+                }
+            }
+        }
+    }
+    return rings;
+}
+
+}  // namespace
+
+std::vector<Ring> checked_region(std::span<const RegionRing> rings, const Progress* progress) {
+    std::vector<Ring> given;
+    given.reserve(rings.size());
+    for (const RegionRing& ring : rings)
+        given.push_back(ring.corners);
+    const RingGraph graph = ring_graph(given);
+    const Check check = [progress](double) {
+        if (progress != nullptr) progress->check();
+    };
+    Cdt cdt;
+    const std::vector<Cdt::Vertex_handle> vertices = insert_points(cdt, graph.points, check);
+    try {
+        insert_segments(cdt, vertices, graph.segments, check);
+    } catch (const InputError& error) {
+        if (error.kind != "crossing") throw;
+        refuse_edges(graph, error.items[0], error.items[1], "outline_crosses", "crosses",
+                     {(*error.place)[0], (*error.place)[1]});
+    }
+    const RingsOfEdges edges(graph, rings, covered_edges(cdt, vertices, graph.segments));
+    edges.require_apart();
+    const ConstrainedTriangulation mesh = numbered_triangles(cdt);
+    const Nesting nesting = nesting_of(mesh, edges, rings.size());
+    require_holes_inside(rings, nesting);
+    if (std::none_of(nesting.inside.begin(), nesting.inside.end(), [](bool in) { return in; })) {
+        throw InputError("no_area", "the polygons cover each other: nothing is left of the region");
+    }
+    if (!edges.shared()) return given;
+    return border_rings(graph, mesh, nesting.inside);
+}
+
+}  // namespace realmodel::meshing

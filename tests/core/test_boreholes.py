@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tables of boreholes: points for all surfaces of a rock mass at once."""
+
+import numpy as np
+import pytest
+from realmodel.core import Boreholes, InputRefused, Project, Rock, Surface, build, load_project
+from realmodel.core.readers import read_boreholes
+
+COLLARS = "hole,x,y,z\nB1,0,0,10\nB2,4,0,11\nB3,4,4,12\nB4,0,4,11\nB5,2,2,11\n"
+PICKS = "hole,surface,depth\nB1,clay,4\nB2,clay,5\nB3,clay,6\nB1,sand,1\nB3,sand,\nB4,sand,2\n"
+CLAY, SAND = [[0, 0, 6], [4, 0, 6], [4, 4, 6]], [[0, 0, 9], [0, 4, 9]]
+
+
+@pytest.mark.parametrize(
+    ("collars", "picks", "keys"),
+    [
+        (COLLARS, PICKS, {}),
+        (COLLARS.replace(",", ";"), PICKS.replace(",", "\t"), {}),
+        (
+            COLLARS.replace("hole,x,y,z", "BHID,EAST (m),NORTH (m),RL"),
+            PICKS.replace("hole,surface,depth", "Well,Horizon,MD"),
+            {},
+        ),
+        (
+            "id;who;xc;yc;top of casing\n"
+            + "".join(f"9;{r}\n" for r in COLLARS.replace(",", ";").split()[1:]),
+            PICKS.replace("hole,surface,depth", "who,bed,below"),
+            {"columns": {"hole": "who", "x": "xc", "y": "yc", "z": 5, "surface": "bed", "depth": "below"}},
+        ),
+        (
+            COLLARS,
+            "hole,surface,elevation\nB1,clay,6\nB2,clay,6\nB3,clay,6\nB1,sand,9\nB3,sand,\nB4,sand,9\n",
+            {},
+        ),
+        (
+            None,
+            "hole,x,y,z,surface,depth\nB1,0,0,10,clay,4\nB2,4,0,11,clay,5\nB3,4,4,12,clay,6\n"
+            "B1,0,0,10,sand,1\nB3,4,4,12,sand,\nB4,0,4,11,sand,2\n",
+            {},
+        ),
+        (
+            None,
+            "hole,x,y,z,surface\nB1,0,0,6,clay\nB2,4,0,6,clay\nB3,4,4,6,clay\nB1,0,0,9,sand\nB4,0,4,9,sand\n",
+            {},
+        ),
+        (
+            COLLARS.replace(",", ";").replace(";10", ";10,0"),
+            PICKS.replace(",", ";").replace(";4", ";4,0"),
+            {},
+        ),
+        (COLLARS, "# drilled\n\n" + PICKS.replace("\n", "\r\n"), {}),
+    ],
+)
+def test_tables(write, collars, picks, keys):
+    files = {"picks": write("p.csv", picks), "collars": collars and write("c.csv", collars)}
+    met = read_boreholes(Boreholes(**files, **keys))
+    assert list(met.points) == ["clay", "sand"]
+    assert met.points["clay"].tolist() == CLAY
+    assert met.points["sand"].tolist() == SAND
+    assert any("1 picks without a depth" in text for text in met.warnings) == (
+        ",sand,\n" in picks or "sand,\r" in picks or ";sand;\n" in picks or "sand\t\n" in picks
+    )
+    if collars and "B5" in collars:
+        assert any("no surface was met in B5" in text for text in met.warnings)
+
+
+def test_units(write):
+    files = {"picks": write("p.csv", PICKS), "collars": write("c.csv", COLLARS)}
+    met = read_boreholes(Boreholes(**files, units={"z": "ft"}))
+    np.testing.assert_allclose(met.points["clay"], np.array(CLAY) * [1, 1, 0.3048])
+
+
+@pytest.mark.parametrize(
+    ("collars", "picks", "file", "line", "words"),
+    [
+        (COLLARS, PICKS + "B9,clay,3\n", "p.csv", 8, "hole 'B9' has no collar"),
+        (COLLARS, PICKS + "B1,clay,x\n", "p.csv", 8, "depth is not a number: 'x'"),
+        (COLLARS, PICKS + "B1,,3\n", "p.csv", 8, "no name"),
+        (COLLARS, PICKS + "B1,clay\n", "p.csv", 8, "3 values are needed, there are 2"),
+        (COLLARS + "B1,0,0,11\n", PICKS, "c.csv", 7, "another collar further up"),
+        (
+            COLLARS.replace("z", "q"),
+            PICKS,
+            "c.csv",
+            1,
+            'no column z; say which it is: columns = { z = "..." }',
+        ),
+        (COLLARS, PICKS.replace("surface", "what"), "p.csv", 1, "no column surface"),
+        (COLLARS, PICKS.replace("depth", "deep"), "p.csv", 2, "neither a column depth nor"),
+        (None, PICKS, "p.csv", 2, "no column x"),
+        (COLLARS, "hole,surface,depth\n", "p.csv", None, "no picks"),
+        (COLLARS, "hole,surface,depth\nB1,clay,nan\n", "p.csv", 2, "not a finite"),
+    ],
+)
+def test_tables_refused(write, collars, picks, file, line, words):
+    files = {"picks": write("p.csv", picks), "collars": collars and write("c.csv", collars)}
+    with pytest.raises(InputRefused) as raised:
+        read_boreholes(Boreholes(**files))
+    assert words in str(raised.value)
+    assert (raised.value.file.name, raised.value.line) == (file, line)
+
+
+PROJECT = """format = 1
+name = "x"
+[[rock]]
+name = "r"
+region = [[0, 0], [4, 0], [4, 4], [0, 4]]
+edge_length = 1
+base_elevation = 0
+boreholes = {boreholes}
+[[rock.surface]]
+name = "clay"
+method = "plane"
+[[rock.surface]]
+name = "sand"
+points = "sand.csv"
+method = "plane"
+"""
+GIVEN = '{ collars = "c.csv", picks = "p.csv" }'
+
+
+def test_a_project_of_boreholes(write, tmp_path):
+    """A surface without points of its own has those of the holes; one with points has both."""
+    write("c.csv", COLLARS)
+    write("p.csv", PICKS + "B5,gravel,1\n")
+    write("sand.csv", "4 0 9\n4 4 9\n")
+    project = load_project(write("p.toml", PROJECT.format(boreholes=GIVEN)))
+    assert {tmp_path / "c.csv", tmp_path / "p.csv"} <= set(project.input_files())
+    model = build(project)
+    assert model.volume == pytest.approx(16 * 9)
+    assert [len(surface.points) for surface in model.project.rocks[0].surfaces] == [3, 4]
+    assert any("met gravel, which is no surface" in str(warning) for warning in model.warnings)
+    assert build(model.project).volume == model.volume
+
+
+@pytest.mark.parametrize(
+    ("boreholes", "line", "words"),
+    [
+        ("3", 8, "must be a file or a table"),
+        ('{ collars = "c.csv" }', 8, "key 'picks' is missing"),
+        ('{ collars = "no.csv", picks = "p.csv" }', 8, "there is no file"),
+        ('{ pick = "p.csv" }', 8, "did you mean 'picks'?"),
+        ('{ picks = "p.csv", columns = { deep = "x" } }', 8, "names a column 'deep'"),
+        ('{ picks = "p.csv", columns = { depth = true } }', 8, "a name or a number"),
+        ('{ picks = "p.csv", units = "feet" }', 8, "unknown unit"),
+    ],
+)
+def test_keys_that_make_no_sense(write, boreholes, line, words):
+    for name, text in (("c.csv", COLLARS), ("p.csv", PICKS), ("sand.csv", "4 0 9\n")):
+        write(name, text)
+    path = write("p.toml", PROJECT.format(boreholes=boreholes))
+    with pytest.raises(InputRefused) as raised:
+        load_project(path)
+    assert words in str(raised.value)
+    assert (raised.value.file, raised.value.line) == (path, line)
+
+
+def test_a_surface_that_no_hole_met(write):
+    files = Boreholes(write("p.csv", PICKS), write("c.csv", COLLARS))
+    square = [[0, 0], [4, 0], [4, 4], [0, 4]]
+    rock = Rock("r", [Surface("silt")], square, edge_length=1.0, base_elevation=0.0, boreholes=files)
+    with pytest.raises(InputRefused, match="surface 'silt': the boreholes did not meet it"):
+        build(Project("x", [rock]))
+    rock.boreholes = None
+    with pytest.raises(InputRefused, match="neither points nor a mesh"):
+        build(Project("x", [rock]))
