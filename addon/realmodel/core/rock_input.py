@@ -14,7 +14,6 @@ from .heights import Interpolation
 from .interpolation import checked_points
 from .plan_input import map_layer, read_rings, ring_path
 from .planar_mesh import mesh_rings, triangulate_rings
-from .point_file import PointFile
 from .project import Project, Rock, Surface, rock_item, surface_item
 from .readers import Picks, read_boreholes, read_off, read_point_file
 from .readers.text import no_step
@@ -109,8 +108,8 @@ def read_rocks(work: Work, project: Project) -> list[RockInput]:
 
 
 def with_arrays(project: Project) -> Project:
-    """A project in which files stay that are named by nothing but their path; what needs more to be read -
-    columns, layers, units, boreholes - is read. For those who keep paths only. Raises InputRefused."""
+    """A project in which files stay, but for what cannot be kept as one file and how it is read - regions of
+    layers or of text, boreholes - which is read. For those who keep paths only. Raises InputRefused."""
 
     def is_plain(given) -> bool:
         return given is None or (isinstance(given, (str, Path)) and map_layer(given) is not None)
@@ -124,7 +123,7 @@ def with_arrays(project: Project) -> Project:
             surfaces = []
             for surface in rock.surfaces:
                 met = picks.points.get(surface.name) if surface.interpolated else None
-                if met is not None or isinstance(surface.points, PointFile):
+                if met is not None:
                     surface = _read_surface(rock, surface, met, project.units, no_step)[0]
                 surfaces.append(surface)
             rocks.append(replace(rock, surfaces=surfaces, boreholes=None))
