@@ -7,7 +7,7 @@
 #   scripts/benchmark.sh              all sizes; writes the page and the constants
 #   scripts/benchmark.sh --quick      small sizes, each once, as a look; the page is left as it is
 #   scripts/benchmark.sh --fit        only fits the constants and compares estimates with builds
-#   scripts/benchmark.sh --only stacks|fit|watch|blender, --memory GB, --write F.md, --help
+#   scripts/benchmark.sh --only stacks|fit|watch|blender|heights, --memory GB, --write F.md, --help
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 python=/usr/bin/python3
@@ -23,6 +23,12 @@ fi
 if ! { (cd "$root" && cmake --preset release -DREALMODEL_BUILD_BENCHMARKS=ON --log-level=WARNING) &&
     cmake --build "$root/build/release" --target cgal_corefinement; }; then
     echo "benchmark.sh: the program of CGAL's corefinement could not be built; measuring without it" >&2
+fi
+peers=$root/build/heights_environment
+if "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/benchmark_heights.txt" "$python"; then
+    export REALMODEL_HEIGHTS_PYTHON=$peers/bin/python
+else
+    echo "benchmark.sh: SciPy and PyKrige could not be installed; measuring without them" >&2
 fi
 cd "$root/scripts"
 PYTHONPATH="$root/addon:$root/scripts" exec "$runs" -m benchmarks "$@"

@@ -8,11 +8,11 @@ import signal
 import sys
 from pathlib import Path
 
-from . import blender_table, fitting, page, watching_table
+from . import blender_table, fitting, heights_table, page, watching_table
 from .process import ROOT
 from .stacks_table import Limits, Row, StackRows
 
-PARTS = ("stacks", "fit", "watch", "blender")
+PARTS = ("stacks", "fit", "watch", "blender", "heights")
 _QUICK_TRIANGLES, _ALL_TRIANGLES = 800_000, 10_000_000
 
 
@@ -45,6 +45,15 @@ def main() -> int:
     if "blender" in parts:
         rows = blender_table.measure(given.quick, memory, _say)
         lines["blender"] = [machine, "", *page.table(blender_table.UPLOADS, rows)]
+    if "heights" in parts:
+        speed, accuracy = heights_table.measure(given.quick, memory, _say)
+        lines["heights"] = [
+            machine,
+            "",
+            *page.table(heights_table.SPEED, speed, 3),
+            "",
+            *page.table(heights_table.ACCURACY, accuracy),
+        ]
     if given.write:
         for name, part in lines.items():
             page.write_part(given.write, f"benchmark.sh {name}", part)

@@ -28,7 +28,8 @@ constexpr double hopeless = 2;       // times the best mean square: such a model
 constexpr double nuggets_tried[] = {0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1};
 constexpr double ranges_tried[] = {0.25, 0.5, 2, 4};  // times the range that fits the curve best
 constexpr double within_two = 0.95;  // share of errors within two deviations where these are honest
-constexpr double shown_by_few = 30;  // points: fewer tell little of how honest variances are
+constexpr double shown_by_few = 200;   // points: fewer tell less of how honest variances are than
+                                       // pairs of them tell of the curve
 constexpr double hardly_worse = 1.01;  // of mean squares, for the sake of honest variances
 // A sill far below what distant pairs show would make variances far from points too small.
 constexpr double least_scale = 0.25;
@@ -234,12 +235,17 @@ private:
         LeftOutErrors errors = told(variogram);
         if (drifts) square = judge(errors.errors);
         double scale = honest_sill(errors) / variogram.sill;
+        if (!(scale > 0) || !std::isfinite(scale)) return;
+        // Of what the errors ask for, as much as so many of them are worth.
+        const auto count = static_cast<double>(errors.errors.size());
+        const double left_undone = std::pow(scale, shown_by_few / (count + shown_by_few));
+        scale /= left_undone;
         const double power = growth(variogram.model);
-        for (int step = 0; step < 3 && scale > 0 && std::abs(std::log(scale)) > 0.05; ++step) {
+        for (int step = 0; step < 3 && std::abs(std::log(scale)) > 0.05; ++step) {
             Variogram moved = variogram;
             moved.range *= std::clamp(std::pow(scale, -1 / power), 0.5, 2.0);
             LeftOutErrors with_moved = told(moved);
-            const double with_range = honest_sill(with_moved) / moved.sill;
+            const double with_range = honest_sill(with_moved) / moved.sill / left_undone;
             if (!(std::abs(std::log(with_range)) < std::abs(std::log(scale))) ||
                 judge(with_moved.errors) > hardly_worse * square) {
                 break;
@@ -247,9 +253,7 @@ private:
             variogram = moved;
             scale = with_range;
         }
-        if (!(scale > 0) || !std::isfinite(scale)) return;
-        const auto count = static_cast<double>(errors.errors.size());
-        scale = std::pow(std::max(scale, least_scale), count / (count + shown_by_few));
+        scale = std::max(scale, least_scale);
         variogram.sill *= scale;
         variogram.nugget *= scale;
     }

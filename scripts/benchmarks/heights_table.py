@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tables of interpolation: speed and accuracy beside the peers', pair by pair in one run."""
+
+from __future__ import annotations
+
+import os
+import statistics
+from collections.abc import Callable
+
+from .heights import METHODS, SETS
+from .process import Skipped, alone
+
+SPEED = ("points", "ours", "beside", "ours, nodes/s", "theirs, nodes/s", "ours / theirs", "asked", "")
+ACCURACY = (
+    "method",
+    *(f"RMSE {name}" for name in SETS),
+    *(f"within two deviations, {name}" for name in SETS),
+)
+_OURS = ("kriging", "auto", "kriging, spherical, 16", "kriging, Matern 3/2, 16", "kriging, Matern 3/2, 32")
+# What is compared, with how many nodes theirs is measured (speeds do not depend on it much), and how many
+# times as fast ours is to be. Triangles alone are fast; what they tell is in the table of errors.
+_PAIRS = (
+    ("kriging, spherical, 16", "PyKrige, spherical, 16", 100_000, 3.0),
+    ("kriging, spherical, 16", "SciPy, thin plate, 16", 100_000, 3.0),
+    ("kriging, Matern 3/2, 32", "SciPy, thin plate, 32", 50_000, 3.0),
+    ("kriging", "SciPy, thin plate, 32", 50_000, 3.0),
+    ("kriging", "SciPy, Clough-Tocher", 1_000_000, None),
+)
+_SECONDS = 600.0
+
+
+def measure(
+    quick: bool, memory: float, say: Callable[[str], None]
+) -> tuple[list[list[str]], list[list[str]]]:
+    """Rows for SPEED and ACCURACY; what could not be measured is left out with the reason."""
+    python = os.environ.get("REALMODEL_HEIGHTS_PYTHON")
+    nodes, pairs, splits = (200_000, 1, 2) if quick else (1_000_000, 3, 5)
+
+    def told(function: str, *arguments) -> dict:
+        return alone(f"heights.{function}", *arguments, seconds=_SECONDS, memory=memory, python=python)
+
+    speed = []
+    for name in SETS:
+        for ours, theirs, their_nodes, asked in _PAIRS:
+            row = _pair(told, name, ours, theirs, (nodes, min(nodes, their_nodes)), pairs, asked)
+            speed.append(row)
+            say("heights: " + " | ".join(speed[-1]))
+    speed.append(_dsi(told, nodes))
+    say("heights: " + " | ".join(speed[-1]))
+    accuracy = []
+    for method in METHODS:
+        accuracy.append(_accuracy(told, method, splits))
+        say("heights: " + " | ".join(accuracy[-1]))
+    return speed, accuracy
+
+
+def _pair(told, name: str, ours: str, theirs: str, nodes, pairs: int, asked) -> list[str]:
+    """Alternating order; the ratio is the median of the pairs'."""
+    found: list[tuple[float, float]] = []
+    wanted = "-" if asked is None else f"{asked:.0f}"
+    try:
+        for pair in range(pairs):
+            order = [(ours, nodes[0]), (theirs, nodes[1])]
+            rates = {}
+            for method, count in order if pair % 2 == 0 else order[::-1]:
+                run = told("speed", name, method, count, 2)
+                rates[method] = run["nodes"] / run["seconds"]
+            found.append((rates[ours], rates[theirs]))
+    except Skipped as skipped:
+        return [name, ours, theirs, "-", "-", "-", wanted, f"SKIPPED; {skipped}"]
+    ratio = statistics.median(a / b for a, b in found)
+    mine, other = (statistics.median(column) for column in zip(*found, strict=True))
+    verdict = "" if asked is None else "met" if ratio >= asked else "NOT met"
+    return [name, ours, theirs, f"{mine:,.0f}", f"{other:,.0f}", f"**{ratio:.1f}**", wanted, verdict]
+
+
+def _dsi(told, nodes: int) -> list[str]:
+    try:
+        run = told("dsi", nodes, 2)
+    except Skipped as skipped:
+        return ["drogon", "dsi", "-", "-", "-", "-", "5 s", f"SKIPPED; {skipped}"]
+    verdict = "met" if run["seconds"] <= 5 else "NOT met"
+    rate = f"{run['nodes'] / run['seconds']:,.0f}"
+    return ["drogon", "dsi", "-", rate, "-", "-", "5 s", f"{run['seconds']:.1f} s; {verdict}"]
+
+
+def _accuracy(told, method: str, splits: int) -> list[str]:
+    errors, shares = [], []
+    for name in SETS:
+        try:
+            run = told("accuracy", name, method, splits, 2)
+        except Skipped as skipped:
+            errors.append(f"SKIPPED; {skipped}")
+            shares.append("-")
+            continue
+        errors.append(f"{statistics.fmean(run['rmse']):.3f}")
+        within = run["within"]
+        shares.append(f"{100 * min(within):.1f} .. {100 * max(within):.1f} %" if within else "-")
+    label = f"RealModel, {method}" if method in _OURS else method
+    return [label, *errors, *shares]
