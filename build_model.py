@@ -95,6 +95,30 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
     )
     parser.add_argument("--report", metavar="F", type=Path, help="write a report to F.json")
     parser.add_argument("--render", metavar="F", type=Path, help="render a picture to F.png (in Blender)")
+    parser.add_argument(
+        "--section",
+        metavar="X,Y,Z,NX,NY,NZ=F",
+        action="append",
+        default=[],
+        help="write the section by a plane (point, normal) to F.vtu, .obj, .csv or .npz; any number of times",
+    )
+    parser.add_argument(
+        "--fence",
+        metavar="LINE=F",
+        action="append",
+        default=[],
+        help="write vertical sections along a line in plan to F: X,Y,X,Y,... or a text file of x and y",
+    )
+    parser.add_argument(
+        "--cut",
+        metavar="CUTTER=BELOW,ABOVE",
+        action="append",
+        default=[],
+        help=(
+            "cut the model by a plane X,Y,Z,NX,NY,NZ, a surface F.off, or a block PROJECT.toml:BLOCK (:BLOCK "
+            "of the model itself) and write its halves as --export does; one may be left out"
+        ),
+    )
     parser.add_argument("--stage", metavar="M", type=_whole, help="only up to surface M, counted from 0")
     parser.add_argument(
         "--cells",
@@ -141,10 +165,20 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         if getattr(options, name) is not None and not IN_BLENDER:
             parser.error(f"--{name} needs Blender; run it as: {_BLENDER_USAGE}")
     if options.surfaces_only:
-        for name in ("blend", "render", "estimate", "eroded", "check_model", "memory"):
+        for name in (
+            "blend",
+            "render",
+            "estimate",
+            "eroded",
+            "check_model",
+            "memory",
+            "section",
+            "fence",
+            "cut",
+        ):
             if getattr(options, name):
                 parser.error(f"--surfaces-only goes without --{name.replace('_', '-')}")
-    outputs = ("--blend", "--export", "--report", "--render")
+    outputs = ("--blend", "--export", "--report", "--render", "--section", "--fence", "--cut")
     if options.estimate and any(getattr(options, name[2:]) for name in outputs):
         parser.error(f"--estimate builds nothing: it goes without {', '.join(outputs)}")
     return options
@@ -172,9 +206,10 @@ def _run(options: argparse.Namespace) -> None:
     from realmodel.core.table import volume_table
     from realmodel.core.terminal import TerminalProgress
 
-    targets = _checked_targets(options)
+    requests = _requests(options)
+    targets = _checked_targets(options, requests)
     project = load_project(options.project)
-    _refuse_overwriting(project, targets)
+    _refuse_overwriting([*project.input_files(), *(f for r in requests for f in r.inputs)], targets)
     progress = TerminalProgress(sys.stdout, options.quiet)
     if options.estimate:
         _estimate(options, project, progress)
@@ -184,6 +219,8 @@ def _run(options: argparse.Namespace) -> None:
         return
     with Outputs() as outputs, _Interruptible(outputs):
         try:
+            for request in requests:
+                request.read()
             model = build(
                 project,
                 cells=options.cells,
@@ -195,6 +232,7 @@ def _run(options: argparse.Namespace) -> None:
             validation = _validation(options, model, progress)
             erosion = _erosion(options, model, progress)
             _write(options, model, outputs, progress, validation, erosion)
+            told = [request.run(model, outputs, options.threads, progress) for request in requests]
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, signal.SIG_IGN)  # in a moment all is there: too late to stop
         finally:
@@ -206,6 +244,8 @@ def _run(options: argparse.Namespace) -> None:
             if options.check_model:
                 print(f"{validation}\n")
             print(volume_table(model, erosion), flush=True)
+            for line in told:
+                print(line, flush=True)
 
 
 def _surfaces_only(options: argparse.Namespace, project, progress) -> None:
@@ -284,7 +324,18 @@ def _validation(options: argparse.Namespace, model, progress):
     return report
 
 
-def _checked_targets(options: argparse.Namespace) -> list[Path]:
+def _requests(options: argparse.Namespace) -> list:
+    """Sections, fences and cuts, in this order. Raises UsageError."""
+    from realmodel.core.batch_cuts import cut_request, fence_request, section_request
+
+    return [
+        *map(section_request, options.section),
+        *map(fence_request, options.fence),
+        *map(cut_request, options.cut),
+    ]
+
+
+def _checked_targets(options: argparse.Namespace, requests: list) -> list[Path]:
     """Where the outputs will stand; refused before anything is built rather than after."""
     from realmodel.core import UsageError
     from realmodel.core.atomic import writable_target
@@ -294,6 +345,7 @@ def _checked_targets(options: argparse.Namespace) -> list[Path]:
     for path in options.export:
         surface_writer_for(path) if options.surfaces_only else writer_for(path)
     paths = [*options.export, *(p for p in (options.report, options.blend, options.render) if p is not None)]
+    paths += [path for request in requests for path in request.outputs]
     targets = [writable_target(path) for path in paths]
     for path, target in zip(paths, targets, strict=True):
         if targets.count(target) > 1:
@@ -301,10 +353,10 @@ def _checked_targets(options: argparse.Namespace) -> list[Path]:
     return targets
 
 
-def _refuse_overwriting(project, targets: list[Path]) -> None:
+def _refuse_overwriting(files: list[Path], targets: list[Path]) -> None:
     from realmodel.core import UsageError
 
-    inputs = {Path(os.path.realpath(file)) for file in project.input_files()}
+    inputs = {Path(os.path.realpath(file)) for file in files}
     for target in targets:
         if target in inputs:
             raise UsageError(f"{target}: this is a file that the project reads; choose another name")

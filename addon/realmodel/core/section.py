@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from .atomic import Outputs
-from .errors import UsageError
 
 
 @dataclass(eq=False)
@@ -68,14 +67,13 @@ class Section:
         return {name: getattr(self, name) for name in names} | {"block_names": np.array(self.block_names)}
 
     def save(self, path: str | Path) -> None:
-        """Writes the arrays to an .npz, which appears whole or not at all. Raises UsageError,
-        OutputFailed."""
-        from .exporters.npz import write_arrays
+        """Writes the polygons, with block and property, to a .vtu, .obj, .csv or .npz, which appears whole or
+        not at all. Raises UsageError, OutputFailed."""
+        from .exporters.sections import section_writer
 
-        if Path(path).suffix.lower() != ".npz":
-            raise UsageError(f"{path}: a section is written as .npz")
+        writer = section_writer(path)
         with Outputs() as outputs, outputs.file(path) as file:
-            write_arrays(self.arrays(), file)
+            writer(self, file)
 
 
 @dataclass(eq=False)
@@ -91,11 +89,15 @@ class Fence(Section):
 
     def unrolled(self) -> np.ndarray:
         """(V, 2) float64: distance along the polyline and height of each vertex, as fences are drawn."""
+        along = np.zeros(len(self.vertices))
+        along[self.polygon_vertices] = self.corner_distances()
+        return np.column_stack([along, self.vertices[:, 2]])
+
+    def corner_distances(self) -> np.ndarray:
+        """(len(polygon_vertices),) float64: distance along the polyline of each polygon's corners."""
         steps = np.diff(self.polyline, axis=0)
         lengths = np.hypot(*steps.T)
         begins = np.concatenate([[0.0], np.cumsum(lengths)])
-        panel = np.zeros(len(self.vertices), np.int64)
-        panel[self.polygon_vertices] = np.repeat(self.panel, np.diff(self.offsets))
-        away = self.vertices[:, :2] - self.polyline[panel]
-        along = begins[panel] + (away * steps[panel]).sum(axis=1) / lengths[panel]
-        return np.column_stack([along, self.vertices[:, 2]])
+        panel = np.repeat(self.panel, np.diff(self.offsets))
+        away = self.vertices[self.polygon_vertices, :2] - self.polyline[panel]
+        return begins[panel] + (away * steps[panel]).sum(axis=1) / lengths[panel]

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cuts, sections and fences as the command line asks for them: WHAT=FILE."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .errors import InputRefused, UsageError
+from .exporters import write_model, writer_for
+from .exporters.sections import section_writer
+from .readers import read_off
+from .readers.text import read_text
+
+
+@dataclass
+class SectionRequest:
+    """A section by a plane, or a fence, and its file. what: point and normal (6,), or a polyline (N, 2)."""
+
+    option: str
+    file: Path
+    what: np.ndarray | Path
+
+    @property
+    def outputs(self) -> list[Path]:
+        return [self.file]
+
+    @property
+    def inputs(self) -> list[Path]:
+        return [self.what] if isinstance(self.what, Path) else []
+
+    def read(self) -> None:
+        """Reads the polyline, where it is a file. Raises InputRefused."""
+        if isinstance(self.what, Path):
+            self.what = read_polyline(self.what)
+
+    def run(self, model, outputs, threads: int, progress) -> str:
+        """Makes the section and stages its file; what there is to say about it."""
+        progress(1.0, f"cutting {self.file.name}")
+        if self.option == "--fence":
+            found = model.fence(self.what, threads)
+        else:
+            found = model.section(self.what[:3], self.what[3:], threads)
+        with outputs.file(self.file) as file:
+            section_writer(self.file)(found, file)
+        kind = self.option.removeprefix("--")
+        return f"{kind} {self.file.name}: {len(found)} polygons, area {found.area:.2f}"
+
+
+@dataclass
+class CutRequest:
+    """A cut and the files of its halves; one of them may be left out.
+
+    cutter: point and normal of a plane (6,), the file of a surface, or (project file or None for the model
+    itself, block).
+    """
+
+    cutter: np.ndarray | Path | tuple[Path | None, str]
+    below: Path | None
+    above: Path | None
+
+    @property
+    def outputs(self) -> list[Path]:
+        return [path for path in (self.below, self.above) if path is not None]
+
+    @property
+    def inputs(self) -> list[Path]:
+        if isinstance(self.cutter, Path):
+            return [self.cutter]
+        if isinstance(self.cutter, tuple) and self.cutter[0] is not None:
+            from .project_file import load_project
+
+            return [self.cutter[0], *load_project(self.cutter[0]).input_files()]
+        return []
+
+    def read(self) -> None:
+        """Reads the surface and builds the other model, where there is one. Raises what that raises."""
+        if isinstance(self.cutter, Path):
+            self._mesh = read_off(self.cutter)
+        elif isinstance(self.cutter, tuple) and self.cutter[0] is not None:
+            from .build import build
+            from .project_file import load_project
+
+            self._other = build(load_project(self.cutter[0]), cells="blocks")
+
+    def run(self, model, outputs, threads: int, progress) -> str:
+        """Cuts and stages the halves; what there is to say about them."""
+        names = ", ".join(path.name for path in self.outputs)
+
+        def step(_share, _text):
+            progress(1.0, f"cutting {names}")
+
+        if isinstance(self.cutter, np.ndarray):
+            cut = model.cut_by_plane(self.cutter[:3], self.cutter[3:], threads, step)
+            text = "by the plane"
+        elif isinstance(self.cutter, Path):
+            try:
+                cut = model.cut_by_surface(self._mesh.vertices, self._mesh.triangles, threads, step)
+            except InputRefused as error:
+                raise InputRefused(f"{self.cutter}: {error}") from error
+            text = f"by {self.cutter.name}"
+        else:
+            other = model if self.cutter[0] is None else self._other
+            block = self.cutter[1]
+            cut = model.cut_by_block(other, int(block) if block.isdecimal() else block, threads, step)
+            text = f"by block '{block}'"
+        for half, path in ((cut.below, self.below), (cut.above, self.above)):
+            if path is not None:
+                with outputs.file(path) as file:
+                    write_model(half, path, file)
+        low, high = ("inside", "outside") if isinstance(self.cutter, tuple) else ("below", "above")
+        return f"cut {text}: volume {cut.below.volume:.2f} {low}, {cut.above.volume:.2f} {high}"
+
+
+Request = SectionRequest | CutRequest
+
+
+def section_request(text: str) -> SectionRequest:
+    """X,Y,Z,NX,NY,NZ=FILE. Raises UsageError."""
+    what, file = _divided("--section", text, "X,Y,Z,NX,NY,NZ=FILE")
+    section_writer(file)
+    return SectionRequest("--section", Path(file), _plane("--section", what))
+
+
+def fence_request(text: str) -> SectionRequest:
+    """X,Y,X,Y,...=FILE or LINE.csv=FILE. Raises UsageError."""
+    what, file = _divided("--fence", text, "X,Y,X,Y,...=FILE or LINE.csv=FILE")
+    section_writer(file)
+    numbers = _numbers(what)
+    if numbers is None:
+        return SectionRequest("--fence", Path(file), Path(what))
+    if len(numbers) < 4 or len(numbers) % 2:
+        raise UsageError(f"--fence {text}: a line has two places at least, x and y of each")
+    return SectionRequest("--fence", Path(file), _line(numbers.reshape(-1, 2), f"--fence {text}", UsageError))
+
+
+def cut_request(text: str) -> CutRequest:
+    """CUTTER=BELOW,ABOVE: a plane X,Y,Z,NX,NY,NZ, a surface FILE.off, a block PROJECT.toml:BLOCK or :BLOCK.
+    Raises UsageError."""
+    form = "CUTTER=BELOW,ABOVE (one of them may be left out)"
+    what, files = _divided("--cut", text, form)
+    halves = files.split(",")
+    if len(halves) > 2 or not any(halves):
+        raise UsageError(f"--cut {text}: it is written as {form}")
+    below, above = (Path(half) if half else None for half in (*halves, "")[:2])
+    for path in (below, above):
+        if path is not None:
+            writer_for(path)
+    if _numbers(what) is not None:
+        return CutRequest(_plane("--cut", what), below, above)
+    project, colon, block = what.rpartition(":")
+    if colon and (not project or project.lower().endswith(".toml")):
+        if not block:
+            raise UsageError(f"--cut {text}: which block? write {what}NAME")
+        return CutRequest((Path(project) if project else None, block), below, above)
+    if Path(what).suffix.lower() != ".off":
+        raise UsageError(
+            f"--cut {text}: '{what}' is no cutter; use a plane X,Y,Z,NX,NY,NZ, a surface FILE.off, or a "
+            "block PROJECT.toml:BLOCK (:BLOCK for one of the model's own)"
+        )
+    return CutRequest(Path(what), below, above)
+
+
+def read_polyline(file: Path) -> np.ndarray:
+    """(N, 2) float64 of a text file: x and y in each line, by commas, semicolons or spaces. A first line of
+    names, empty lines and what follows # are passed over. Raises InputRefused naming file and line."""
+    places = []
+    for number, line in enumerate(read_text(file).splitlines(), 1):
+        entries = [entry for entry in re.split(r"[,;\s]+", line.partition("#")[0].strip()) if entry]
+        if not entries:
+            continue
+        numbers = _numbers(",".join(entries))
+        if numbers is None and not places:
+            continue  # names of columns
+        if numbers is None or len(numbers) < 2:
+            raise InputRefused(f"{file}:{number}: a line of the polyline has two numbers, x and y")
+        places.append(numbers[:2])
+    if len(places) < 2:
+        raise InputRefused(f"{file}: a polyline has two places at least, x and y in a line each")
+    return _line(np.array(places), str(file), InputRefused)
+
+
+def _line(places: np.ndarray, where: str, error: type[Exception]) -> np.ndarray:
+    if not np.diff(places, axis=0).any(axis=1).all():
+        raise error(f"{where}: two equal places one after the other; leave one out")
+    return places
+
+
+def _divided(option: str, text: str, form: str) -> tuple[str, str]:
+    what, equals, file = text.rpartition("=")
+    if not equals or not what or not file:
+        raise UsageError(f"{option} {text}: it is written as {option} {form}")
+    return what, file
+
+
+def _numbers(text: str) -> np.ndarray | None:
+    """Finite numbers with commas between them; None where the text is something else."""
+    try:
+        numbers = np.array([float(entry) for entry in text.split(",")])
+    except ValueError:
+        return None
+    return numbers if np.isfinite(numbers).all() else None
+
+
+def _plane(option: str, text: str) -> np.ndarray:
+    numbers = _numbers(text)
+    if numbers is None or len(numbers) != 6:
+        raise UsageError(f"{option} {text}: a plane is six numbers, a point and a normal: X,Y,Z,NX,NY,NZ")
+    if not numbers[3:].any():
+        raise UsageError(f"{option} {text}: the normal must not be zero")
+    return numbers

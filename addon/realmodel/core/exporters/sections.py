@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files that a section or fence is written to: polygons that know their block and its property.
+
+.vtu: VTK unstructured grid ("VTK File Formats", XML) of polygon cells, for ParaView, PyVista and meshio.
+.obj: Wavefront OBJ, a group for each block and a material for each property, for any modeller.
+.csv: one row for each corner of each polygon. .npz: the arrays of Section.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from ..errors import UsageError
+from .npz import write_arrays
+
+_POLYGON = 7
+
+
+def section_writer(path: str | Path) -> Callable[..., None]:
+    """The function (section, file) that writes files of this ending. Raises UsageError."""
+    ending = Path(path).suffix.lower()
+    if ending not in SECTION_WRITERS:
+        known = ", ".join(SECTION_WRITERS)
+        what = f"sections are not written as '{ending}'" if ending else "the file name has no ending"
+        raise UsageError(f"{path}: {what}; use one of {known}")
+    return SECTION_WRITERS[ending]
+
+
+def write_section_npz(section, file: BinaryIO) -> None:
+    write_arrays(section.arrays(), file)
+
+
+def write_section_vtu(section, file: BinaryIO) -> None:
+    """Polygon cells with the cell arrays `block` (number in the model's list), `property` (library id, 0:
+    none), `cells` (the model's, below and above; -1: outside), and `panel` where it is a fence."""
+    polygons = len(section)
+    arrays = [  # element, name, components, values
+        ("Points", "Points", 3, section.vertices.astype("<f8")),
+        ("Cells", "connectivity", 1, section.polygon_vertices.astype("<i8")),
+        ("Cells", "offsets", 1, section.offsets[1:].astype("<i8")),
+        ("Cells", "types", 1, np.full(polygons, _POLYGON, np.uint8)),
+        ("CellData", "block", 1, section.block.astype("<i4")),
+        ("CellData", "property", 1, section.property.astype("<i4")),
+        ("CellData", "cells", 2, section.cells.astype("<i4")),
+    ]
+    if hasattr(section, "panel"):
+        arrays.append(("CellData", "panel", 1, section.panel.astype("<i4")))
+    kinds = {"f8": "Float64", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
+    tags: dict[str, list[str]] = {"Points": [], "Cells": [], "CellData": []}
+    at = 0
+    for element, name, components, values in arrays:
+        width = f' NumberOfComponents="{components}"' if components > 1 else ""
+        kind = kinds[values.dtype.str[1:]]
+        tags[element].append(
+            f'<DataArray type="{kind}" Name="{name}"{width} format="appended" offset="{at}"/>'
+        )
+        at += 8 + values.nbytes
+    body = "\n".join(
+        "\n".join([f"<{element}>", *lines, f"</{element}>"]) for element, lines in tags.items()
+    ).replace("<CellData>", '<CellData Scalars="block">')
+    file.write(
+        f"""<?xml version="1.0"?>
+<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+<UnstructuredGrid>
+<Piece NumberOfPoints="{len(section.vertices)}" NumberOfCells="{polygons}">
+{body}
+</Piece>
+</UnstructuredGrid>
+<AppendedData encoding="raw">
+_""".encode("ascii")
+    )
+    for *_, values in arrays:
+        file.write(np.array([values.nbytes], "<u8").tobytes())
+        file.write(np.ascontiguousarray(values))
+    file.write(b"\n</AppendedData>\n</VTKFile>\n")
+
+
+def write_section_obj(section, file: BinaryIO) -> None:
+    """Polygons by block: a group `block_NUMBER_NAME`, and the material `property_ID`."""
+    text = io.StringIO()
+    text.write("# section of a RealModel model: groups are blocks, materials are library ids\n")
+    for vertex in section.vertices.tolist():
+        text.write(f"v {vertex[0]!r} {vertex[1]!r} {vertex[2]!r}\n")
+    order = np.argsort(section.block, kind="stable")
+    last = None
+    for k in order.tolist():
+        block = int(section.block[k])
+        if block != last:
+            name = re.sub(r"\s+", "_", section.block_names[block].strip())
+            text.write(f"g block_{block}_{name}\nusemtl property_{int(section.property[k])}\n")
+            last = block
+        corners = section.polygon_vertices[section.offsets[k] : section.offsets[k + 1]] + 1
+        text.write(f"f {' '.join(map(str, corners.tolist()))}\n")
+    file.write(text.getvalue().encode("utf-8"))
+
+
+def write_section_csv(section, file: BinaryIO) -> None:
+    """polygon, block (number), block_name, property, x, y, z of every corner; of a fence also panel and the
+    distance along it, so that distance and z draw the unrolled picture."""
+    is_fence = hasattr(section, "panel")
+    text = io.StringIO(newline="")
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(
+        ["polygon", "block", "block_name", "property", "x", "y", "z", *(["panel", "distance"] * is_fence)]
+    )
+    along = section.corner_distances() if is_fence else None
+    for k in range(len(section)):
+        block = int(section.block[k])
+        told = [k, block, section.block_names[block], int(section.property[k])]
+        for corner in range(int(section.offsets[k]), int(section.offsets[k + 1])):
+            place = section.vertices[section.polygon_vertices[corner]].tolist()
+            extra = [int(section.panel[k]), repr(float(along[corner]))] if is_fence else []
+            rows.writerow([*told, *map(repr, place), *extra])
+    file.write(text.getvalue().encode("utf-8"))
+
+
+SECTION_WRITERS: dict[str, Callable] = {
+    ".vtu": write_section_vtu,
+    ".obj": write_section_obj,
+    ".csv": write_section_csv,
+    ".npz": write_section_npz,
+}

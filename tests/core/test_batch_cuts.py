@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""build_model.py --section, --fence and --cut: files, and what is wrong said before anything is built."""
+
+import csv
+
+import numpy as np
+import pytest
+from conftest import grid_surface
+from realmodel.core import InputRefused, load_project
+from realmodel.core.batch_cuts import read_polyline
+from stacks.project_files import write_off
+from test_batch import names, out, refused, run  # noqa: F401 - out is a fixture
+
+
+def arrays(path):
+    with np.load(path) as data:
+        return {name: data[name] for name in data.files}
+
+
+def test_sections_fences_and_halves_are_written(layers, out):  # noqa: F811
+    project = layers([0, 1, 3])
+    (out.parent / "line.csv").write_text("x,y\n-1,0.5\n0.5,0.5\n0.5,9 # beyond\n")
+    done = run(
+        project,
+        *("--section", f"0.5,0.5,0,1,0,0={out / 's.csv'}"),
+        *("--section", f"0,0,2,0,0,1={out / 'level.npz'}"),
+        *("--fence", f"{out.parent / 'line.csv'}={out / 'f.csv'}"),
+        *("--cut", f"0,0,2,0,0,1={out / 'below.npz'},{out / 'above.npz'}"),
+        *("--cut", f":1={out / 'inside.npz'},"),
+        *("--cut", f"{project}:1=,{out / 'outside.npz'}"),
+    )
+    assert done.returncode == 0, done.stderr
+    assert names(out) == [
+        *("above.npz", "below.npz", "f.csv", "inside.npz", "level.npz", "outside.npz", "s.csv")
+    ]
+    last = done.stdout.splitlines()[-6:]
+    assert last[0].startswith("section s.csv: ") and last[2].startswith("fence f.csv: ")
+    assert last[3].startswith("cut by the plane: volume ")
+    whole = sum(arrays(out / f"{half}.npz")["block_volume"].sum() for half in ("below", "above"))
+    assert arrays(out / "inside.npz")["block_volume"][0] == 0
+    parts = sum(arrays(out / f"{half}.npz")["block_volume"].sum() for half in ("inside", "outside"))
+    assert whole == pytest.approx(parts)
+    assert (arrays(out / "level.npz")["block"] == 1).all()
+    with (out / "f.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert {row["panel"] for row in rows} == {"0", "1"}
+    assert {row["block_name"] for row in rows} == set(arrays(out / "below.npz")["block_names"])
+
+
+def test_a_model_is_cut_by_a_surface_from_a_file(layers, out):  # noqa: F811
+    vertices, triangles = grid_surface(2, lambda x, y: 2 + 0.5 * x, 20.0)
+    write_off(out.parent / "fault.off", vertices - [5, 5, 0], triangles)
+    done = run(layers([0, 1, 3]), "--cut", f"{out.parent / 'fault.off'}={out / 'b.vtu'},{out / 'a.vtu'}")
+    assert done.returncode == 0, done.stderr
+    assert names(out) == ["a.vtu", "b.vtu"]
+    small, triangles = grid_surface(2, lambda x, y: 2 + 0 * x, 0.25)
+    write_off(out.parent / "small.off", small, triangles)
+    done = run(layers([0, 1, 3]), "--cut", f"{out.parent / 'small.off'}={out / 'c.npz'}")
+    assert "small.off" in refused(done) and "ends inside of it near" in done.stderr
+    assert names(out) == ["a.vtu", "b.vtu"]
+
+
+def test_vtu_and_obj_know_block_and_property(layers, out, tmp_path):  # noqa: F811
+    vtk = pytest.importorskip("vtk", reason="SKIPPED: VTK is not installed; it reads the .vtu back")
+    from vtk.util.numpy_support import vtk_to_numpy
+
+    plane = "0.5,0.5,0,1,0.2,0"
+    kinds = ("vtu", "obj", "npz")
+    done = run(layers([0, 1, 3]), *(a for k in kinds for a in ("--section", f"{plane}={out}/s.{k}")))
+    assert done.returncode == 0, done.stderr
+    section = arrays(out / "s.npz")
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(out / "s.vtu"))
+    reader.Update()
+    grid = reader.GetOutput()
+    assert grid.GetNumberOfCells() == len(section["block"])
+    for name in ("block", "property", "cells"):
+        assert (vtk_to_numpy(grid.GetCellData().GetArray(name)) == section[name]).all()
+    corners = [
+        [grid.GetCell(k).GetPointId(i) for i in range(grid.GetCell(k).GetNumberOfPoints())]
+        for k in range(grid.GetNumberOfCells())
+    ]
+    assert np.concatenate(corners).tolist() == section["polygon_vertices"].tolist()
+    lines = (out / "s.obj").read_text().splitlines()
+    assert sum(line.startswith("v ") for line in lines) == len(section["vertices"])
+    assert sum(line.startswith("f ") for line in lines) == len(section["block"])
+    groups = [line for line in lines if line.startswith("g ")]
+    assert len(groups) == len(set(section["block"].tolist()))
+    assert groups[0] == f"g block_0_{str(section['block_names'][0]).replace(' ', '_')}"
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (("--section", "1,2,3=s.vtu"), "a plane is six numbers"),
+        (("--section", "0,0,0,0,0,0=s.vtu"), "the normal must not be zero"),
+        (("--section", "0,0,0,1,0,0"), "it is written as --section X,Y,Z,NX,NY,NZ=FILE"),
+        (("--section", "0,0,0,1,0,nan=s.vtu"), "a plane is six numbers"),
+        (("--section", "0,0,0,1,0,0=s.stl"), "use one of .vtu, .obj, .csv, .npz"),
+        (("--fence", "0,0,1=f.vtu"), "two places at least"),
+        (("--fence", "0,0,0,0,1,1=f.vtu"), "two equal places"),
+        (("--cut", "0,0,0,1,0,0=,"), "one of them may be left out"),
+        (("--cut", "0,0,0,1,0,0=a.npz,b.npz,c.npz"), "it is written as"),
+        (("--cut", "0,0,0,1,0,0=a.obj"), "use .npz or .vtu"),
+        (("--cut", "fault.stl=a.npz"), "is no cutter"),
+        (("--cut", "other.toml:=a.npz"), "which block?"),
+        (("--cut", ":chalk=a.npz"), "no block named 'chalk'"),
+        (("--cut", ":1=a.npz", "--export", "a.npz"), "two outputs have this name"),
+        (("--cut", ":1=a.npz", "--estimate"), "goes without"),
+    ],
+)
+def test_wrong_usage(layers, out, arguments, words):  # noqa: F811
+    done = run(layers([0, 1, 3]), *arguments, cwd=out)
+    assert done.returncode == 2, done.stderr
+    assert words in done.stderr.splitlines()[-1]
+    assert names(out) == []
+
+
+def test_what_is_read_is_not_overwritten(layers, out):  # noqa: F811
+    line = out.parent / "line.csv"
+    line.write_text("0 0\n1 1\n")
+    done = run(layers([0, 1]), "--fence", f"{line}={line}")
+    assert "choose another name" in refused(done, 2)
+    assert line.read_text() == "0 0\n1 1\n"
+
+
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        ("x,y\n1,2\n", "two places at least"),
+        ("1,2\n3\n", ":2: a line of the polyline has two numbers"),
+        ("1,2\n3,four\n", ":2: a line of the polyline has two numbers"),
+        ("1,2\n1,2\n3,4\n", "two equal places"),
+        ("", "two places at least"),
+    ],
+)
+def test_a_file_that_is_no_polyline(tmp_path, text, words):
+    (tmp_path / "line.csv").write_text(text)
+    with pytest.raises(InputRefused, match=words):
+        read_polyline(tmp_path / "line.csv")
+
+
+def test_a_missing_cutter_is_told_before_the_build(layers, out):  # noqa: F811
+    project = layers([0, 1])
+    assert "gone.off" in refused(run(project, "--cut", f"gone.off={out / 'a.npz'}"))
+    assert "gone.csv" in refused(run(project, "--fence", f"gone.csv={out / 'a.csv'}"))
+    assert load_project(project).rocks and names(out) == []
