@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,6 +27,7 @@ from .table_layout import (
 from .text import Step, no_step, read_bytes, require_text
 
 BYTES_AT_ONCE = 1 << 19  # between two steps: a few milliseconds
+_MOST_THREADS = 8
 _AXES = {
     "x": ("x", "easting", "east", "x_coord", "xcoord", "coord_x", "utm_x", "x_utm"),
     "y": ("y", "northing", "north", "y_coord", "ycoord", "coord_y", "utm_y", "y_utm"),
@@ -188,24 +191,33 @@ def read_rows(
 
 
 def _pieces(native, table, columns, filters, decimal, missing, step) -> PointRows:
-    """native.read_numbers over the whole table; its errors count from the beginning of the file."""
-    raw, at = table.raw, table.layout.body
+    """native.read_numbers over the whole table, piece by piece on all processors; its errors count from the
+    beginning of the file."""
+    raw = table.raw
+    bounds = [table.layout.body]
+    while bounds[-1] < len(raw):
+        end = raw.find(b"\n", min(bounds[-1] + BYTES_AT_ONCE, len(raw)))
+        bounds.append(len(raw) if end < 0 else end + 1)
+
+    def read(begin: int, end: int):
+        separator = table.layout.separator
+        return native.read_numbers(raw, begin, end, separator, decimal, columns, filters, missing, 1)
+
     line, found, counts = table.layout.body_line, [], np.zeros(2, np.int64)
-    while at < len(raw):
-        end = raw.find(b"\n", min(at + BYTES_AT_ONCE, len(raw)))
-        end = len(raw) if end < 0 else end + 1
-        try:
-            values, lines, filtered, without = native.read_numbers(
-                raw, at, end, table.layout.separator, decimal, columns, filters, missing
-            )
-        except native.InputError as error:
-            error.items = [error.items[0] + line, *error.items[1:]]
-            error.items[2:] = [byte + at for byte in error.items[2:]]
-            raise
-        found.append(values)
-        counts += filtered, without
-        line, at = line + lines, end
-        step(at / len(raw))
+    pool = ThreadPoolExecutor(min(os.cpu_count() or 1, _MOST_THREADS), "realmodel reading")
+    try:
+        for end, piece in zip(bounds[1:], pool.map(read, bounds[:-1], bounds[1:]), strict=True):
+            values, lines, filtered, without = piece
+            found.append(values)
+            counts += filtered, without
+            line += lines
+            step(end / len(raw))
+    except native.InputError as error:
+        begin = bounds[len(found)]
+        error.items = [error.items[0] + line, *error.items[1:2], *(byte + begin for byte in error.items[2:])]
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
     points = np.concatenate(found) if found else np.empty((0, len(columns)))
     return PointRows(points, missing=int(counts[1]), filtered=int(counts[0]))
 
