@@ -13,6 +13,7 @@ from .core import RealModelError
 def _loaded(*_arguments):
     built_models.forget()
     stored_arrays.forget()
+    display.forget()
     migrate_all()
     live.switched()
 
@@ -44,17 +45,19 @@ def _depsgraph(scene):
 
 @persistent
 def _undone(*_arguments):
+    display.undone()
     live.undone()
 
 
 @persistent
 def _changed(scene, depsgraph):
     live.changed(scene, depsgraph)
+    display.changed(scene, depsgraph)
 
 
 @persistent
-def _frame_changed(scene, *_arguments):
-    display.frame_changed(scene)
+def _frame_changed(scene, depsgraph=None, *_arguments):
+    display.frame_changed(scene, depsgraph)
 
 
 def migrate_all():
@@ -66,6 +69,16 @@ def migrate_all():
             print(f"RealModel: scene '{scene.name}': {error}")
 
 
+@persistent
+def _render_begins(*_arguments):
+    display.render_begins()
+
+
+@persistent
+def _render_ends(*_arguments):
+    display.render_ends()
+
+
 _HANDLERS = (
     ("load_post", _loaded),
     ("load_pre", _before_loading),
@@ -74,6 +87,9 @@ _HANDLERS = (
     ("redo_post", _undone),
     ("depsgraph_update_post", _changed),
     ("frame_change_post", _frame_changed),
+    ("render_init", _render_begins),
+    ("render_complete", _render_ends),
+    ("render_cancel", _render_ends),
 )
 
 

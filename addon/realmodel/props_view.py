@@ -2,10 +2,47 @@
 """Settings of the view beside `display`, `stage`, `explode` and `color_by`: `scene.realmodel.view`."""
 
 import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatVectorProperty, PointerProperty, StringProperty
+
+from .bl import changes
+
+SUBJECTS = (
+    ("BLOCKS", "Blocks", "The blocks"),
+    ("INTERFACES", "Interfaces", "The surfaces that the model is built from, also where they were eroded"),
+    ("BOTH", "Both", "The blocks and the interfaces"),
+)
 
 
 class RealModelView(bpy.types.PropertyGroup):
     """How the model is looked at."""
+
+    subject: EnumProperty(
+        name="Of",
+        description="What is drawn as points, lines or areas",
+        items=SUBJECTS,
+        update=changes.view,
+    )
+    hidden: StringProperty(options={"HIDDEN"})  # JSON list of the property IDs whose blocks are hidden
+    collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})  # of what is only for viewing
+    plane: PointerProperty(
+        name="Section plane",
+        type=bpy.types.Object,
+        description="Object whose XY plane cuts the model; what lies on the side of its Z axis is taken off",
+        update=changes.section,
+    )
+    use_section: BoolProperty(
+        name="Show cut",
+        description="Show the model cut open along the section plane, the cut filled",
+        update=changes.section,
+    )
+    cut: StringProperty(options={"HIDDEN"})  # JSON of the plane that the bodies of kind "cut" were made with
+    cells_of: StringProperty(options={"HIDDEN"})  # JSON of what the bodies of kind "cells" were made of
+    applied: StringProperty(options={"HIDDEN"})  # JSON of the settings that the objects show
+    place: StringProperty(options={"HIDDEN"})  # JSON of the last coordinates that were asked for
+    zero: StringProperty(options={"HIDDEN"})  # JSON of the point that distances are told from
+    message: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+    bounds_low: FloatVectorProperty(options={"HIDDEN"})
+    bounds_high: FloatVectorProperty(options={"HIDDEN"})
 
 
 CLASSES = (RealModelView,)

@@ -31,7 +31,7 @@ def write_scene(model):
 def save_blend(path):
     """Write the current state to a .blend file, compressed. Raises OutputFailed."""
     try:
-        with _without_chatter():
+        with without_chatter():
             bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=True, check_existing=False)
     except RuntimeError as error:
         raise _failed(path, error) from error
@@ -49,14 +49,14 @@ def render(path, size=(1600, 1000), samples=picture.SAMPLES, time_limit=picture.
         raise OutputFailed(f"{path}: there is no folder {Path(path).parent}")
     blocks = scene.model_objects(bpy.context.scene, "block")
     try:
-        with _without_chatter():
+        with without_chatter():
             return picture.render_picture(blocks, path, size, samples, time_limit)
     except RuntimeError as error:
         raise _failed(path, error) from error
 
 
 @contextlib.contextmanager
-def _without_chatter():
+def without_chatter():
     """Keep what Blender itself prints (a line per sample of a render) out of our output.
 
     What it has to say of a failure comes as RuntimeError too.

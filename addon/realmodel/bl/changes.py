@@ -66,3 +66,15 @@ def stage(group, _context):
         group.stage = last  # comes here again
     elif not settings.is_filling():
         display.stage_changed(scene)
+
+
+def view(row, _context):
+    """What is drawn in the display modes."""
+    if not settings.is_filling():
+        display.mode_changed(row.id_data)
+
+
+def section(row, _context):
+    """Another section plane, or none."""
+    if not settings.is_filling():
+        display.section_changed(row.id_data)

@@ -49,7 +49,7 @@ class Picture:
     hidden_blocks: list
 
 
-class _Stage:
+class Stage:
     """A scene for one picture and the datablocks made for it."""
 
     def __init__(self):
@@ -95,11 +95,11 @@ def render_picture(block_objects, path, size=(1600, 1000), samples=SAMPLES, time
         raise RuntimeError("there is no block to render: the model is empty")
     bodies, exaggeration = arrangement.centred(_bodies(block_objects))
     layout, hidden = _choose_layout(bodies, size)
-    stage = _Stage()
+    stage = Stage()
     try:
         camera = _set_up(stage, layout, size)
         _add_light(stage, layout, camera)
-        _set_renderer(stage.scene, path, size, samples, time_limit)
+        set_renderer(stage.scene, path, size, samples, time_limit)
         bpy.ops.render.render(write_still=True, scene=stage.scene.name)
     finally:
         stage.remove()
@@ -123,7 +123,7 @@ def _choose_layout(bodies, size):
     """
 
     def judged(layout):
-        stage = _Stage()
+        stage = Stage()
         try:
             return layout, _hidden(stage.scene, _set_up(stage, layout, size), layout.bodies, size)
         finally:
@@ -237,7 +237,8 @@ def _add_light(stage, layout, camera):
     stage.add_triangles("floor", corners[[[0, 1, 2], [0, 2, 3]]], floor)
 
 
-def _set_renderer(scene, path, size, samples, time_limit):
+def set_renderer(scene, path, size, samples, time_limit):
+    """Has a scene render a PNG by what renderer this Blender has, in the colours as they are."""
     render = scene.render
     render.resolution_x, render.resolution_y = size
     render.resolution_percentage = 100

@@ -90,3 +90,18 @@ def plain_colours(scene):
     scene.view_settings.look = "None"
     scene.view_settings.exposure = 0.0
     scene.view_settings.gamma = 1.0
+
+
+def plain_shader(points):
+    """The built-in shader of one colour, for points or for lines; its names changed in 4.0 and 4.5."""
+    import gpu
+
+    names = ["UNIFORM_COLOR"] if bpy.app.version >= (4, 0, 0) else ["3D_UNIFORM_COLOR"]
+    if points and bpy.app.version >= (4, 5, 0):
+        names.insert(0, "POINT_UNIFORM_COLOR")
+    for name in names[:-1]:
+        try:
+            return gpu.shader.from_builtin(name)
+        except ValueError:
+            continue  # this version does not have it yet
+    return gpu.shader.from_builtin(names[-1])

@@ -58,12 +58,18 @@ def build(
 
 
 def build_stage(
-    model: Model, m: int, progress: Progress | None = None, cancel: Cancel | None = None
+    model: Model,
+    m: int,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    cells: str | None = None,
 ) -> Model:
-    """Model.stage."""
+    """Model.stage. cells: another kind of cells than the model has; nothing is interpolated again for it."""
     check_stage(model.project, m)
+    kind = model.cell_kind if cells is None else cells
+    check_cells(kind)
     inputs = [entry.stage(m) for entry in model.rock_inputs]
-    if all(
+    if kind == model.cell_kind and all(
         len(entry.surfaces) == len(whole.surfaces)
         for entry, whole in zip(inputs, model.rock_inputs, strict=True)
     ):
@@ -72,11 +78,9 @@ def build_stage(
     project = replace(given, rocks=[entry.rock for entry in inputs])
 
     def task(work: Work) -> Model:
-        built = _intersect(work, inputs, model.cell_kind, model.threads, 0.0, _STAGE_INTERSECTED)
+        built = _intersect(work, inputs, kind, model.threads, 0.0, _STAGE_INTERSECTED)
         timings = {"intersect": time.perf_counter() - began}
-        return _assemble(
-            work, project, inputs, built, model.cell_kind, model.threads, timings, _STAGE_INTERSECTED
-        )
+        return _assemble(work, project, inputs, built, kind, model.threads, timings, _STAGE_INTERSECTED)
 
     began = time.perf_counter()
     return run(task, progress, cancel)

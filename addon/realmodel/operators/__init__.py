@@ -3,9 +3,9 @@
 
 import bpy
 
-from . import build, files, library, results, rocks, start, surfaces, view
+from . import build, files, library, results, rocks, sections, start, surfaces, view
 
-_MODULES = (start, rocks, surfaces, build, files, library, results, view)
+_MODULES = (start, rocks, surfaces, build, files, library, results, view, sections)
 
 
 def register():

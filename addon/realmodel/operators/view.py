@@ -1,4 +1,292 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Looking at the model: section, standard views, capture, coordinates."""
+"""Looking at the model: standard views, capture, coordinates, hiding blocks by their property."""
 
-CLASSES = ()
+import bpy
+from bpy.props import EnumProperty, FloatVectorProperty, IntProperty, StringProperty
+from bpy_extras import view3d_utils
+from bpy_extras.io_utils import ExportHelper
+
+from ..bl import display, project_settings, units
+from ..bl.display import capture, coordinates, modes, viewpoints
+from ..core import InputRefused, UsageError
+from .reporting import Reporting, needed_model, needed_path
+
+_LOOKING = {
+    "FRONT": ("Front", "From the south"),
+    "BACK": ("Back", "From the north"),
+    "LEFT": ("Left", "From the west"),
+    "RIGHT": ("Right", "From the east"),
+    "TOP": ("Top", "From above, as a map"),
+    "BOTTOM": ("Bottom", "From below"),
+}
+
+
+class REALMODEL_OT_view(Reporting, bpy.types.Operator):
+    """Look at the whole model along an axis, without perspective"""
+
+    bl_idname = "realmodel.view"
+    bl_label = "Look at Model"
+    bl_options = {"REGISTER"}
+
+    direction: EnumProperty(
+        name="Direction",
+        description="Where to look from",
+        items=[(key, *_LOOKING[key]) for key in viewpoints.DIRECTIONS],
+    )
+
+    @classmethod
+    def description(cls, _context, properties):
+        return f"Look at the whole model without perspective. {_LOOKING[properties.direction][1]}"
+
+    def act(self, context):
+        viewpoints.turn(context, self.direction)
+
+
+class REALMODEL_OT_view_previous(Reporting, bpy.types.Operator):
+    """Go back to how the viewports looked at the model before"""
+
+    bl_idname = "realmodel.view_previous"
+    bl_label = "Previous View"
+    bl_options = {"REGISTER"}
+
+    def act(self, context):
+        viewpoints.step(context, -1)
+
+
+class REALMODEL_OT_view_next(Reporting, bpy.types.Operator):
+    """Go forth again to how the viewports looked at the model before Previous View"""
+
+    bl_idname = "realmodel.view_next"
+    bl_label = "Next View"
+    bl_options = {"REGISTER"}
+
+    def act(self, context):
+        viewpoints.step(context, 1)
+
+
+class REALMODEL_OT_view_all(Reporting, bpy.types.Operator):
+    """Bring the whole model into the frame, without turning the view"""
+
+    bl_idname = "realmodel.view_all"
+    bl_label = "Frame Model"
+    bl_options = {"REGISTER"}
+
+    def act(self, context):
+        viewpoints.frame(context)
+
+
+class REALMODEL_OT_capture(Reporting, bpy.types.Operator, ExportHelper):
+    """Write the 3D viewport as it is seen to a picture (PNG) of any size"""
+
+    bl_idname = "realmodel.capture"
+    bl_label = "Capture View"
+    bl_options = {"REGISTER"}
+
+    filename_ext = ".png"
+    filter_glob: StringProperty(default="*.png", options={"HIDDEN"})
+    width: IntProperty(
+        name="Width",
+        description="Pixels across; 0: as the viewport has",
+        min=0,
+        max=capture.LARGEST,
+        subtype="PIXEL",
+    )
+    height: IntProperty(
+        name="Height",
+        description="Pixels upwards; 0: as the viewport has",
+        min=0,
+        max=capture.LARGEST,
+        subtype="PIXEL",
+    )
+
+    def act(self, context):
+        path = project_settings.absolute(needed_path(self.filepath, "the picture"))
+        if path.suffix.lower() != ".png":
+            raise UsageError(f"{path}: a picture ends in .png")
+        width, height = self._size(context)
+        capture.write(context, path, (width, height))
+        self.report({"INFO"}, f"Wrote {path}, {width} x {height} pixels")
+
+    def _size(self, context):
+        found = capture.viewport(context)
+        usual = (1600, 1000) if found is None or bpy.app.background else (found[1].width, found[1].height)
+        if not self.width and not self.height:
+            return usual
+        width = self.width or round(self.height * usual[0] / usual[1])
+        height = self.height or round(self.width * usual[1] / usual[0])
+        return max(1, width), max(1, height)
+
+
+class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
+    """Hide the blocks of a property, or show them again; renders follow"""
+
+    bl_idname = "realmodel.hide_property"
+    bl_label = "Hide or Show Blocks by Property"
+
+    property_id: IntProperty(name="Property", description="ID of the property in the library; 0: none given")
+    action: EnumProperty(
+        name="Action",
+        description="What to do with the blocks of the property",
+        items=(
+            ("TOGGLE", "Toggle", "Hide them where they are shown, show them where they are hidden"),
+            ("HIDE", "Hide", "Hide them"),
+            ("SHOW", "Show", "Show them"),
+            ("ONLY", "Only", "Hide all others"),
+            ("ALL", "All", "Show the blocks of all properties"),
+        ),
+    )
+
+    def act(self, context):
+        needed_model(context)
+        scene = context.scene
+        ids = {row.property_id for row in scene.realmodel.results}
+        if self.property_id not in ids and self.action != "ALL":
+            raise InputRefused(
+                f"no block has property {self.property_id}",
+                advice=f"choose one of {', '.join(str(i) for i in sorted(ids))}",
+            )
+        hidden = modes.hidden_properties(scene)
+        if self.action == "ONLY":
+            hidden = ids - {self.property_id}
+        elif self.action == "ALL":
+            hidden = set()
+        elif self.action == "HIDE" or (self.action == "TOGGLE" and self.property_id not in hidden):
+            hidden.add(self.property_id)
+        else:
+            hidden.discard(self.property_id)
+        modes.hide_properties(scene, hidden)
+        display.mode_changed(scene)
+
+
+class REALMODEL_OT_coordinates(Reporting, bpy.types.Operator):
+    """Tell the coordinates of the model, its block, property and thickness: under the mouse until you click,
+    or at the 3D cursor"""
+
+    bl_idname = "realmodel.coordinates"
+    bl_label = "Coordinates"
+    bl_options = {"REGISTER"}
+
+    location: FloatVectorProperty(
+        name="Location",
+        description="The place in the coordinates of the scene; where it is not given, the 3D cursor",
+        subtype="TRANSLATION",
+    )
+
+    def act(self, context):
+        needed_model(context)
+        given = self.properties.is_property_set("location")
+        place = coordinates.at_point(context.scene, self.location if given else context.scene.cursor.location)
+        if place is None:
+            coordinates.remember(context.scene, None)
+            raise InputRefused(
+                "there is no block at this place", advice="put the 3D cursor or the location inside a block"
+            )
+        coordinates.remember(context.scene, place)
+        self.report({"INFO"}, place_text(context.scene, place))
+
+    def invoke(self, context, event):
+        if bpy.app.background or context.region_data is None or context.region.type != "WINDOW":
+            found = capture.viewport(context)
+            if bpy.app.background or found is None:
+                return self.execute(context)
+        if not len(context.scene.realmodel.results):
+            return self.execute(context)
+        context.window_manager.modal_handler_add(self)
+        context.window.cursor_modal_set("EYEDROPPER")
+        context.workspace.status_text_set("Coordinates: point at the model     Click: keep     Esc: leave")
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type in {"ESC", "RIGHTMOUSE"}:
+            return self._leave(context, {"CANCELLED"})
+        if event.type in {"MOUSEMOVE", "LEFTMOUSE", "RET", "NUMPAD_ENTER"}:
+            place = _under_mouse(context, event)
+            text = "no block here" if place is None else place_text(context.scene, place)
+            context.workspace.status_text_set(f"{text}     Click: keep     Esc: leave")
+            if event.type != "MOUSEMOVE" and event.value == "PRESS":
+                if place is None:
+                    return {"RUNNING_MODAL"}
+                coordinates.remember(context.scene, place)
+                self.report({"INFO"}, text)
+                return self._leave(context, {"FINISHED"})
+            return {"RUNNING_MODAL"}
+        return {"PASS_THROUGH"}
+
+    def cancel(self, context):
+        self._leave(context, {"CANCELLED"})
+
+    def _leave(self, context, result):
+        context.window.cursor_modal_restore()
+        context.workspace.status_text_set(None)
+        return result
+
+
+def _under_mouse(context, event):
+    """The place of the model under the mouse, in whatever 3D viewport that is."""
+    for area in context.screen.areas:
+        if area.type != "VIEW_3D":
+            continue
+        region = next(r for r in area.regions if r.type == "WINDOW")
+        at = event.mouse_x - region.x, event.mouse_y - region.y
+        if 0 <= at[0] < region.width and 0 <= at[1] < region.height:
+            view = area.spaces.active.region_3d
+            start = view3d_utils.region_2d_to_origin_3d(region, view, at)
+            along = view3d_utils.region_2d_to_vector_3d(region, view, at)
+            if not view.is_perspective:  # the origin of such a ray may lie within the model
+                start = start - along * 1e-1 * area.spaces.active.clip_end
+            return coordinates.under_ray(context.scene, start, along)
+    return None
+
+
+def place_text(scene, place):
+    """A place in one line, lengths in the units of the scene."""
+    parts = [f"x {place.x:.3f}  y {place.y:.3f}  height {place.z:.3f}", place.block]
+    parts.append(place.property or f"property {place.property_id}" if place.property_id else "no property")
+    parts.append(f"{units.length_text(scene, place.thickness)} thick")
+    away = coordinates.from_zero(scene, place)
+    if away is not None:
+        parts.append("from origin " + "  ".join(f"{value:+.3f}" for value in away))
+    return ", ".join(parts)
+
+
+class REALMODEL_OT_set_origin(Reporting, bpy.types.Operator):
+    """Tell coordinates also as distances from a point: the one that was asked for last, or the 3D cursor. The
+    model itself does not move"""
+
+    bl_idname = "realmodel.set_origin"
+    bl_label = "Set Origin"
+
+    action: EnumProperty(
+        name="Origin",
+        description="The point that distances are told from",
+        items=(
+            ("PLACE", "Last Place", "The coordinates that were asked for last"),
+            ("CURSOR", "3D Cursor", "Where the 3D cursor is"),
+            ("NONE", "None", "No distances"),
+        ),
+    )
+
+    def act(self, context):
+        scene = context.scene
+        if self.action == "NONE":
+            coordinates.set_zero(scene, None)
+        elif self.action == "CURSOR":
+            origin = project_settings.model_origin(scene)
+            coordinates.set_zero(scene, [c + o for c, o in zip(scene.cursor.location, origin, strict=True)])
+        else:
+            place = coordinates.last(scene)
+            if place is None:
+                raise InputRefused("no coordinates were asked for yet", advice="use Coordinates first")
+            coordinates.set_zero(scene, (place.x, place.y, place.z))
+
+
+CLASSES = (
+    REALMODEL_OT_view,
+    REALMODEL_OT_view_previous,
+    REALMODEL_OT_view_next,
+    REALMODEL_OT_view_all,
+    REALMODEL_OT_capture,
+    REALMODEL_OT_hide_property,
+    REALMODEL_OT_coordinates,
+    REALMODEL_OT_set_origin,
+)

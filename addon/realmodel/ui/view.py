@@ -3,7 +3,11 @@
 
 import bpy
 
-from .panel import TabPanel, hint
+from ..bl import library_rows, settings, units
+from ..bl.display import coordinates, cuts, modes
+from .panel import TabPanel, hint, wrapped
+
+_WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
 
 
 class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
@@ -11,11 +15,154 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
     bl_idname = "REALMODEL_PT_view"
     bl_order = 4
 
-    def draw_in(self, layout, _context, group):
+    def draw_in(self, layout, context, group):
         if not len(group.results):
             hint(layout, "Build the model first; then choose here how it is shown.")
             return
-        layout.prop(group, "display")
+        column = layout.column(align=True)
+        column.prop(group, "display", text="Show")
+        if group.display in _WITH_SUBJECT:
+            column.prop(group.view, "subject")
+        column.prop(group, "color_by")
+        layout.prop(group, "stage", slider=True)
+        last = settings.last_stage(context.scene)
+        rows = [surface for _, surface in settings.surface_rows(context.scene)]
+        if group.stage < last and len(group.rocks) == 1 and group.stage < len(rows):
+            hint(layout, f"of {last}: just after {rows[group.stage].name}")
+        column = layout.column(align=True)
+        column.prop(group, "explode", slider=True)
+        if group.explode > 0.0:
+            column.prop(group, "explode_direction", text="Direction")
+        if group.view.message:
+            box = layout.box()
+            box.alert = True
+            for line in wrapped(group.view.message):
+                box.label(text=line)
 
 
-CLASSES = (REALMODEL_PT_view,)
+class REALMODEL_PT_view_properties(TabPanel, bpy.types.Panel):
+    bl_label = "Blocks by Property"
+    bl_idname = "REALMODEL_PT_view_properties"
+    bl_parent_id = "REALMODEL_PT_view"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return len(context.scene.realmodel.results) > 0
+
+    def draw_in(self, layout, context, group):
+        hidden = modes.hidden_properties(context.scene)
+        column = layout.column(align=True)
+        for property_id in sorted({row.property_id for row in group.results}):
+            row = column.row(align=True)
+            entry = library_rows.find(context.scene, property_id)
+            if entry is not None:
+                swatch = row.row()
+                swatch.scale_x = 0.3
+                swatch.prop(entry, "color", text="")
+                row.label(text=entry.name)
+            else:
+                row.label(text=f"Property {property_id}" if property_id else "No property")
+            icon = "HIDE_ON" if property_id in hidden else "HIDE_OFF"
+            made = row.operator("realmodel.hide_property", text="", icon=icon, emboss=False)
+            made.property_id, made.action = property_id, "TOGGLE"
+            made = row.operator("realmodel.hide_property", text="", icon="SOLO_OFF", emboss=False)
+            made.property_id, made.action = property_id, "ONLY"
+        if hidden:
+            column.operator("realmodel.hide_property", text="Show All").action = "ALL"
+
+
+class REALMODEL_PT_view_section(TabPanel, bpy.types.Panel):
+    bl_label = "Section"
+    bl_idname = "REALMODEL_PT_view_section"
+    bl_parent_id = "REALMODEL_PT_view"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return len(context.scene.realmodel.results) > 0
+
+    def draw_in(self, layout, context, group):
+        view, scene = group.view, context.scene
+        plane = cuts.plane_of(scene)
+        if plane is None:
+            hint(layout, "Add a plane; move and turn it (G, R) to see the model cut open there.")
+            layout.operator_menu_enum(
+                "realmodel.section_plane", "axis", text="Add Section Plane", icon="MESH_PLANE"
+            )
+        else:
+            layout.prop(view, "use_section")
+            layout.prop(plane, "location")
+            layout.prop(plane, "rotation_euler", text="Rotation")
+            row = layout.row(align=True)
+            row.operator_menu_enum("realmodel.section_plane", "axis", text="Face")
+            row.operator("realmodel.section_flip", text="Flip", icon="ARROW_LEFTRIGHT")
+            row.operator("realmodel.section_remove", text="", icon="X")
+            if cuts.is_working(scene):
+                hint(layout, "cutting ...")
+        layout.prop(view, "plane", text="Plane")
+        layout.operator("realmodel.section", icon="MOD_BOOLEAN")
+
+
+class REALMODEL_PT_view_camera(TabPanel, bpy.types.Panel):
+    bl_label = "Viewpoint"
+    bl_idname = "REALMODEL_PT_view_camera"
+    bl_parent_id = "REALMODEL_PT_view"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_in(self, layout, _context, _group):
+        grid = layout.grid_flow(row_major=True, columns=3, align=True)
+        for direction in ("FRONT", "LEFT", "TOP", "BACK", "RIGHT", "BOTTOM"):
+            grid.operator("realmodel.view", text=direction.capitalize()).direction = direction
+        row = layout.row(align=True)
+        row.operator("realmodel.view_previous", text="Previous", icon="LOOP_BACK")
+        row.operator("realmodel.view_next", text="Next", icon="LOOP_FORWARDS")
+        row.operator("realmodel.view_all", text="Frame", icon="ZOOM_ALL")
+        layout.operator("realmodel.capture", text="Capture...", icon="RENDER_STILL")
+
+
+class REALMODEL_PT_view_coordinates(TabPanel, bpy.types.Panel):
+    bl_label = "Coordinates"
+    bl_idname = "REALMODEL_PT_view_coordinates"
+    bl_parent_id = "REALMODEL_PT_view"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return len(context.scene.realmodel.results) > 0
+
+    def draw_in(self, layout, context, _group):
+        row = layout.row(align=True)
+        row.operator("realmodel.coordinates", text="Under the Mouse", icon="EYEDROPPER")
+        at_cursor = row.row(align=True)
+        at_cursor.operator_context = "EXEC_DEFAULT"
+        at_cursor.operator("realmodel.coordinates", text="At 3D Cursor", icon="PIVOT_CURSOR")
+        place = coordinates.last(context.scene)
+        if place is not None:
+            column = layout.column(align=True)
+            for name, value in _lines(context.scene, place):
+                split = column.split(factor=0.35)
+                split.label(text=name)
+                split.label(text=value)
+        layout.operator_menu_enum("realmodel.set_origin", "action", icon="EMPTY_AXIS")
+
+
+def _lines(scene, place):
+    yield "East (x)", f"{place.x:.3f}"
+    yield "North (y)", f"{place.y:.3f}"
+    yield "Height (z)", f"{place.z:.3f}"
+    yield "Block", place.block
+    yield "Property", place.property or (str(place.property_id) if place.property_id else "none")
+    yield "Thickness", units.length_text(scene, place.thickness)
+    away = coordinates.from_zero(scene, place)
+    if away is not None:
+        yield "From origin", "  ".join(f"{value:+.2f}" for value in away)
+
+
+CLASSES = (
+    REALMODEL_PT_view,
+    REALMODEL_PT_view_properties,
+    REALMODEL_PT_view_section,
+    REALMODEL_PT_view_camera,
+    REALMODEL_PT_view_coordinates,
+)

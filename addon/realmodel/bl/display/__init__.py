@@ -1,61 +1,236 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a built model is shown: the display modes, the stage, the blocks moved apart, the colours.
+"""How a built model is shown: the display modes, the stage, the blocks moved apart, the colours, the cut.
 
-The settings call one function here when they change, the build calls `built` and `cleared`.
+The settings call one function here when they change, the build calls `built` and `cleared`. All of it leaves
+the model as it is: see docs/panel.md, "View".
+
+shown_models   the model at a stage, from the core
+stages         the blocks' shapes at a stage
+modes          the six display modes
+visible        hiding and showing objects without taking back what the user does
+bodies, cells  objects that are only for viewing
+drawing        points and lines
+explosion      the blocks moved apart
+colours        what the colours tell
+cuts, sections the movable plane; sections as mesh objects
+viewpoints     where the viewports look from
+capture        pictures
+coordinates    what is under the cursor
 """
 
-from .. import built_models  # noqa: F401 - what is drawn is taken from there
+import json
+
+from ...core import RealModelError
+from .. import settings
+from .visible import show
+
+__all__ = [
+    "built",
+    "changed",
+    "cleared",
+    "colours_changed",
+    "explode_changed",
+    "forget",
+    "frame_changed",
+    "mode_changed",
+    "register",
+    "render_begins",
+    "render_ends",
+    "section_changed",
+    "show",
+    "stage_changed",
+    "undone",
+    "unregister",
+]
+
+_ANIMATED = ("stage", "explode", "explode_direction", "display", "color_by")
 
 
 def register():
     """Called when the add-on is enabled."""
+    from . import drawing
+
+    drawing.register()
 
 
 def unregister():
     """Called when the add-on is disabled: no handler of drawing may stay."""
+    from . import cuts, drawing, replacing, shown_models, viewpoints
+
+    drawing.unregister()
+    cuts.stop()
+    replacing.stop()
+    shown_models.forget()
+    viewpoints.forget()
+
+
+def forget():
+    """Another file was opened."""
+    from . import cuts, replacing, shown_models, viewpoints
+
+    cuts.stop()
+    replacing.stop()
+    forget_meshes()
+    shown_models.forget()
+    viewpoints.forget()
+
+
+def forget_meshes():
+    """Lets go of what was read from meshes."""
+    from . import coordinates, drawing
+
+    drawing.forget()
+    coordinates.forget()
 
 
 def mode_changed(scene):
-    """Another display mode: interfaces are hidden where blocks are shown, and the other way round."""
-    interfaces = scene.realmodel.display == "SURFACES"
-    for rock in scene.realmodel.rocks:
-        for surface in rock.surfaces:
-            show(scene, surface.interface, interfaces and not surface.hide)
-    for block in scene.realmodel.results:
-        show(scene, block.object, not interfaces)
+    """Another display mode, another surface or property hidden."""
+    _show(scene, display=scene.realmodel.display)
 
 
 def stage_changed(scene):
     """Another stage."""
+    _show(scene, stage=scene.realmodel.stage)
 
 
 def explode_changed(scene):
     """The blocks moved apart, farther or less."""
+    group = scene.realmodel
+    _show(scene, explode=group.explode, explode_direction=group.explode_direction)
 
 
 def colours_changed(scene):
     """Another rule of colouring, or another colour in the library."""
+    _show(scene, color_by=scene.realmodel.color_by)
+
+
+def section_changed(scene):
+    """The section plane is another one, or the cut is wanted or not wanted."""
+    from . import cuts
+
+    if not cuts.is_on(scene):
+        cuts.take_off(scene)
+        mode_changed(scene)
+    else:
+        try:
+            cuts.refresh(scene)
+        except RealModelError as error:
+            scene.realmodel.view.message = str(error)
+        mode_changed(scene)
 
 
 def built(scene):
     """A model was built anew: `built_models.current(scene)` has it."""
+    from . import explosion, shown_models
+
     for layer in scene.view_layers:
         layer.update()  # or it would not know the new objects, and show them all when it learns of them
-    mode_changed(scene)
+    forget_meshes()
+    shown_models.forget()
+    explosion.remember_bounds(scene)
+    group = scene.realmodel
+    group.view.cells_of = ""
+    whole = group.stage >= settings.last_stage(scene)
+    _show(scene, whole, **{key: getattr(group, key) for key in _ANIMATED})
 
 
 def cleared(scene):
     """The blocks are gone."""
+    from . import bodies, colours, cuts
+
+    forget_meshes()
+    bodies.remove(scene, bodies.CELLS)
+    cuts.take_off(scene)
+    colours.forget(scene)
+    scene.realmodel.view.applied = ""
 
 
-def frame_changed(scene):
-    """Another frame of an animation: keyframed settings have changed without their callbacks."""
+def frame_changed(scene, depsgraph=None):
+    """Another frame of an animation: keyframed settings have changed without their callbacks.
 
-
-def show(scene, item, shown):
-    """Shows or hides an object in the view layers of a scene."""
-    if item is None:
+    depsgraph: the evaluated one; while an animation is rendered only that has their values.
+    """
+    if not len(scene.realmodel.results):
         return
-    for layer in scene.view_layers:
-        if item.name in layer.objects and item.hide_get(view_layer=layer) == shown:
-            item.hide_set(not shown, view_layer=layer)
+    evaluated = scene if depsgraph is None else scene.evaluated_get(depsgraph)
+    before = _applied(scene)
+    now = {key: getattr(evaluated.realmodel, key) for key in _ANIMATED}
+    different = {key: value for key, value in now.items() if before.get(key) != value}
+    if different:
+        _show(scene, **different)
+
+
+def render_begins(*_arguments):
+    """From now on nothing may be freed that a renderer may hold."""
+    from . import replacing
+
+    replacing.begin_render()
+
+
+def render_ends(*_arguments):
+    """The render is complete or cancelled."""
+    from . import replacing
+
+    replacing.end_render()
+
+
+def undone():
+    """Blender has undone or redone something: what was read from meshes may be of others now."""
+    import bpy
+
+    from . import cuts
+
+    forget_meshes()
+    for scene in bpy.data.scenes:
+        if cuts.is_on(scene):
+            cuts.touch(scene)
+
+
+def changed(scene, depsgraph):
+    """Blender has evaluated changed objects."""
+    import bpy
+
+    from . import coordinates, cuts, drawing
+
+    plane = scene.realmodel.view.plane
+    for update in depsgraph.updates:
+        item = update.id.original
+        if isinstance(item, bpy.types.Mesh) and update.is_updated_geometry:
+            drawing.forget({item.name_full})
+            coordinates.forget({item.name_full})
+        elif item == plane and update.is_updated_transform and cuts.is_on(scene):
+            cuts.touch(scene)
+
+
+def _applied(scene):
+    text = scene.realmodel.view.applied
+    return json.loads(text) if text else {}
+
+
+def _show(scene, has_shapes=False, **wanted):
+    """Shows what is wanted: any of the settings that can be animated, by their names. has_shapes: the blocks
+    have the shapes of the stage already."""
+    from . import colours, cuts, explosion, modes, replacing, stages
+
+    group = scene.realmodel
+    if not len(group.results) or scene.library is not None:
+        return
+    replacing.tidy()
+    group.view.message = ""
+    now = {key: getattr(group, key) for key in _ANIMATED} | _applied(scene) | wanted
+    try:
+        if "stage" in wanted and not has_shapes:
+            stages.show(scene, now["stage"])
+            forget_meshes()
+        if "stage" in wanted and cuts.is_on(scene):
+            cuts.refresh(scene, now["stage"])
+    except RealModelError as error:
+        group.view.message = str(error)
+        return
+    if "explode" in wanted or "explode_direction" in wanted or "stage" in wanted:
+        explosion.apply(scene, now["explode"], now["explode_direction"])
+    if "display" in wanted or "stage" in wanted:
+        modes.apply(scene, now["display"], now["stage"])
+    if "color_by" in wanted or "stage" in wanted:
+        colours.apply(scene)
+    group.view.applied = json.dumps({key: now[key] for key in _ANIMATED})

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects that are only for viewing: cut halves of blocks, single cells. They stand beside the model, in the
+collection "<project> view", each a child of the block that it stands for, and go where that goes."""
+
+import bpy
+
+from .. import meshes, scene
+from . import replacing
+
+KIND = "realmodel_view"  # on an object: what it is for
+CUT, CELLS, PLANE, SECTION = "cut", "cells", "plane", "section"
+
+
+def of_kind(current, kind):
+    """{block object: body} of the bodies of a kind."""
+    return {item.parent: item for item in _listed(current, kind) if item.parent is not None}
+
+
+def _listed(current, kind):
+    """All bodies of a kind, also those whose block was removed."""
+    collection = current.realmodel.view.collection
+    return [] if collection is None else [item for item in collection.objects if item.get(KIND) == kind]
+
+
+def put(current, kind, shapes):
+    """Makes the bodies of a kind, in place of those that are there.
+
+    shapes: for each block that has one (block object, coordinates (V, 3) float32, offsets, corners,
+    face_surface or None).
+    """
+    known = of_kind(current, kind)
+    wanted = {block for block, *_ in shapes}
+    remove(current, kind, [item for item in _listed(current, kind) if item.parent not in wanted])
+    collection = view_collection(current)
+    for block, *arrays in shapes:
+        item = known.get(block)
+        if item is not None and item.data.users == 1:
+            replacing.give_shape(item, arrays)
+        else:
+            item = _new(collection, kind, block, meshes.new_mesh(f"{block.name} {kind}", *arrays))
+        _take_material(item, block)
+
+
+def _new(collection, kind, block, mesh):
+    item = bpy.data.objects.new(mesh.name, mesh)
+    item[KIND] = kind
+    item[scene.TAG] = "view"
+    item[scene.BLOCK] = block.get(scene.BLOCK, "")
+    item.hide_select = True
+    item.parent = block
+    collection.objects.link(item)
+    return item
+
+
+def _take_material(item, block):
+    material = block.material_slots[0].material if len(block.material_slots) else None
+    slots = item.data.materials
+    if not len(slots):
+        slots.append(material)
+    elif slots[0] != material:
+        slots[0] = material
+
+
+def follow_materials(current):
+    """The bodies take the materials that their blocks have now."""
+    for kind in (CUT, CELLS):
+        for block, item in of_kind(current, kind).items():
+            _take_material(item, block)
+
+
+def remove(current, kind, items=None):
+    """Removes the bodies of a kind, or of them only some, with their meshes."""
+    for item in _listed(current, kind) if items is None else items:
+        replacing.remove(item)
+    remove_collection_if_empty(current)
+
+
+def remove_collection_if_empty(current):
+    collection = current.realmodel.view.collection
+    if collection is not None and collection.library is None and not len(collection.objects):
+        bpy.data.collections.remove(collection)
+
+
+def view_collection(current):
+    """The collection of what is only for viewing; made and linked where it is not there."""
+    view, group = current.realmodel.view, current.realmodel
+    collection = view.collection
+    if collection is None or collection.library is not None:
+        collection = bpy.data.collections.new(f"{group.name} view")
+        collection[scene.TAG] = "view"
+        view.collection = collection
+    if collection not in list(current.collection.children_recursive):
+        parent = group.collection if group.collection is not None else current.collection
+        parent.children.link(collection)
+    return collection

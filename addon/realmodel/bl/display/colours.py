@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the colours of the blocks tell: their property, themselves, their rock mass, their age.
+
+The mesh of a block keeps its property's material. Other colours are materials that the object, not the mesh,
+has in its slot, so they show in every way of shading and in renders, and go without a trace.
+"""
+
+import colorsys
+
+import bpy
+
+from .. import library_rows, materials, settings
+from . import bodies
+
+KEY = "realmodel_colour"  # on a material: what it stands for
+_GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
+_OLD, _YOUNG = (0.72, 0.62, 0.55), (0.13, 0.55, 0.95)  # hue, saturation, value at the ends of the ages
+
+
+def apply(scene):
+    """Gives all blocks and interfaces the colours that the settings ask for."""
+    by = scene.realmodel.color_by
+    places = _places(scene)
+    for row in scene.realmodel.results:
+        if _can_take(row.object):
+            material = None if by == "PROPERTY" else _material(*_entry(scene, by, row, places))
+            _put_into_slot(row.object, material)
+    blocks = {(row.rock, row.surface): row for row in scene.realmodel.results}
+    for rock, surface in settings.surface_rows(scene):
+        item, row = surface.interface, blocks.get((rock.name, surface.name))
+        if not _can_take(item) or not len(scene.realmodel.results):
+            continue
+        if any(m is not None for m in item.data.materials):
+            continue  # the user's own
+        if by == "PROPERTY" or row is None:
+            material = _of_property(scene, surface.property_id)
+        else:
+            material = _material(*_entry(scene, by, row, places))
+        if not len(item.data.materials):
+            item.data.materials.append(None)
+        _put_into_slot(item, material)
+    bodies.follow_materials(scene)
+    _remove_unused()
+
+
+def forget(scene):
+    """Takes all such colours out of a scene."""
+    for item in _coloured(scene):
+        slot = item.material_slots[0]
+        if slot.link == "OBJECT" and not _is_of_user(slot):
+            slot.material = None
+            slot.link = "DATA"
+    _remove_unused()
+
+
+def shown_colour(item):
+    """(red, green, blue) of an object's material from 0 to 1, sRGB, as the screen has it."""
+    return tuple(_srgb(channel) for channel in shown_linear(item))
+
+
+def shown_linear(item):
+    """(red, green, blue) of an object's material from 0 to 1, scene-linear."""
+    material = item.material_slots[0].material if len(item.material_slots) else None
+    if material is None:
+        return materials.linear_colour(materials.NEUTRAL_GREY)
+    return tuple(material.diffuse_color[:3])
+
+
+def _srgb(value):
+    value = min(max(value, 0.0), 1.0)
+    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
+
+
+def _coloured(scene):
+    items = [row.object for row in scene.realmodel.results]
+    items += [surface.interface for _, surface in settings.surface_rows(scene)]
+    return [item for item in items if _can_take(item) and len(item.material_slots)]
+
+
+def _can_take(item):
+    return item is not None and item.type == "MESH" and item.library is None and item.data.library is None
+
+
+def _places(scene):
+    """{(rock mass, surface): its number in the rock mass, from the oldest}."""
+    return {
+        (rock.name, surface.name): number
+        for rock in scene.realmodel.rocks
+        for number, surface in enumerate(rock.surfaces)
+    }
+
+
+def _entry(scene, by, row, places):
+    """(name, "#rrggbb") of what a block is coloured by."""
+    if by == "ROCK":
+        number = [rock.name for rock in scene.realmodel.rocks].index(row.rock) if _has_rock(scene, row) else 0
+        return f"Rock mass {row.rock}", _hue(number)
+    if by == "BLOCK":
+        number = next(n for n, other in enumerate(scene.realmodel.results) if other == row)
+        return f"Block {row.name}", _hue(number)
+    place = places.get((row.rock, row.surface), 0)
+    last = max(places.values(), default=0)
+    at = place / last if last else 0.0
+    hsv = [old + at * (young - old) for old, young in zip(_OLD, _YOUNG, strict=True)]
+    return f"Age {place}", library_rows.hex_colour(colorsys.hsv_to_rgb(*hsv))
+
+
+def _has_rock(scene, row):
+    return any(rock.name == row.rock for rock in scene.realmodel.rocks)
+
+
+def _hue(number):
+    brightness = 0.9 if number % 2 else 0.7
+    return library_rows.hex_colour(colorsys.hsv_to_rgb((0.06 + number * _GOLDEN) % 1.0, 0.65, brightness))
+
+
+def _material(name, colour):
+    """The material of a name and colour that another scene or block may have already."""
+    stands_for = f"{name} {colour}"
+    for material in bpy.data.materials:
+        if material.get(KEY) == stands_for and material.library is None:
+            return material
+    material = materials.new_material(name, materials.NO_PROPERTY, colour)
+    del material[materials.KEY]
+    material[KEY] = stands_for
+    return material
+
+
+def _of_property(scene, property_id):
+    known = library_rows.scene_materials(scene, property_id)
+    if known:
+        return known[0]
+    return _material(*materials.name_and_colour(library_rows.library_of(scene), property_id))
+
+
+def _put_into_slot(item, material):
+    if not len(item.material_slots) or _is_of_user(item.material_slots[0]):
+        return
+    slot = item.material_slots[0]
+    if material is None:
+        if slot.link == "OBJECT":
+            slot.material = None
+            slot.link = "DATA"
+        return
+    if slot.link != "OBJECT":
+        slot.link = "OBJECT"
+    if slot.material != material:
+        slot.material = material
+
+
+def _is_of_user(slot):
+    """Whether the user has given the object, not its mesh, a material."""
+    given = slot.material if slot.link == "OBJECT" else None
+    return given is not None and KEY not in given and materials.KEY not in given
+
+
+def _remove_unused():
+    for material in [m for m in bpy.data.materials if KEY in m and not m.users]:
+        bpy.data.materials.remove(material)

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is at a place of the model: its coordinates, the block, its property, its thickness there."""
+
+import json
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from .. import library_rows, meshes, project_settings, shapes
+from . import modes, stages
+
+_soups = {}  # by the name of a mesh: its triangles, (T, 3, 3) float32
+_MOST_SOUPS = 64
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place of the model, in model coordinates and units.
+
+    x, y, z: where it is, floats. block, rock, surface: names of the block there, of its rock mass, and of the
+    surface that it was deposited beneath. property_id, property: of the library. thickness: of the block
+    along the vertical through the place.
+    """
+
+    x: float
+    y: float
+    z: float
+    block: str
+    rock: str
+    surface: str
+    property_id: int
+    property: str
+    thickness: float
+
+
+def under_ray(scene, start, direction):
+    """The Place where a ray first meets a block that is shown, or None.
+
+    start, direction: three numbers each, in the coordinates of the scene. Blocks that were moved apart are
+    met where they are drawn; the coordinates are those of the rock itself.
+    """
+    start, direction = np.asarray(start, np.float64), np.asarray(direction, np.float64)
+    nearest = None
+    for row in scene.realmodel.results:
+        if not stages.present(row) or modes.is_hidden(scene, row):
+            continue
+        item = modes.body_of(scene, row)
+        if item is None:
+            continue
+        matrix = np.array(modes.world_matrix(item), np.float64)
+        turn = np.linalg.pinv(matrix[:3, :3])
+        begin, along = turn @ (start - matrix[:3, 3]), turn @ direction
+        hits = _hits(_soup(item.data), begin, along)
+        if len(hits) and (nearest is None or hits[0] < nearest[0]):
+            nearest = (hits[0], row, begin + hits[0] * along)
+    return None if nearest is None else _place(scene, *nearest[1:])
+
+
+def at_point(scene, location):
+    """The Place at a point of the scene, or None where it is in no block that is shown."""
+    for row in scene.realmodel.results:
+        if not stages.present(row) or modes.is_hidden(scene, row):
+            continue
+        matrix = np.array(modes.world_matrix(row.object), np.float64)
+        local = np.linalg.pinv(matrix[:3, :3]) @ (np.asarray(location, np.float64) - matrix[:3, 3])
+        span = _span(row.object, local)
+        if span is not None and span[0] <= local[2] <= span[1]:
+            return _place(scene, row, local)
+    return None
+
+
+def _place(scene, row, local):
+    span = _span(row.object, local)
+    model = local + project_settings.model_origin(scene)
+    entry = library_rows.find(scene, row.property_id)
+    return Place(
+        *(float(value) for value in model),
+        row.name,
+        row.rock,
+        row.surface,
+        row.property_id,
+        entry.name if entry is not None else "",
+        float(span[1] - span[0]) if span is not None else 0.0,
+    )
+
+
+def _span(item, local):
+    """(lowest, highest) height of a block on the vertical through a point, or None where it is not there. A
+    block is one interval of each vertical, since its bounds are single-valued."""
+    soup = _soup(item.data)
+    start = np.array([local[0], local[1], float(soup[:, :, 2].min()) - 1.0])
+    heights = start[2] + _hits(soup, start, np.array([0.0, 0.0, 1.0]))
+    return (heights[0], heights[-1]) if len(heights) else None
+
+
+def _hits(soup, start, direction):
+    """Where a ray meets triangles, (N,) float64 in rising order, in lengths of the direction.
+
+    soup: (T, 3, 3). Seen along the ray the start is a point, which lies in the triangles whose three edges
+    it is on one side of.
+    """
+    length = np.linalg.norm(direction)
+    if not length > 0.0 or not len(soup):
+        return np.empty(0)
+    along = direction / length
+    side = np.cross(along, np.eye(3)[np.abs(along).argmin()])
+    side /= np.linalg.norm(side)
+    frame = np.column_stack([side, np.cross(along, side), along])
+    corners = (soup - start.astype(np.float32)) @ frame[:, :2].astype(np.float32)
+    reach = (
+        np.spacing(np.abs(soup).max() + np.abs(start).max()) * 4
+    )  # what rounding may have moved corners by
+    near = ((corners.min(axis=1) <= reach) & (corners.max(axis=1) >= -reach)).all(axis=1)
+    corners = (soup[near].astype(np.float64) - start) @ frame
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)])
+    inside = ((weights >= 0.0).all(axis=0) | (weights <= 0.0).all(axis=0)) & (weights.sum(axis=0) != 0.0)
+    weights, depths = weights[:, inside], corners[inside][:, :, 2].T
+    found = (weights * depths).sum(axis=0) / weights.sum(axis=0)
+    return np.sort(found[found >= 0.0]) / length
+
+
+def _cross(a, b):
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+
+
+def _soup(mesh):
+    key = mesh.name_full
+    if key not in _soups:
+        while len(_soups) >= _MOST_SOUPS:
+            _soups.pop(next(iter(_soups)))
+        triangles, _ = shapes.mesh_triangles(mesh)
+        _soups[key] = meshes.mesh_coordinates(mesh)[triangles]
+    return _soups[key]
+
+
+def forget(names=None):
+    """Lets go of what was prepared for meshes, by their names, or for all."""
+    for key in [key for key in _soups if names is None or key in names]:
+        del _soups[key]
+
+
+def remember(scene, place):
+    """Keeps a place as the one that was asked for last."""
+    scene.realmodel.view.place = "" if place is None else json.dumps(asdict(place))
+
+
+def last(scene):
+    """The Place that was asked for last, or None."""
+    text = scene.realmodel.view.place
+    return Place(**json.loads(text)) if text else None
+
+
+def set_zero(scene, point):
+    """The point, in model coordinates, that distances are told from; None for none."""
+    scene.realmodel.view.zero = "" if point is None else json.dumps([float(value) for value in point])
+
+
+def zero(scene):
+    """(3,) float64 or None."""
+    text = scene.realmodel.view.zero
+    return np.array(json.loads(text), np.float64) if text else None
+
+
+def from_zero(scene, place):
+    """(3,) float64: how far a place is from the zero, or None where none was set."""
+    start = zero(scene)
+    return None if start is None else np.array([place.x, place.y, place.z]) - start

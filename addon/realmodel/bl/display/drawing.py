@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points and lines of the model in its colours, drawn over the viewport from arrays on the graphics card.
+
+Blender draws the vertices and wires of objects in the theme's one colour; here each block has its own. The
+arrays go to the card when they are first drawn, and again when a mesh has changed.
+"""
+
+import bpy
+import numpy as np
+
+from .. import meshes, versions
+from . import colours, modes
+
+POINT_SIZE = 4.0  # pixels
+_batches = {}  # (mesh name, "POINTS" or "LINES") -> (vertices, edges of the mesh, gpu batch)
+_handle = None
+
+
+def forget(names=None):
+    """Lets go of the arrays of meshes, by their names, or of all."""
+    for key in [key for key in _batches if names is None or key[0] in names]:
+        del _batches[key]
+
+
+def draw():
+    """The handler of drawing."""
+    scene = bpy.context.scene
+    if not hasattr(scene, "realmodel") or scene.realmodel.display not in modes.DRAWN:
+        return
+    draw_items(modes.drawn(scene), scene.realmodel.display, bpy.context.view_layer)
+
+
+def draw_items(items, mode, layer):
+    """Draws objects' points or lines with the matrices that are set.
+
+    items: mesh objects. mode: "POINTS" or "LINES". layer: objects that it does not have are left out.
+    """
+    import gpu  # not there in Blender's background mode before 4.0
+
+    shader = versions.plain_shader(mode == "POINTS")
+    gpu.state.depth_test_set("LESS_EQUAL")
+    gpu.state.depth_mask_set(True)
+    if mode == "POINTS":
+        gpu.state.point_size_set(POINT_SIZE * bpy.context.preferences.system.pixel_size)
+    shader.bind()
+    for item in items:
+        if item.name not in layer.objects:
+            continue
+        batch = _batch(item.data, mode)
+        if batch is None:
+            continue
+        with gpu.matrix.push_pop():
+            gpu.matrix.multiply_matrix(modes.world_matrix(item))
+            shader.uniform_float("color", (*colours.shown_colour(item), 1.0))
+            batch.draw(shader)
+    gpu.state.depth_test_set("NONE")
+    gpu.state.depth_mask_set(False)
+    gpu.state.point_size_set(1.0)
+
+
+def _batch(mesh, mode):
+    key, size = (mesh.name_full, mode), (len(mesh.vertices), len(mesh.edges))
+    if key in _batches and _batches[key][0] == size:
+        return _batches[key][1]
+    if not size[0] or (mode == "LINES" and not size[1]):
+        return None
+    batch = _new_batch(mesh, mode)
+    _batches[key] = (size, batch)
+    return batch
+
+
+def _new_batch(mesh, mode):
+    import gpu
+
+    form = gpu.types.GPUVertFormat()
+    form.attr_add(id="pos", comp_type="F32", len=3, fetch_mode="FLOAT")
+    vertices = gpu.types.GPUVertBuf(form, len(mesh.vertices))
+    vertices.attr_fill("pos", meshes.mesh_coordinates(mesh))
+    if mode == "POINTS":
+        return gpu.types.GPUBatch(type="POINTS", buf=vertices)
+    edges = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("vertices", edges)
+    indices = gpu.types.GPUIndexBuf(type="LINES", seq=edges.reshape(-1, 2))
+    return gpu.types.GPUBatch(type="LINES", buf=vertices, elem=indices)
+
+
+def register():
+    global _handle
+    if not bpy.app.background:
+        _handle = bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", "POST_VIEW")
+
+
+def unregister():
+    global _handle
+    if _handle is not None:
+        bpy.types.SpaceView3D.draw_handler_remove(_handle, "WINDOW")
+        _handle = None
+    forget()

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The six display modes: which of the model's objects are in sight, and how each is drawn.
+
+mode        what is in sight                               drawn by
+POINTS      vertices of blocks or interfaces               `drawing`, in the viewport; the objects are hidden
+LINES       edges of blocks or interfaces                  likewise
+AREAS       faces of blocks or interfaces with their edges Blender, wires over the faces
+SURFACES    the interfaces, smooth                         Blender
+POLYHEDRA   the single cells, each a little smaller        Blender, bodies of kind "cells"
+BLOCKS      the blocks, or their cut halves                Blender
+"""
+
+import json
+
+from ...core import RealModelError
+from .. import project_settings, settings
+from ..origin import offsets_from
+from . import bodies, cells, cuts, shown_models, stages
+from .visible import want
+
+WIRE = "realmodel_wire"  # on an object whose wires the view has switched on
+DRAWN = ("POINTS", "LINES")
+_WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
+
+
+def apply(scene, mode, stage):
+    """Shows a scene's model, which is at a stage, in a display mode."""
+    view = scene.realmodel.view
+    subject = view.subject
+    if mode == "POLYHEDRA":
+        try:
+            _make_cells(scene, stage)
+        except RealModelError as error:
+            view.message = str(error)
+    else:
+        bodies.remove(scene, bodies.CELLS)
+        view.cells_of = ""
+    cell_bodies = bodies.of_kind(scene, bodies.CELLS)
+    halves = bodies.of_kind(scene, bodies.CUT)
+    cut = cuts.is_shown(scene)
+    with_blocks, with_interfaces = shown_kinds(mode, subject)
+    solid = mode in ("BLOCKS", "AREAS")
+    for row in scene.realmodel.results:
+        here = stages.present(row) and not is_hidden(scene, row)
+        rendered = here and with_blocks and mode != "POLYHEDRA"
+        want(scene, row.object, here and with_blocks and solid and not cut, rendered and not cut)
+        half = halves.get(row.object)
+        want(scene, half, here and with_blocks and solid and cut, rendered and cut)
+        want(scene, cell_bodies.get(row.object), here, here)
+        for item in (row.object, half):
+            _wires(item, mode == "AREAS")
+    _interfaces(scene, with_interfaces and mode not in DRAWN, mode == "AREAS")
+
+
+def shown_kinds(mode, subject):
+    """(whether blocks are in sight, whether interfaces are)."""
+    if mode in _WITH_SUBJECT:
+        return subject != "INTERFACES", subject != "BLOCKS"
+    return mode != "SURFACES", mode == "SURFACES"
+
+
+def drawn(scene):
+    """The objects whose points or lines are drawn, in the modes that Blender does not draw itself."""
+    group = scene.realmodel
+    if group.display not in DRAWN:
+        return []
+    with_blocks, with_interfaces = shown_kinds(group.display, group.view.subject)
+    found = []
+    if with_blocks:
+        halves = bodies.of_kind(scene, bodies.CUT) if cuts.is_shown(scene) else None
+        for row in group.results:
+            if stages.present(row) and not is_hidden(scene, row):
+                found.append(row.object if halves is None else halves.get(row.object))
+    if with_interfaces:
+        rows = settings.surface_rows(scene)
+        found += [surface.interface for _, surface in rows if not surface.hide]
+    return [item for item in found if item is not None and item.type == "MESH"]
+
+
+def body_of(scene, row):
+    """The object that a block is to be seen as: itself, or its cut half (None: it was taken off)."""
+    return bodies.of_kind(scene, bodies.CUT).get(row.object) if cuts.is_shown(scene) else row.object
+
+
+def world_matrix(item):
+    """Where an object is; Blender does not keep that up to date for hidden ones."""
+    if item.parent is None:
+        return item.matrix_local
+    if item.matrix_parent_inverse.is_identity and item.matrix_basis.is_identity:
+        return world_matrix(item.parent)
+    return item.matrix_world
+
+
+def _interfaces(scene, shown, wires):
+    for rock in scene.realmodel.rocks:
+        if rock.interfaces is not None and rock.interfaces.library is None:
+            hidden = not shown
+            if rock.interfaces.hide_render != hidden:
+                rock.interfaces.hide_render = hidden
+        for surface in rock.surfaces:
+            want(scene, surface.interface, shown and not surface.hide, not surface.hide)
+            _wires(surface.interface, wires)
+
+
+def _wires(item, wanted):
+    if item is None or item.library is not None:
+        return
+    if wanted and not item.show_wire:
+        item.show_wire = item.show_all_edges = True
+        item[WIRE] = True
+    elif not wanted and WIRE in item:
+        item.show_wire = item.show_all_edges = False
+        del item[WIRE]
+
+
+def _make_cells(scene, stage):
+    """A body for each block's cells, or for those of its half."""
+    group = scene.realmodel
+    made_of = json.dumps([group.built_stamp, stage, group.view.cut if cuts.is_shown(scene) else ""])
+    if group.view.cells_of == made_of and bodies.of_kind(scene, bodies.CELLS):
+        return
+    half = cuts.half(scene, stage, "columns") if cuts.is_shown(scene) else None
+    model = half or shown_models.at_stage(scene, stage, "columns")
+    origin = project_settings.model_origin(scene)
+    rows = {(row.rock, row.name): row for row in group.results}
+    shapes = []
+    for block, shell in zip(model.blocks, cells.shells(model), strict=True):
+        row = rows.get((model.project.rocks[block.rock].name, block.name))
+        if shell is not None and row is not None and row.object is not None:
+            shapes.append((row.object, offsets_from(origin, shell[0]), *shell[1:]))
+    bodies.put(scene, bodies.CELLS, shapes)
+    group.view.cells_of = made_of
+
+
+def hidden_properties(scene):
+    """The property IDs whose blocks are hidden."""
+    text = scene.realmodel.view.hidden
+    return set(json.loads(text)) if text else set()
+
+
+def hide_properties(scene, ids):
+    scene.realmodel.view.hidden = json.dumps(sorted(ids)) if ids else ""
+
+
+def is_hidden(scene, row):
+    return row.property_id in hidden_properties(scene)

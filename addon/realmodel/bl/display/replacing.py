@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Other shapes for objects, also from the handler of a frame while an animation is rendered.
+
+A renderer still holds what it has read from the frame before, so nothing may be freed as long as it works:
+meshes are then exchanged instead of filled anew, and what is left over is removed when the render has ended.
+"""
+
+import bpy
+
+from .. import meshes, scene
+
+_rendering = False
+_left_meshes = []  # names
+_left_objects = []
+
+
+def begin_render():
+    global _rendering
+    _rendering = True
+
+
+def end_render():
+    """The renderer may still be about to let go of its data: what is left over goes a moment later."""
+    global _rendering
+    _rendering = False
+    if not bpy.app.background and not bpy.app.timers.is_registered(tidy):
+        bpy.app.timers.register(tidy, first_interval=0.5)
+
+
+def is_rendering():
+    return _rendering
+
+
+def give_shape(item, arrays):
+    """Gives an object's mesh other contents; arrays as `meshes.new_mesh` takes them."""
+    if not _rendering:
+        meshes.refill(item.data, *arrays)
+        return
+    old = item.data
+    mesh = meshes.new_mesh(old.name, *arrays)
+    for material in old.materials:
+        mesh.materials.append(material)
+    slots = [(slot.link, slot.material) for slot in item.material_slots]
+    item.data = mesh
+    for slot, (link, material) in zip(item.material_slots, slots, strict=False):
+        if link == "OBJECT":
+            slot.link, slot.material = link, material
+    _left_meshes.append(old.name)
+
+
+def remove(item):
+    """Removes an object that the view has made, with its mesh."""
+    if _rendering:
+        item.hide_render = True
+        _left_objects.append(item.name)
+    else:
+        _remove(item)
+
+
+def _remove(item):
+    if item.get(scene.TAG) == "block":
+        scene.remove_objects([item])
+        return
+    mesh = item.data
+    bpy.data.objects.remove(item)
+    if mesh is not None and not mesh.users:
+        bpy.data.meshes.remove(mesh)
+
+
+def tidy():
+    """Removes what renders have left over."""
+    if _rendering:
+        return
+    for name in _left_objects:
+        item = bpy.data.objects.get(name)
+        if item is not None:
+            _remove(item)
+    for name in _left_meshes:
+        mesh = bpy.data.meshes.get(name)
+        if mesh is not None and not mesh.users:
+            bpy.data.meshes.remove(mesh)
+    forget()
+
+
+def forget():
+    """Another file was opened: the names mean nothing in it."""
+    _left_objects.clear()
+    _left_meshes.clear()
+
+
+def stop():
+    global _rendering
+    _rendering = False
+    if bpy.app.timers.is_registered(tidy):
+        bpy.app.timers.unregister(tidy)
+    forget()

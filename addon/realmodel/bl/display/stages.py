@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The stage in the scene: the block objects take the shapes that their blocks had just after a surface.
+
+Objects stay the same, so what the user did to them stays. A block that was not there yet, or not any more,
+has an empty mesh; one that was eroded away later gets an object for as long as it is shown.
+"""
+
+import bpy
+import numpy as np
+
+from .. import library_rows, materials, meshes, project_settings, scene
+from ..origin import offsets_from
+from . import replacing, shown_models
+
+STAGE_ONLY = "realmodel_stage_only"  # on an object: its block is not in the whole model
+_EMPTY = (np.empty((0, 3), np.float32), np.zeros(1, np.int32), np.empty(0, np.int32), np.empty(0, np.int32))
+
+
+def show(current, stage):
+    """Shows a stage of a scene's model. Raises RealModelError; then the scene is as it was."""
+    model = shown_models.at_stage(current, stage)
+    origin = project_settings.model_origin(current)
+    shapes = {}
+    for number, block in enumerate(model.blocks):
+        if block.cells:
+            shell = model.block_boundary(number)
+            coordinates = offsets_from(origin, shell.vertices)
+            offsets = shell.face_offsets.astype(np.int32)
+            shapes[model.project.rocks[block.rock].name, block.name] = (
+                coordinates,
+                offsets,
+                shell.face_vertices,
+                shell.face_surface,
+            )
+    for row in current.realmodel.results:
+        _give_shape(current, row, shapes.get((row.rock, row.name)))
+
+
+def present(row):
+    """Whether a block is there at the stage that is shown."""
+    return row.object is not None and row.object.type == "MESH" and len(row.object.data.polygons) > 0
+
+
+def _give_shape(current, row, arrays):
+    item = row.object
+    if item is not None and (item.type != "MESH" or item.library is not None or item.mode != "OBJECT"):
+        return
+    if item is None:
+        if arrays is not None:
+            _new(current, row, arrays)
+    elif arrays is None and STAGE_ONLY in item:
+        row.object = None
+        replacing.remove(item)
+    elif not meshes.holds(item.data, *(arrays or _EMPTY)[:3:2]):
+        replacing.give_shape(item, arrays or _EMPTY)
+
+
+def _new(current, row, arrays):
+    """An object for a block that was eroded away later."""
+    rock = next((rock for rock in current.realmodel.rocks if rock.name == row.rock), None)
+    if rock is None or rock.blocks is None:
+        return
+    item = bpy.data.objects.new(row.name, meshes.new_mesh(row.name, *arrays))
+    known = library_rows.scene_materials(current, row.property_id)
+    name, colour = materials.name_and_colour(library_rows.library_of(current), row.property_id)
+    item.data.materials.append(known[0] if known else materials.new_material(name, row.property_id, colour))
+    item[scene.TAG], item[scene.ROCK], item[scene.SURFACE] = "block", row.rock, row.surface
+    item[scene.BLOCK], item[scene.PROPERTY] = row.name, row.property_id
+    item[STAGE_ONLY] = True
+    rock.blocks.objects.link(item)
+    row.object = item

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the 3D viewports look from: the six standard views, previous and next, the whole model in the frame.
+
+All 3D viewports of a screen are turned, so it works from scripts and in background mode, where the turned
+viewport is what `capture` looks through.
+"""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from mathutils import Quaternion, Vector
+
+from ...core import InputRefused
+from .. import meshes
+from . import bodies, modes
+
+_H = 0.5**0.5
+DIRECTIONS = {  # as Blender's own axis views
+    "FRONT": Quaternion((_H, _H, 0.0, 0.0)),
+    "BACK": Quaternion((0.0, 0.0, _H, _H)),
+    "LEFT": Quaternion((0.5, 0.5, -0.5, -0.5)),
+    "RIGHT": Quaternion((0.5, 0.5, 0.5, 0.5)),
+    "TOP": Quaternion((1.0, 0.0, 0.0, 0.0)),
+    "BOTTOM": Quaternion((0.0, 1.0, 0.0, 0.0)),
+}
+_MARGIN = 1.1
+_MOST_KEPT = 50
+_history = []  # views that were left, and the one that is shown, the oldest first
+_at = -1  # which of them is shown
+
+
+@dataclass(frozen=True)
+class _View:
+    location: tuple
+    rotation: tuple
+    distance: float
+    perspective: str
+
+    @classmethod
+    def of(cls, space):
+        view = space.region_3d
+        numbers = [
+            tuple(round(float(v), 5) for v in values) for values in (view.view_location, view.view_rotation)
+        ]
+        return cls(*numbers, round(float(view.view_distance), 5), view.view_perspective)
+
+    def show(self, space):
+        view = space.region_3d
+        view.view_perspective = self.perspective
+        view.view_location = self.location
+        view.view_rotation = self.rotation
+        view.view_distance = self.distance
+
+
+def spaces(context):
+    """The 3D viewports that are turned: those of the context's screens, or of all where there are none."""
+    screens = [window.screen for window in context.window_manager.windows]
+    found = [space for screen in screens for space in _of_screen(screen)]
+    return found or [space for screen in bpy.data.screens for space in _of_screen(screen)]
+
+
+def _of_screen(screen):
+    return [area.spaces.active for area in screen.areas if area.type == "VIEW_3D"]
+
+
+def _needed_spaces(context):
+    found = spaces(context)
+    if not found:
+        raise InputRefused("there is no 3D viewport", advice="open one")
+    return found
+
+
+def turn(context, direction):
+    """Looks along an axis, without perspective, at the whole model. direction: a key of DIRECTIONS."""
+    found = _needed_spaces(context)
+    _remember(found[0])
+    for space in found:
+        view = space.region_3d
+        view.view_perspective = "ORTHO"
+        view.view_rotation = DIRECTIONS[direction]
+        _frame(context.scene, space)
+    _remember(found[0])
+    _redraw(context)
+
+
+def frame(context):
+    """Brings the whole model into the frame. Raises InputRefused where there is none."""
+    found = _needed_spaces(context)
+    if len(model_points(context.scene)) == 0:
+        raise InputRefused("there is no model to be seen", advice="build one first")
+    _remember(found[0])
+    for space in found:
+        _frame(context.scene, space)
+    _remember(found[0])
+    _redraw(context)
+
+
+def step(context, by):
+    """Goes back (by -1) or forth (+1) among the views that were left. Raises InputRefused at the ends."""
+    global _at
+    found = _needed_spaces(context)
+    _remember(found[0])
+    if not 0 <= _at + by < len(_history):
+        which = "an earlier" if by < 0 else "a later"
+        raise InputRefused(f"there is not {which} view", advice="turn the view first")
+    _at += by
+    for space in found:
+        _history[_at].show(space)
+    _redraw(context)
+
+
+def _remember(space):
+    """The view as it is now becomes the one that is shown, after the one before; later ones are dropped."""
+    global _at
+    now = _View.of(space)
+    if 0 <= _at < len(_history) and _history[_at] == now:
+        return
+    del _history[_at + 1 :]
+    _history.append(now)
+    del _history[:-_MOST_KEPT]
+    _at = len(_history) - 1
+
+
+def forget():
+    """Lets go of all views."""
+    global _at
+    _history.clear()
+    _at = -1
+
+
+def model_points(scene):
+    """(N, 3) float64: corners of the boxes around all blocks, or interfaces before a build, in the world."""
+    group = scene.realmodel
+    items = [row.object for row in group.results]
+    if not len(items):
+        items = [surface.interface for rock in group.rocks for surface in rock.surfaces]
+    items += list(bodies.of_kind(scene, bodies.SECTION).values())
+    found = []
+    for item in items:
+        if item is None or item.type != "MESH" or not len(item.data.vertices):
+            continue
+        coordinates = meshes.mesh_coordinates(item.data).astype(np.float64)
+        low, high = coordinates.min(axis=0), coordinates.max(axis=0)
+        box = np.array(
+            [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+        )
+        matrix = np.array(modes.world_matrix(item), np.float64)
+        found.append(box @ matrix[:3, :3].T + matrix[:3, 3])
+    return np.concatenate(found) if found else np.empty((0, 3))
+
+
+def _frame(scene, space):
+    points = model_points(scene)
+    if not len(points):
+        return
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    size = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
+    view = space.region_3d
+    rotation = np.array(Quaternion(view.view_rotation).to_matrix())
+    seen = np.ptp((points - middle) @ rotation, axis=0)  # to the right, up, towards the eye
+    reach = max(float(seen[0]), float(seen[1]), 1e-3 * size)
+    view.view_location = Vector(middle)
+    # A viewport sees 36 mm across at `lens`: what it shows at the view's middle is 36 / lens of the distance.
+    view.view_distance = _MARGIN * reach * space.lens / 36.0 + (seen[2] / 2 if view.is_perspective else 0.0)
+    space.clip_end = max(space.clip_end, 10.0 * (size + view.view_distance))
+    space.clip_start = min(space.clip_start, 1e-3 * view.view_distance)
+
+
+def _redraw(context):
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Showing and hiding the model's objects, without taking back what the user hides or shows by hand."""
+
+WANTED = "realmodel_shown"  # on an object: what was last wanted of it in the viewport
+RENDER_HIDDEN = "realmodel_render_hidden"  # on an object that the view took out of renders
+
+
+def show(scene, item, shown):
+    """Shows or hides an object in the view layers of a scene."""
+    if item is None:
+        return
+    for layer in scene.view_layers:
+        if item.name in layer.objects and item.hide_get(view_layer=layer) == shown:
+            item.hide_set(not shown, view_layer=layer)
+
+
+def want(scene, item, shown, rendered):
+    """What the view wants of an object; it acts only where that has changed, so an object that the user hid
+    stays hidden. One that is being edited stays in sight."""
+    if item is None or item.library is not None:
+        return
+    if item.mode != "OBJECT" and not shown:
+        return
+    if item.get(WANTED) != shown:
+        show(scene, item, shown)
+        item[WANTED] = shown
+    if rendered and RENDER_HIDDEN in item:
+        item.hide_render = False
+        del item[RENDER_HIDDEN]
+    elif not rendered and not item.hide_render:
+        item.hide_render = True
+        item[RENDER_HIDDEN] = True

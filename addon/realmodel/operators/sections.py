@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sections: the movable plane that shows the model cut open, and exact sections as mesh objects."""
+
+import bpy
+from bpy.props import EnumProperty, FloatVectorProperty
+from mathutils import Quaternion, Vector
+
+from ..bl import display, settings
+from ..bl.display import cuts, sections
+from ..core import InputRefused, UsageError
+from .reporting import Reporting, needed_model
+
+_UPRIGHT = {"X": (1.0, 0.0, 0.0), "Y": (0.0, -1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
+
+
+class REALMODEL_OT_section(Reporting, bpy.types.Operator):
+    """Make an exact section of the model as a mesh object in the materials of its layers, where the section
+    plane is unless a location is given"""
+
+    bl_idname = "realmodel.section"
+    bl_label = "Make Section"
+
+    location: FloatVectorProperty(
+        name="Location",
+        description="A point of the plane, in the coordinates of the scene",
+        subtype="TRANSLATION",
+    )
+    normal: FloatVectorProperty(
+        name="Normal",
+        description="The direction that the plane is square to",
+        subtype="XYZ",
+        default=(0.0, -1.0, 0.0),
+    )
+
+    def act(self, context):
+        needed_model(context)
+        scene = context.scene
+        given = any(self.properties.is_property_set(key) for key in ("location", "normal"))
+        location, normal = tuple(self.location), tuple(self.normal)
+        if not given and cuts.plane_of(scene) is not None:
+            context.view_layer.update()
+            location = tuple(cuts.plane_of(scene).matrix_world.translation)
+            normal = tuple(cuts.plane_in_model(scene)[1])
+        if not any(normal):
+            raise UsageError("the normal is zero: give the direction that the plane is square to")
+        made = sections.add(scene, location, normal)
+        for item in context.selected_objects:
+            item.select_set(False)
+        made.select_set(True)
+        context.view_layer.objects.active = made
+        self.report({"INFO"}, f"{made.name}: {len(made.data.polygons)} faces")
+
+
+class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
+    """Cut the model open along a plane that you can move, turn and keyframe as any object"""
+
+    bl_idname = "realmodel.section_plane"
+    bl_label = "Section Plane"
+
+    axis: EnumProperty(
+        name="Axis",
+        description="The direction that the plane is square to",
+        items=(
+            ("Y", "South", "Upright, seen from the south"),
+            ("X", "East", "Upright, seen from the east"),
+            ("Z", "Above", "Level, seen from above"),
+        ),
+    )
+
+    def act(self, context):
+        needed_model(context)
+        scene = context.scene
+        view = scene.realmodel.view
+        plane = cuts.plane_of(scene)
+        if plane is None:
+            plane = cuts.add_plane(scene)
+        if self.properties.is_property_set("axis") or view.plane != plane:
+            turn = Vector(_UPRIGHT[self.axis]).to_track_quat("Z", "Y")
+            plane.rotation_mode = "XYZ"
+            plane.rotation_euler = turn.to_euler() if self.axis != "Z" else Quaternion().to_euler()
+        with settings.filling():
+            view.plane, view.use_section = plane, True
+        context.view_layer.update()
+        for item in context.selected_objects:
+            item.select_set(False)
+        plane.select_set(True)
+        context.view_layer.objects.active = plane
+        display.section_changed(scene)
+
+
+class REALMODEL_OT_section_flip(Reporting, bpy.types.Operator):
+    """Take off the other side of the section plane"""
+
+    bl_idname = "realmodel.section_flip"
+    bl_label = "Flip Section Plane"
+
+    def act(self, context):
+        plane = cuts.plane_of(context.scene)
+        if plane is None:
+            raise InputRefused("there is no section plane", advice="add one first (Section Plane)")
+        location = plane.location.copy()
+        plane.matrix_basis = plane.matrix_basis @ Quaternion((0.0, 1.0, 0.0, 0.0)).to_matrix().to_4x4()
+        plane.location = location
+        context.view_layer.update()
+        display.section_changed(context.scene)
+
+
+class REALMODEL_OT_section_update(Reporting, bpy.types.Operator):
+    """Cut the model along the section plane where it is now: for scripts, which do not wait for the hand to
+    rest"""
+
+    bl_idname = "realmodel.section_update"
+    bl_label = "Cut at Section Plane"
+
+    def act(self, context):
+        needed_model(context)
+        if not cuts.is_on(context.scene):
+            raise InputRefused("no cut is shown", advice="add a section plane and switch Show Cut on")
+        cuts.cut_now(context.scene)
+        display.mode_changed(context.scene)
+
+
+class REALMODEL_OT_section_remove(Reporting, bpy.types.Operator):
+    """Remove the section plane; the model is whole again"""
+
+    bl_idname = "realmodel.section_remove"
+    bl_label = "Remove Section Plane"
+
+    def act(self, context):
+        plane = cuts.plane_of(context.scene)
+        if plane is None:
+            raise InputRefused("there is no section plane", advice="there is nothing to remove")
+        cuts.remove_plane(context.scene)
+        display.section_changed(context.scene)
+
+
+CLASSES = (
+    REALMODEL_OT_section,
+    REALMODEL_OT_section_plane,
+    REALMODEL_OT_section_flip,
+    REALMODEL_OT_section_update,
+    REALMODEL_OT_section_remove,
+)
