@@ -21,6 +21,8 @@ def fill_mesh(mesh, coordinates, offsets, corners):
     default from 4.1 on, would round them off.
     """
     count = len(offsets) - 1
+    if not len(coordinates):
+        return  # nor would newer versions have the attributes then
     mesh.vertices.add(len(coordinates))
     mesh.loops.add(len(corners))
     mesh.polygons.add(count)

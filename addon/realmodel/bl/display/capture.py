@@ -13,6 +13,8 @@ from . import bodies, colours, drawing, marks, modes, viewpoints
 
 LARGEST = 16384  # pixels along a side
 _SAMPLES = 16
+_DARK = (0.02, 0.02, 0.02, 1.0)
+_POINT_RADIUS, _LINE_RADIUS = 2.0, 0.8  # pixels
 
 
 def write(context, path, size):
@@ -46,6 +48,7 @@ def _draw(context, path, size):
         raise OutputFailed(f"{path}: there is no 3D viewport to capture; open one")
     _, region, space = found
     view = space.region_3d
+    view.update()  # its matrices may be of the last time it was drawn
     looking, frame = view.view_matrix.copy(), _window_matrix(region, view, size)
     try:
         target = gpu.types.GPUOffScreen(*size, format="RGBA8")
@@ -118,32 +121,27 @@ def _put_bodies(stage, current, size, space):
     """Puts all that is shown into the scene of the picture; returns its corners, (N, 3)."""
     items = [(item, item.data) for item in _shown(current)]
     corners = []
-    pixel = _pixel_size(current, size, space)
+    pixel, mode = _pixel_size(current, size, space), current.realmodel.display
     for item, mesh in items:
         matrix = np.array(modes.world_matrix(item), np.float64)
         coordinates = meshes.mesh_coordinates(mesh) @ matrix[:3, :3].T + matrix[:3, 3]
         corners.append(coordinates)
-        material = _material(stage, item)
-        if current.realmodel.display not in ("POINTS", "LINES"):
+        colour = (*colours.shown_linear(item), 1.0)
+        if mode not in modes.DRAWN:
             made = stage.keep(bpy.data.meshes, mesh.copy())
             made.transform(modes.world_matrix(item))
             stage.add("body", made)
-            _one_material(made, item, material)
-        if current.realmodel.display in ("POINTS", "LINES", "AREAS"):
-            soup = marks.points(coordinates, 1.5 * pixel)
-            if current.realmodel.display != "POINTS":
-                soup = marks.lines(coordinates, marks.edges(mesh), 0.5 * pixel)
-            if current.realmodel.display == "AREAS":
-                material = _plain(stage, (0.05, 0.05, 0.05, 1.0))
-            stage.add_triangles("marks", soup, material)
+            if item.get(scene.TAG) != "section":  # which has a material for each layer
+                made.materials.clear()
+                made.materials.append(_plain(stage, colour))
+        if mode == "POINTS":
+            soup = marks.points(coordinates, _POINT_RADIUS * pixel)
+        elif mode in ("LINES", "AREAS"):
+            soup = marks.lines(coordinates, marks.edges(mesh), _LINE_RADIUS * pixel)
+        else:
+            continue
+        stage.add_triangles("marks", soup, _glowing(stage, _DARK if mode == "AREAS" else colour))
     return np.concatenate(corners) if corners else np.empty((0, 3))
-
-
-def _one_material(mesh, item, material):
-    if item.get(bodies.KIND) is None and item.get(scene.TAG) == "section":
-        return  # it has one for each layer
-    mesh.materials.clear()
-    mesh.materials.append(material)
 
 
 def _shown(current):
@@ -167,10 +165,6 @@ def _in_sight(item, layer):
     return item.name in layer.objects and not item.hide_get(view_layer=layer) and not item.hide_viewport
 
 
-def _material(stage, item):
-    return _plain(stage, (*colours.shown_linear(item), 1.0))
-
-
 def _plain(stage, colour):
     made = stage.keep(bpy.data.materials, bpy.data.materials.new("RealModel capture"))
     made.use_nodes = True
@@ -181,10 +175,23 @@ def _plain(stage, colour):
     return made
 
 
+def _glowing(stage, colour):
+    """A material that no light or shadow changes: marks that lie on each other would shade each other."""
+    made = stage.keep(bpy.data.materials, bpy.data.materials.new("RealModel capture"))
+    made.use_nodes = True
+    made.diffuse_color = colour
+    nodes = made.node_tree.nodes
+    shader = nodes.new("ShaderNodeEmission")
+    shader.inputs["Color"].default_value = colour
+    output = next(node for node in nodes if node.type == "OUTPUT_MATERIAL")
+    made.node_tree.links.new(shader.outputs[0], output.inputs["Surface"])
+    return made
+
+
 def _pixel_size(current, size, space):
     """About how large a pixel of the picture is at the model, in the units of the scene."""
     if space is not None:
-        return 36.0 / space.lens * space.region_3d.view_distance / max(size)
+        return viewpoints.width_at_distance(space) * space.region_3d.view_distance / max(size)
     points = viewpoints.model_points(current)
     return float(np.linalg.norm(np.ptp(points, axis=0))) / max(size)
 
@@ -202,14 +209,14 @@ def _camera(stage, space, points, size):
         camera.clip_start, camera.clip_end = distance / 100.0, distance * 100.0
         return item
     view = space.region_3d
-    away = view.view_distance if view.is_perspective else view.view_distance + 2.0 * reach
+    away = view.view_distance if view.view_perspective != "ORTHO" else view.view_distance + 2.0 * reach
     turned = view.view_rotation.to_matrix().to_4x4()
     item.matrix_world = Matrix.Translation(view.view_location) @ turned @ Matrix.Translation((0.0, 0.0, away))
-    if view.is_perspective:
+    if view.view_perspective != "ORTHO":
         camera.lens, camera.sensor_width, camera.sensor_height = space.lens / 2.0, 36.0, 36.0
     else:
         camera.type = "ORTHO"
-        camera.ortho_scale = view.view_distance * 36.0 / space.lens
+        camera.ortho_scale = view.view_distance * viewpoints.width_at_distance(space)
     camera.clip_start, camera.clip_end = away / 1e4, away + 10.0 * reach
     return item
 

@@ -159,12 +159,29 @@ def _frame(scene, space):
     view = space.region_3d
     rotation = np.array(Quaternion(view.view_rotation).to_matrix())
     seen = np.ptp((points - middle) @ rotation, axis=0)  # to the right, up, towards the eye
-    reach = max(float(seen[0]), float(seen[1]), 1e-3 * size)
+    aspect = _aspect(space)
+    reach = max(float(seen[0]), float(seen[1]) * aspect, 1e-3 * size) * max(1.0, 1.0 / aspect)
     view.view_location = Vector(middle)
-    # A viewport sees 36 mm across at `lens`: what it shows at the view's middle is 36 / lens of the distance.
-    view.view_distance = _MARGIN * reach * space.lens / 36.0 + (seen[2] / 2 if view.is_perspective else 0.0)
+    before_it = 0.0 if view.view_perspective == "ORTHO" else seen[2] / 2
+    view.view_distance = _MARGIN * reach / width_at_distance(space) + before_it
     space.clip_end = max(space.clip_end, 10.0 * (size + view.view_distance))
     space.clip_start = min(space.clip_start, 1e-3 * view.view_distance)
+
+
+def width_at_distance(space):
+    """How much a viewport shows across its longer side, as a part of its distance: Blender lets 72 mm see."""
+    return 72.0 / space.lens
+
+
+def _aspect(space):
+    """Width by height of the region that a viewport is drawn in."""
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            if area.type == "VIEW_3D" and area.spaces.active == space:
+                region = next(region for region in area.regions if region.type == "WINDOW")
+                if region.width > 1 and region.height > 1:
+                    return region.width / region.height
+    return 1.6
 
 
 def _redraw(context):

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The display modes, the cut, captures and coordinates in a window, by their colours on the screen.
+
+Run in a window by run_view.py; the model is five level layers of made-up colours.
+"""
+
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "tests" / "gui"), str(ROOT / "tests" / "blender")]
+
+import bpy  # noqa: E402
+import numpy as np  # noqa: E402
+import realmodel  # noqa: E402
+from driver import Walk, hue_differs, read_picture  # noqa: E402
+from made_projects import surface  # noqa: E402
+from realmodel.bl import picture  # noqa: E402
+from realmodel.core import Library, Project, Property, Rock  # noqa: E402
+from realmodel.core.project_writer import save_project  # noqa: E402
+
+COLOURS = {1: "#8a2be2", 2: "#e02020", 3: "#20a040"}
+GRID = {"east": 0.0, "north": 0.0, "x0": 0.0, "y0": 0.0, "width": 100.0, "depth": 80.0}
+ALIKE = 0.06
+
+
+def rgb(property_id):
+    text = COLOURS[property_id]
+    return [int(text[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+
+
+def project():
+    rock = Rock(
+        "hill",
+        [
+            surface("S0", lambda x, y: 10.0, property=1, grid=GRID),
+            surface("S1", lambda x, y: 25.0, property=2, grid=GRID, block="Sand"),
+            surface("S2", lambda x, y: 40.0, property=3, grid=GRID, block="Cap"),
+        ],
+        base_elevation=-5.0,
+    )
+    entries = [Property(key, f"Rock {key}", color=colour) for key, colour in COLOURS.items()]
+    return Project("Layers", [rock], Library(entries))
+
+
+def share(shown, property_id):
+    """The share of the viewport's pixels that have the hue of a property."""
+    flat = shown[::3, ::3].reshape(-1, 3)
+    flat = flat[np.ptp(flat, axis=1) > 0.15]
+    wanted = np.array(rgb(property_id)) - min(rgb(property_id))
+    given = flat - flat.min(axis=1, keepdims=True)
+    alike = given @ wanted / np.linalg.norm(given, axis=1) / np.linalg.norm(wanted) > 1.0 - ALIKE
+    return np.count_nonzero(alike) / (shown[::3, ::3].size / 3)
+
+
+def viewport(walk, shown):
+    region = walk.region("WINDOW")
+    return shown[region.y + 10 : region.y + region.height - 60, region.x + 60 : region.x + region.width - 320]
+
+
+def build(walk):
+    path = walk.folder / "project.toml"
+    save_project(project(), path)
+    for item in list(bpy.data.objects):
+        bpy.data.objects.remove(item)
+    space = walk.area.spaces.active
+    space.show_gizmo = space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_axis_y = (
+        False
+    )
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.open_project(filepath=str(path))
+        bpy.ops.realmodel.build()
+        bpy.ops.realmodel.view(direction="FRONT")
+    for item in bpy.context.selected_objects:
+        item.select_set(False)
+    yield walk.redrawn(3)
+    walk.plain = walk.shot("BLOCKS")
+    for place, key in (((50, 0, 2), 1), ((50, 0, 17), 2), ((50, 0, 32), 3)):
+        assert hue_differs(walk.colour_at(walk.plain, place), rgb(key)) < ALIKE, place
+
+
+def in_the_viewport(walk):
+    return bpy.context.temp_override(window=walk.window, area=walk.area, region=walk.region("WINDOW"))
+
+
+def modes(walk):
+    walk.area.spaces.active.region_3d.view_rotation = picture.view_rotation().to_quaternion()
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.view_all()
+    seen = {}
+    for mode in ("BLOCKS", "POINTS", "LINES", "AREAS", "SURFACES", "POLYHEDRA"):
+        bpy.context.scene.realmodel.display = mode
+        yield walk.redrawn(3)
+        seen[mode] = viewport(walk, walk.shot(mode))
+    bpy.context.scene.realmodel.display = "BLOCKS"
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.view(direction="FRONT")
+    names = list(seen)
+    for number, one in enumerate(names):
+        for other in names[number + 1 :]:
+            different = (np.abs(seen[one] - seen[other]).max(axis=2) > 0.08).mean()
+            assert different > 0.002, f"{one} and {other} look alike: {different}"
+    covered = {mode: [share(shown, key) for key in COLOURS] for mode, shown in seen.items()}
+    for mode in ("BLOCKS", "AREAS", "POLYHEDRA"):
+        assert min(covered[mode]) > 0.02, (mode, covered[mode])
+    for mode in ("POINTS", "LINES"):
+        for key, one, whole in zip(COLOURS, covered[mode], covered["BLOCKS"], strict=True):
+            assert 0.0002 < one < 0.5 * whole, (mode, key, one, whole)
+
+
+def hidden(walk):
+    bpy.ops.realmodel.hide_property(property_id=2, action="HIDE")
+    yield walk.redrawn(3)
+    shown = walk.shot("hidden")
+    assert share(viewport(walk, shown), 2) < 0.001, share(viewport(walk, shown), 2)
+    assert share(viewport(walk, shown), 3) > 0.02
+    bpy.ops.realmodel.hide_property(action="ALL")
+
+
+def stage_and_explode(walk):
+    scene = bpy.context.scene
+    scene.realmodel.stage = 1
+    yield walk.redrawn(3)
+    shown = viewport(walk, walk.shot("stage"))
+    assert share(shown, 3) < 0.001, share(shown, 3)
+    assert share(shown, 2) > 0.02
+    scene.realmodel.stage = 2
+    scene.realmodel.explode = 1.0
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.view_all()
+    yield walk.redrawn(3)
+    shown = walk.shot("explode")
+    for name in ("Sand", "Cap"):
+        item = bpy.data.objects[name]
+        middle = {"Sand": 17.5, "Cap": 32.5}[name]
+        place = item.matrix_world @ item.matrix_world.translation.__class__((50.0, 0.0, middle))
+        assert hue_differs(walk.colour_at(shown, place), rgb({"Sand": 2, "Cap": 3}[name])) < ALIKE
+        assert item.matrix_world.translation.z > 5.0
+    scene.realmodel.explode = 0.0
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.view_all()
+
+
+def cut(walk):
+    """Seen from above only the top layer is seen; cut level below it, the layer beneath."""
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.section_plane(axis="Z")
+        plane = bpy.context.scene.realmodel.view.plane
+        bpy.ops.realmodel.view(direction="TOP")
+    plane.location.z = 20.0
+    plane.select_set(False)
+    yield lambda: ", 20.0]" in bpy.context.scene.realmodel.view.cut
+    yield walk.redrawn(3)
+    shown = walk.shot("cut")
+    assert hue_differs(walk.colour_at(shown, (30, 40, 20)), rgb(2)) < ALIKE
+    assert share(viewport(walk, shown), 3) < 0.001
+    plane.location.z = 5.0
+    yield lambda: ", 5.0]" in bpy.context.scene.realmodel.view.cut
+    yield walk.redrawn(3)
+    shown = walk.shot("cut_lower")
+    assert hue_differs(walk.colour_at(shown, (30, 40, 5)), rgb(1)) < ALIKE
+    bpy.ops.realmodel.section_remove()
+    yield walk.redrawn(3)
+    assert hue_differs(walk.colour_at(walk.shot("whole"), (30, 40, 40)), rgb(3)) < ALIKE
+
+
+def captures(walk):
+    """What is captured is what is seen, in another size."""
+    scene = bpy.context.scene
+    for mode, least in (("BLOCKS", 0.05), ("POINTS", 0.0002), ("LINES", 0.0002)):
+        scene.realmodel.display = mode
+        yield walk.redrawn(2)
+        path = walk.folder / f"capture_{mode}.png"
+        with in_the_viewport(walk):
+            bpy.ops.realmodel.view(direction="FRONT")
+            bpy.ops.realmodel.capture(filepath=str(path), width=700, height=300)
+        shown = read_picture(path)
+        assert shown.shape == (300, 700, 3), shown.shape
+        for key in COLOURS:
+            assert share(shown, key) > least, (mode, key, share(shown, key))
+    scene.realmodel.display = "BLOCKS"
+    yield walk.redrawn(2)
+
+
+def coordinates_under_the_mouse(walk):
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.coordinates("INVOKE_DEFAULT")
+    x, y = walk.pixel_of((40, 0, 15))
+    walk.move(x + 3, y)
+    walk.move(x, y)
+    yield walk.redrawn(1)
+    walk.click(x, y)
+    yield lambda: bool(bpy.context.scene.realmodel.view.place)
+    from realmodel.bl.display import coordinates
+
+    place = coordinates.last(bpy.context.scene)
+    assert place.block == "Sand", place
+    assert abs(place.x - 40) < 1 and abs(place.z - 15) < 1 and abs(place.y) < 1e-3, place
+    assert abs(place.thickness - 15.0) < 1e-3, place
+
+
+STEPS = [
+    (function.__name__, function)
+    for function in (build, modes, hidden, stage_and_explode, cut, captures, coordinates_under_the_mouse)
+]
+
+
+def main():
+    realmodel.register()
+    folder = Path(sys.argv[sys.argv.index("--") + 1])
+
+    def at_end(walk):
+        if walk.failure:
+            print(f"walk: FAILED {walk.failure}", flush=True)
+        print(f"walk: {len(walk.passed)} of {len(STEPS)} steps passed", flush=True)
+        bpy.ops.wm.quit_blender()
+
+    bpy.context.preferences.view.show_splash = False
+    Walk(folder).run(STEPS, at_end)
+
+
+main()
