@@ -1,23 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The display modes, the cut, captures and coordinates in a window, by their colours on the screen.
+"""The display modes, the cut, captures and coordinates, by their colours on the screen.
 
-Run in a window by run_view.py; the model is five level layers of made-up colours.
+The model is three level layers of made-up colours, in the place of whatever the steps before have left.
 """
 
+import shutil
 import sys
+import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "tests" / "gui"), str(ROOT / "tests" / "blender")]
+import bpy
+import numpy as np
+from driver import hue_differs, read_picture
 
-import bpy  # noqa: E402
-import numpy as np  # noqa: E402
-import realmodel  # noqa: E402
-from driver import Walk, hue_differs, read_picture  # noqa: E402
-from made_projects import surface  # noqa: E402
-from realmodel.bl import picture  # noqa: E402
-from realmodel.core import Library, Project, Property, Rock  # noqa: E402
-from realmodel.core.project_writer import save_project  # noqa: E402
+sys.path.append(str(Path(__file__).resolve().parents[1] / "blender"))
+
+from made_projects import surface
+from realmodel.bl import picture
+from realmodel.core import Library, Project, Property, Rock
+from realmodel.core.project_writer import save_project
 
 COLOURS = {1: "#8a2be2", 2: "#e02020", 3: "#20a040"}
 GRID = {"east": 0.0, "north": 0.0, "x0": 0.0, "y0": 0.0, "width": 100.0, "depth": 80.0}
@@ -58,12 +59,15 @@ def viewport(walk, shown):
     return shown[region.y + 10 : region.y + region.height - 60, region.x + 60 : region.x + region.width - 320]
 
 
-def build(walk):
-    path = walk.folder / "project.toml"
+def layers(walk):
+    folder = Path(tempfile.mkdtemp())
+    path = folder / "project.toml"
     save_project(project(), path)
     for item in list(bpy.data.objects):
         bpy.data.objects.remove(item)
     space = walk.area.spaces.active
+    space.show_region_ui = False
+    space.shading.type = "SOLID"
     space.show_gizmo = space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_axis_y = (
         False
     )
@@ -71,6 +75,7 @@ def build(walk):
         bpy.ops.realmodel.open_project(filepath=str(path))
         bpy.ops.realmodel.build()
         bpy.ops.realmodel.view(direction="FRONT")
+    shutil.rmtree(folder)
     for item in bpy.context.selected_objects:
         item.select_set(False)
     yield walk.redrawn(3)
@@ -199,24 +204,4 @@ def coordinates_under_the_mouse(walk):
     assert abs(place.thickness - 15.0) < 1e-3, place
 
 
-STEPS = [
-    (function.__name__, function)
-    for function in (build, modes, hidden, stage_and_explode, cut, captures, coordinates_under_the_mouse)
-]
-
-
-def main():
-    realmodel.register()
-    folder = Path(sys.argv[sys.argv.index("--") + 1])
-
-    def at_end(walk):
-        if walk.failure:
-            print(f"walk: FAILED {walk.failure}", flush=True)
-        print(f"walk: {len(walk.passed)} of {len(STEPS)} steps passed", flush=True)
-        bpy.ops.wm.quit_blender()
-
-    bpy.context.preferences.view.show_splash = False
-    Walk(folder).run(STEPS, at_end)
-
-
-main()
+STEPS = (layers, modes, hidden, stage_and_explode, cut, captures, coordinates_under_the_mouse)
