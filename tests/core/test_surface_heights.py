@@ -69,6 +69,14 @@ def test_minimum_thickness_and_points_on_the_wrong_side():
     assert not [w for w in plain.warnings if w.kind in ("wrong_side", "minimum_thickness")]
 
 
+@pytest.mark.parametrize("rule", ["erosional", "conformable", "base", "discontinuous"])
+def test_points_below_what_a_surface_does_not_cut_are_listed(rule):
+    low = Surface("low", points=points(0, 0, 6, 6), method="tin")
+    high = Surface("high", points=points(2, 2, 4, 8), method="tin", rule=rule)
+    told = [(w.surface, w.items) for w in build(rock(low, high)).warnings if w.kind == "wrong_side"]
+    assert told == ([("high", (2,)), ("low", (2,))] if rule in ("conformable", "base") else [])
+
+
 def test_minimum_thickness_above_a_ready_mesh_of_part_of_the_region():
     part = Surface(
         "low", np.array([[0, 0, 3], [5, 0, 3], [5, 10, 3], [0, 10, 3.0]]), np.array([[0, 1, 2], [0, 2, 3]])

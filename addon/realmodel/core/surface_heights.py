@@ -85,6 +85,9 @@ def give_heights(work: Work, entry, number: int, threads: int) -> None:
         shape = where_known(nodes, triangles, result.z)
         told_of_vertices = told_of(work, surface.points, result, entry.region, threads)
         warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]
+        keeps_order = surface.minimum_thickness is not None or surface.rule in _KEEP_WHAT_IS_OLDER
+        if keeps_order and number > 0 and entry.surfaces[number - 1] is not None:
+            warnings += _wrong_sides(work, entry, number, shape, threads)
         if surface.minimum_thickness is not None:
             shape, told = _above_older(work, entry, number, shape, threads)
             warnings += told
@@ -97,6 +100,18 @@ def give_heights(work: Work, entry, number: int, threads: int) -> None:
     entry.warnings += warnings
 
 
+def _wrong_sides(work: Work, entry, number: int, shape: Triangulation, threads: int) -> list[BuildWarning]:
+    """The points of a surface and of the older one that lie on the wrong side of the other."""
+    rock = entry.rock
+    names = rock.surfaces[number - 1].name, rock.surfaces[number].name
+    return [
+        *_on_wrong_side(work, rock, number, entry.surfaces[number - 1], names[0], "below", threads),
+        *_on_wrong_side(work, rock, number - 1, shape, names[1], "above", threads),
+    ]
+
+
+# A surface of these rules cuts nothing: its own points below the older one are usually errors in the data.
+_KEEP_WHAT_IS_OLDER = ("conformable", "base")
 # Local methods give on a part of the nodes what they give on all, and cheap ones cost nothing.
 _SAMPLED_METHODS = ("kriging", "universal_kriging", "idw", "constant", "plane")
 _STAND_IN = "idw"
@@ -143,13 +158,9 @@ def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Tria
 
 def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: int):
     """The shape, raised to the minimum thickness above the older surface, and what to tell: where it was
-    raised, and the points of both that lie on the wrong side of the other."""
+    raised."""
     rock = entry.rock
     surface, older = rock.surfaces[number], rock.surfaces[number - 1]
-    warnings = [
-        *_on_wrong_side(work, rock, number, entry.surfaces[number - 1], older.name, "below", threads),
-        *_on_wrong_side(work, rock, number - 1, shape, surface.name, "above", threads),
-    ]
     vertices, triangles = shape
     older_vertices, _ = entry.surfaces[number - 1]
     if np.array_equal(older_vertices[:, :2], vertices[:, :2]):
@@ -160,16 +171,15 @@ def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: 
     lift = np.where(np.isfinite(least), least - vertices[:, 2], 0.0)
     raised = lift > 0
     if not raised.any():
-        return shape, warnings
+        return shape, []
     worst = int(lift.argmax())
     text = (
         f"raised at {int(raised.sum())} of {len(vertices)} nodes to keep {surface.minimum_thickness:g} above "
         f"'{older.name}', most by {lift[worst]:.4g} at {place_text(vertices[worst, :2])}"
     )
-    warnings.append(BuildWarning(text, "minimum_thickness", rock.name, surface.name))
     vertices = vertices.copy()
     vertices[raised, 2] = least[raised]
-    return (vertices, triangles), warnings
+    return (vertices, triangles), [BuildWarning(text, "minimum_thickness", rock.name, surface.name)]
 
 
 def _heights_at(work: Work, shape: Triangulation, plan: np.ndarray, threads: int) -> np.ndarray:
