@@ -95,6 +95,8 @@ def _accuracy(told, method: str, splits: int) -> list[str]:
             continue
         errors.append(f"{statistics.fmean(run['rmse']):.3f}")
         within = run["within"]
-        shares.append(f"{100 * min(within):.1f} .. {100 * max(within):.1f} %" if within else "-")
+        # Of a variogram that was not fitted the variance means nothing.
+        fitted = within and method in ("kriging", "auto")
+        shares.append(f"{100 * min(within):.1f} .. {100 * max(within):.1f} %" if fitted else "-")
     label = f"RealModel, {method}" if method in _OURS else method
     return [label, *errors, *shares]

@@ -148,6 +148,37 @@ TEST(VariogramFit, LittleOrConstantData) {
               1234.5);
 }
 
+TEST(VariogramFit, VariancesAreHonest) {
+    // A smooth field measured with errors; and one with a few mistakes in it.
+    for (const int every : {0, 150}) {
+        Points points = drawn_field({VariogramModel::matern32, 80, 9, 0.02, {}}, 900, 200, 7);
+        for (int i = 0; every > 0 && i < 900; i += every)
+            points[static_cast<std::size_t>(i)][2] += 4;
+        const Variogram v = fit_variogram(points, {}).variogram;
+        const Kriged told = krige_left_out(points, v, {32, 0});
+        int within = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (std::abs(told.z[i] - points[i][2]) <= 2 * std::sqrt(told.variance[i])) ++within;
+        }
+        EXPECT_GT(within, 0.92 * 900);
+        EXPECT_LT(within, 0.975 * 900);
+        EXPECT_NEAR(v.sill, 9, 7);  // and far from points too
+    }
+}
+
+TEST(VariogramFit, SameForAnyNumberOfThreadsAndRefusesNoNeighbours) {
+    const Points points = hills(3000, 100);
+    for (const Drift drift : {Drift::constant, Drift::linear}) {
+        const Variogram one = fit_variogram(points, {}, nullptr, {drift, 16, 1}).variogram;
+        const Variogram three = fit_variogram(points, {}, nullptr, {drift, 16, 3}).variogram;
+        EXPECT_EQ(one.model, three.model);
+        EXPECT_EQ(one.range, three.range);
+        EXPECT_EQ(one.sill, three.sill);
+        EXPECT_EQ(one.nugget, three.nugget);
+    }
+    EXPECT_THROW(fit_variogram(points, {}, nullptr, {Drift::constant, 0}), InputError);
+}
+
 TEST(VariogramFit, SameEveryTime) {
     const Points points = hills(6000, 100);
     const FittedVariogram a = fit_variogram(points, {2, 40}), b = fit_variogram(points, {2, 40});
