@@ -34,8 +34,8 @@ was written by `scripts/test_blender_versions.sh`; run as root, it does all of i
 - *zip valid*: `blender --command extension validate`, which Blender has from 4.2 on.
 - *installed*: as a user does, into an empty home: Preferences > Add-ons > Install and a tick as an add-on;
   `blender --command extension install-file` as an extension. Then Blender is started again.
-- *first use*: open an example, build, volumes right to 1e-4, export, a picture that shows the layers, save,
-  open, clear, build again, disable: nothing is left.
+- *first use*: open an example, build, volumes as those of the exact model to 1e-4, export, a picture that
+  shows the layers, save, open, clear, build again, disable: nothing is left.
 - *without module*: the native modules taken away: the add-on enables, its panel says what is missing and
   what to do, `build` refuses with the same words, everything else works.
 - *tests*: `tests/blender`, run on what was in the zip.
