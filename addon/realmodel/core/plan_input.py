@@ -14,7 +14,6 @@ from .point_file import ReadingRefused
 from .readers import read_shapes
 from .readers.map_input import map_companions, require_polygons
 from .readers.shapes import Shapes
-from .readers.text import Step, no_step
 from .readers.wkt import parse_wkt
 from .region_rings import NamedRing, checked_region, given_rings, is_several, rings_of_shapes
 from .units import MODEL_UNIT
@@ -50,32 +49,33 @@ def check_layer(given, key: str, refuse: Refuse, is_file: Callable[[Path], bool]
         raise refuse(f"there is no file {layer.file}", key, "check the path")
 
 
-def shapes_of(given, units: str = MODEL_UNIT, step: Step = no_step) -> Shapes | None:
+def shapes_of(given, units: str = MODEL_UNIT) -> Shapes | None:
     """What a file or a well-known text holds; None where arrays are given."""
     layer = map_layer(given)
     if layer is not None:
-        return read_shapes(layer, units, step)
+        return read_shapes(layer, units)
     return parse_wkt(given) if isinstance(given, str) else None
 
 
 def read_rings(
-    region, holes=(), units: str = MODEL_UNIT, step: Step = no_step
+    region, holes=(), units: str = MODEL_UNIT, call: Callable | None = None
 ) -> tuple[object, list[np.ndarray], list[str]]:
     """The region and the holes of a rock mass as checked arrays, and sentences about what was left out.
 
     The region is one outline (N, 2) with holes in it, or a list of rings that count even-odd, without. Raises
-    InputRefused; its `cause` is native InputError where the rings do not fit together.
+    InputRefused; its cause is a native InputError where the rings do not fit together. call: Work.native,
+    where the caller may stop it.
     """
-    shapes = shapes_of(region, units, step)
+    shapes = shapes_of(region, units)
     if shapes is None:
         rings = given_rings(region, holes)
-        return *_as_given(rings, checked_region(rings), is_several(region)), []
+        return *_as_given(rings, checked_region(rings, call), is_several(region)), []
     layer = map_layer(region)
     file = None if layer is None else Path(layer.file)
     require_polygons(shapes, file)
     rings = rings_of_shapes(shapes)
     told = shapes.without_area(file or Path("region"))
-    return *_as_given(rings, checked_region(rings), False), told
+    return *_as_given(rings, checked_region(rings, call), False), told
 
 
 def _as_given(

@@ -80,7 +80,7 @@ def read_rocks(work: Work, project: Project) -> list[RockInput]:
     done = 0
     inputs = []
     for rock in project.rocks:
-        rock, warnings = _read_region(rock, project.units)
+        rock, warnings = _read_region(work, rock, project.units)
         picks = _read_picks(rock, project.units)
         warnings += [BuildWarning(text, "points", rock.name) for text in picks.warnings]
         done += 1
@@ -114,11 +114,11 @@ def with_arrays(project: Project) -> Project:
     def is_plain(given) -> bool:
         return given is None or (isinstance(given, (str, Path)) and map_layer(given) is not None)
 
-    def task(_work: Work) -> list[Rock]:
+    def task(work: Work) -> list[Rock]:
         rocks = []
         for rock in project.rocks:
             if not is_plain(rock.region):
-                rock, _ = _read_region(rock, project.units)
+                rock, _ = _read_region(work, rock, project.units)
             picks = _read_picks(rock, project.units)
             surfaces = []
             for surface in rock.surfaces:
@@ -132,11 +132,11 @@ def with_arrays(project: Project) -> Project:
     return replace(project, rocks=run(task))
 
 
-def _read_region(rock: Rock, units: str) -> tuple[Rock, list[BuildWarning]]:
+def _read_region(work: Work, rock: Rock, units: str) -> tuple[Rock, list[BuildWarning]]:
     if rock.region is None:
         return rock, []
     try:
-        region, holes, left_out = read_rings(rock.region, rock.holes, units)
+        region, holes, left_out = read_rings(rock.region, rock.holes, units, work.native)
     except InputRefused as error:
         file, line = rock.region_file, None
         if file is None and rock.source is not None:
