@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from blender_state import empty_file
 from made_projects import interpolated, two_rocks
+from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl import scene, uncertainty
 from realmodel.core import build
 
@@ -56,3 +57,16 @@ class Uncertainty(unittest.TestCase):
         np.testing.assert_allclose(found[1], (0.35, 0.35, 0.35, 1.0), atol=1e-6)
         sure = uncertainty.colours(np.zeros(2))
         np.testing.assert_allclose(sure, [(0.0, 0.135, 0.305, 1.0)] * 2, atol=1e-6)
+
+
+class UncertaintyInThePanel(PanelCase):
+    def test_what_is_built_from_the_panel_has_the_attributes(self):
+        ops.open_project(filepath=str(SAMPLES / "two_layers" / "project.toml"))
+        for _ in range(2):  # an interface that stays the same keeps them
+            ops.build()
+            found = [o for o in self.scene.objects if o.get("realmodel") == "interface"]
+            self.assertTrue(found)
+            for item in found:
+                names = set(item.data.attributes.keys())
+                self.assertLessEqual({"variance", "distance", "uncertainty"}, names)
+                self.assertEqual(len(item.data.attributes["variance"].data), len(item.data.vertices))

@@ -82,13 +82,16 @@ void print_mesh_and_heights() {
                               static_cast<double>(static_cast<int>(fitted.model))})
               .value());
     const interpolation::Variogram spherical{.range = 60, .sill = 4, .nugget = 0.1};
-    for (const int neighbours : {0, 16}) {
+    for (const int neighbours : {0, 16, 32}) {
         interpolation::KrigingOptions options;
         options.neighbours = neighbours;
         options.threads = threads;
         const auto kriged = interpolation::krige(points, mesh.vertices, spherical, options);
         print("kriging, " + std::to_string(neighbours) + " neighbours",
               Digest().add(kriged.z).add(kriged.variance).value());
+        const auto left_out = interpolation::krige_left_out(points, fitted, options);
+        print("kriging left out points, " + std::to_string(neighbours) + " neighbours",
+              Digest().add(left_out.z).add(left_out.variance).value());
     }
     interpolation::InverseDistanceOptions options;
     options.threads = threads;

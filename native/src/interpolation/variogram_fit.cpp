@@ -97,6 +97,7 @@ public:
           anisotropy_(anisotropy),
           options_(options),
           progress_(progress),
+          extent_(diagonal(isotropic_places(data, anisotropy))),
           points_(data, static_cast<std::size_t>(options.neighbours), points_left_out,
                   options.threads, progress) {}
 
@@ -196,6 +197,7 @@ private:
         CurveFit best = start->fit;
         double least = start->square;
         const auto attempt = [&](double range, double nugget) {
+            if (range > std::max(start->fit.range, extent_)) return;
             const CurveFit fit = fit_sill(e_, model, range, nugget);
             if (!usable(fit) || fit.partial_sill <= 0) return;
             const LeftOutErrors told = told_by(fit);
@@ -244,6 +246,7 @@ private:
         for (int step = 0; step < 3 && std::abs(std::log(scale)) > 0.05; ++step) {
             Variogram moved = variogram;
             moved.range *= std::clamp(std::pow(scale, -1 / power), 0.5, 2.0);
+            moved.range = std::min(moved.range, std::max(variogram.range, extent_));
             LeftOutErrors with_moved = told(moved);
             const double with_range = honest_sill(with_moved) / moved.sill / left_undone;
             if (!(std::abs(std::log(with_range)) < std::abs(std::log(scale))) ||
@@ -280,6 +283,7 @@ private:
     const Anisotropy& anisotropy_;
     const FitOptions& options_;
     Progress* progress_;
+    double extent_;  // of the points: no range is moved beyond it
     LeftOutPoints points_;
 };
 
