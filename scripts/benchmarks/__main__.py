@@ -8,7 +8,7 @@ import signal
 import sys
 from pathlib import Path
 
-from . import blender_table, fitting, heights_table, page, watching_table
+from . import blender_table, display_table, fitting, heights_table, page, watching_table
 from .process import ROOT
 from .stacks_table import Limits, Row, StackRows
 
@@ -44,7 +44,14 @@ def main() -> int:
         ]
     if "blender" in parts:
         rows = blender_table.measure(given.quick, memory, _say)
-        lines["blender"] = [machine, "", *page.table(blender_table.UPLOADS, rows)]
+        frames = display_table.measure(given.quick, memory, _say)
+        lines["blender"] = [
+            machine,
+            "",
+            *page.table(blender_table.UPLOADS, rows),
+            "",
+            *page.table(display_table.FRAMES, frames),
+        ]
     if "heights" in parts:
         speed, accuracy = heights_table.measure(given.quick, memory, _say)
         lines["heights"] = [

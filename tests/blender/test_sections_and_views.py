@@ -120,6 +120,17 @@ class Cuts(Case):
         bpy.ops.realmodel.clear()
         self.assertEqual(self.halves(), {})
 
+    def test_keyframes_of_the_plane(self):
+        bpy.ops.realmodel.section_plane(axis="X")
+        plane = self.settings.view.plane
+        for frame, x in ((1, 20.0), (5, 60.0)):
+            plane.location.x = x
+            plane.keyframe_insert("location", frame=frame)
+        for frame in (1, 5, 1):
+            self.scene.frame_set(frame)
+            at = np.concatenate([blender_state.coordinates(o.data) for o in self.halves().values()])
+            self.assertAlmostEqual(at[:, 0].max(), {1: 20.0, 5: 60.0}[frame], places=3)
+
     def test_the_section_lies_where_the_plane_is(self):
         bpy.ops.realmodel.section_plane(axis="X")
         self.settings.view.plane.location.x = 20.0

@@ -158,6 +158,13 @@ def frame_changed(scene, depsgraph=None):
     different = {key: value for key, value in now.items() if before.get(key) != value}
     if different:
         _show(scene, **different)
+    from . import cuts
+
+    try:
+        if cuts.follow(scene, depsgraph):
+            _show(scene, display=now["display"])
+    except RealModelError as error:
+        scene.realmodel.view.message = str(error)
 
 
 def render_begins(*_arguments):

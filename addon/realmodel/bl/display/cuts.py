@@ -42,9 +42,10 @@ def plane_of(current):
     return item if item is not None and current in item.users_scene else None
 
 
-def plane_in_model(current):
-    """(point, normal) of the plane in model coordinates, (3,) float64 each."""
-    matrix = np.array(plane_of(current).matrix_world, np.float64)
+def plane_in_model(current, matrix=None):
+    """(point, normal) of the plane in model coordinates, (3,) float64 each. matrix: where it is in the world,
+    if not where Blender last had it."""
+    matrix = np.array(plane_of(current).matrix_world if matrix is None else matrix, np.float64)
     normal = np.cross(matrix[:3, 0], matrix[:3, 1])  # square to the plane, also where it is sheared
     length = np.linalg.norm(normal)
     if not length > 0.0:
@@ -83,29 +84,47 @@ def remove_plane(current):
     bodies.remove_collection_if_empty(current)
 
 
-def _state(current, stage):
-    point, normal = plane_in_model(current)
+def _state(current, stage, matrix=None):
+    """What a cut is made of, as text: [point, normal, stage, stamp of the model]."""
+    point, normal = plane_in_model(current, matrix)
     return json.dumps([point.tolist(), normal.tolist(), stage, current.realmodel.built_stamp])
 
 
-def half(current, stage, cells=None):
-    """The half that is shown at a stage, as a realmodel.core.Model. Raises RealModelError."""
-    wanted = _state(current, stage)
-    state, model = _halves.get(current.name, ("", None))
-    if state == wanted and (cells is None or model.cell_kind == cells):
+def half(current, state, cells=None):
+    """The half that is left by a cut, as a realmodel.core.Model. state: as `view.cut` has it. Raises
+    RealModelError."""
+    known, model = _halves.get(current.name, ("", None))
+    if known == state and (cells is None or model.cell_kind == cells):
         return model
-    base = shown_models.at_stage(current, stage, cells)
-    model = base.cut_by_plane(*plane_in_model(current)).below
-    _halves[current.name] = (wanted, model)
+    point, normal, stage, _ = json.loads(state)
+    model = shown_models.at_stage(current, stage, cells).cut_by_plane(point, normal).below
+    _halves[current.name] = (state, model)
     return model
 
 
-def cut_now(current, stage=None):
+def cut_now(current, stage=None, matrix=None):
     """Makes the cut in this thread. Raises RealModelError; then the earlier one stays."""
-    stage = current.realmodel.stage if stage is None else stage
-    _layer(current).update()  # the plane's matrix may be of before it was moved
-    model = half(current, stage, _wanted_cells(current))
-    _put(current, _shapes(model, project_settings.model_origin(current)), _state(current, stage))
+    if matrix is None:
+        _layer(current).update()  # the plane's matrix may be of before it was moved
+    state = _state(current, current.realmodel.stage if stage is None else stage, matrix)
+    model = half(current, state, _wanted_cells(current))
+    _put(current, _shapes(model, project_settings.model_origin(current)), state)
+
+
+def follow(current, depsgraph):
+    """Another frame: whether the plane is elsewhere than where the cut was made; then it is made anew."""
+    if not is_on(current):
+        return False
+    plane = plane_of(current)
+    matrix = plane.matrix_world if depsgraph is None else plane.evaluated_get(depsgraph).matrix_world
+    cut = json.loads(current.realmodel.view.cut or "[[], []]")
+    if [found.tolist() for found in plane_in_model(current, matrix)] == cut[:2]:
+        return False
+    if bpy.app.background or replacing.is_rendering():
+        cut_now(current, cut[2] if len(cut) > 2 else None, matrix)
+        return True
+    touch(current)
+    return False
 
 
 def refresh(current, stage=None):

@@ -119,7 +119,7 @@ def _make_cells(scene, stage):
     made_of = json.dumps([group.built_stamp, stage, group.view.cut if cuts.is_shown(scene) else ""])
     if group.view.cells_of == made_of and bodies.of_kind(scene, bodies.CELLS):
         return
-    half = cuts.half(scene, stage, "columns") if cuts.is_shown(scene) else None
+    half = cuts.half(scene, group.view.cut, "columns") if cuts.is_shown(scene) else None
     model = half or shown_models.at_stage(scene, stage, "columns")
     origin = project_settings.model_origin(scene)
     rows = {(row.rock, row.name): row for row in group.results}
