@@ -114,3 +114,4 @@ def main(folder):
 
 
 main(Path(installed.arguments()[0]))
+installed.leave()

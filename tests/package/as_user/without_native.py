@@ -72,3 +72,4 @@ def main():
 
 
 main()
+installed.leave()
