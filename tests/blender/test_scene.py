@@ -107,11 +107,12 @@ class SavedScene(unittest.TestCase):
             item.data.attributes[meshes.FACE_SURFACE].data.foreach_get("value", values)
             np.testing.assert_array_equal(values, self.model.block_boundary(number).face_surface)
 
-    def test_polygons_are_flat_shaded(self):
-        for item in [*tagged("block"), *tagged("interface")]:
-            smooth = np.ones(len(item.data.polygons), bool)
-            item.data.polygons.foreach_get("use_smooth", smooth)
-            self.assertFalse(smooth.any(), item.name)
+    def test_blocks_are_flat_shaded_and_surfaces_smooth(self):
+        for kind, wanted in (("block", False), ("interface", True)):
+            for item in tagged(kind):
+                smooth = np.full(len(item.data.polygons), not wanted)
+                item.data.polygons.foreach_get("use_smooth", smooth)
+                self.assertTrue((smooth == wanted).all(), item.name)
 
     def test_one_material_for_each_property(self):
         shared = {}

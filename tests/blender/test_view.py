@@ -85,6 +85,12 @@ class Modes(Case):
             wanted = materials.linear_colour(LIBRARY.get(property_id).color)
             np.testing.assert_allclose(colour[:3], wanted, atol=1e-6, err_msg=name)
 
+    def test_interfaces_are_smooth_and_blocks_are_not(self):
+        for item in self.scene.objects:
+            smooth = np.ones(len(item.data.polygons), bool)
+            item.data.polygons.foreach_get("use_smooth", smooth)
+            self.assertEqual(set(smooth.tolist()), {item["realmodel"] == "interface"}, item.name)
+
     def test_what_the_user_hid_stays_hidden(self):
         item = self.blocks()["Sand"]
         item.hide_set(True)

@@ -173,7 +173,7 @@ def _new_interfaces(current, prepared, composed, created):
             given, triangles, digest = prepared.interfaces[r, s]
             mesh = None
             if own is None or digest != row.interface_digest:
-                mesh = meshes.triangle_mesh(row.name, given, triangles)
+                mesh = meshes.surface_mesh(row.name, given, triangles)
                 created.meshes.append(mesh)
                 uncertainty.add_attributes(mesh, prepared.told[r, s])
             if own is None:

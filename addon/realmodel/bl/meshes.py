@@ -39,6 +39,13 @@ def triangle_mesh(name, coordinates, triangles):
     return new_mesh(name, coordinates, np.arange(0, 3 * len(triangles) + 1, 3), triangles.ravel())
 
 
+def surface_mesh(name, coordinates, triangles):
+    """A new mesh datablock of a surface: `triangle_mesh`, shaded smooth."""
+    mesh = triangle_mesh(name, coordinates, triangles)
+    versions.shade_smooth(mesh)
+    return mesh
+
+
 def without_repeated_corners(triangles):
     """(T, 3) int32: the triangles whose corners are three different vertices."""
     triangles = np.asarray(triangles, np.int32).reshape(-1, 3)

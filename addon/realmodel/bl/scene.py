@@ -185,7 +185,7 @@ def _rock_objects(model, model_origin, palette, created):
 
 def _interface(model, surface, rock, given, model_origin, created):
     vertices, triangles = model.surface(surface)
-    mesh = meshes.triangle_mesh(given.name, origin.offsets_from(model_origin, vertices), triangles)
+    mesh = meshes.surface_mesh(given.name, origin.offsets_from(model_origin, vertices), triangles)
     made = _object(mesh, given.name, created)
     uncertainty.add_attributes(mesh, model.surface_attributes(surface))
     made[TAG] = "interface"

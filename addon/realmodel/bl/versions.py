@@ -51,6 +51,15 @@ def layer_collections(view_layer):
     return view_layer.layer_collection
 
 
+def shade_smooth(mesh):
+    """Shade all polygons of a mesh smooth, as a surface without breaks."""
+    if bpy.app.version < (4, 1, 0):
+        mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
+    elif "sharp_face" in mesh.attributes:
+        mesh.attributes.remove(mesh.attributes["sharp_face"])
+    mesh.update()
+
+
 def make_matt(principled):
     """Take the shine off a Principled shader; its socket was renamed in 4.0."""
     principled.inputs["Roughness"].default_value = 1.0
