@@ -37,7 +37,7 @@ was written by `scripts/test_blender_versions.sh`; run as root, it does all of i
 - *first use*: open an example, build, volumes as those of the exact model to 1e-4, export, a picture that
   shows the layers, save, open, clear, build again, disable: nothing is left.
 - *without module*: the native modules taken away: the add-on enables, its panel says what is missing and
-  what to do, `build` refuses with the same words, everything else works.
+  what to do, opening and building refuse with the same words and change nothing, the rest works.
 - *tests*: `tests/blender`, run on what was in the zip.
 {compiled}
 ## Differences between the versions

@@ -46,6 +46,11 @@ def refused(operator, **options):
     raise AssertionError(f"{operator.idname_py()} did what needs the native module")
 
 
+def state():
+    """What a refusal may not change: the rock masses and the objects."""
+    return [rock.name for rock in bpy.context.scene.realmodel.rocks], sorted(bpy.data.objects.keys())
+
+
 def main():
     module = installed.package()
     check(not list(Path(module.__file__).parent.glob("_native*")), "the native modules are still there")
@@ -58,11 +63,15 @@ def main():
     ops = bpy.ops.realmodel
     ops.new()
     ops.rock_add()
-    ops.open_sample(sample="two_layers")
-    check(len(bpy.context.scene.realmodel.rocks) == 1, "the example was not opened")
-    before = sorted(item.name for item in bpy.data.objects)
+    for height in (0.0, 1.0):
+        bpy.ops.mesh.primitive_plane_add(location=(0.0, 0.0, height))
+    bpy.ops.object.select_all(action="SELECT")
+    ops.from_selected()
+    before = state()
+    check(before[0] == ["rock mass"], f"from_selected() made the rock masses {before[0]}")
+    check("native module" in refused(ops.open_sample, sample="two_layers"), "opening says something else")
     check("native module" in refused(ops.build), "build() says something else")
-    check(sorted(item.name for item in bpy.data.objects) == before, "build() left something in the scene")
+    check(state() == before, f"the scene was {before} and is {state()}")
 
     installed.disabled()
     bpy.ops.preferences.addon_enable(module=installed.name())
