@@ -18,7 +18,7 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr std::size_t points_left_out = 4000;
+constexpr std::size_t points_left_out = 10'000;
 constexpr std::size_t points_left_out_of_drift = 1000;
 constexpr double outlying = 20;      // deviations: errors beyond count as if there
 constexpr double as_good = 1.004;    // of mean squares: RMS errors within 0.2 % tell nothing apart

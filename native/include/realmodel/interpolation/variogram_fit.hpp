@@ -44,7 +44,7 @@ struct FittedVariogram {
 /// Fits a variogram to points. Each model kind, with and without a nugget, is fitted to the
 /// experimental values by weighted least squares (weights pairs / lag^2: Chiles and Delfiner 2012,
 /// section 2.6.2, as gstat does); about these fits further nuggets and ranges are tried, each with
-/// the sill that fits best. Of all the one is taken with which up to 4000 points, left out one by
+/// the sill that fits best. Of all the one is taken with which up to 10,000 points, left out one by
 /// one, are told best by kriging from their nearest others (root mean square error, errors beyond
 /// ten deviations counted as ten); where several do within half a percent, the one that fits the
 /// experimental values best. Then range and sill are moved so that 95 % of those errors lie within
