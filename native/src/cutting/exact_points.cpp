@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "exact/arithmetic.hpp"
+#include "realmodel/exact/ball.hpp"
 
 namespace realmodel::cutting {
 
@@ -39,16 +40,24 @@ std::size_t ExactPoints::Hash::operator()(const Position& p) const {
     return static_cast<std::size_t>(hash);
 }
 
+/// Whether a point with these doubles is the one given; `exact` is null where its doubles are
+/// exact.
+bool ExactPoints::is_same(NodeId p, const Position& rounded, const Fractions* exact) const {
+    if (is_double(p)) return exact == nullptr;
+    const Fractions own = this->exact(p);
+    if (exact != nullptr) return own == *exact;
+    return own == Fractions{mpq_class(rounded[0]), mpq_class(rounded[1]), mpq_class(rounded[2])};
+}
+
 NodeId ExactPoints::enter(const Position& rounded, std::unique_ptr<Fractions> exact) {
     const auto [begin, end] = known_.equal_range(rounded);
     for (auto found = begin; found != end; ++found) {
-        const auto& other = exact_[index(found->second)];
-        if (exact == nullptr ? other == nullptr : other != nullptr && *other == *exact)
-            return found->second;
+        if (is_same(found->second, rounded, exact.get())) return found->second;
     }
     const auto number = static_cast<NodeId>(rounded_.size());
     rounded_.push_back(rounded);
     exact_.push_back(std::move(exact));
+    made_of_.push_back(nullptr);
     known_.emplace(rounded, number);
     return number;
 }
@@ -69,7 +78,10 @@ NodeId ExactPoints::add(Fractions&& p) {
 }
 
 Fractions ExactPoints::exact(NodeId p) const {
-    if (!is_double(p)) return *exact_[index(p)];
+    auto& known = exact_[index(p)];
+    if (known == nullptr && made_of_[index(p)] != nullptr)
+        known = std::make_unique<Fractions>(exact_crossing(*made_of_[index(p)]));
+    if (known != nullptr) return *known;
     const Position& r = rounded(p);
     return {mpq_class(r[0]), mpq_class(r[1]), mpq_class(r[2])};
 }
@@ -143,14 +155,74 @@ int ExactPoints::compare(NodeId a, NodeId b) const {
     return 0;
 }
 
+std::size_t ExactPoints::CrossingHash::operator()(const Crossing& c) const {
+    std::uint64_t hash = 0;
+    for (const NodeId node : c.of) {
+        hash ^= static_cast<std::uint64_t>(node);
+        hash *= 0x9e3779b97f4a7c15ULL;
+        hash ^= hash >> 29;
+    }
+    return static_cast<std::size_t>(hash);
+}
+
 NodeId ExactPoints::crossing(NodeId p, NodeId q, NodeId a, NodeId b, NodeId c) {
-    if (compare(p, q) > 0) std::swap(p, q);
+    // triangles that share an edge ask for the same place
+    std::array<NodeId, 3> plane{a, b, c};
+    std::sort(plane.begin(), plane.end());
+    const Crossing crossing{{std::min(p, q), std::max(p, q), plane[0], plane[1], plane[2]}};
+    const auto [found, is_new] = crossings_.try_emplace(crossing, -1);
+    if (!is_new) return found->second;
+    const auto rounded = rounded_crossing(crossing);
+    if (!rounded || known_.contains(*rounded)) return found->second = add(exact_crossing(crossing));
+    found->second = static_cast<NodeId>(rounded_.size());
+    rounded_.push_back(*rounded);
+    exact_.push_back(nullptr);
+    made_of_.push_back(std::make_unique<Crossing>(crossing));
+    known_.emplace(*rounded, found->second);
+    return found->second;
+}
+
+/// The doubles nearest to a crossing of what is given by doubles, where twice their precision
+/// tells.
+std::optional<Position> ExactPoints::rounded_crossing(const Crossing& crossing) const {
+    for (const NodeId node : crossing.of) {
+        if (!is_double(node)) return std::nullopt;
+    }
+    using exact::Ball;
+    const auto minus = [this](NodeId p, NodeId q) {
+        std::array<Ball, 3> way;
+        for (std::size_t k = 0; k < 3; ++k)
+            way[k] = Ball::difference(rounded(p)[k], rounded(q)[k]);
+        return way;
+    };
+    const auto [p, q, a, b, c] = crossing.of;
+    const auto u = minus(b, a), v = minus(c, a), way = minus(q, p), start = minus(p, a);
+    Ball from, change;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+        const Ball normal = u[l] * v[m] - u[m] * v[l];
+        from = from + normal * start[k];
+        change = change + normal * way[k];
+    }
+    const Ball share = -from / change;
+    Position result;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto x = (Ball(rounded(p)[k]) + share * way[k]).rounded();
+        if (!x) return std::nullopt;
+        result[k] = *x + 0.0;
+    }
+    return result;
+}
+
+Fractions ExactPoints::exact_crossing(const Crossing& crossing) const {
+    const auto [p, q, a, b, c] = crossing.of;
     const Fractions o = exact(a), u = minus(exact(b), o), v = minus(exact(c), o);
     const Fractions start = exact(p), way = minus(exact(q), start);
-    const mpq_class from = determinant(u, v, minus(start, o)), change = determinant(u, v, way);
-    const mpq_class share = -from / change;
-    return add(Fractions{mpq_class(start[0] + share * way[0]), mpq_class(start[1] + share * way[1]),
-                         mpq_class(start[2] + share * way[2])});
+    const mpq_class share = -determinant(u, v, minus(start, o)) / determinant(u, v, way);
+    Fractions found;
+    for (std::size_t k = 0; k < 3; ++k)
+        found[k] = start[k] + share * way[k];
+    return found;
 }
 
 NodeId ExactPoints::crossing(std::size_t axis, NodeId p, NodeId q, NodeId a, NodeId b) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -61,16 +62,33 @@ public:
     bool is_farther(std::size_t axis, NodeId a, NodeId b, NodeId p, NodeId q) const;
 
 private:
+    struct Crossing {
+        std::array<NodeId, 5> of;  ///< ends of the line, corners of the plane
+        auto operator<=>(const Crossing&) const = default;
+    };
     struct Hash {
         std::size_t operator()(const Position& p) const;
     };
     NodeId enter(const Position& rounded, std::unique_ptr<Fractions> exact);
+    struct CrossingHash {
+        std::size_t operator()(const Crossing& c) const;
+    };
     double slack(NodeId a, NodeId b, NodeId c, NodeId d) const;
-    bool is_double(NodeId p) const { return exact_[index(p)] == nullptr; }
+    bool is_double(NodeId p) const {
+        return exact_[index(p)] == nullptr && made_of_[index(p)] == nullptr;
+    }
+    bool is_same(NodeId p, const Position& rounded, const Fractions* exact) const;
+    std::optional<Position> rounded_crossing(const Crossing& crossing) const;
+    Fractions exact_crossing(const Crossing& crossing) const;
 
     std::vector<Position> rounded_;
-    std::vector<std::unique_ptr<Fractions>> exact_;  ///< none where the doubles are exact
+    /// None where the doubles are exact. Of crossings they are computed when they are asked for:
+    /// most are told apart from everything by their doubles. (Crossings are made and asked by one
+    /// thread.)
+    mutable std::vector<std::unique_ptr<Fractions>> exact_;
+    std::vector<std::unique_ptr<Crossing>> made_of_;
     std::unordered_multimap<Position, NodeId, Hash> known_;
+    std::unordered_map<Crossing, NodeId, CrossingHash> crossings_;
 };
 
 }  // namespace realmodel::cutting

@@ -194,13 +194,31 @@ bool Overlay::on_segment(NodeId p, NodeId a, NodeId b) const {
     return points_.compare(a, p) * points_.compare(p, b) > 0;
 }
 
+/// The points of a triangle that may lie between two of them.
+std::span<const NodeId> Overlay::points_between(const Triangle& t, NodeId a, NodeId b) const {
+    const std::size_t axis = (t.axis + 1) % 3;
+    const auto before = [&](NodeId p, double x) { return points_.rounded(p)[axis] < x; };
+    const auto after = [&](double x, NodeId p) { return x < points_.rounded(p)[axis]; };
+    if (t.in_order.size() != t.points.size()) {
+        t.in_order.assign(t.points.begin(), t.points.end());
+        std::sort(t.in_order.begin(), t.in_order.end(), [&](NodeId p, NodeId q) {
+            return std::pair(points_.rounded(p)[axis], p) < std::pair(points_.rounded(q)[axis], q);
+        });
+    }
+    const double x = points_.rounded(a)[axis], y = points_.rounded(b)[axis];
+    const auto first =
+        std::lower_bound(t.in_order.begin(), t.in_order.end(), std::min(x, y), before);
+    const auto last = std::upper_bound(first, t.in_order.end(), std::max(x, y), after);
+    return {first, last};
+}
+
 /// The nodes of a triangle between two of them, in order from the first to the second.
 std::vector<NodeId> Overlay::nodes_on(const Triangle& t, NodeId a, NodeId b) const {
     std::vector<NodeId> found;
     for (const NodeId p : t.corners) {
         if (on_segment(p, a, b)) found.push_back(p);
     }
-    for (const NodeId p : t.points) {
+    for (const NodeId p : points_between(t, a, b)) {
         if (on_segment(p, a, b) && std::find(found.begin(), found.end(), p) == found.end())
             found.push_back(p);
     }
@@ -212,15 +230,22 @@ std::vector<NodeId> Overlay::nodes_on(const Triangle& t, NodeId a, NodeId b) con
 
 /// Segments of one triangle that cross each other: only where the triangles of a group do cross.
 void Overlay::cross_segments(std::int32_t triangle) {
-    const std::vector<Segment> segments(triangles_[index(triangle)].segments.begin(),
-                                        triangles_[index(triangle)].segments.end());
+    std::vector<Segment> segments(triangles_[index(triangle)].segments.begin(),
+                                  triangles_[index(triangle)].segments.end());
     const auto box = [&](const Segment& s, std::size_t k) {
         const double p = points_.rounded(s.ends[0])[k], q = points_.rounded(s.ends[1])[k];
         return std::pair(std::min(p, q), std::max(p, q));  // minmax would refer to p and q
     };
+    const std::size_t axis = (triangles_[index(triangle)].axis + 1) % 3;
+    std::sort(segments.begin(), segments.end(), [&](const Segment& s, const Segment& r) {
+        const double x = box(s, axis).first, y = box(r, axis).first;
+        return x != y ? x < y : s < r;
+    });
     for (std::size_t i = 0; i < segments.size(); ++i) {
+        const double end = box(segments[i], axis).second;
         for (std::size_t j = i + 1; j < segments.size(); ++j) {
             const auto &s = segments[i], &r = segments[j];
+            if (box(r, axis).first > end) break;
             bool apart = false;
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto p = box(s, k), q = box(r, k);

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "exact_points.hpp"
@@ -58,6 +59,9 @@ private:
         int turned = 0;  ///< which way it turns seen along its axis, 0: no area
         std::set<NodeId> points;
         std::set<Segment> segments;
+        /// The points in the order of one coordinate; made when there are many, and made again
+        /// when there are more.
+        mutable std::vector<NodeId> in_order;
     };
 
     int turn(const Triangle& t, NodeId a, NodeId b, NodeId c) const {
@@ -70,6 +74,7 @@ private:
     void exchange_segments();
     bool on_segment(NodeId p, NodeId a, NodeId b) const;
     std::vector<NodeId> nodes_on(const Triangle& t, NodeId a, NodeId b) const;
+    std::span<const NodeId> points_between(const Triangle& t, NodeId a, NodeId b) const;
     void spread_points(const Progress* progress);
     void cross_segments(std::int32_t triangle);
     void find_regions(std::int32_t triangle);
