@@ -3,7 +3,7 @@
 # Installs the Debian packages that RealModel needs and this machine lacks; with nothing missing it
 # does nothing. docs/dependencies.md says what each is for.
 #
-#   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|clang|tsan|versions]...      (default: build)
+#   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|clang|tsan|gui|versions]...      (default: build)
 set -euo pipefail
 
 # A package, or package=command where the command in any version on PATH does as well.
@@ -17,6 +17,7 @@ versions=(debootstrap)
 benchmark=(libmpfr-dev blender=blender python3-numpy)
 clang=(clang=clang++ libomp-dev)
 tsan=(clang=clang++ libclang-rt-dev libomp-dev)
+gui=(xvfb=Xvfb xauth=xauth blender=blender python3-numpy libegl1)
 
 is_present() { # PACKAGE[=COMMAND]
     if [[ $1 == *=* ]] && command -v "${1#*=}" >/dev/null; then
@@ -39,9 +40,10 @@ for group in "$@"; do
         benchmark) wanted+=("${benchmark[@]}") ;;
         clang) wanted+=("${clang[@]}") ;;
         tsan) wanted+=("${tsan[@]}") ;;
+        gui) wanted+=("${gui[@]}") ;;
         versions) wanted+=("${versions[@]}") ;;
         *)
-            echo "install_dependencies.sh: no group '$group'; there are build, blender, bpy, test, tidy, benchmark, clang, tsan, versions" >&2
+            echo "install_dependencies.sh: no group '$group'; there are build, blender, bpy, test, tidy, benchmark, clang, tsan, gui, versions" >&2
             exit 2
             ;;
     esac

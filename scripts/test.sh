@@ -8,7 +8,7 @@
 #   scripts/test.sh [--quick] [--only STEP]...
 #     --quick       without the sanitizer build, and without the comparison of builds
 #     --only STEP   only this step, and the build it needs:
-#                   format ruff shellcheck native core blender bpy package asan builds;
+#                   format ruff shellcheck native core blender gui bpy package asan builds;
 #                   and two that are not run unless asked for: tidy tsan
 #
 # shellcheck disable=SC2317  # the functions are called by name, through step
@@ -16,15 +16,15 @@ set -uo pipefail # and not -e: one step that fails does not keep the others from
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 1
 
-all_steps=(format ruff shellcheck native core blender bpy package asan builds)
+all_steps=(format ruff shellcheck native core blender gui bpy package asan builds)
 steps=("${all_steps[@]}")
 only=()
 while (($# > 0)); do
     case $1 in
-        --quick) steps=(format ruff shellcheck native core blender bpy package) ;;
+        --quick) steps=(format ruff shellcheck native core blender gui bpy package) ;;
         --only)
             case ${2-} in
-                format | ruff | shellcheck | native | core | blender | bpy | package | asan | builds | tidy | tsan) only+=("$2") ;;
+                format | ruff | shellcheck | native | core | blender | gui | bpy | package | asan | builds | tidy | tsan) only+=("$2") ;;
                 *)
                     echo "test.sh: --only needs a step: ${all_steps[*]} tidy tsan" >&2
                     exit 2
@@ -89,7 +89,7 @@ step() { # NAME COMMAND...: runs it, shows how long it took, counts it as failed
 }
 declare -A counted=(
     [native]=$logs/release.xml [asan]=$logs/asan.xml [tsan]=$logs/tsan.xml [core]=$logs/core.xml
-    [blender]=$logs/blender.log [bpy]=$logs/bpy.log [package]=$logs/package.xml)
+    [blender]=$logs/blender.log [gui]=$logs/gui.log [bpy]=$logs/bpy.log [package]=$logs/package.xml)
 
 skip() { # NAME WHY
     echo "==== $1"
@@ -111,6 +111,7 @@ install() {
     local groups=(build)
     wants format shellcheck && groups+=(test)
     wants blender package && groups+=(blender)
+    wants gui && groups+=(gui)
     wants bpy && groups+=(bpy)
     wants builds && groups+=(clang)
     wants tidy && groups+=(tidy)
@@ -146,6 +147,12 @@ test_core() { in_time 30m "$venv/bin/python" -m pytest tests/core --junitxml="$l
 
 test_blender() { in_time 15m blender -b --factory-startup --python-exit-code 1 -P tests/blender/run.py; }
 
+# A window without a screen, drawn in software; its screenshots are kept in build/gui.
+test_gui() {
+    in_time 15m xvfb-run -a -s "-screen 0 1280x800x24" blender --factory-startup --enable-event-simulate \
+        --window-geometry 0 0 1280 800 -P tests/gui/run.py
+}
+
 test_bpy() { in_time 15m "$venv_bpy/bin/python" tests/blender/run.py; }
 
 test_package() { # the zip with the modules that can be made here, installed as a user does
@@ -157,12 +164,13 @@ step install install || finish
 wants format && step format check_format
 wants ruff && step ruff check_ruff
 wants shellcheck && step shellcheck check_shell
-if wants native core blender bpy; then
+if wants native core blender gui bpy; then
     step build scripts/build.sh "$python" || finish
 fi
 wants native && step native test_native release
 wants core && step core test_core
 wants blender && step blender test_blender
+wants gui && step gui test_gui
 if wants bpy; then
     if ! "$python" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))'; then
         skip bpy "bpy 4.5 exists for Python 3.11 only; $python is $("$python" --version)"

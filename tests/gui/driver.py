@@ -200,6 +200,24 @@ def read_picture(path):
     return flat.reshape(height, width, -1)[:, :, :3].copy()
 
 
+def contact_sheet(pictures, path, columns=3, smaller=3):
+    """All screenshots on one sheet, each so many times smaller."""
+    tiles = []
+    for picture in map(read_picture, pictures):
+        height, width = (size // smaller * smaller for size in picture.shape[:2])
+        blocks = picture[-height:, :width].reshape(height // smaller, smaller, width // smaller, smaller, 3)
+        tiles.append(np.pad(blocks.mean(axis=(1, 3)), ((3, 3), (3, 3), (0, 0)), constant_values=1.0))
+    tiles += [np.ones_like(tiles[0])] * (-len(tiles) % columns)
+    rows = [np.concatenate(tiles[n : n + columns], axis=1) for n in range(0, len(tiles), columns)]
+    sheet = np.concatenate(rows[::-1], axis=0)
+    image = bpy.data.images.new("sheet", sheet.shape[1], sheet.shape[0])
+    image.colorspace_settings.name = "Non-Color"
+    opaque = np.ones((*sheet.shape[:2], 1), np.float32)
+    image.pixels.foreach_set(np.concatenate([sheet, opaque], axis=2).astype(np.float32).ravel())
+    image.filepath_raw, image.file_format = str(path), "PNG"
+    image.save()
+
+
 def hue_differs(first, second):
     """How far apart two colours are, whatever the light: 0 the same hue, 1 as far as can be."""
     first, second = (np.asarray(c, float) - min(c) + 1e-6 for c in (first, second))

@@ -12,21 +12,29 @@ class REALMODEL_MT_all(bpy.types.Menu):
     bl_label = "RealModel"
     bl_idname = "REALMODEL_MT_all"
 
-    def draw(self, _context):
+    def draw(self, context):
         layout = self.layout
         layout.operator_context = "INVOKE_DEFAULT"
         for group in operators.by_module():
             for cls in group:
-                described = cls.bl_rna.properties if hasattr(cls, "bl_rna") else {}
-                choice = next((n for n in _CHOICES if n in described), None)
-                if choice is None:
-                    layout.operator(cls.bl_idname)
-                else:
-                    layout.operator_menu_enum(cls.bl_idname, choice)
+                _draw(layout, context, cls)
             layout.separator()
 
 
-_CHOICES = ("sample", "direction", "property_id")  # operators that ask which one as a submenu
+_CHOICES = ("sample", "direction", "property_id")  # of operators that have to be told which one
+
+
+def _draw(layout, context, cls):
+    """An entry for an operator, or one for each choice: F3 looks into no submenus of choices."""
+    given = getattr(cls, "__annotations__", {})
+    choice = next((name for name in _CHOICES if name in given), None)
+    if choice is None:
+        layout.operator(cls.bl_idname)
+        return
+    items = given[choice].keywords["items"]
+    for identifier, name, *_ in items(None, context) if callable(items) else items:
+        entry = layout.operator(cls.bl_idname, text=f"{cls.bl_label}: {name}")
+        setattr(entry, choice, identifier)
 
 
 def _in_view_menu(self, _context):
