@@ -133,8 +133,8 @@ def edit_live(walk):
     for other in bpy.context.view_layer.objects:
         other.select_set(other == item)
     bpy.context.view_layer.objects.active = item
-    for vertex in item.data.vertices:
-        vertex.select = False
+    for elements in (item.data.vertices, item.data.edges, item.data.polygons):
+        elements.foreach_set("select", np.zeros(len(elements), bool))
     middle = np.mean([v.co[:2] for v in item.data.vertices], axis=0)
     nearest = min(item.data.vertices, key=lambda v: np.hypot(*(np.array(v.co[:2]) - middle)))
     nearest.select = True
@@ -208,10 +208,10 @@ def save_and_open(walk):
     before = volumes()
     path = walk.folder / "walk.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    model().name = "saved by hand"
+    model().name, written = "saved by hand", path.stat().st_mtime_ns
     walk.over_viewport()
     walk.key("S", ctrl=True)
-    yield lambda: not bpy.data.is_dirty
+    yield lambda: path.stat().st_mtime_ns != written
     bpy.ops.wm.read_homefile(use_factory_startup=True)
     yield walk.redrawn()
     bpy.ops.wm.open_mainfile(filepath=str(path))
