@@ -76,3 +76,27 @@ class Registration(unittest.TestCase):
                     self.assertTrue(described.name, cls.bl_idname)
         finally:
             realmodel.unregister()
+
+    def test_the_menu_has_every_operator_and_choice(self):
+        """View > RealModel, drawn into a list: F3 finds nothing that is not there."""
+        realmodel.register()
+        self.addCleanup(realmodel.unregister)
+        from realmodel import operators
+        from realmodel.ui import menu
+
+        class Entries:
+            def __init__(self):
+                self.made = []
+
+            def operator(self, name, text=""):
+                self.made.append((name, text))
+                return type("Entry", (), {})()
+
+        entries, wanted = Entries(), set()
+        for group in operators.by_module():
+            for cls in group:
+                wanted.add(cls.bl_idname)
+                menu._draw(entries, bpy.context, cls)
+        self.assertEqual({name for name, _ in entries.made}, wanted)
+        self.assertIn(("realmodel.open_sample", "Open Example: Haut-Barr"), entries.made)
+        self.assertIn(("realmodel.surface_move", "Move Surface: Up"), entries.made)

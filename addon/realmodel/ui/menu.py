@@ -27,7 +27,7 @@ _CHOICES = ("sample", "direction", "property_id")  # of operators that have to b
 def _draw(layout, context, cls):
     """An entry for an operator, or one for each choice: F3 looks into no submenus of choices."""
     given = getattr(cls, "__annotations__", {})
-    choice = next((name for name in _CHOICES if name in given), None)
+    choice = next((name for name in _CHOICES if name in given and "items" in given[name].keywords), None)
     if choice is None:
         layout.operator(cls.bl_idname)
         return
