@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// mesh_region, triangulate_rings.
+// mesh_region, estimate_region_mesh, triangulate_rings, triangulate_polygon.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "arrays.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
+#include "realmodel/meshing/ear_clipping.hpp"
 #include "realmodel/meshing/region_mesh.hpp"
 #include "realmodel/meshing/triangulation.hpp"
 
@@ -19,17 +22,22 @@ namespace realmodel::bindings {
 
 namespace {
 
-std::vector<meshing::Ring> to_rings(const std::vector<Array<double>>& arrays) {
+std::vector<meshing::PlanPoint> to_places(const Array<double>& array, const char* name) {
+    require_columns(array, 2, name);
+    std::vector<meshing::PlanPoint> places;
+    places.reserve(static_cast<std::size_t>(array.shape(0)));
+    for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+        places.push_back({array.at(i, 0), array.at(i, 1)});
+    }
+    return places;
+}
+
+std::vector<meshing::Ring> to_rings(const std::vector<Array<double>>& arrays,
+                                    const char* name = "rings") {
     std::vector<meshing::Ring> rings;
     rings.reserve(arrays.size());
-    for (const Array<double>& array : arrays) {
-        require_columns(array, 2, "rings");
-        meshing::Ring& ring = rings.emplace_back();
-        ring.reserve(static_cast<std::size_t>(array.shape(0)));
-        for (py::ssize_t i = 0; i < array.shape(0); ++i) {
-            ring.push_back({array.at(i, 0), array.at(i, 1)});
-        }
-    }
+    for (const Array<double>& array : arrays)
+        rings.push_back(to_places(array, name));
     return rings;
 }
 
@@ -37,18 +45,69 @@ py::tuple to_tuple(meshing::PlanarMesh&& mesh) {
     return py::make_tuple(to_array(std::move(mesh.vertices)), to_array(std::move(mesh.triangles)));
 }
 
-py::tuple mesh_region(const std::vector<Array<double>>& rings, double edge_length,
-                      const std::string& mesher, Progress* control) {
-    if (mesher != "delaunay") {
-        throw InputError("mesher", "mesher \"" + mesher + "\" is not known; use \"delaunay\"");
+meshing::Mesher to_mesher(const std::string& name) {
+    if (name == "delaunay") return meshing::Mesher::delaunay;
+    if (name == "frontal") return meshing::Mesher::frontal;
+    if (name == "grid") return meshing::Mesher::grid;
+    throw InputError("mesher", "mesher \"" + name +
+                                   "\" is not known; use \"delaunay\", \"frontal\" or \"grid\"");
+}
+
+/// (places or None for the outlines, length, distance)
+using Size = std::tuple<std::optional<Array<double>>, double, double>;
+
+meshing::MeshRequest to_request(double edge_length, const std::string& mesher, double triangles,
+                                const std::vector<Size>& sizes,
+                                const std::vector<Array<double>>& constraints,
+                                const std::optional<Array<double>>& constraint_points,
+                                const std::optional<Array<double>>& density) {
+    meshing::MeshRequest request;
+    request.mesher = to_mesher(mesher);
+    request.edge_length = edge_length;
+    request.triangles = triangles;
+    for (const auto& [line, length, distance] : sizes) {
+        meshing::LocalLength& size = request.sizes.emplace_back();
+        if (line) size.line = to_places(*line, "sizes");
+        size.length = length;
+        size.distance = distance;
     }
+    request.constraints.lines = to_rings(constraints, "constraints");
+    if (constraint_points) {
+        request.constraints.points = to_places(*constraint_points, "constraint_points");
+    }
+    if (density) request.density = to_places(*density, "density");
+    return request;
+}
+
+py::tuple mesh_region(const std::vector<Array<double>>& rings, double edge_length,
+                      const std::string& mesher, double triangles, const std::vector<Size>& sizes,
+                      const std::vector<Array<double>>& constraints,
+                      const std::optional<Array<double>>& constraint_points,
+                      const std::optional<Array<double>>& density, Progress* control) {
     const std::vector<meshing::Ring> region = to_rings(rings);
+    const meshing::MeshRequest request =
+        to_request(edge_length, mesher, triangles, sizes, constraints, constraint_points, density);
     meshing::PlanarMesh mesh;
     {
         const py::gil_scoped_release unlocked;
-        mesh = meshing::mesh_region(region, edge_length, control);
+        mesh = meshing::mesh_region(region, request, control);
     }
     return to_tuple(std::move(mesh));
+}
+
+py::tuple estimate_region_mesh(const std::vector<Array<double>>& rings, double edge_length,
+                               const std::string& mesher, double triangles,
+                               const std::vector<Size>& sizes,
+                               const std::vector<Array<double>>& constraints,
+                               const std::optional<Array<double>>& constraint_points,
+                               const std::optional<Array<double>>& density, Progress* control) {
+    const std::vector<meshing::Ring> region = to_rings(rings);
+    const meshing::MeshRequest request =
+        to_request(edge_length, mesher, triangles, sizes, constraints, constraint_points, density);
+    const py::gil_scoped_release unlocked;
+    const meshing::MeshEstimate estimate = meshing::estimate_region_mesh(region, request, control);
+    const py::gil_scoped_acquire locked;
+    return py::make_tuple(estimate.triangles, estimate.bytes);
 }
 
 py::tuple triangulate_rings(const std::vector<Array<double>>& rings) {
@@ -61,28 +120,70 @@ py::tuple triangulate_rings(const std::vector<Array<double>>& rings) {
     return to_tuple(std::move(mesh));
 }
 
+py::object triangulate_polygon(const std::vector<Array<double>>& rings, Progress* control) {
+    const std::vector<meshing::Ring> polygon = to_rings(rings);
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    {
+        const py::gil_scoped_release unlocked;
+        triangles = meshing::triangulate_polygon(polygon, control);
+    }
+    return to_array(std::move(triangles));
+}
+
 }  // namespace
 
 void bind_meshing(py::module_& module) {
     module.def("mesh_region", &mesh_region, py::arg("rings"), py::arg("edge_length"),
-               py::arg("mesher") = "delaunay", py::arg("control") = py::none(),
+               py::arg("mesher") = "delaunay", py::arg("triangles") = 0.0,
+               py::arg("sizes") = std::vector<Size>(),
+               py::arg("constraints") = std::vector<Array<double>>(),
+               py::arg("constraint_points") = py::none(), py::arg("density") = py::none(),
+               py::arg("control") = py::none(),
                R"(Meshes what lies inside an odd number of rings.
 
 rings        list of (N, 2) float64: outlines and holes alike, either way round
-edge_length  length of most edges, model units
-mesher       "delaunay"
+edge_length  length of most edges, model units; not used where triangles is above 0
+mesher       "delaunay", "frontal" or "grid"
+triangles    how many there should be (within 5 %); 0: as edge_length says
+sizes        list of (places (N, 2) or None, length, distance): edges are `length` long within
+             `distance` of the line through the places (None: of the rings), and grow from there on
+constraints  list of (N, 2) float64: lines that the mesh must contain
+constraint_points  (N, 2) float64: points that it must contain
+density      (N, 2) float64: edges become half as long as these points are apart; edge_length may
+             be 0 then, else it is the longest
 control      Control to watch and stop it, or None
 
 Returns (vertices (V, 2) float64, triangles (T, 3) int32, counter-clockwise). The mesh's border
 is the rings' corners and points added on their edges; the corners come first in `vertices`.
 
 Raises InputError: kind "no_outline", "not_finite", "outline_degenerate", "outline_crosses",
-"outline_overlaps" (items: ring and corner numbers; place), "edge_length", "too_large",
-"too_close", "mesher"; Cancelled.)");
+"outline_overlaps" (items: ring and corner numbers; place), "edge_length", "triangles", "size",
+"density", "constraint_not_finite", "constraint_outside", "too_large", "too_close", "mesher";
+Cancelled.)");
+    module.def(
+        "estimate_region_mesh", &estimate_region_mesh, py::arg("rings"), py::arg("edge_length"),
+        py::arg("mesher") = "delaunay", py::arg("triangles") = 0.0,
+        py::arg("sizes") = std::vector<Size>(),
+        py::arg("constraints") = std::vector<Array<double>>(),
+        py::arg("constraint_points") = py::none(), py::arg("density") = py::none(),
+        py::arg("control") = py::none(),
+        R"(What mesh_region with the same arguments will take: (triangles, bytes at the peak).
+
+Takes and raises what mesh_region does.)");
     module.def("triangulate_rings", &triangulate_rings, py::arg("rings"),
                R"(Constrained Delaunay triangulation of what lies inside an odd number of rings.
 
 No vertex is added. Takes, returns and raises what mesh_region does.)");
+    module.def("triangulate_polygon", &triangulate_polygon, py::arg("rings"),
+               py::arg("control") = py::none(),
+               R"(Triangles of a polygon by ear clipping and edge swaps to Delaunay.
+
+rings    list of (N, 2) float64: the outline, then its holes, either way round
+control  Control to stop it, or None
+
+Returns (T, 3) int32, counter-clockwise: corner numbers, counted through the rings. Raises
+InputError: kind "no_outline", "not_finite", "outline_degenerate", "outline_crosses",
+"outline_overlaps"; Cancelled. Whether rings cross is looked for only where ears run out.)");
 }
 
 }  // namespace realmodel::bindings

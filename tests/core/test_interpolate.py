@@ -110,7 +110,7 @@ def test_wrong_calls():
     with pytest.raises(UsageError, match="triangles"):
         interpolate(POINTS, NODES, triangles=[0, 1, 2])
     with pytest.raises(UsageError, match="mesher"):
-        mesh_region([[0, 0], [1, 0], [0, 1]], edge_length=1, mesher="grid")
+        mesh_region([[0, 0], [1, 0], [0, 1]], edge_length=1, mesher="fast")
     with pytest.raises(InputRefused, match="edge_length"):
         mesh_region([[0, 0], [1, 0], [0, 1]])
 

@@ -36,7 +36,7 @@ FORMAT = 1
 # What reading a damaged archive may raise (binascii.Error and UnicodeDecodeError are ValueErrors)
 _BROKEN = (KeyError, TypeError, ValueError, AttributeError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
 
-_ROCK_KEYS = ("name", "edge_length", "mesher", "base_elevation")
+_ROCK_KEYS = ("name", "edge_length", "triangles", "mesher", "size", "base_elevation")
 _SURFACE_KEYS = ("name", "method", "options", "rule", "property", "block", "minimum_thickness")
 
 
@@ -123,7 +123,12 @@ def _rock(archive, r, entry):
             if f"{r}/{s}/{key}" in archive
         }
         surfaces.append(Surface(**{key: given[key] for key in _SURFACE_KEYS if key in given}, **shape))
-    return Rock(surfaces=surfaces, region=region, holes=holes, **{key: entry[key] for key in _ROCK_KEYS})
+    return Rock(
+        surfaces=surfaces,
+        region=region,
+        holes=holes,
+        **{key: entry[key] for key in _ROCK_KEYS if key in entry},
+    )
 
 
 def _archive(arrays):

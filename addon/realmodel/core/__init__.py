@@ -22,7 +22,7 @@ from .interpolation import interpolate
 from .library import Library, Property, load_library
 from .map_layer import MapLayer
 from .model import Block, BlockBoundary, Model
-from .planar_mesh import mesh_region
+from .planar_mesh import MeshEstimate, estimate_mesh, mesh_region, triangulate_polygon
 from .point_file import PointFile
 from .project import Project, Rock, Surface
 from .project_file import load_project
@@ -47,6 +47,7 @@ __all__ = [
     "Interpolation",
     "Library",
     "MapLayer",
+    "MeshEstimate",
     "Model",
     "NotEnoughMemory",
     "OutputFailed",
@@ -66,8 +67,10 @@ __all__ = [
     "build_surfaces",
     "cross_validate",
     "estimate",
+    "estimate_mesh",
     "interpolate",
     "load_library",
     "load_project",
     "mesh_region",
+    "triangulate_polygon",
 ]

@@ -12,6 +12,7 @@ import numpy as np
 
 from .errors import InputRefused
 from .measured_costs import COSTS
+from .mesh_sizes import AUTO
 from .methods import METHODS
 from .plan_input import shapes_of
 from .project import Project, Rock, Surface
@@ -67,7 +68,12 @@ def _fits_variogram(surface: Surface) -> bool:
 
 def _meshed_triangles(rock: Rock, rings: Sequence[np.ndarray]) -> float:
     """About how many triangles the mesh of a region will have."""
+    if rock.triangles is not None:
+        return float(rock.triangles)
     extent = np.ptp(np.concatenate(rings), axis=0)
+    if rock.edge_length == AUTO:  # about four edges' squares a point
+        points = sum(len(s.points) for s in rock.surfaces if isinstance(s.points, (list, np.ndarray)))
+        return min(8.0 * points + 1.0, 1e9)
     return min(float(extent[0] * extent[1]) / (0.433 * rock.edge_length**2), 1e9)
 
 

@@ -3,7 +3,7 @@
 
 COSTS = {
     "read": 1.29e-08,
-    "mesh": 6.76e-07,
+    "mesh": 1.0e-07,
     "interpolate": 6.66e-07,
     "variogram": 0.00143,
     "columns": {

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import builtins
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from .errors import InputRefused
 from .finite import is_finite
 from .library import Library
 from .map_layer import MapLayer
+from .mesh_sizes import AUTO, MESHERS, edge_length_fault, local_lengths, triangles_fault
 from .methods import (
     DEFAULT_METHOD,
     METHODS,
@@ -31,8 +32,6 @@ from .toml_table import TomlDocument
 from .units import METRES, MODEL_UNIT
 
 RULES = ("erosional", "conformable", "base", "discontinuous")
-MESHERS = ("delaunay", "frontal")
-MESHERS_HERE = ("delaunay",)
 
 
 @dataclass(frozen=True)
@@ -127,8 +126,10 @@ class Rock:
 
     `region` is an outline (N, 2), a list of several, well-known text, or a file (GeoJSON, WKT, shapefile,
     GeoPackage) or a MapLayer of one; `holes` lie inside an outline of coordinates; the rings count even-odd.
-    `edge_length` (model units) is that of the planar mesh on which points are interpolated.
     `boreholes` give points to every surface that is not a ready mesh, beside its own.
+    `edge_length` (model units) is that of the planar mesh on which points are interpolated, or
+    "auto": half as long as the points of the surfaces are apart; `triangles` is how many there should be
+    instead. `mesher` and `size` (where edges are shorter) are as mesh_region takes them.
     With `base_elevation` there is a block between this height and the oldest surface.
     `shape_file` is the file that the rings were read from, if any: messages name it.
     """
@@ -137,8 +138,10 @@ class Rock:
     surfaces: list[Surface]
     region: np.ndarray | Sequence | str | Path | MapLayer | None = None
     holes: Sequence = ()
-    edge_length: float | None = None
+    edge_length: float | str | None = None
+    triangles: int | None = None
     mesher: str = "delaunay"
+    size: Sequence[Mapping] = ()
     base_elevation: float | None = None
     boreholes: Boreholes | None = None
     shape_file: Path | None = field(default=None, repr=False, compare=False)
@@ -258,16 +261,7 @@ def _check_rock(project: Project, rock: Rock) -> None:
 
     if not rock.surfaces:
         raise refuse("it has no surface", advice="a block needs two surfaces, or one and a base_elevation")
-    if rock.mesher not in MESHERS_HERE:
-        later = rock.mesher in MESHERS
-        what = (
-            f"mesher '{rock.mesher}' comes with a later version"
-            if later
-            else f"unknown mesher '{rock.mesher}'"
-        )
-        raise refuse(what, "mesher", "use 'delaunay'")
-    if rock.edge_length is not None and not (_is_number(rock.edge_length) and rock.edge_length > 0):
-        raise refuse(f"edge_length must be a number above 0, not {rock.edge_length!r}", "edge_length")
+    _check_mesh(rock, refuse)
     if rock.base_elevation is not None and not _is_number(rock.base_elevation):
         raise refuse(f"base_elevation must be a finite number, not {rock.base_elevation!r}", "base_elevation")
     if rock.region is None and len(rock.holes):
@@ -305,6 +299,22 @@ def _check_boreholes(rock: Rock, refuse) -> None:
             raise refuse(f"there is no file {file}", "boreholes", "check the path")
     if not rock.interpolates:
         raise refuse("boreholes give points, and no surface is made from points", "boreholes")
+
+
+def _check_mesh(rock: Rock, refuse) -> None:
+    """Refuses what a planar mesh cannot be made by."""
+    if rock.mesher not in MESHERS:
+        raise refuse(f"unknown mesher {rock.mesher!r}", "mesher", f"use one of {', '.join(MESHERS)}")
+    if rock.edge_length is not None and (fault := edge_length_fault(rock.edge_length)):
+        raise refuse(fault, "edge_length")
+    if rock.triangles is not None and (fault := triangles_fault(rock.triangles)):
+        raise refuse(fault, "triangles")
+    if rock.triangles is not None and rock.edge_length not in (None, AUTO):
+        raise refuse("edge_length and triangles exclude one another", "triangles", "give one of them")
+    try:
+        local_lengths(rock.size, [], None)
+    except InputRefused as error:
+        raise refuse(f"{error.item}: {error.what}" if error.item else error.what, "size") from error
 
 
 def _is_number(value) -> bool:
@@ -370,7 +380,8 @@ def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
         surface.method_options()
     except OptionRefused as error:
         raise refuse(error.what, error.option, error.advice) from error
-    for key, value in (("region", rock.region), ("edge_length", rock.edge_length)):
+    length = rock.edge_length if rock.triangles is None else rock.triangles
+    for key, value in (("region", rock.region), ("edge_length", length)):
         if value is None:
             raise refuse(
                 f"its points cannot be interpolated: {rock_item(rock)} has no {key}",

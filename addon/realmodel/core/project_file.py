@@ -19,7 +19,18 @@ from .units import METRES, MODEL_UNIT
 
 FORMAT = 1
 _PROJECT_KEYS = ("format", "name", "units", "library", "rock")
-_ROCK_KEYS = ("name", "region", "holes", "edge_length", "mesher", "base_elevation", "boreholes", "surface")
+_ROCK_KEYS = (
+    "name",
+    "region",
+    "holes",
+    "edge_length",
+    "triangles",
+    "mesher",
+    "size",
+    "base_elevation",
+    "boreholes",
+    "surface",
+)
 _READING_KEYS = ("columns", "where", "separator", "decimal", "nodata", "units")  # of a file of points
 _BOREHOLES = 'write boreholes = { collars = "collars.csv", picks = "picks.csv" }'
 _SURFACE_KEYS = (
@@ -74,12 +85,29 @@ def _read_rock(table: Table, folder: Path) -> Rock:
         surfaces=[_read_surface(entry, folder) for entry in table.tables("surface", "surface")],
         region=region,
         holes=holes,
-        edge_length=table.number("edge_length"),
+        edge_length=table.text("edge_length")
+        if _is_text(table, "edge_length")
+        else table.number("edge_length"),
+        triangles=table.integer("triangles"),
+        size=_read_size(table),
         mesher=table.text("mesher") or "delaunay",
         base_elevation=table.number("base_elevation"),
         boreholes=_read_boreholes(table, folder),
         source=Source(table.document, table.path),
     )
+
+
+def _is_text(table: Table, key: str) -> bool:
+    return isinstance(table.content.get(key), str)
+
+
+def _read_size(table: Table) -> list[dict]:
+    size = table.content.get("size", [])
+    if not isinstance(size, list):
+        raise table.refuse(
+            "'size' must be a list", "size", "write [{ at = ..., length = ..., distance = ... }]"
+        )
+    return size
 
 
 def _read_region(table: Table, folder: Path):

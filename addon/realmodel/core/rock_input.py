@@ -12,6 +12,7 @@ from .build_warning import BuildWarning
 from .errors import InputRefused, number_list, place_text
 from .heights import Interpolation
 from .interpolation import checked_points
+from .mesh_sizes import AUTO
 from .plan_input import map_layer, read_rings, ring_path
 from .planar_mesh import mesh_rings, triangulate_rings
 from .project import Project, Rock, Surface, rock_item, surface_item
@@ -20,7 +21,14 @@ from .readers.text import no_step
 from .surface_heights import Triangulation, give_heights, interpolation_order, named_surfaces
 from .work import Work, run
 
-_EDGE_LENGTH_KINDS = ("edge_length", "too_large", "too_close")  # what native meshing lays to the edge length
+_EDGE_LENGTH_KINDS = (
+    "edge_length",
+    "triangles",
+    "size",
+    "density",
+    "too_large",
+    "too_close",
+)  # what native meshing lays to the edge length
 
 
 @dataclass
@@ -240,13 +248,29 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
         return
     try:
         if rock.interpolates:
-            entry.region = mesh_rings(work, rock.rings(), float(rock.edge_length), rock.mesher)
+            entry.region = mesh_rings(
+                work,
+                rock.rings(),
+                rock.edge_length,
+                rock.mesher,
+                triangles=rock.triangles,
+                size=rock.size,
+                points=_density_points(rock) if rock.edge_length == AUTO else None,
+            )
         else:
             entry.region = triangulate_rings(rock.rings())
     except InputRefused as error:
         about_edges = getattr(error.__cause__, "kind", "") in _EDGE_LENGTH_KINDS
         file, line = rock.edge_length_source() if about_edges else rock.region_source()
         raise error.within(rock_item(rock), file=file, line=line) from error
+
+
+def _density_points(rock: Rock) -> np.ndarray:
+    """(P, 2) the points of all surfaces of a rock mass, by which an automatic edge length goes."""
+    given = [
+        np.asarray(s.points, float)[:, :2] for s in rock.surfaces if s.interpolated and s.points is not None
+    ]
+    return np.concatenate(given) if given else np.empty((0, 2))
 
 
 def interpolate_rock(

@@ -11,10 +11,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
+#include "meshing/check.hpp"
 #include "realmodel/meshing/triangulation.hpp"
 
 namespace realmodel::meshing {
@@ -48,26 +48,6 @@ using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
     CGAL::Triangulation_data_structure_2<NumberedVertex<Kernel>,
                                          CGAL::Delaunay_mesh_face_base_2<Kernel>>,
     CGAL::No_constraint_intersection_requiring_constructions_tag>;
-
-/// Called now and then (at least every few milliseconds) with the share of a step that is done;
-/// throws to stop it.
-using Check = std::function<void(double)>;
-
-/// Passes on every 16384th call to a check: for the innermost loops.
-class Ticker {
-public:
-    explicit Ticker(const Check& check) : check_(check) {}
-    void operator()(double share) {
-        if (++calls_ % 16384 == 0) check_(share);
-    }
-
-private:
-    const Check& check_;
-    std::size_t calls_ = 0;
-};
-
-/// A pair of point numbers.
-using Segment = std::array<std::int32_t, 2>;
 
 /// Inserts points in the order of a space-filling curve; returns the vertex of each.
 /// Throws InputError "repeated_point", "not_finite".

@@ -1,15 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points of an equilateral lattice inside a region. Private.
+// Points of an equilateral lattice inside a region, and the triangles between them. Private.
 #pragma once
 
 #include "meshing/border_pieces.hpp"
+#include "meshing/flat_mesh.hpp"
 
 namespace realmodel::meshing {
 
-/// The corners of a tiling by equilateral triangles of side `edge_length` that lie in the region
-/// and at least `clearance` from its border; row after row. Time and memory grow with the points
-/// made and the pieces, not with the bounding box.
-std::vector<PlanPoint> lattice_inside(const BorderPieces& border, double edge_length,
-                                      double clearance, const Check& check);
+/// How a lattice lies in the plan: rows along `axis` (a unit vector), every other one shifted by
+/// half a `spacing` unless it is made of squares.
+struct LatticeFrame {
+    PlanPoint origin, axis;
+    double spacing, row_height;
+    bool is_square = false;
+};
+
+/// A lattice of triangles with sides of about `edge_length` whose rows run along the direction that
+/// most of the border has (modulo 60 degrees), one of them along the longest edge that has it.
+/// Stretched by at most 1.5 % so that it meets that edge's ends and the opposite border.
+LatticeFrame fitting_frame(const RegionGraph& graph, double edge_length);
+
+struct Lattice {
+    std::vector<PlanPoint> points;  ///< row after row
+    /// Triangles whose corners are all there; in `points` and among themselves. A triangle lies
+    /// wholly inside the region.
+    FlatMesh mesh;
+    std::vector<Side> rim;             ///< the sides with no triangle behind them
+    std::vector<std::int32_t> loners;  ///< points that no triangle has
+    std::vector<bool> on_rim;          ///< of each point
+};
+
+/// The points of a lattice that lie in the region, where `size` asks for `edge_length` and nothing
+/// else, and at least `clearance` (edge lengths) from its border and inner lines. From a clearance
+/// of 0.6 on, nothing of these can pass between the corners of a triangle; squares are left out
+/// where something might. Time and memory grow with the points made and the pieces, not with the
+/// bounding box.
+Lattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t> loners,
+                       const LatticeFrame& frame, const SizeField& size, double edge_length,
+                       double clearance, const Check& check);
 
 }  // namespace realmodel::meshing

@@ -8,12 +8,23 @@
 namespace realmodel::meshing {
 
 namespace {
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_2;
+
+Point exact_point(const PlanPoint& p) {
+    return {p[0], p[1]};
 }
 
-int side_of_line(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
-    return static_cast<int>(CGAL::orientation(
-        Kernel::Point_2(a[0], a[1]), Kernel::Point_2(b[0], b[1]), Kernel::Point_2(p[0], p[1])));
+}  // namespace
+
+int side_of_line_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
+    return static_cast<int>(CGAL::orientation(exact_point(a), exact_point(b), exact_point(p)));
+}
+
+int side_of_circle_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
+                           const PlanPoint& p) {
+    return static_cast<int>(CGAL::side_of_oriented_circle(exact_point(a), exact_point(b),
+                                                          exact_point(c), exact_point(p)));
 }
 
 bool cross_properly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,

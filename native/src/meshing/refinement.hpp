@@ -3,26 +3,39 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
-#include "meshing/constrained_delaunay.hpp"
+#include "meshing/check.hpp"
+#include "meshing/flat_mesh.hpp"
+#include "meshing/size_field.hpp"
 
 namespace realmodel::meshing {
 
 struct RefinementTarget {
-    double least_angle;         ///< radians; asked of every angle not given by two border edges
-    double longest_edge;        ///< a triangle with a longer edge is refined too
-    double shortest_edge;       ///< nothing is refined where edges are as short as this already
-    std::size_t most_vertices;  ///< of the whole triangulation; beyond it InputError "too_large"
+    double least_angle;    ///< radians; asked of every angle not given by two fixed sides
+    double longest_edge;   ///< times the length wanted; a triangle with a longer one is refined
+    double shortest_edge;  ///< nothing is refined where edges are as short as this already
+    std::size_t most_vertices;  ///< beyond it InputError "too_large"
 };
 
-/// Adds vertices to the faces in the domain until they meet the target (Ruppert 1995 with the
-/// lenses of Shewchuk 2002, "Delaunay refinement algorithms for triangular mesh generation",
-/// section 3.4: a border edge is cut where a new vertex would come too near to it, or would lie
-/// behind it). Constrained edges are the border and are only ever cut in two; they must not be on
-/// the hull. New vertices are numbered on from `first_number`.
+/// Adds vertices until triangles meet the target (Ruppert 1995 with the lenses of Shewchuk 2002,
+/// "Delaunay refinement algorithms for triangular mesh generation", section 3.4: a fixed side is
+/// cut where a new vertex would come too near to it, or would lie behind it). Fixed sides are only
+/// ever cut in two. Triangles before `first`, but for those in `also`, are taken to be good.
 /// Deterministic; `check` is called often.
-void refine(Cdt& cdt, const RefinementTarget& target, std::int32_t first_number,
-            const Check& check);
+void refine(FlatMesh& mesh, const RefinementTarget& target, const SizeField& size,
+            std::int32_t first, std::span<const std::int32_t> also, const Check& check);
+
+/// Fills triangles larger than `size` wants with vertices, from the border and from what is small
+/// enough inwards: each vertex makes a triangle of the wanted size with a side that has such a
+/// triangle or the border behind it (frontal Delaunay: Rebay 1993, "Efficient unstructured mesh
+/// generation by means of Delaunay triangulation and Bowyer-Watson algorithm"). Fixed sides are
+/// left whole. Triangles before `first` are taken to be small enough.
+void advance_front(FlatMesh& mesh, const SizeField& size, std::int32_t first,
+                   std::size_t most_vertices, const Check& check);
+
+/// Refuses a mesh that has grown beyond what there is room for.
+void require_room(const FlatMesh& mesh, std::size_t most_vertices);
 
 }  // namespace realmodel::meshing

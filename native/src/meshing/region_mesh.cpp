@@ -8,15 +8,18 @@
 #include <numbers>
 #include <string>
 
+#include "meshing/band.hpp"
+#include "meshing/border_detail.hpp"
 #include "meshing/border_pieces.hpp"
-#include "meshing/constrained_delaunay.hpp"
 #include "meshing/lattice.hpp"
 #include "meshing/plan_predicates.hpp"
 #include "meshing/refinement.hpp"
+#include "meshing/region_graph.hpp"
+#include "meshing/requested_sizes.hpp"
+#include "meshing/smoothing.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/memory.hpp"
 #include "realmodel/base/progress.hpp"
-#include "realmodel/meshing/rings.hpp"
 
 namespace realmodel::meshing {
 
@@ -29,9 +32,14 @@ constexpr double longest_edge = 1.6;
 constexpr double shortest_edge = 1e-3;
 constexpr double least_angle = 27.0 / 180 * std::numbers::pi;
 
+// The same for grids: nodes stay where they are as far as slivers allow it.
+constexpr double grid_clearance = 0.35;
+constexpr double longest_grid_edge = 2.2;
+constexpr double least_grid_angle = 20.0 / 180 * std::numbers::pi;
+
 // Measured at 4 million triangles (native/benchmarks/meshing_benchmark.cpp), with a reserve.
 constexpr double bytes_per_triangle = 220;
-constexpr double most_triangles = std::numeric_limits<std::int32_t>::max();
+constexpr double most_triangles = most_flat_triangles;
 
 std::string number_text(double number) {
     char text[40];
@@ -40,16 +48,16 @@ std::string number_text(double number) {
 }
 
 struct Extent {
-    double area = 0;   // of the region
     double reach = 0;  // largest coordinate in absolute value
     double width = 0;  // of the bounding box, the longer side
     PlanPoint low{}, high{};
 };
 
-Extent extent_of(const RingTriangulation& region) {
+Extent extent_of(const RegionGraph& graph) {
     Extent extent;
-    extent.low = extent.high = region.graph.points.front();
-    for (const PlanPoint& p : region.graph.points) {
+    extent.low = extent.high = graph.points[graph.border.front()[0]];
+    for (const auto& [from, to] : graph.border) {
+        const PlanPoint& p = graph.points[from];
         for (int i = 0; i < 2; ++i) {
             extent.low[i] = std::min(extent.low[i], p[i]);
             extent.high[i] = std::max(extent.high[i], p[i]);
@@ -57,13 +65,6 @@ Extent extent_of(const RingTriangulation& region) {
         }
     }
     extent.width = std::max(extent.high[0] - extent.low[0], extent.high[1] - extent.low[1]);
-    for (std::size_t t = 0; t < region.inside.size(); ++t) {
-        if (!region.inside[t]) continue;
-        const auto& [i, j, k] = region.triangulation.triangles[t];
-        const PlanPoint &a = region.graph.points[i], &b = region.graph.points[j],
-                        &c = region.graph.points[k];
-        extent.area += 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
-    }
     return extent;
 }
 
@@ -73,125 +74,156 @@ void require_length(double edge_length) {
                                         "; it must be a positive finite number");
 }
 
-MeshEstimate estimate(const RingTriangulation& region, const Extent& extent, double edge_length) {
-    const double equilateral = std::numbers::sqrt3 / 4 * edge_length * edge_length;
-    const double triangles = extent.area / equilateral + 2 * estimate_pieces(region, edge_length);
-    return {triangles, triangles * bytes_per_triangle};
-}
-
-/// Refuses before anything large is taken; returns the number of triangles that would fit.
-double require_room(const RingTriangulation& region, const Extent& extent, double edge_length) {
-    const double fitting =
-        std::min(most_triangles, static_cast<double>(available_memory()) / bytes_per_triangle);
-    const MeshEstimate need = estimate(region, extent, edge_length);
-    if (need.triangles > fitting) {
-        double fits = edge_length;
-        while (estimate(region, extent, fits).triangles > fitting && fits < extent.width) {
-            fits *= 1.01;
+/// A request at work: the region, and what to tell and to ask while it is meshed.
+class Meshing {
+public:
+    Meshing(std::span<const Ring> rings, const MeshRequest& request, Progress* progress)
+        : request_(request), progress_(progress) {
+        if (request.mesher == Mesher::grid && !(request.sizes.empty() && request.density.empty())) {
+            throw InputError("size",
+                             "a grid has one edge length everywhere; use mesher \"delaunay\" "
+                             "or \"frontal\" for local ones");
         }
-        throw InputError("too_large", "edge length " + number_text(edge_length) +
-                                          " would need about " + number_text(need.triangles) +
-                                          " triangles (" + number_text(need.bytes / 1e9) +
-                                          " GB); there is room for " + number_text(fitting) +
-                                          ": use an edge length of at least " + number_text(fits));
+        if (request.triangles > 0) {
+            if (!std::isfinite(request.triangles)) {
+                throw InputError("triangles", "the number of triangles must be finite");
+            }
+        } else if (request.density.empty() || request.edge_length != 0) {
+            require_length(request.edge_length);
+        }
+        step(0, 0.01, "checking the outlines")(0);
+        graph_ = region_graph(rings, request.constraints, progress);
+        extent_ = extent_of(graph_);
+        fitting_ =
+            std::min(most_triangles, static_cast<double>(available_memory()) / bytes_per_triangle);
     }
-    const double step = extent.reach * std::numeric_limits<double>::epsilon();
-    if (edge_length * shortest_edge < 16 * step) {
+
+    PlanarMesh run() {
+        if (request_.triangles > 0) return run_for_count();
+        const double length = longest();
+        return mesh(field(length, 1), 0.01, 1);
+    }
+
+    MeshEstimate estimate() {
+        fitting_ = most_triangles;  // it is the caller who asks whether it fits
+        const double triangles = request_.triangles > 0
+                                     ? request_.triangles
+                                     : triangles_of(unchecked_field(longest(), 1));
+        return {triangles, triangles * bytes_per_triangle};
+    }
+
+private:
+    Check step(double begin, double end, const char* text) const {
+        Progress* progress = progress_;
+        return [=](double share) {
+            if (progress == nullptr) return;
+            progress->report(begin + (end - begin) * share, text);
+            progress->check();
+        };
+    }
+
+    double longest() const {
+        if (request_.density.empty()) return request_.edge_length;
+        const double by_density = longest_by_density(graph_, request_);
+        return request_.edge_length > 0 ? std::min(by_density, request_.edge_length) : by_density;
+    }
+
+    /// What may be wanted where, for a longest edge. Throws "too_large", "edge_length", "size".
+    SizeField field(double length, double scale) const {
+        require_room(length);
+        SizeField size = unchecked_field(length, scale);
+        if (request_.mesher == Mesher::frontal) size = graded_to_detail(std::move(size), scale);
+        if (!size.is_uniform()) {
+            const double need = triangles_of(size);
+            if (need > fitting_) refuse_size(need);
+            require_precision(size.smallest());
+        }
+        return size;
+    }
+
+    SizeField unchecked_field(double length, double scale) const {
+        const std::vector<SizeSource> sources = requested_sources(graph_, request_, length, scale);
+        const double pieces = pieces_along(sources, extent_.low, extent_.high);
+        if (pieces > fitting_) refuse_size(2 * pieces);
+        return {length,
+                gradation,
+                sources,
+                extent_.low,
+                extent_.high,
+                fitting_,
+                step(0.01, 0.01, "sizing the triangles")};
+    }
+
+    /// Also fine where the border has detail: triangles there grow more gently than refinement of
+    /// angles alone would let them.
+    SizeField graded_to_detail(SizeField&& size, double scale) const {
+        const Check check = step(0.01, 0.01, "looking for detail");
+        std::vector<SizeSource> sources = border_detail(
+            graph_, size, least_angle, shortest_edge * size.largest(), most_vertices(), check);
+        if (sources.empty()) return std::move(size);
+        const std::vector<SizeSource> wanted =
+            requested_sources(graph_, request_, size.largest(), scale);
+        sources.insert(sources.end(), wanted.begin(), wanted.end());
+        return {size.largest(), gradation, sources, extent_.low, extent_.high, fitting_, check};
+    }
+
+    std::size_t most_vertices() const { return static_cast<std::size_t>(fitting_ / 2); }
+
+    double triangles_of(const SizeField& size) const {
+        return triangles_in(graph_, size, step(0.01, 0.01, "sizing the triangles")) +
+               2 * estimate_pieces(graph_, size.largest());
+    }
+
+    /// Refuses before anything large is taken.
+    void require_room(double edge_length) const {
+        const auto need_at = [&](double length) {
+            return graph_.area / (std::numbers::sqrt3 / 4 * length * length) +
+                   2 * estimate_pieces(graph_, length);
+        };
+        const double need = need_at(edge_length);
+        if (need > fitting_) {
+            double fits = edge_length;
+            while (need_at(fits) > fitting_ && fits < extent_.width)
+                fits *= 1.01;
+            throw InputError("too_large",
+                             "edge length " + number_text(edge_length) + " would need about " +
+                                 number_text(need) + " triangles (" +
+                                 number_text(need * bytes_per_triangle / 1e9) +
+                                 " GB); there is room for " + number_text(fitting_) +
+                                 ": use an edge length of at least " + number_text(fits));
+        }
+        require_precision(edge_length);
+    }
+
+    void require_precision(double edge_length) const {
+        const double step = extent_.reach * std::numeric_limits<double>::epsilon();
+        if (edge_length * shortest_edge >= 16 * step) return;
         throw InputError("edge_length",
                          "edge length " + number_text(edge_length) +
                              " is too small for coordinates as large as " +
-                             number_text(extent.reach) +
+                             number_text(extent_.reach) +
                              ": doubles cannot tell the points apart; use at least " +
                              number_text(17 * step / shortest_edge) +
                              ", or move the region nearer to the origin");
     }
-    return fitting;
-}
 
-/// Marks the faces inside an odd number of outlines.
-void mark_domain(Cdt& cdt, const Check& check) {
-    enum : signed char { unknown = -1, outside = 0, inside = 1 };
-    std::vector<signed char> parity;  // by time stamp
-    const auto parity_of = [&](Cdt::Face_handle face) -> signed char& {
-        const std::size_t stamp = face->time_stamp();
-        if (stamp >= parity.size()) parity.resize(2 * stamp + 1, unknown);
-        return parity[stamp];
-    };
-    Ticker tick(check);
-    std::vector<Cdt::Face_handle> open{cdt.infinite_face()};
-    parity_of(open.back()) = outside;
-    while (!open.empty()) {
-        tick(0.5);
-        const Cdt::Face_handle face = open.back();
-        open.pop_back();
-        const signed char here = parity_of(face);
-        face->set_in_domain(here == inside);
-        for (int i = 0; i < 3; ++i) {
-            const Cdt::Face_handle next = face->neighbor(i);
-            signed char& there = parity_of(next);
-            if (there != unknown) continue;
-            there = static_cast<signed char>(face->is_constrained(i) ? 1 - here : here);
-            open.push_back(next);
-        }
+    [[noreturn]] void refuse_size(double need) const {
+        throw InputError("too_large", "the local lengths would need about " + number_text(need) +
+                                          " triangles (" +
+                                          number_text(need * bytes_per_triangle / 1e9) +
+                                          " GB); there is room for " + number_text(fitting_) +
+                                          ": use longer ones, or shorter distances");
     }
-}
 
-using Triangles = std::vector<std::array<std::int32_t, 3>>;
+    PlanarMesh mesh(const SizeField& size, double begin, double end) const;
+    PlanarMesh run_for_count();
 
-/// Starts each triangle with its least vertex and sorts them, by counting: linear, and it can be
-/// stopped.
-Triangles sorted(Triangles&& triangles, std::size_t vertices, const Check& check) {
-    Ticker tick(check);
-    std::vector<std::size_t> begin(vertices + 1, 0);
-    for (auto& t : triangles) {
-        tick(0.4);
-        std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-        ++begin[t[0] + 1];
-    }
-    for (std::size_t i = 1; i < begin.size(); ++i)
-        begin[i] += begin[i - 1];
-    Triangles out(triangles.size());
-    std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
-    for (const auto& t : triangles) {
-        tick(0.6);
-        out[next[t[0]]++] = t;
-    }
-    for (std::size_t i = 0; i < vertices; ++i) {
-        tick(0.7);
-        std::sort(out.begin() + static_cast<std::ptrdiff_t>(begin[i]),
-                  out.begin() + static_cast<std::ptrdiff_t>(begin[i + 1]));
-    }
-    return out;
-}
-
-/// The faces in the domain. `points` are those numbered when the triangulation was built; the last
-/// `frame` of them only frame it and are left out.
-PlanarMesh mesh_of(const Cdt& cdt, std::vector<PlanPoint>&& points, std::size_t frame,
-                   const Check& check) {
-    Ticker tick(check);
-    const auto numbered = static_cast<std::int32_t>(points.size());
-    const auto moved = [&](Cdt::Vertex_handle vertex) {
-        return vertex->number < numbered ? vertex->number
-                                         : vertex->number - static_cast<std::int32_t>(frame);
-    };
-    PlanarMesh mesh;
-    mesh.vertices = std::move(points);
-    mesh.vertices.resize(cdt.number_of_vertices() - frame);
-    for (const Cdt::Vertex_handle vertex : cdt.finite_vertex_handles()) {
-        tick(0);
-        if (vertex->number < numbered) continue;
-        mesh.vertices[moved(vertex)] = {vertex->point().x(), vertex->point().y()};
-    }
-    Triangles triangles;
-    for (const Cdt::Face_handle face : cdt.finite_face_handles()) {
-        tick(0.2);
-        if (!face->is_in_domain()) continue;
-        triangles.push_back(
-            {moved(face->vertex(0)), moved(face->vertex(1)), moved(face->vertex(2))});
-    }
-    mesh.triangles = sorted(std::move(triangles), mesh.vertices.size(), check);
-    return mesh;
-}
+    const MeshRequest& request_;
+    Progress* progress_;
+    RegionGraph graph_;
+    Extent extent_;
+    double fitting_ = 0;
+};
 
 /// Points added on edges are rounded; where outlines nearly coincide that can turn triangles over.
 void require_upright(const PlanarMesh& mesh, const Check& check) {
@@ -208,59 +240,136 @@ void require_upright(const PlanarMesh& mesh, const Check& check) {
     }
 }
 
+/// The triangles that are not dead, and the points that they use, in their order.
+PlanarMesh collected(FlatMesh&& flat, const Check& check) {
+    Ticker tick(check);
+    PlanarMesh mesh{std::move(flat.points), std::move(flat.corners)};
+    flat.across = {};
+    std::erase_if(mesh.triangles, [](const auto& t) { return t[0] < 0; });
+    std::vector<bool> used(mesh.vertices.size(), false);
+    for (const auto& t : mesh.triangles) {
+        tick(0.1);
+        for (const std::int32_t v : t)
+            used[v] = true;
+    }
+    if (std::find(used.begin(), used.end(), false) == used.end()) return mesh;
+    std::vector<std::int32_t> number(used.size());
+    std::int32_t kept = 0;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        number[i] = kept;
+        if (used[i]) mesh.vertices[kept++] = mesh.vertices[i];
+    }
+    mesh.vertices.resize(kept);
+    for (auto& t : mesh.triangles) {
+        tick(0.5);
+        for (std::int32_t& v : t)
+            v = number[v];
+    }
+    return mesh;
+}
+
+PlanarMesh Meshing::mesh(const SizeField& size, double begin, double end) const {
+    const auto part = [&](double from, double to, const char* text) {
+        return step(begin + (end - begin) * from, begin + (end - begin) * to, text);
+    };
+    const bool is_grid = request_.mesher == Mesher::grid;
+    const Check cutting = part(0, 0.05, "cutting the border");
+    const Check laying = part(0.05, 0.3, "laying out the points");
+    BorderPieces border;
+    std::vector<Lattice> lattices;
+    if (is_grid) {
+        const double side = size.largest();
+        border = cut_border_by_grid(graph_, extent_.low, side, grid_clearance, cutting);
+        lattices.push_back(lattice_inside(border, graph_.loners,
+                                          {extent_.low, {1, 0}, side, side, true}, size, side,
+                                          grid_clearance, laying));
+    } else {
+        border = cut_border(graph_, size, cutting);
+        for (const double length : lattice_lengths(request_, size)) {
+            lattices.push_back(lattice_inside(border, graph_.loners, fitting_frame(graph_, length),
+                                              size, length, clearance, laying));
+        }
+    }
+    BandedMesh banded = join_band(std::move(border), graph_.loners, std::move(lattices),
+                                  part(0.3, 0.5, "triangulating"));
+    FlatMesh& flat = banded.mesh;
+    if (!size.is_uniform()) {
+        advance_front(flat, size, banded.first_of_band, most_vertices(),
+                      part(0.5, 0.75, "filling"));
+    }
+    const RefinementTarget target{is_grid ? least_grid_angle : least_angle,
+                                  is_grid ? longest_grid_edge : longest_edge,
+                                  shortest_edge * size.largest(), most_vertices()};
+    refine(flat, target, size, banded.first_of_band, banded.rim_triangles,
+           part(0.75, 0.8, "improving the border"));
+    if (request_.mesher == Mesher::frontal) {
+        const Check check = part(0.8, 0.9, "smoothing");
+        smooth(flat, size, banded.first_of_band, banded.rim_triangles, graph_.loners, check);
+        flat.compact(banded.first_of_band);
+        refine(flat, target, size, 0, {}, check);
+    }
+    const Check finish = part(0.9, 1, "collecting the mesh");
+    PlanarMesh mesh = collected(std::move(flat), finish);
+    require_upright(mesh, finish);
+    return mesh;
+}
+
+PlanarMesh Meshing::run_for_count() {
+    constexpr double good_enough = 0.02;
+    constexpr int most_rounds = 8;
+    // The area of a triangle of side 1, or half a square.
+    const double equilateral = request_.mesher == Mesher::grid ? 0.5 : std::numbers::sqrt3 / 4;
+    const double wanted = request_.triangles;
+    // With densities both bounds and points are scaled alike.
+    double scale = 1;
+    const double unit =
+        request_.density.empty() ? std::sqrt(graph_.area / (equilateral * wanted)) : longest();
+    PlanarMesh best;
+    double best_miss = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < most_rounds; ++round) {
+        const double begin = 1 - std::pow(0.5, round), end = 1 - std::pow(0.5, round + 1);
+        PlanarMesh made = mesh(field(scale * unit, scale), begin, end);
+        const auto count = static_cast<double>(made.triangles.size());
+        const double miss = std::abs(count / wanted - 1);
+        if (miss < best_miss) {
+            best = std::move(made);
+            best_miss = miss;
+        }
+        if (miss <= good_enough) break;
+        scale *= std::sqrt(count / wanted);
+        if (scale * unit > 4 * extent_.width) break;
+    }
+    if (best_miss > 0.05) {
+        throw InputError("triangles", "this region cannot be meshed with about " +
+                                          number_text(wanted) +
+                                          " triangles; the nearest found is " +
+                                          std::to_string(best.triangles.size()));
+    }
+    return best;
+}
+
 }  // namespace
 
+MeshEstimate estimate_region_mesh(std::span<const Ring> rings, const MeshRequest& request,
+                                  Progress* progress) {
+    return Meshing(rings, request, progress).estimate();
+}
+
 MeshEstimate estimate_region_mesh(std::span<const Ring> rings, double edge_length) {
-    require_length(edge_length);
-    const RingTriangulation region = triangulate_region(rings);
-    return estimate(region, extent_of(region), edge_length);
+    MeshRequest request;
+    request.edge_length = edge_length;
+    return estimate_region_mesh(rings, request);
+}
+
+PlanarMesh mesh_region(std::span<const Ring> rings, const MeshRequest& request,
+                       Progress* progress) {
+    return Meshing(rings, request, progress).run();
 }
 
 PlanarMesh mesh_region(std::span<const Ring> rings, double edge_length, Progress* progress) {
-    require_length(edge_length);
-    const auto step = [&](double begin, double end, const char* text) -> Check {
-        return [=](double share) {
-            if (progress == nullptr) return;
-            progress->report(begin + (end - begin) * share, text);
-            progress->check();
-        };
-    };
-    step(0, 0, "checking the outlines")(0);
-    const RingTriangulation region = triangulate_region(rings, progress);
-    const Extent extent = extent_of(region);
-    const double fitting = require_room(region, extent, edge_length);
-
-    BorderPieces border = cut_border(region, edge_length);
-    std::vector<PlanPoint> points = lattice_inside(border, edge_length, clearance * edge_length,
-                                                   step(0.01, 0.05, "laying out the points"));
-    points.insert(points.begin(), border.points.begin(), border.points.end());
-    // A frame far outside keeps the border off the hull, where cutting it could dent the hull.
-    constexpr std::size_t frame = 4;
-    const double far = 2 * extent.width;
-    for (const double x : {extent.low[0] - far, extent.high[0] + far}) {
-        for (const double y : {extent.low[1] - far, extent.high[1] + far})
-            points.push_back({x, y});
-    }
-
-    Cdt cdt;
-    try {
-        const auto vertices = insert_points(cdt, points, step(0.05, 0.7, "triangulating"));
-        insert_segments(cdt, vertices, border.pieces, step(0.7, 0.72, "triangulating"));
-    } catch (const InputError& error) {
-        throw InputError("too_close",
-                         std::string("outlines come so close that points added on them collide: ") +
-                             error.what(),
-                         -1, {}, error.place);
-    }
-    mark_domain(cdt, step(0.72, 0.75, "finding the inside"));
-    refine(cdt,
-           {least_angle, longest_edge * edge_length, shortest_edge * edge_length,
-            static_cast<std::size_t>(fitting / 2)},
-           static_cast<std::int32_t>(points.size()), step(0.75, 0.85, "improving the border"));
-    const Check finish = step(0.85, 1.0, "collecting the mesh");
-    PlanarMesh mesh = mesh_of(cdt, std::move(points), frame, finish);
-    require_upright(mesh, finish);
-    return mesh;
+    MeshRequest request;
+    request.edge_length = edge_length;
+    return mesh_region(rings, request, progress);
 }
 
 }  // namespace realmodel::meshing

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How long the edges of a planar mesh should be: what may be asked, and its checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from .errors import InputRefused, UsageError
+from .finite import is_finite
+
+MESHERS = ("delaunay", "frontal", "grid")
+AUTO = "auto"  # an edge length by the density of points
+_SIZE_KEYS = ("at", "length", "distance")
+_AT = "'outline', 'constraints', a place [x, y] or a line [[x, y], ...]"
+
+
+def check_mesher(mesher) -> None:
+    if mesher not in MESHERS:
+        raise UsageError(f"mesher {mesher!r} is not there; use {', '.join(map(repr, MESHERS))}")
+
+
+def is_number(value) -> bool:
+    """Whether a value is a finite number (a truth value is none)."""
+    if isinstance(value, (bool, np.bool_)):
+        return False
+    return isinstance(value, (int, float, np.integer, np.floating)) and is_finite(value)
+
+
+def edge_length_fault(edge_length) -> str | None:
+    """What is wrong with an edge length, "auto" included."""
+    if isinstance(edge_length, str) and edge_length == AUTO:
+        return None
+    if is_number(edge_length) and edge_length > 0:
+        return None
+    return f"edge_length must be a finite number above 0 or '{AUTO}', not {edge_length!r}"
+
+
+def triangles_fault(triangles) -> str | None:
+    """What is wrong with a number of triangles."""
+    whole = is_number(triangles) and float(triangles).is_integer()
+    return None if whole and triangles >= 1 else f"triangles must be a whole number from 1, not {triangles!r}"
+
+
+def size_of_edges(edge_length, triangles, points) -> tuple[float, float, np.ndarray | None]:
+    """(edge length or 0, number of triangles or 0, points (P, 2) whose density counts or None)."""
+    if edge_length is None and triangles is None:
+        raise InputRefused("edge_length must be given, or the number of triangles")
+    fault = None if edge_length is None else edge_length_fault(edge_length)
+    fault = fault or (None if triangles is None else triangles_fault(triangles))
+    if fault:
+        raise InputRefused(fault)
+    wanted = 0.0 if triangles is None else float(triangles)
+    if edge_length != AUTO:
+        if triangles is not None and edge_length is not None:
+            raise InputRefused("edge_length and triangles exclude one another; give one of them")
+        return 0.0 if edge_length is None else float(edge_length), wanted, None
+    if points is None:
+        raise InputRefused(f"edge_length '{AUTO}' goes by the density of points, and there are none")
+    return 0.0, wanted, places_of(points, "points", least=2)
+
+
+def local_lengths(size: Iterable[Mapping], lines: list[np.ndarray], points: np.ndarray | None) -> list[tuple]:
+    """The entries of `size` as (places (N, 2) or None for the outline, length, distance)."""
+    entries = []
+    if isinstance(size, Mapping):
+        raise InputRefused('size must be a list of entries: [{"at": ..., "length": ..., "distance": ...}]')
+    for number, entry in enumerate(size):
+        for at in _places_at(entry, f"size {number}", lines, points):
+            entries.append((at, float(entry["length"]), float(entry["distance"])))
+    return entries
+
+
+def _places_at(entry, item: str, lines: list[np.ndarray], points: np.ndarray | None) -> list:
+    if not isinstance(entry, Mapping) or set(entry) != set(_SIZE_KEYS):
+        raise InputRefused(f"needs exactly {', '.join(_SIZE_KEYS)}, not {entry!r}", item=item)
+    if not (is_number(entry["length"]) and entry["length"] > 0):
+        raise InputRefused(f"length must be a finite number above 0, not {entry['length']!r}", item=item)
+    if not (is_number(entry["distance"]) and entry["distance"] >= 0):
+        raise InputRefused(f"distance must be a finite number from 0, not {entry['distance']!r}", item=item)
+    at = entry["at"]
+    if isinstance(at, str):
+        if at == "outline":
+            return [None]
+        if at != "constraints":
+            raise InputRefused(f"at must be {_AT}, not {at!r}", item=item)
+        places = [*lines, *(points[:, None] if points is not None else [])]
+        if not places:
+            raise InputRefused("there are no constraints for it to be at", item=item)
+        return places
+    places = np.asarray(at, object)
+    return [places_of([at] if places.ndim == 1 else at, f"{item}, at")]
+
+
+def places_of(places, item: str, least: int = 1) -> np.ndarray:
+    """(N, 2) float64 of places (N, 2) or (N, 3), N >= least. Raises InputRefused."""
+    try:
+        array = np.asarray(places, np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputRefused("must be places [x, y]", item=item) from error
+    if array.ndim != 2 or array.shape[1] not in (2, 3):
+        raise InputRefused(f"must be an array (N, 2), not {array.shape}", item=item)
+    if len(array) < least:
+        raise InputRefused(f"needs {least} place{'s' if least > 1 else ''} at least", item=item)
+    bad = np.flatnonzero(~np.isfinite(array[:, :2]).all(axis=1))
+    if len(bad):
+        raise InputRefused(f"place {bad[0]} is not finite", item=item)
+    return np.ascontiguousarray(array[:, :2])

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "meshing/band.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "meshing/constrained_delaunay.hpp"
+#include "meshing/plan_predicates.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::meshing {
+
+namespace {
+
+/// Sides that wait for the triangle behind them, found by their ends.
+struct OpenSide {
+    std::int32_t from, to;
+    Side side;
+    bool operator<(const OpenSide& other) const {
+        return from != other.from ? from < other.from : to < other.to;
+    }
+};
+
+/// Which faces lie in the band, by time stamp: crossing its border changes it, crossing an inner
+/// line does not.
+std::vector<signed char> faces_in_band(const Cdt& cdt, const std::vector<Segment>& inner,
+                                       const Check& check) {
+    constexpr signed char unknown = -1;
+    std::size_t stamps = 0;
+    for (auto face = cdt.all_faces_begin(); face != cdt.all_faces_end(); ++face)
+        stamps = std::max(stamps, face->time_stamp() + 1);
+    std::vector<signed char> parity(stamps, unknown);
+    const auto is_inner = [&](Cdt::Face_handle face, int i) {
+        if (inner.empty()) return false;
+        const auto [low, high] =
+            std::minmax(face->vertex(Cdt::ccw(i))->number, face->vertex(Cdt::cw(i))->number);
+        return std::binary_search(inner.begin(), inner.end(), Segment{low, high});
+    };
+    Ticker tick(check);
+    std::vector<Cdt::Face_handle> open{cdt.infinite_face()};
+    parity[open.back()->time_stamp()] = 0;
+    while (!open.empty()) {
+        tick(0.5);
+        const Cdt::Face_handle face = open.back();
+        open.pop_back();
+        const signed char here = parity[face->time_stamp()];
+        for (int i = 0; i < 3; ++i) {
+            const Cdt::Face_handle next = face->neighbor(i);
+            signed char& there = parity[next->time_stamp()];
+            if (there != unknown) continue;
+            const bool changes = face->is_constrained(i) && !is_inner(face, i);
+            there = static_cast<signed char>(changes ? 1 - here : here);
+            open.push_back(next);
+        }
+    }
+    return parity;
+}
+
+/// All lattices as one mesh, numbered on from the border's points.
+void take_lattices(BandedMesh& out, std::vector<Lattice>&& lattices, std::vector<OpenSide>& rim) {
+    FlatMesh& mesh = out.mesh;
+    for (Lattice& lattice : lattices) {
+        const auto points = static_cast<std::int32_t>(mesh.points.size());
+        const auto triangles = static_cast<std::int32_t>(mesh.corners.size());
+        mesh.points.insert(mesh.points.end(), lattice.points.begin(), lattice.points.end());
+        lattice.points = {};
+        for (auto& corners : lattice.mesh.corners)
+            for (std::int32_t& c : corners)
+                c += points;
+        if (triangles == 0) {
+            mesh.corners = std::move(lattice.mesh.corners);
+            mesh.across = std::move(lattice.mesh.across);
+            mesh.fixed = std::move(lattice.mesh.fixed);
+        } else {
+            for (auto& sides : lattice.mesh.across) {
+                for (Side& side : sides)
+                    if (!side.is_outside()) side = {side.triangle() + triangles, side.number()};
+            }
+            const FlatMesh& more = lattice.mesh;
+            mesh.corners.insert(mesh.corners.end(), more.corners.begin(), more.corners.end());
+            mesh.across.insert(mesh.across.end(), more.across.begin(), more.across.end());
+            mesh.fixed.insert(mesh.fixed.end(), more.fixed.begin(), more.fixed.end());
+            lattice.mesh = {};
+        }
+        for (const Side side : lattice.rim) {
+            const Side moved(side.triangle() + triangles, side.number());
+            rim.push_back({mesh.from(moved), mesh.to(moved), moved});
+            out.rim_triangles.push_back(moved.triangle());
+        }
+        for (std::int32_t& loner : lattice.loners)
+            loner += points;
+    }
+    out.first_of_band = static_cast<std::int32_t>(mesh.corners.size());
+    std::sort(rim.begin(), rim.end());
+    std::sort(out.rim_triangles.begin(), out.rim_triangles.end());
+    out.rim_triangles.erase(std::unique(out.rim_triangles.begin(), out.rim_triangles.end()),
+                            out.rim_triangles.end());
+}
+
+/// The points that the band is made of, and their numbers in the whole mesh.
+struct BandPoints {
+    std::vector<std::int32_t> numbers;  ///< in the mesh
+    std::vector<std::int32_t> in_band;  ///< by number in the mesh; -1: not there
+    std::vector<PlanPoint> points;
+
+    void add(const FlatMesh& mesh, std::int32_t number) {
+        if (in_band[number] >= 0) return;
+        in_band[number] = static_cast<std::int32_t>(numbers.size());
+        numbers.push_back(number);
+        points.push_back(mesh.points[number]);
+    }
+};
+
+}  // namespace
+
+BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners,
+                     std::vector<Lattice>&& lattices, const Check& check) {
+    BandedMesh out;
+    FlatMesh& mesh = out.mesh;
+    mesh.points = std::move(border.points);
+    std::vector<OpenSide> rim;
+    take_lattices(out, std::move(lattices), rim);
+
+    BandPoints band;
+    band.in_band.assign(mesh.points.size(), -1);
+    for (const auto* pieces : {&border.border, &border.inner}) {
+        for (const Segment& piece : *pieces) {
+            band.add(mesh, piece[0]);
+            band.add(mesh, piece[1]);
+        }
+    }
+    for (const std::int32_t loner : loners)
+        band.add(mesh, loner);
+    for (const OpenSide& side : rim)
+        band.add(mesh, side.from);
+    for (const Lattice& lattice : lattices)
+        for (const std::int32_t loner : lattice.loners)
+            band.add(mesh, loner);
+
+    std::vector<Segment> segments, inner;
+    for (const Segment& piece : border.border)
+        segments.push_back({band.in_band[piece[0]], band.in_band[piece[1]]});
+    for (const OpenSide& side : rim)
+        segments.push_back({band.in_band[side.from], band.in_band[side.to]});
+    for (const Segment& piece : border.inner) {
+        const auto [low, high] = std::minmax(band.in_band[piece[0]], band.in_band[piece[1]]);
+        inner.push_back({low, high});
+        segments.push_back(inner.back());
+    }
+    std::sort(inner.begin(), inner.end());
+
+    Cdt cdt;
+    try {
+        const auto vertices = insert_points(cdt, band.points, check);
+        insert_segments(cdt, vertices, segments, check);
+    } catch (const InputError& error) {
+        if (!error.place) throw;
+        throw InputError("too_close",
+                         "outlines come so close at " +
+                             text_of({(*error.place)[0], (*error.place)[1]}) +
+                             " that the points added on them collide; move them apart or let them "
+                             "touch",
+                         -1, {}, error.place);
+    }
+    const std::vector<signed char> in_band = faces_in_band(cdt, inner, check);
+    std::vector<std::int32_t> triangle_of(in_band.size(), -1);
+    for (const Cdt::Face_handle face : cdt.finite_face_handles()) {
+        if (in_band[face->time_stamp()] != 1) continue;
+        triangle_of[face->time_stamp()] = mesh.add_triangle(
+            {band.numbers[face->vertex(0)->number], band.numbers[face->vertex(1)->number],
+             band.numbers[face->vertex(2)->number]});
+    }
+    std::vector<Side> doubtful;
+    for (const Cdt::Face_handle face : cdt.finite_face_handles()) {
+        const std::int32_t t = triangle_of[face->time_stamp()];
+        if (t < 0) continue;
+        for (int i = 0; i < 3; ++i) {
+            const Side side(t, i);
+            const int opposite = (i + 2) % 3;  // CGAL numbers an edge by the corner opposite to it
+            const Cdt::Face_handle other = face->neighbor(opposite);
+            const std::int32_t beyond = triangle_of[other->time_stamp()];
+            if (beyond >= 0) {
+                mesh.across[t][i] = {beyond, (other->index(face) + 1) % 3};
+                if (face->is_constrained(opposite)) mesh.fix(side);
+                continue;
+            }
+            const OpenSide wanted{mesh.to(side), mesh.from(side), {}};
+            const auto at = std::lower_bound(rim.begin(), rim.end(), wanted);
+            if (at != rim.end() && at->from == wanted.from && at->to == wanted.to) {
+                mesh.join(side, at->side);
+                doubtful.push_back(side);
+            } else {
+                mesh.fix(side);
+            }
+        }
+    }
+    mesh.legalise(doubtful);
+    return out;
+}
+
+}  // namespace realmodel::meshing

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What lies between a region's border and the lattices inside it. Private.
+#pragma once
+
+#include "meshing/border_pieces.hpp"
+#include "meshing/flat_mesh.hpp"
+#include "meshing/lattice.hpp"
+
+namespace realmodel::meshing {
+
+/// A region's triangles before any is improved: lattices, and the constrained Delaunay
+/// triangulation of the band between them and the border.
+struct BandedMesh {
+    FlatMesh mesh;               ///< vertices: the border's points, then those of the lattices
+    std::int32_t first_of_band;  ///< triangles before it are a lattice's
+    std::vector<std::int32_t> rim_triangles;  ///< of lattices, beside the band
+};
+
+/// Joins border and lattices; lattices are used up. Throws InputError "too_close" where points
+/// added on the border collide.
+BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners,
+                     std::vector<Lattice>&& lattices, const Check& check);
+
+}  // namespace realmodel::meshing

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the meshers' loops are watched and stopped. Private.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+namespace realmodel::meshing {
+
+/// Called now and then (at least every few milliseconds) with the share of a step that is done;
+/// throws to stop it.
+using Check = std::function<void(double)>;
+
+/// Passes on every 16384th call to a check: for the innermost loops.
+class Ticker {
+public:
+    explicit Ticker(const Check& check) : check_(check) {}
+    void operator()(double share) {
+        if (++calls_ % 16384 == 0) check_(share);
+    }
+
+private:
+    const Check& check_;
+    std::size_t calls_ = 0;
+};
+
+/// A pair of point numbers.
+using Segment = std::array<std::int32_t, 2>;
+
+}  // namespace realmodel::meshing

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a point that a triangle asks for lies, and what adding it would disturb. Private.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "meshing/flat_mesh.hpp"
+
+namespace realmodel::meshing {
+
+/// Where a straight walk through a mesh ended.
+struct Arrival {
+    enum Kind { inside, on_side, at_fixed_side, nowhere } kind;
+    Side side;  ///< of the triangle (inside), the side it lies on, or the fixed side in the way
+};
+
+/// Goes from within a triangle straight to a goal, and stops at the first fixed side. `nowhere`:
+/// a vertex is there already, or the triangle is too thin for the question to have an answer.
+Arrival walk_to(const FlatMesh& mesh, std::int32_t triangle, const PlanPoint& goal);
+
+/// The centre of the circle through a triangle's corners; none where doubles do not hold it.
+std::optional<PlanPoint> circumcentre(const FlatMesh& mesh, std::int32_t triangle);
+
+/// Finds a fixed side that a new point would encroach on: that it would see, without another side
+/// between, under more than 120 degrees (Shewchuk 2002, section 3.4: lenses of 30 degrees).
+class Encroachment {
+public:
+    /// Outside where there is none. `at` is where the point lies.
+    Side find(const FlatMesh& mesh, const Arrival& at, const PlanPoint& p);
+
+private:
+    std::vector<std::int32_t> cavity_;
+};
+
+/// Whether a side can be cut at a point near it without turning a triangle over. Exact.
+bool can_cut(const FlatMesh& mesh, Side side, const PlanPoint& p);
+
+inline double squared_distance(const PlanPoint& a, const PlanPoint& b) {
+    const double dx = b[0] - a[0], dy = b[1] - a[1];
+    return dx * dx + dy * dy;
+}
+
+inline PlanPoint middle(const PlanPoint& a, const PlanPoint& b) {
+    return {a[0] + 0.5 * (b[0] - a[0]), a[1] + 0.5 * (b[1] - a[1])};
+}
+
+inline double twice_area(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+}  // namespace realmodel::meshing

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A region with what its mesh must contain, as points and edges. Private.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "meshing/check.hpp"
+#include "realmodel/meshing/region_mesh.hpp"
+#include "realmodel/meshing/rings.hpp"
+
+namespace realmodel::meshing {
+
+struct RegionGraph {
+    /// The rings' corners in order of appearance, then what the constraints bring. Some of the
+    /// latter may lie outside the region: no edge uses them.
+    std::vector<PlanPoint> points;
+    std::vector<Segment> border;  ///< between the region and what is not, the region on the left
+    std::vector<Segment> inner;   ///< of constraints, inside the region
+    std::vector<std::int32_t> loners;                 ///< points inside that no edge ends at
+    double area = 0;                                  ///< of the region
+    std::vector<std::array<PlanPoint, 3>> triangles;  ///< that tile it
+};
+
+/// Checks rings and constraints and brings them together: constraints are cut where they meet the
+/// border or one another (at crossings with a new point, rounded), and what lies outside is left
+/// out. Throws InputError as mesh_region does.
+RegionGraph region_graph(std::span<const Ring> rings, const Constraints& constraints,
+                         const Progress* progress);
+
+}  // namespace realmodel::meshing

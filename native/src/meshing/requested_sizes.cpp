@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "meshing/requested_sizes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "meshing/point_insertion.hpp"
+#include "realmodel/base/errors.hpp"
+#include "realmodel/spatial/nearest_points.hpp"
+
+namespace realmodel::meshing {
+
+namespace {
+
+// Edges half as long as the points are apart: each point gets a few triangles of its own.
+constexpr double edges_per_spacing = 2;
+constexpr double longest_share = 4, shortest_share = 1.0 / 64;
+constexpr std::size_t counted_neighbours = 8;
+
+void check_size(const LocalLength& size, std::size_t number, double edge_length) {
+    const auto refuse = [&](const std::string& what) {
+        throw InputError("size", "size " + std::to_string(number) + ": " + what, -1,
+                         {static_cast<std::int64_t>(number)});
+    };
+    if (!(size.length > 0) || !std::isfinite(size.length)) {
+        refuse("its length must be a finite number above 0");
+    }
+    if (!(size.distance >= 0) || !std::isfinite(size.distance)) {
+        refuse("its distance must be a finite number from 0");
+    }
+    if (edge_length > 0 && size.length >= edge_length) {
+        refuse("its length must be shorter than the edge length elsewhere");
+    }
+    for (const PlanPoint& p : size.line) {
+        if (!std::isfinite(p[0]) || !std::isfinite(p[1])) refuse("a place is not a finite number");
+    }
+}
+
+}  // namespace
+
+double longest_by_density(const RegionGraph& graph, const MeshRequest& request) {
+    return longest_share * std::sqrt(graph.area / static_cast<double>(request.density.size())) /
+           edges_per_spacing;
+}
+
+std::vector<SizeSource> requested_sources(const RegionGraph& graph, const MeshRequest& request,
+                                          double edge_length, double scale) {
+    std::vector<SizeSource> sources;
+    for (std::size_t i = 0; i < request.sizes.size(); ++i) {
+        const LocalLength& size = request.sizes[i];
+        check_size(size, i, request.triangles > 0 || !request.density.empty() ? 0 : edge_length);
+        const double start = size.length - gradation * size.distance;
+        if (size.line.empty()) {
+            for (const auto& [from, to] : graph.border)
+                sources.push_back({graph.points[from], graph.points[to], start, size.length});
+        } else if (size.line.size() == 1) {
+            sources.push_back({size.line[0], size.line[0], start, size.length});
+        }
+        for (std::size_t k = 1; k < size.line.size(); ++k)
+            sources.push_back({size.line[k - 1], size.line[k], start, size.length});
+    }
+    if (request.density.empty()) return sources;
+
+    std::vector<PlanPoint> points = request.density;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (std::isfinite(points[i][0]) && std::isfinite(points[i][1])) continue;
+        throw InputError("density", "point " + std::to_string(i) + " is not a finite number", -1,
+                         {static_cast<std::int64_t>(i)});
+    }
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    if (points.size() < 2) {
+        throw InputError("density", "an edge length by density needs two points at least");
+    }
+    const double longest = longest_by_density(graph, request);
+    const std::size_t neighbours = std::min(counted_neighbours, points.size() - 1);
+    const spatial::NearestPoints nearest(points);
+    std::vector<spatial::Neighbour> found;
+    for (const PlanPoint& p : points) {
+        nearest.find(p, neighbours + 1, found);  // the first is the point itself
+        // So many points lie in a circle of that radius.
+        const double spacing = std::sqrt(found.back().squared_distance * std::numbers::pi /
+                                         static_cast<double>(neighbours));
+        const double wanted =
+            scale * std::clamp(spacing / edges_per_spacing, shortest_share * longest, longest);
+        sources.push_back({p, p, wanted, wanted});
+    }
+    return sources;
+}
+
+double pieces_along(std::span<const SizeSource> sources, const PlanPoint& low,
+                    const PlanPoint& high) {
+    double pieces = 0;
+    for (const SizeSource& source : sources) {
+        // The part of the segment in the box, from share t to share u (Liang and Barsky 1984).
+        double t = 0, u = 1;
+        for (int k = 0; k < 2; ++k) {
+            const double run = source.b[k] - source.a[k];
+            if (run == 0) {
+                if (source.a[k] < low[k] || source.a[k] > high[k]) u = -1;
+                continue;
+            }
+            const double first = (low[k] - source.a[k]) / run, last = (high[k] - source.a[k]) / run;
+            t = std::max(t, std::min(first, last));
+            u = std::min(u, std::max(first, last));
+        }
+        if (u > t) {
+            pieces += (u - t) * std::sqrt(squared_distance(source.a, source.b)) / source.least;
+        }
+    }
+    return pieces;
+}
+
+std::vector<double> lattice_lengths(const MeshRequest& request, const SizeField& size) {
+    constexpr double clearly_shorter = 0.8;  // else two lattices would collide
+    std::vector<double> lengths{size.largest()};
+    std::vector<double> wanted;
+    for (const LocalLength& local : request.sizes)
+        if (local.distance > 2 * local.length) wanted.push_back(local.length);
+    std::sort(wanted.rbegin(), wanted.rend());
+    for (const double length : wanted)
+        if (length < clearly_shorter * lengths.back()) lengths.push_back(length);
+    return lengths;
+}
+
+double triangles_in(const RegionGraph& graph, const SizeField& size, const Check& check) {
+    constexpr double equilateral = std::numbers::sqrt3 / 4;  // the area at side 1
+    if (size.is_uniform()) return graph.area / (equilateral * size.largest() * size.largest());
+    Ticker tick(check);
+    double triangles = 0;
+    std::vector<std::array<PlanPoint, 3>> open = graph.triangles;
+    while (!open.empty()) {
+        tick(0);
+        const auto [a, b, c] = open.back();
+        open.pop_back();
+        const double ab = squared_distance(a, b), bc = squared_distance(b, c),
+                     ca = squared_distance(c, a);
+        const double wanted = size.at({(a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3});
+        const double longest = std::max({ab, bc, ca});
+        if (longest <= 9 * wanted * wanted) {
+            triangles += 0.5 * twice_area(a, b, c) / (equilateral * wanted * wanted);
+        } else if (longest == ab) {
+            const PlanPoint m = middle(a, b);
+            open.push_back({a, m, c});
+            open.push_back({m, b, c});
+        } else if (longest == bc) {
+            const PlanPoint m = middle(b, c);
+            open.push_back({b, m, a});
+            open.push_back({m, c, a});
+        } else {
+            const PlanPoint m = middle(c, a);
+            open.push_back({c, m, b});
+            open.push_back({m, a, b});
+        }
+    }
+    return triangles;
+}
+
+}  // namespace realmodel::meshing
