@@ -19,12 +19,13 @@ from bpy.props import (
 
 from . import props_surface, props_view
 from .bl import changes, display, library_rows, results, settings
-from .core.project import MESHERS_HERE
+from .core.mesh_sizes import MESHERS
 from .core.units import METRES, MODEL_UNIT
 
 _MESHERS = {
     "delaunay": ("Delaunay", "Triangles as equal as refinement of a Delaunay triangulation makes them"),
     "frontal": ("Frontal", "Triangles laid from the border inwards: close to equilateral nearly everywhere"),
+    "grid": ("Grid", "The nodes of a regular grid, and where its lines meet the outline"),
 }
 
 DISPLAYS = (
@@ -90,12 +91,15 @@ class RealModelRock(bpy.types.PropertyGroup):
     )
     region_file: StringProperty(
         name="Region file",
-        description="File with the outline of the rock mass, where no object gives it (GeoJSON)",
+        description="File with the outline of the rock mass, where no object gives it (GeoJSON, WKT, "
+        "shapefile, GeoPackage)",
         subtype="FILE_PATH",
         update=changes.region,
     )
     region_stored: StringProperty(options={"HIDDEN"})
     region_stamp: StringProperty(options={"HIDDEN"})
+    constraints_stored: StringProperty(options={"HIDDEN"})
+    mesh_options: StringProperty(options={"HIDDEN"})
     region_area: FloatProperty(options={"HIDDEN"}, default=-1.0)
     edge_length: FloatProperty(
         name="Edge length",
@@ -110,7 +114,7 @@ class RealModelRock(bpy.types.PropertyGroup):
     mesher: EnumProperty(
         name="Mesher",
         description="How the region is divided into triangles",
-        items=[(name, *_MESHERS[name]) for name in MESHERS_HERE],
+        items=[(name, *_MESHERS[name]) for name in MESHERS],
         default="delaunay",
         update=changes.setting,
     )

@@ -6,8 +6,10 @@ import sqlite3
 import struct
 import unittest
 
+import bpy
 import numpy as np
 from panel_case import PanelCase, ops
+from realmodel.bl import model_at_hand
 from realmodel.core import BuildFailed, build, load_project
 from realmodel.core.readers.vendored import vendored
 
@@ -18,6 +20,7 @@ name = "r"
 region = {region}
 edge_length = 1
 base_elevation = 0
+constraints = [[[0.5, 0.5], [3.5, 2.5]], [3, 1]]
 boreholes = {{ collars = "c.csv", picks = "p.csv" }}
 [[rock.surface]]
 name = "clay"
@@ -27,6 +30,19 @@ name = "ground"
 points = "dtm.tif"
 units = {{ z = "ft" }}
 method = "grid"
+"""
+MESHED = """format = 1
+name = "x"
+[[rock]]
+name = "r"
+region = [[0, 0], [4, 0], [4, 4], [0, 4]]
+{keys}
+size = [{{ at = [2, 2], length = 0.1, distance = 0.2 }}]
+base_elevation = 0
+[[rock.surface]]
+name = "ground"
+points = "p.xyz"
+method = "plane"
 """
 SQUARE = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0)]
 
@@ -82,3 +98,22 @@ class InputFiles(PanelCase):
             (self.folder / name).unlink()
         ops.build()
         self.assertEqual({name: round(v, 9) for name, v in self.volumes().items()}, expected)
+
+    def test_what_the_panel_does_not_show_is_kept(self):
+        """Edge lengths by density, a number of triangles and local lengths of the project file."""
+        cases = (
+            ('edge_length = "auto"', {}),
+            ("triangles = 3000", {}),
+            ("edge_length = 1", {"edge_length": 1.0}),
+        )
+        for number, (keys, expected) in enumerate(cases):
+            path = self.folder / f"m{number}.toml"
+            path.write_text(MESHED.format(keys=keys))
+            (self.folder / "p.xyz").write_text("0 0 1\n4 0 1\n4 4 1\n0 4 1\n2 2 1\n")
+            model = build(load_project(path))
+            ops.open_project(filepath=str(path))
+            ops.build()
+            mine = model_at_hand.model_of(bpy.context)
+            self.assertTrue(np.array_equal(mine.surface_vertices, model.surface_vertices), keys)
+            for key, value in expected.items():
+                self.assertEqual(getattr(self.model.rocks[0], key), value)

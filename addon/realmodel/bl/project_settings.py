@@ -72,8 +72,10 @@ def compose(scene, depsgraph, whole=True):
     composed = Composed(project, origin, _origin_is_free(scene))
     for number, row in enumerate(scene.realmodel.rocks):
         rock = Rock(row.name, [], mesher=row.mesher)
-        if row.edge_length > 0.0:
-            rock.edge_length = settings.number(row, "edge_length")
+        for key, value in json.loads(row.mesh_options or "{}").items():
+            setattr(rock, key, value)
+        if row.edge_length > 0.0:  # which says more than what the project file said of it
+            rock.edge_length, rock.triangles = settings.number(row, "edge_length"), None
         if row.use_base:
             rock.base_elevation = settings.number(row, "base_elevation")
         _region(composed, number, rock, row, depsgraph, whole)
@@ -85,6 +87,8 @@ def compose(scene, depsgraph, whole=True):
             except InputRefused as error:
                 raise error.within(surface_item(rock, surface)) from error
             rock.surfaces.append(surface)
+        if not rock.interpolates:  # nothing is meshed that they could shape
+            rock.constraints = []
     return composed
 
 
@@ -113,6 +117,8 @@ def _region(composed, number, rock, row, depsgraph, whole):
             rings = _stored_rings(composed, number, rock, row, whole)
     except InputRefused as error:
         raise error.within(rock_item(rock)) from error
+    if row.constraints_stored:
+        rock.constraints = list(stored_arrays.unpack(row.constraints_stored).values())
     if rings:  # which of them are holes is not said: they count even-odd
         rock.region = rings if len(rings) > 1 else rings[0]
 
@@ -287,8 +293,13 @@ def add_rock(group, rock):
     row = group.rocks.add()
     with settings.filling():
         row.name = rock.name
-        if rock.edge_length is not None:
+        options = {"triangles": rock.triangles, "size": list(rock.size)}
+        if isinstance(rock.edge_length, str):
+            options["edge_length"] = rock.edge_length
+        elif rock.edge_length is not None:
             settings.set_number(row, "edge_length", rock.edge_length)
+        given = {key: value for key, value in options.items() if value}
+        row.mesh_options = json.dumps(given, default=lambda array: array.tolist()) if given else ""
         row.mesher = rock.mesher
         if rock.base_elevation is not None:
             settings.set_number(row, "base_elevation", rock.base_elevation)
@@ -297,6 +308,9 @@ def add_rock(group, rock):
             row.region_file = str(rock.region_file)
         elif rock.region is not None:
             row.region_stored = packed_region(rock)
+        if len(rock.constraints):
+            named = {f"constraint{n}": np.asarray(c, np.float64) for n, c in enumerate(rock.constraints)}
+            row.constraints_stored = stored_arrays.pack(**named)
         for surface in rock.surfaces:
             fill_surface(row.surfaces.add(), surface)
         row.active_surface = max(len(rock.surfaces) - 1, 0)

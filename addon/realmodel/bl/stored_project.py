@@ -10,11 +10,11 @@ be read without RealModel:
 
 `settings` is UTF-8 JSON: {"format": 1, "name", "rocks": [{"name", "edge_length", "mesher",
 "base_elevation", "holes": count, "several": true where these are outlines as the region is and count
-even-odd with it, "surfaces": [{"name", "method", "options", "rule", "property", "block"}]}],
-"library": [...] or null, "units": "m"}. Numbers keep every bit: JSON's are written with
+even-odd with it, "constraints": count, "surfaces": [{"name", "method", "options", "rule", "property",
+"block"}]}], "library": [...] or null, "units": "m"}. Numbers keep every bit: JSON's are written with
 as many digits as it takes, arrays are float64 and int32 in model units. Rock r's arrays are `r/region`
-(N, 2), `r/hole/h`, and for surface s either `r/s/points` (P, 3) or `r/s/vertices` (V, 3) with
-`r/s/triangles` (T, 3).
+(N, 2), `r/hole/h`, `r/constraint/c` (one row: a point), and for surface s either `r/s/points` (P, 3) or
+`r/s/vertices` (V, 3) with `r/s/triangles` (T, 3).
 """
 
 import base64
@@ -55,6 +55,9 @@ def pack(project):
         entry["several"] = is_several(rock.region)
         for h, ring in enumerate(rings, -1):
             arrays[f"{r}/region" if h < 0 else f"{r}/hole/{h}"] = _array(ring, np.float64)
+        entry["constraints"] = len(rock.constraints)
+        for c, constraint in enumerate(rock.constraints):
+            arrays[f"{r}/constraint/{c}"] = _array(constraint, np.float64)
         entry["surfaces"] = []
         for s, surface in enumerate(rock.surfaces):
             entry["surfaces"].append({key: getattr(surface, key) for key in _SURFACE_KEYS})
@@ -113,6 +116,7 @@ def store(scene, project):
 def _rock(archive, r, entry):
     holes = [archive[f"{r}/hole/{h}"] for h in range(entry["holes"])]
     region = archive[f"{r}/region"] if f"{r}/region" in archive else None
+    constraints = [archive[f"{r}/constraint/{c}"] for c in range(entry.get("constraints", 0))]
     if entry.get("several"):
         region, holes = [region, *holes], []
     surfaces = []
@@ -127,6 +131,7 @@ def _rock(archive, r, entry):
         surfaces=surfaces,
         region=region,
         holes=holes,
+        constraints=constraints,
         **{key: entry[key] for key in _ROCK_KEYS if key in entry},
     )
 

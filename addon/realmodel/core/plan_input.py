@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a rock mass has in plan - its region - from arrays, text or files, to checked rings."""
+"""What a rock mass has in plan - its region, and constraints - from arrays, text or files."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from .errors import InputRefused
+from .errors import InputRefused, place_text
 from .map_layer import MapLayer, is_wkt
 from .point_file import ReadingRefused
 from .readers import read_shapes
@@ -85,6 +85,51 @@ def _as_given(
     if outlines == 1 and not several and len(checked) == len(rings):
         return checked[0], checked[1:]
     return checked, []
+
+
+def read_constraints(given: Sequence, units: str = MODEL_UNIT) -> list[np.ndarray]:
+    """Lines (N, 2) and points (1, 2) that the planar mesh is to contain, from arrays, files and text.
+
+    Outlines of polygons in files are lines that return to where they began. Raises InputRefused.
+    """
+    found: list[np.ndarray] = []
+    for number, entry in enumerate(given, 1):
+        try:
+            shapes = shapes_of(entry, units)
+            found += [places_of_constraint(entry)] if shapes is None else _lines_of(shapes, map_layer(entry))
+        except InputRefused as error:
+            raise error.within(f"constraint {number}") from error
+    return found
+
+
+def places_of_constraint(given) -> np.ndarray:
+    """(N, 2) places of a line, or (1, 2) of a point given as [x, y], none repeated in a row."""
+    try:
+        places = np.array(given, np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputRefused("a constraint must be places [[x, y], ...] or one place [x, y]") from error
+    places = places.reshape(1, -1) if places.ndim == 1 else places
+    if places.ndim != 2 or places.shape[1] != 2 or not len(places):
+        raise InputRefused(f"a constraint must be an array (N, 2), not {places.shape}")
+    bad = np.flatnonzero(~np.isfinite(places).all(axis=1))
+    if len(bad):
+        raise InputRefused(f"place {bad[0]} is {place_text(places[bad[0]])}, not finite")
+    return _without_repetition(places)
+
+
+def _without_repetition(places: np.ndarray) -> np.ndarray:
+    new = np.ones(len(places), bool)
+    new[1:] = (places[1:] != places[:-1]).any(axis=1)
+    return places[new]
+
+
+def _lines_of(shapes: Shapes, layer: MapLayer | None) -> list[np.ndarray]:
+    found = [line for _, line in shapes.lines]
+    found += [np.concatenate([ring, ring[:1]]) for polygon in shapes.polygons for ring in polygon.rings]
+    found += [point.reshape(1, 2) for _, point in shapes.points]
+    if not found:
+        raise InputRefused("there are no lines or points in it", file=layer and Path(layer.file))
+    return [_without_repetition(line) for line in found]
 
 
 def ring_path(region, items) -> tuple:

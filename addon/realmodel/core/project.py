@@ -130,6 +130,8 @@ class Rock:
     `edge_length` (model units) is that of the planar mesh on which points are interpolated, or
     "auto": half as long as the points of the surfaces are apart; `triangles` is how many there should be
     instead. `mesher` and `size` (where edges are shorter) are as mesh_region takes them.
+    `constraints` are what the planar mesh must contain beside: lines (N, 2), points [x, y], and files of them
+    as of a region.
     With `base_elevation` there is a block between this height and the oldest surface.
     `shape_file` is the file that the rings were read from, if any: messages name it.
     """
@@ -143,6 +145,7 @@ class Rock:
     mesher: str = "delaunay"
     size: Sequence[Mapping] = ()
     base_elevation: float | None = None
+    constraints: Sequence = ()
     boreholes: Boreholes | None = None
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False)
@@ -156,6 +159,15 @@ class Rock:
         """The rings (N, 2) of a region of arrays, outlines and holes alike; they count even-odd."""
         outlines = self.region if is_several(self.region) else [self.region]
         return [np.asarray(ring, float) for ring in (*outlines, *self.holes)]
+
+    def constraint_lines(self) -> list[np.ndarray]:
+        """Of constraints that are arrays, the lines (N, 2)."""
+        return [line for line in self.constraints if len(line) > 1]
+
+    def constraint_points(self) -> np.ndarray | None:
+        """Of constraints that are arrays, the points (N, 2); None where there are none."""
+        points = [point for point in self.constraints if len(point) == 1]
+        return np.concatenate(points) if points else None
 
     def region_source(self) -> tuple[Path | None, int | None]:
         """Where the region comes from, for messages: its file, or its line in the project file."""
@@ -194,6 +206,7 @@ class Project:
         files = [self.path, self.library.path if self.library else None]
         for rock in self.rocks:
             files += [*layer_files(rock.region), *(surface.input_file for surface in rock.surfaces)]
+            files += [file for given in rock.constraints for file in layer_files(given)]
             files += rock.boreholes.files if rock.boreholes is not None else []
             for surface in rock.surfaces:
                 if surface.point_file is not None:
@@ -271,6 +284,11 @@ def _check_rock(project: Project, rock: Rock) -> None:
             "holes go with an outline of coordinates", "holes", "put the holes into the region's file"
         )
     check_layer(rock.region, "region", refuse, is_file)
+    for given in rock.constraints:
+        check_layer(given, "constraints", refuse, is_file)
+    if len(rock.constraints) and not rock.interpolates:
+        what = "constraints shape the mesh of the region, and no surface is interpolated on it"
+        raise refuse(what, "constraints")
     _check_boreholes(rock, refuse)
     names: set[str] = set()
     for surface in rock.surfaces:
@@ -312,7 +330,7 @@ def _check_mesh(rock: Rock, refuse) -> None:
     if rock.triangles is not None and rock.edge_length not in (None, AUTO):
         raise refuse("edge_length and triangles exclude one another", "triangles", "give one of them")
     try:
-        local_lengths(rock.size, [], None)
+        local_lengths(rock.size, [np.zeros((1, 2))] if len(rock.constraints) else [], None)
     except InputRefused as error:
         raise refuse(f"{error.item}: {error.what}" if error.item else error.what, "size") from error
 

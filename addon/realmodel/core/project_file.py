@@ -28,6 +28,7 @@ _ROCK_KEYS = (
     "mesher",
     "size",
     "base_elevation",
+    "constraints",
     "boreholes",
     "surface",
 )
@@ -92,6 +93,7 @@ def _read_rock(table: Table, folder: Path) -> Rock:
         size=_read_size(table),
         mesher=table.text("mesher") or "delaunay",
         base_elevation=table.number("base_elevation"),
+        constraints=_read_constraints(table, folder),
         boreholes=_read_boreholes(table, folder),
         source=Source(table.document, table.path),
     )
@@ -137,10 +139,34 @@ def _read_layer(table: Table, key: str, given, folder: Path):
         return given
     if not isinstance(given, dict):
         return folder / table.text(key)
-    keys = _inner(table, key, given)
+    return _layer_table(_inner(table, key, given), folder)
+
+
+def _layer_table(keys: Table, folder: Path) -> MapLayer:
     keys.allow_only(("file", "layer", "where", "units"))
-    values = {name: given[name] for name in ("where", "units") if name in given}
+    values = {name: keys.content[name] for name in ("where", "units") if name in keys}
     return MapLayer(folder / keys.text("file", required=True), keys.text("layer"), **values)
+
+
+def _read_constraints(table: Table, folder: Path) -> list:
+    given = table.content.get("constraints", [])
+    advice = 'write constraints = ["rivers.geojson", [[x, y], [x, y], ...], [x, y]]'
+    if not isinstance(given, list):
+        raise table.refuse("'constraints' must be a list of files, lines and points", "constraints", advice)
+    found = []
+    for number, entry in enumerate(given):
+        inner = Table(table.document, {"file": entry}, (*table.path, "constraints", number), table.item)
+        if isinstance(entry, str):
+            found.append(entry if is_wkt(entry) else folder / inner.text("file"))
+        elif isinstance(entry, dict):
+            found.append(_layer_table(Table(table.document, entry, inner.path, table.item), folder))
+        elif isinstance(entry, list) and entry and all(_is_coordinate(value) for value in entry):
+            found.append(_read_ring(table, [entry], ("constraints", number))[0])
+        elif isinstance(entry, list) and entry:
+            found.append(_read_ring(table, entry, ("constraints", number)))
+        else:
+            raise inner.refuse("'constraints' has an entry that is no file, line or point", advice=advice)
+    return found
 
 
 def _read_boreholes(table: Table, folder: Path) -> Boreholes | None:

@@ -107,6 +107,8 @@ def _rock_lines(rock: Rock) -> list[str]:
         lines.append(f"region = {_rings_text(rock.region) if several else _ring_text(rock.region)}")
         if len(rock.holes):
             lines.append(f"holes = {_rings_text(rock.holes)}")
+    if len(rock.constraints):
+        lines.append(f"constraints = {_rings_text(rock.constraints)}")
     return lines
 
 

@@ -13,7 +13,7 @@ from .errors import InputRefused, number_list, place_text
 from .heights import Interpolation
 from .interpolation import checked_points
 from .mesh_sizes import AUTO
-from .plan_input import map_layer, read_rings, ring_path
+from .plan_input import map_layer, read_constraints, read_rings, ring_path
 from .planar_mesh import mesh_rings, triangulate_rings
 from .project import Project, Rock, Surface, rock_item, surface_item
 from .readers import Picks, read_boreholes, read_off, read_point_file
@@ -89,6 +89,7 @@ def read_rocks(work: Work, project: Project) -> list[RockInput]:
     inputs = []
     for rock in project.rocks:
         rock, warnings = _read_region(work, rock, project.units)
+        rock = _read_constraints(rock, project.units)
         picks = _read_picks(rock, project.units)
         warnings += [BuildWarning(text, "points", rock.name) for text in picks.warnings]
         done += 1
@@ -127,6 +128,7 @@ def with_arrays(project: Project) -> Project:
         for rock in project.rocks:
             if not is_plain(rock.region):
                 rock, _ = _read_region(work, rock, project.units)
+            rock = _read_constraints(rock, project.units)
             picks = _read_picks(rock, project.units)
             surfaces = []
             for surface in rock.surfaces:
@@ -154,6 +156,17 @@ def _read_region(work: Work, rock: Rock, units: str) -> tuple[Rock, list[BuildWa
         raise error.within(rock_item(rock), file=file, line=line) from error
     rock = replace(rock, region=region, holes=holes, shape_file=rock.region_file or rock.shape_file)
     return rock, [BuildWarning(text, "left_out", rock.name) for text in left_out]
+
+
+def _read_constraints(rock: Rock, units: str) -> Rock:
+    """The rock mass with arrays (N, 2) as constraints, points in one row."""
+    try:
+        return replace(rock, constraints=read_constraints(rock.constraints, units))
+    except InputRefused as error:
+        file, line = (
+            (rock.source.document.file, rock.source.line("constraints")) if rock.source else (None, None)
+        )
+        raise error.within(rock_item(rock), file=file, line=line) from error
 
 
 def _read_picks(rock: Rock, units: str) -> Picks:
@@ -255,13 +268,17 @@ def mesh_rock(work: Work, entry: RockInput) -> None:
                 rock.mesher,
                 triangles=rock.triangles,
                 size=rock.size,
+                constraints=rock.constraint_lines(),
+                constraint_points=rock.constraint_points(),
                 points=_density_points(rock) if rock.edge_length == AUTO else None,
             )
         else:
             entry.region = triangulate_rings(rock.rings())
     except InputRefused as error:
-        about_edges = getattr(error.__cause__, "kind", "") in _EDGE_LENGTH_KINDS
-        file, line = rock.edge_length_source() if about_edges else rock.region_source()
+        kind = getattr(error.__cause__, "kind", "")
+        file, line = rock.edge_length_source() if kind in _EDGE_LENGTH_KINDS else rock.region_source()
+        if kind.startswith("constraint") and rock.source is not None:
+            file, line = rock.source.document.file, rock.source.line("constraints")
         raise error.within(rock_item(rock), file=file, line=line) from error
 
 
