@@ -12,19 +12,16 @@ namespace realmodel::cutting {
 /// between them: they become one between their parts, or none in one part. Where they face the same
 /// way, for parts that overlap, one of them is to be divided.
 void PartRounding::glue_doubled() {
-    std::vector<std::vector<NodeId>> keys(pieces_.size());
-    std::vector<std::size_t> order(pieces_.size());
-    for (std::size_t p = 0; p < keys.size(); ++p) {
-        order[p] = p;
+    std::vector<std::pair<std::vector<NodeId>, std::size_t>> order;  // sorted nodes, piece
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const auto nodes = pieces_.polygons[p];
         if (!std::all_of(nodes.begin(), nodes.end(),
                          [this](NodeId node) { return is_near_[index(node)] != 0; }))
             continue;
-        keys[p].assign(nodes.begin(), nodes.end());
-        std::sort(keys[p].begin(), keys[p].end());
+        auto& key = order.emplace_back(std::vector<NodeId>(nodes.begin(), nodes.end()), p).first;
+        std::sort(key.begin(), key.end());
     }
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return keys[a] < keys[b]; });
+    std::sort(order.begin(), order.end());
     /// Which way round a polygon goes from its least node to its second least
     const auto turned = [this](std::size_t p) {
         const auto nodes = pieces_.polygons[p];
@@ -39,9 +36,9 @@ void PartRounding::glue_doubled() {
     is_doubled_.assign(pieces_.size(), 0);
     bool any = false;
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-        while (end < order.size() && keys[order[end]] == keys[order[begin]])
+        while (end < order.size() && order[end].first == order[begin].first)
             ++end;
-        if (keys[order[begin]].empty() || end - begin < 2) continue;
+        if (end - begin < 2) continue;
         struct Outer {
             std::size_t piece, which;
             int turned;
@@ -49,7 +46,7 @@ void PartRounding::glue_doubled() {
         for (const std::int8_t half : {kBelow, kAbove}) {
             std::vector<Outer> outers;
             for (std::size_t i = begin; i < end; ++i) {
-                const std::size_t p = order[i];
+                const std::size_t p = order[i].second;
                 const auto& sides = pieces_.sides[p];
                 for (std::size_t k = 0; k < 2; ++k) {
                     if (parts_[p][k] < 0 || sides[k] != half) continue;
