@@ -130,24 +130,32 @@ def pace(cases: list[dict]) -> list[list[float]]:
     return [[round(float(a), 4), round(float(b), 4)] for a, b in zip(fractions, mean, strict=True)]
 
 
-def constants(cells: str, cases: list[dict]) -> dict:
-    """The part of COSTS of one kind of cells, from measured cases."""
-    rows = np.array([[case[name] for name in FEATURES] for case in cases], float)
-    taken = np.array([case["bytes"] for case in cases], float)
+def scale(cases: list[dict]) -> dict[str, float]:
+    """How much longer a whole build takes than its sample: `pace` times a power of the ratio of their corners,
+    such that no case is missed by more than it has to be."""
     sampled = [case for case in cases if not case["sample"]["whole"]]
+    if not sampled:
+        return {"pace": 1.0, "growth": 1.0}
     work = np.log([case["corners"] / case["sample"]["built"] for case in sampled])
     slower = np.log([case["seconds"] / case["sample"]["seconds"] for case in sampled])
     # a busy machine makes the slope of few cases a matter of luck: it is near 1, and never below
     growth = float(np.clip(np.polyfit(work, slower, 1)[0], 1.0, _STEEPEST)) if len(sampled) > 2 else 1.0
-    start = float(np.median(slower - growth * work))
+    left = slower - growth * work
+    return {"pace": float(f"{np.exp((left.min() + left.max()) / 2):.4g}"), "growth": float(f"{growth:.4g}")}
+
+
+def constants(cells: str, cases: list[dict]) -> dict:
+    """The part of COSTS of one kind of cells, from measured cases."""
+    rows = np.array([[case[name] for name in FEATURES] for case in cases], float)
+    taken = np.array([case["bytes"] for case in cases], float)
     own = [case for case in cases if case["spec"]["plan"] == "own"]
     shared = [case for case in cases if case["spec"]["plan"] != "own"]
     return {
         "bytes": dict(zip(FEATURES, least_squares(rows, taken).round(1).tolist(), strict=True)),
         "most_bytes_per_triangle": round(float(_BOUND * (taken / rows[:, 0]).max())),
         "seconds_per_triangle": float(f"{np.median([c['seconds'] / c['triangles'] for c in cases]):.3g}"),
-        "pace": float(f"{np.exp(start):.4g}"),
-        "growth": float(f"{growth:.4g}"),
+        "scale_own": scale(own),
+        "scale_shared": scale(shared),
         "pace_own": pace(own),
         "pace_shared": pace(shared),
     }

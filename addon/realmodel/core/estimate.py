@@ -11,6 +11,7 @@ import numpy as np
 from .build_options import check_cells, check_stage
 from .coarse_blocks import coarse_blocks
 from .errors import InputRefused, NotEnoughMemory
+from .expected_costs import on_one_plan
 from .measured_costs import COSTS
 from .method_options import check_threads
 from .project import Project, check_project, surface_item
@@ -224,8 +225,8 @@ def sampled(work: Work, entry: RockInput, cells: str, threads: int, scaled: bool
     found = found.times(used / in_windows if in_windows else 0.0)
     if len(windows) > 1 and built_corners:
         if scaled:
-            costs = COSTS[cells]
-            seconds *= costs["pace"] * (found.corners / built_corners) ** costs["growth"]
+            scale = COSTS[cells]["scale_shared" if on_one_plan(plans) else "scale_own"]
+            seconds *= scale["pace"] * (found.corners / built_corners) ** scale["growth"]
         if cells == "blocks":
             coarse = coarse_blocks(entry.rock, [interpolating.places(k) for k in range(len(plans))])
             found = Counts(max(found.cells, coarse), *found.values()[1:])

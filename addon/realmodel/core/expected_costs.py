@@ -130,7 +130,7 @@ def _rings(rock: Rock) -> Sequence[np.ndarray]:
 
 def stack_pace(inputs: Sequence[RockInput], cells: str) -> Callable[[float], float]:
     """From the fraction that the stack builder counts to the share of its time."""
-    shared = all(_on_one_plan(entry) for entry in inputs)
+    shared = all(on_one_plan(entry.surfaces) for entry in inputs)
     counted, passed = zip(*COSTS[cells]["pace_shared" if shared else "pace_own"], strict=True)
 
     def pace(fraction: float) -> float:
@@ -142,9 +142,9 @@ def stack_pace(inputs: Sequence[RockInput], cells: str) -> Callable[[float], flo
     return pace
 
 
-def _on_one_plan(entry: RockInput) -> bool:
-    """Whether all surfaces of a rock mass stand on one plan mesh."""
-    (vertices, triangles), *others = entry.surfaces
+def on_one_plan(meshes: Sequence[tuple[np.ndarray, np.ndarray]]) -> bool:
+    """Whether meshes (vertices, triangles) are one in plan."""
+    (vertices, triangles), *others = meshes
     return all(
         (other[1] is triangles or np.array_equal(other[1], triangles))
         and np.array_equal(other[0][:, :2], vertices[:, :2])

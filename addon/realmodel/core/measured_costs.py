@@ -15,8 +15,8 @@ COSTS = {
         },
         "most_bytes_per_triangle": 2380,
         "seconds_per_triangle": 4.7e-06,
-        "pace": 0.7934,
-        "growth": 1.014,
+        "scale_own": {"pace": 0.7934, "growth": 1.014},
+        "scale_shared": {"pace": 0.7934, "growth": 1.014},
         "pace_own": [
             [0.0, 0.0],
             [0.0417, 0.027],
@@ -81,8 +81,8 @@ COSTS = {
         },
         "most_bytes_per_triangle": 1181,
         "seconds_per_triangle": 1.58e-06,
-        "pace": 0.6146,
-        "growth": 1.049,
+        "scale_own": {"pace": 0.6146, "growth": 1.049},
+        "scale_shared": {"pace": 0.6146, "growth": 1.049},
         "pace_own": [
             [0.0, 0.0],
             [0.0417, 0.076],
