@@ -131,7 +131,7 @@ def pace(cases: list[dict]) -> list[list[float]]:
 
 
 def scale(cases: list[dict]) -> dict[str, float]:
-    """How much longer a whole build takes than its sample: `pace` times a power of the ratio of their corners,
+    """How much longer a whole build takes than its sample: `pace` times a power of the ratio of corners,
     such that no case is missed by more than it has to be."""
     sampled = [case for case in cases if not case["sample"]["whole"]]
     if not sampled:
