@@ -17,9 +17,9 @@ ACCURACY = (
     *(f"within two deviations, {name}" for name in SETS),
 )
 _OURS = ("kriging", "auto", "kriging, spherical, 16", "kriging, Matern 3/2, 16", "kriging, Matern 3/2, 32")
-# What is compared, with how many nodes theirs is measured, and how many times as fast ours is to be. Speeds do
-# not depend on the number of nodes much, but for PyKrige, whose memory grows with it and which first makes a
-# matrix of all points: there ours has as few. Triangles alone are fast; what they tell is in the table of errors.
+# What is compared, with how many nodes theirs is measured, and how many times as fast ours is to be. Speeds
+# hardly depend on the number of nodes, but for PyKrige, whose memory grows with it and which first makes a
+# matrix of all points: there ours has as few. Triangles alone are fast; the other table has their errors.
 _PAIRS = (
     ("kriging, spherical, 16", "PyKrige, spherical, 16", 20_000, 3.0),
     ("kriging, spherical, 16", "SciPy, thin plate, 16", 100_000, 3.0),
