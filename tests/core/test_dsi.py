@@ -158,9 +158,9 @@ def test_a_fixed_border():
 def test_bounds_hold_and_push_only_where_they_touch(option):
     sign = 1 if option == "above" else -1
     bound = 300 + sign * 2.0
-    points = POINTS[sign * (POINTS[:, 2] - bound) > 0.1]
-    assert len(points) >= 3
-    points = np.vstack([points[:2], [[*utm([50, 25])[0], bound + sign * 0.5]]])
+    # a slope that goes on beyond the bound where there are no points
+    heights = bound + sign * np.array([3.0, 3.0, 0.5])
+    points = np.column_stack([utm([52, 55], [75, 58], [45, 35]), heights])
     free, result = dsi(points).z, dsi(points, **{option: bound}).z
     assert (sign * (free - bound)).min() < -0.5, "without the bound it is passed"
     assert (sign * (result - bound)).min() >= 0
