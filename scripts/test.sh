@@ -8,25 +8,25 @@
 #   scripts/test.sh [--quick] [--only STEP]...
 #     --quick       without the sanitizer build, and without the comparison of builds
 #     --only STEP   only this step, and the build it needs:
-#                   format ruff shellcheck native core blender bpy package asan builds;
-#                   and three that are not run unless asked for: gui (a window under Xvfb) tidy tsan
+#                   format ruff shellcheck native core blender gui (a window under Xvfb) bpy package asan
+#                   builds; and two that are not run unless asked for: tidy tsan
 #
 # shellcheck disable=SC2317  # the functions are called by name, through step
 set -uo pipefail # and not -e: one step that fails does not keep the others from running
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root" || exit 1
 
-all_steps=(format ruff shellcheck native core blender bpy package asan builds)
+all_steps=(format ruff shellcheck native core blender gui bpy package asan builds)
 steps=("${all_steps[@]}")
 only=()
 while (($# > 0)); do
     case $1 in
-        --quick) steps=(format ruff shellcheck native core blender bpy package) ;;
+        --quick) steps=(format ruff shellcheck native core blender gui bpy package) ;;
         --only)
             case ${2-} in
                 format | ruff | shellcheck | native | core | blender | gui | bpy | package | asan | builds | tidy | tsan) only+=("$2") ;;
                 *)
-                    echo "test.sh: --only needs a step: ${all_steps[*]} gui tidy tsan" >&2
+                    echo "test.sh: --only needs a step: ${all_steps[*]} tidy tsan" >&2
                     exit 2
                     ;;
             esac

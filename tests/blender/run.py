@@ -8,6 +8,7 @@ NAME: only tests whose name contains one of these words. The exit status is 1 wh
 none ran.
 """
 
+import os
 import sys
 import unittest
 from pathlib import Path
@@ -21,8 +22,11 @@ sys.path[:0] = [str(FOLDER.parents[1] / "addon"), str(FOLDER)]
 def _words():
     if "--" in sys.argv:
         return sys.argv[sys.argv.index("--") + 1 :]
-    in_blender = Path(sys.argv[0]).resolve() != Path(__file__).resolve()
-    return [] if in_blender else sys.argv[1:]
+    return [] if _in_blender() else sys.argv[1:]
+
+
+def _in_blender():
+    return Path(sys.argv[0]).resolve() != Path(__file__).resolve()
 
 
 def _flat(suite):
@@ -48,4 +52,9 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    status = main()
+    if not _in_blender():
+        # The module bpy waits for a thread of its own at exit, sometimes for ever.
+        sys.stdout.flush()
+        os._exit(status)
+    sys.exit(status)

@@ -26,7 +26,7 @@ from driver import Walk, contact_sheet  # noqa: E402
 
 def main():
     given = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
-    folder = Path(given[0] if given else ROOT / "build" / "gui")
+    folder = Path(given[0] if given else ROOT / "build" / "gui").resolve()
     folder.mkdir(parents=True, exist_ok=True)
     for picture in folder.glob("*.png"):
         picture.unlink()

@@ -200,7 +200,9 @@ def show_a_bad_place(walk):
     assert 0 < sum(p.select for p in item.data.polygons) < len(item.data.polygons) / 2
     item.data.vertices[kept[0]].co.x = kept[1]
     item.data.update()
-    yield walk.redrawn()
+    walk.over_viewport()
+    walk.key("ESC")  # the report stands open in front of everything until it is read
+    yield walk.redrawn(2)
 
 
 def save_and_open(walk):
