@@ -148,7 +148,8 @@ void CutterSides::hand_on() {
 /// that rounding flattened away; of a closed one it need not be said.
 void CutterSides::go_round(std::size_t e) {
     const auto uses = winding_.edge(e);
-    const auto& [fan, windings] = winding_.sectors(e);
+    const EdgeFan& fan = winding_.sectors(e).fan;
+    const auto& windings = winding_.sectors(e).windings;
     /// Hands one of a blade's items on, with its side as seen from behind or from ahead.
     const auto each = [&](std::size_t blade, bool ahead, const auto& visit) {
         for (const std::size_t i : fan.blade(blade)) {

@@ -216,11 +216,13 @@ void CutterWinding::spread(std::size_t e, Progress* progress) {
 /// What is just below a region: told by the triangles that a ray from there passes.
 Winding CutterWinding::cast(std::size_t region) {
     const NodeId p = overlay_.inner_point(region);
-    const auto [axis, turned] = overlay_.view_of(region);
+    const auto view = overlay_.view_of(region);
+    const auto axis = view.first;
+    const bool is_turned = view.second > 0;
     ExactPoints& points = overlay_.points();
     Winding winding;
     overlay_.each_triangle(axis, p, [&](std::size_t face, const std::array<NodeId, 3>& corners) {
-        const int side = points.ray_passes(axis, p, corners, turned > 0);
+        const int side = points.ray_passes(axis, p, corners, is_turned);
         if (side == 0) return;
         add(winding, overlay_.model().cell(face, 0), side);
         add(winding, overlay_.model().cell(face, 1), -side);
