@@ -3,25 +3,18 @@
 
 import bpy
 
+from ..registration import register_modules, unregister_modules
 from . import build, files, library, results, rocks, sections, start, surfaces, view
 
 _MODULES = (start, rocks, surfaces, build, files, library, results, view, sections)
 
 
 def register():
-    for module in _MODULES:
-        for cls in module.CLASSES:
-            bpy.utils.register_class(cls)
-        if hasattr(module, "register"):
-            module.register()
+    register_modules(_MODULES)
 
 
 def unregister():
-    for module in reversed(_MODULES):
-        if hasattr(module, "unregister"):
-            module.unregister()
-        for cls in reversed(module.CLASSES):
-            bpy.utils.unregister_class(cls)
+    unregister_modules(_MODULES)
 
 
 def by_module():

@@ -6,6 +6,19 @@ import bpy
 from ..bl import library_rows, units
 
 
+class YoungestOnTop:
+    """A list of what was deposited one on another, the last row first."""
+
+    def filter_items(self, _context, data, name):
+        rows = getattr(data, name)
+        shown = []
+        if self.filter_name:
+            shown = bpy.types.UI_UL_list.filter_items_by_name(
+                self.filter_name, self.bitflag_filter_item, rows, "name"
+            )
+        return shown, list(range(len(rows) - 1, -1, -1))
+
+
 class REALMODEL_UL_rocks(bpy.types.UIList):
     """Rock masses."""
 
@@ -17,7 +30,7 @@ class REALMODEL_UL_rocks(bpy.types.UIList):
         count.label(text=str(len(item.surfaces)))
 
 
-class REALMODEL_UL_surfaces(bpy.types.UIList):
+class REALMODEL_UL_surfaces(YoungestOnTop, bpy.types.UIList):
     """Surfaces, the youngest on top, as in the field."""
 
     def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_name):
@@ -31,15 +44,6 @@ class REALMODEL_UL_surfaces(bpy.types.UIList):
         if item.rule != "erosional":
             row.label(text=item.bl_rna.properties["rule"].enum_items[item.rule].name)
         row.prop(item, "hide", text="", emboss=False, icon="HIDE_ON" if item.hide else "HIDE_OFF")
-
-    def filter_items(self, _context, data, name):
-        rows = getattr(data, name)
-        shown = []
-        if self.filter_name:
-            shown = bpy.types.UI_UL_list.filter_items_by_name(
-                self.filter_name, self.bitflag_filter_item, rows, "name"
-            )
-        return shown, list(range(len(rows) - 1, -1, -1))
 
 
 class REALMODEL_UL_library(bpy.types.UIList):
@@ -56,7 +60,7 @@ class REALMODEL_UL_library(bpy.types.UIList):
         number.label(text=str(item.id))
 
 
-class REALMODEL_UL_results(bpy.types.UIList):
+class REALMODEL_UL_results(YoungestOnTop, bpy.types.UIList):
     """Blocks, the youngest on top."""
 
     def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_name):
@@ -67,15 +71,6 @@ class REALMODEL_UL_results(bpy.types.UIList):
         figures = right.split(factor=0.6)
         figures.label(text=f"{item.share:.1f} %")
         figures.label(text=str(item.components) if item.components else "")
-
-    def filter_items(self, _context, data, name):
-        rows = getattr(data, name)
-        shown = []
-        if self.filter_name:
-            shown = bpy.types.UI_UL_list.filter_items_by_name(
-                self.filter_name, self.bitflag_filter_item, rows, "name"
-            )
-        return shown, list(range(len(rows) - 1, -1, -1))
 
 
 CLASSES = (REALMODEL_UL_rocks, REALMODEL_UL_surfaces, REALMODEL_UL_library, REALMODEL_UL_results)
