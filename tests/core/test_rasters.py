@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """ESRI ASCII grids and GeoTIFF as points, and as the grid of method "grid"."""
 
-import os
-from pathlib import Path
-
 import numpy as np
 import pytest
 from realmodel.core import BuildFailed, InputRefused, PointFile, build, interpolate, load_project
 from realmodel.core.readers import read_point_file
 from realmodel.core.readers.geotiff import read_geotiff
 from realmodel.core.readers.vendored import vendored
+from stacks import places
 
-DATA = Path(os.environ.get("REALMODEL_SHARED", Path(__file__).resolve().parents[3] / "shared")) / "data"
 HEAD = "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200\ncellsize 10\n"
 CELLS = [[105, 215, 1], [115, 215, 2], [125, 215, 3], [105, 205, 4], [125, 205, 6]]
 
@@ -251,17 +248,17 @@ def test_without_tifffile(monkeypatch, write):
         read_point_file(PointFile(write("z.tif", b"II*\0")))
 
 
-@pytest.mark.skipif(not DATA.is_dir(), reason="the folder of real data is not there")
+@pytest.mark.skipif(not places.REAL_DATA.is_dir(), reason=places.DATA_ABSENT)
 @needs_tifffile
 def test_real_rasters():
     """Hamersley's elevation, and pleasant's lake floor, which is compressed by LZW."""
-    points, _ = read_point_file(PointFile(DATA / "hamersley" / "dtm_rp.tif"))
+    points, _ = read_point_file(PointFile(places.REAL_DATA / "hamersley" / "dtm_rp.tif"))
     assert points.shape == (40079, 3)
     assert (points[:, 2].min(), points[:, 2].max()) == (297, 1175)
     at = interpolate(points, points[:100, :2], method="grid")
     np.testing.assert_allclose(at.z, points[:100, 2], atol=1e-6)
-    points, _ = read_point_file(PointFile(DATA / "pleasant" / "pleasant_bathymetry.tif"))
+    points, _ = read_point_file(PointFile(places.REAL_DATA / "pleasant" / "pleasant_bathymetry.tif"))
     assert points.shape == (153 * 205, 3)
     assert points[:, 2].max() == pytest.approx(7.58682251, abs=1e-7)
-    _, warnings = read_point_file(PointFile(DATA / "pleasant" / "dem40m.tif"))
+    _, warnings = read_point_file(PointFile(places.REAL_DATA / "pleasant" / "dem40m.tif"))
     assert "degrees" in warnings[0]

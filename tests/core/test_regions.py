@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Regions: nasty outlines with the right verdict, files of every format, and the keys of the project file."""
 
-import os
 import sqlite3
 import struct
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -26,14 +24,14 @@ from realmodel.core.readers import read_region, read_shapes
 from realmodel.core.readers.vendored import vendored
 from realmodel.core.readers.wkt import parse_wkt
 from realmodel.core.region_rings import region_rings
+from stacks import places
 
-DATA = Path(os.environ.get("REALMODEL_SHARED", Path(__file__).resolve().parents[3] / "shared")) / "data"
 try:
     shapefile = vendored("shapefile", "pyshp", "this test")
 except BuildFailed:
     shapefile = None
 needs_pyshp = pytest.mark.skipif(shapefile is None, reason="addon/realmodel/vendor has no pyshp")
-needs_data = pytest.mark.skipif(not DATA.is_dir(), reason="the folder of real data is not there")
+needs_data = pytest.mark.skipif(not places.REAL_DATA.is_dir(), reason=places.DATA_ABSENT)
 
 
 def region_area(rings):
@@ -288,7 +286,7 @@ def test_polygons_that_share_borders_are_one_region(write):
 @needs_data
 def test_hamersley():
     """Units of a geological map, by attribute: each is a region, with its holes; neighbours are one."""
-    path = DATA / "hamersley" / "geology.geojson"
+    path = places.REAL_DATA / "hamersley" / "geology.geojson"
     shapes = read_shapes(MapLayer(path))
     assert len(shapes.polygons) >= 61
     units = {}
@@ -307,7 +305,7 @@ def test_hamersley():
 @needs_pyshp
 def test_pleasant_lakes_are_holes(tmp_path):
     """The lakes with their islands as holes of a region around them."""
-    lakes = read_shapes(MapLayer(DATA / "pleasant" / "all_lakes.shp"))
+    lakes = read_shapes(MapLayer(places.REAL_DATA / "pleasant" / "all_lakes.shp"))
     rings = [ring for polygon in lakes.polygons for ring in polygon.rings]
     assert (len(lakes.polygons), len(rings)) == (9, 33)
     low, high = (f(np.concatenate(rings), axis=0) for f in (np.min, np.max))
