@@ -7,7 +7,7 @@
 #   scripts/benchmark.sh              all sizes; writes the page and the constants
 #   scripts/benchmark.sh --quick      small sizes, each once, as a look; the page is left as it is
 #   scripts/benchmark.sh --fit        only fits the constants and compares estimates with builds
-#   scripts/benchmark.sh --only stacks|fit|watch|blender|heights, --memory GB, --write F.md, --help
+#   scripts/benchmark.sh --only stacks|fit|watch|blender|heights|meshing, --memory GB, --write F.md, --help
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 python=/usr/bin/python3
@@ -29,6 +29,12 @@ if "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/be
     export REALMODEL_HEIGHTS_PYTHON=$peers/bin/python
 else
     echo "benchmark.sh: SciPy and PyKrige could not be installed; measuring without them" >&2
+fi
+peers=$root/build/meshing_environment
+if "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/benchmark_meshing.txt" "$python"; then
+    export REALMODEL_MESHING_PYTHON=$peers/bin/python
+else
+    echo "benchmark.sh: Triangle, Gmsh and earcut could not be installed; measuring without them" >&2
 fi
 cd "$root/scripts"
 PYTHONPATH="$root/addon:$root/scripts" exec "$runs" -m benchmarks "$@"

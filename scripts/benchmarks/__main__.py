@@ -8,11 +8,11 @@ import signal
 import sys
 from pathlib import Path
 
-from . import blender_table, display_table, fitting, heights_table, page, watching_table
+from . import blender_table, display_table, fitting, heights_table, meshing_table, page, watching_table
 from .process import ROOT
 from .stacks_table import Limits, Row, StackRows
 
-PARTS = ("stacks", "fit", "watch", "blender", "heights")
+PARTS = ("stacks", "fit", "watch", "blender", "heights", "meshing")
 _QUICK_TRIANGLES, _ALL_TRIANGLES = 800_000, 10_000_000
 
 
@@ -60,6 +60,15 @@ def main() -> int:
             *page.table(heights_table.SPEED, speed, 3),
             "",
             *page.table(heights_table.ACCURACY, accuracy),
+        ]
+    if "meshing" in parts:
+        meshes, polygons = meshing_table.measure(given.quick, memory, _say)
+        lines["meshing"] = [
+            machine,
+            "",
+            *page.table(meshing_table.MESHES, meshes, 2),
+            "",
+            *page.table(meshing_table.POLYGONS, polygons),
         ]
     if given.write:
         for name, part in lines.items():

@@ -11,7 +11,7 @@ from realmodel import _native
 
 sys.path.insert(0, str(ROOT / "scripts"))
 
-from benchmarks import fitting, page, peers, process
+from benchmarks import fitting, meshing, page, peers, process
 from benchmarks.made_stacks import StackSpec
 
 
@@ -49,6 +49,32 @@ def test_a_surface_closed_for_peers_is_a_closed_solid():
     a, b, c = (vertices[triangles[:, i]] for i in range(3))
     volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
     assert 0.8 < volume < 1.3, "counter-clockwise seen from outside"
+
+
+@pytest.mark.parametrize("graded", [False, True])
+def test_a_measured_mesh_has_the_figures_it_should(graded):
+    edge = meshing.graded_largest(8000) if graded else meshing.edge_for(8000)
+    found = meshing.mesh("frontal", edge, graded)
+    assert found["triangles"] == pytest.approx(8000, rel=0.25)
+    assert found["mean_edge"] == pytest.approx(1, rel=0.05)
+    assert 25 <= found["least_angle"] <= 60
+    assert 0.95 <= found["mean_ratio"] <= 1
+    assert 0.9 <= found["six"] <= 1
+    assert 1e7 < found["resident"] < 1e10
+
+
+def test_figures_of_a_mesh_that_can_be_told_by_hand():
+    hexagon = np.array([[0, 0], *((np.cos(a), np.sin(a)) for a in np.arange(6) * np.pi / 3)])
+    fan = np.array([[0, i, i % 6 + 1] for i in range(1, 7)])
+    found = meshing.figures(hexagon, fan, 0.5, False)
+    assert found == pytest.approx(
+        {"triangles": 6, "least_angle": 60, "mean_ratio": 1, "mean_edge": 2, "six": 1}
+    )
+
+
+@pytest.mark.parametrize("kind", ["coast", "star", "bristles", "holes"])
+def test_polygons_that_are_measured_have_so_many_corners(kind):
+    assert sum(map(len, meshing.polygon(kind))) == pytest.approx(100_000, rel=0.03)
 
 
 def test_each_run_rewrites_its_own_part_of_the_page(tmp_path):

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tables of planar meshes and of polygons cut into triangles, beside the peers', in one run."""
+
+from __future__ import annotations
+
+import os
+import statistics
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from .meshing import edge_for, graded_largest
+from .process import Skipped, alone
+
+MESHES = (
+    "region",
+    "mesher",
+    "triangles",
+    "seconds",
+    "microseconds each",
+    "of Triangle's",
+    "asked",
+    "mean edge / asked",
+    "least angle",
+    "mean ratio",
+    "six neighbours",
+    "memory, MB",
+    "",
+)
+POLYGONS = ("polygon", "corners", "ours, s", "earcut, s", "ours / earcut", "asked", "")
+# How long a triangle may take of Triangle's time for one, the mean ratio at least, and bytes at most.
+_ASKED = {"delaunay": (1.0, None), "frontal": (3.0, 0.99), "grid": (None, None)}
+_MOST_MEMORY = 2e9
+_KINDS = {
+    "coast": "smooth coast",
+    "star": "star of 50,000 rays",
+    "bristles": "rays of random length",
+    "holes": "1,024 round holes",
+}
+_SECONDS = 600.0
+
+
+@dataclass(frozen=True)
+class _Case:
+    name: str
+    edge: float
+    graded: bool
+    with_gmsh: bool
+
+
+def measure(
+    quick: bool, memory: float, say: Callable[[str], None]
+) -> tuple[list[list[str]], list[list[str]]]:
+    """Rows for MESHES and POLYGONS; what could not be measured is SKIPPED, and why."""
+    python = os.environ.get("REALMODEL_MESHING_PYTHON")
+    rounds = 1 if quick else 3
+
+    def told(function: str, *arguments) -> dict:
+        return alone(f"meshing.{function}", *arguments, seconds=_SECONDS, memory=memory, python=python)
+
+    meshes, polygons = [], []
+    for case in _cases(quick):
+        for row in _meshes(told, case, rounds):
+            meshes.append(row)
+            say("meshing: " + " | ".join(row))
+    for kind, name in _KINDS.items():
+        polygons.append(_polygons(told, kind, name, rounds))
+        say("meshing: " + " | ".join(polygons[-1]))
+    return meshes, polygons
+
+
+def _cases(quick: bool) -> list[_Case]:
+    counts = (100_000,) if quick else (1_000_000, 4_000_000)
+    even = [_Case(f"one length, {count / 1e6:g} M", edge_for(count), False, True) for count in counts]
+    graded = counts[0]
+    return [*even, _Case(f"graded 1 : 24, {graded / 1e6:g} M", graded_largest(graded), True, True)]
+
+
+def _meshes(told, case: _Case, rounds: int) -> list[list[str]]:
+    """Rounds of all meshers one after another; ratios are medians over rounds. Gmsh runs once: it is slow."""
+    meshers = ("Triangle", *_ASKED)
+    runs: dict[str, list[dict]] = {mesher: [] for mesher in (*meshers, "Gmsh")}
+    reasons: dict[str, str] = {}
+    for number in range(rounds):
+        order = meshers if number % 2 == 0 else meshers[::-1]
+        for mesher in (*order, *(["Gmsh"] if number == 0 and case.with_gmsh else [])):
+            if mesher in reasons or (mesher == "grid" and case.graded):
+                continue
+            try:
+                runs[mesher].append(told("mesh", mesher, case.edge, case.graded))
+            except Skipped as skipped:
+                reasons[mesher] = str(skipped)
+    theirs = runs["Triangle"] if "Triangle" not in reasons else []
+    rows = []
+    for mesher, made in runs.items():
+        if mesher in reasons:
+            rows.append([case.name, mesher, *["-"] * (len(MESHES) - 3), f"SKIPPED; {reasons[mesher]}"])
+        elif made:
+            rows.append(_mesh_row(case.name, mesher, made, theirs))
+    return rows
+
+
+def _each(run: dict) -> float:
+    return run["seconds"] / run["triangles"]
+
+
+def _mesh_row(case: str, mesher: str, made: list[dict], theirs: list[dict]) -> list[str]:
+    last = made[-1]
+    ratio = None
+    if theirs and mesher != "Triangle":
+        ratio = statistics.median(
+            _each(run) / _each(beside) for run, beside in zip(made, theirs, strict=False)
+        )
+    asked, least_ratio = _ASKED.get(mesher, (None, None))
+    seconds = statistics.median(run["seconds"] for run in made)
+    peak = max(run["resident"] for run in made)
+    faults = []
+    if mesher in _ASKED:
+        if None not in (asked, ratio) and ratio > asked:
+            faults.append("too slow")
+        if least_ratio is not None and last["mean_ratio"] < least_ratio:
+            faults.append("mean ratio too low")
+        if peak > _MOST_MEMORY:
+            faults.append("too much memory")
+    verdict = f"NOT met: {', '.join(faults)}" if faults else "met" if asked is not None else ""
+    return [
+        case,
+        mesher if mesher not in _ASKED else f"RealModel, `{mesher}`",
+        f"{last['triangles']:,}",
+        f"{seconds:.2f}",
+        f"{1e6 * statistics.median(map(_each, made)):.2f}",
+        "-" if ratio is None else f"**{ratio:.2f}**",
+        "-" if asked is None else f"{asked:.0f}",
+        f"{last['mean_edge']:.3f}",
+        f"{last['least_angle']:.1f}",
+        f"{last['mean_ratio']:.4f}",
+        f"{100 * last['six']:.1f} %",
+        f"{peak / 1e6:,.0f}",
+        verdict,
+    ]
+
+
+def _polygons(told, kind: str, name: str, rounds: int) -> list[str]:
+    found: list[tuple[dict, dict]] = []
+    try:
+        for number in range(rounds):
+            who = ("RealModel", "earcut") if number % 2 == 0 else ("earcut", "RealModel")
+            runs = {one: told("ears", one, kind) for one in who}
+            found.append((runs["RealModel"], runs["earcut"]))
+    except Skipped as skipped:
+        return [name, "-", "-", "-", "-", "1", f"SKIPPED; {skipped}"]
+    ratio = statistics.median(ours["seconds"] / theirs["seconds"] for ours, theirs in found)
+    mine, other = (statistics.median(run["seconds"] for run in runs) for runs in zip(*found, strict=True))
+    corners = found[0][0]["corners"]
+    verdict = "met" if ratio <= 1 else "NOT met"
+    return [name, f"{corners:,}", f"{mine:.3f}", f"{other:.3f}", f"**{ratio:.2f}**", "1", verdict]
