@@ -56,7 +56,7 @@ def test_a_measured_mesh_has_the_figures_it_should(graded):
     edge = meshing.graded_largest(8000) if graded else meshing.edge_for(8000)
     found = meshing.mesh("frontal", edge, graded)
     assert found["triangles"] == pytest.approx(8000, rel=0.25)
-    assert found["mean_edge"] == pytest.approx(1, rel=0.05)
+    assert found["mean_edge"] == pytest.approx(1, rel=0.1)
     assert 25 <= found["least_angle"] <= 60
     assert 0.95 <= found["mean_ratio"] <= 1
     assert 0.9 <= found["six"] <= 1
