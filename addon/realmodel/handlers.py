@@ -15,6 +15,7 @@ def _loaded(*_arguments):
     stored_arrays.forget()
     display.forget()
     migrate_all()
+    display.opened()
     live.switched()
 
 

@@ -55,7 +55,7 @@ class PanelCase(unittest.TestCase):
     def live_is_done(self, patience=60.0):
         """Does what Blender's timer does, until nothing is left to do."""
         until = time.monotonic() + patience
-        while (wait := live._look()) is not None:
+        while (wait := live._work.look()) is not None:
             self.assertLess(time.monotonic(), until, "the live build does not end")
             time.sleep(wait)
 

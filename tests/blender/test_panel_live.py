@@ -93,14 +93,14 @@ class Live(PanelCase):
     def test_switched_off_nothing_follows(self):
         self.model.live = False
         raise_by(self.items[2], 5.0)
-        self.assertIsNone(live._look())
+        self.assertIsNone(live._work.look())
         self.assertAlmostEqual(volume(self.block().data), 1e5, delta=1.0)
 
     def test_its_own_changes_start_nothing(self):
         raise_by(self.items[2], 5.0)
         self.live_is_done()
         bpy.context.view_layer.update()
-        self.assertIsNone(live._look())
+        self.assertIsNone(live._work.look())
 
     def test_an_interpolated_interface_follows_its_settings_and_hands(self):
         ops.open_sample(sample="two_layers")

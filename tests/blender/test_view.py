@@ -3,12 +3,15 @@
 coordinates. The model stays what it is in all of them."""
 
 import itertools
+import time
+from unittest import mock
 
 import blender_state
 import bpy
 import numpy as np
 import realmodel
 from made_projects import LIBRARY
+from realmodel.bl.display import cuts, preparing, replacing
 from realmodel.core import build
 from view_case import Case
 
@@ -128,6 +131,9 @@ class Modes(Case):
 
 
 class Stages(Case):
+    def all_is_made(self):
+        """Nothing is waited for where there is no window."""
+
     def volumes(self):
         return {
             row.name: blender_state.volume(row.object.data)
@@ -161,6 +167,7 @@ class Stages(Case):
 
     def test_blocks_that_are_not_there_are_out_of_sight(self):
         self.settings.stage = 1
+        self.all_is_made()
         self.assertEqual(self.in_sight("block"), {self.blocks()[n].name for n in ("base block", "Sand")})
 
     def test_a_build_at_a_stage_stays_there(self):
@@ -238,6 +245,59 @@ class Stages(Case):
         self.assertEqual(seen[2], {"base block", "Sand", "Gone"})
         self.assertLess(heights[0], heights[1])
         self.assertLess(heights[1], heights[2])
+
+
+class WithAWindow(Stages):
+    """In a window nothing waits: what takes long is made in a thread, and shown when it is there."""
+
+    def setUp(self):
+        super().setUp()
+        self.enterContext(mock.patch.object(replacing, "nobody_waits", lambda: False))
+
+    def assert_shows(self, model):
+        self.all_is_made()
+        super().assert_shows(model)
+
+    def all_is_made(self):
+        works = (preparing._work, cuts._work)
+        while any(work.is_working() for work in works):
+            for work in works:
+                work.look()
+            time.sleep(0.005)
+
+    def test_the_stage_before_stays_until_the_next_is_there(self):
+        self.settings.stage = 1
+        self.assertEqual(set(self.volumes()), {"base block", "Sand", "Cap"})
+        self.settings.stage = 2
+        self.assert_shows(self.model.stage(2))
+
+    def test_cells(self):
+        self.settings.display = "POLYHEDRA"
+        self.assertEqual(self.in_sight(), self.in_sight("block"))
+        self.assertTrue(preparing.is_working(self.scene))
+        self.all_is_made()
+        self.assertEqual(self.in_sight("block"), set())
+        self.assertEqual(len(self.in_sight("view")), 3)
+        self.settings.stage = 1
+        self.all_is_made()
+        self.assertEqual(len(self.in_sight("view")), 2)
+
+    def test_cells_of_a_half(self):
+        bpy.ops.realmodel.section_plane(axis="Z")
+        self.settings.view.plane.location.z = 15.0
+        self.settings.display = "POLYHEDRA"
+        self.all_is_made()
+        found = [item for item in self.scene.objects if item.get("realmodel_view") == "cells"]
+        self.assertTrue(found)
+        self.assertLess(max(blender_state.coordinates(item.data)[:, 2].max() for item in found), 15.0)
+
+    def test_a_new_build_stops_what_is_made_of_the_old_one(self):
+        self.settings.stage = 1
+        preparing._work.look()
+        bpy.ops.realmodel.build()
+        self.assert_shows(self.model.stage(1))
+
+    test_an_animation_renders_the_stages = None  # nobody waits then
 
 
 def _opaque_rows(path):

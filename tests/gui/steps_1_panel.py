@@ -21,7 +21,7 @@ def volumes():
 
 
 def nothing_left_to_do():
-    return not live._jobs and not live._changed_at
+    return not live.is_working()
 
 
 def open_the_tab(walk):

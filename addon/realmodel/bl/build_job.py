@@ -3,16 +3,12 @@
 thread again. Nothing of Blender is held in between but the scene's name: undo may change all else.
 """
 
-import os
-import threading
-
 import bpy
 
-from ..core import BuildFailed, Cancelled, InputRefused, RealModelError, build
+from ..core import BuildFailed, InputRefused, RealModelError, build
 from ..core.project import surface_item
 from . import built_models, built_scene, display, project_settings, settings
-
-_LEFT_FREE = 1  # cores, so that the window stays alive
+from .thread_job import ThreadJob, threads
 
 
 class BuildJob:
@@ -30,67 +26,50 @@ class BuildJob:
         if not len(current.realmodel.rocks):
             raise InputRefused("there is no rock mass", advice="add one, or open a project file")
         self.composed = project_settings.compose(current, depsgraph, whole)
-        self.prepared = None
-        self.error = None
-        self.cancelled = False
-        self._told = (0.0, "starting")
-        self._thread = None
-        self._ended = threading.Event()
+        group = current.realmodel
+        is_stage = len(group.results) and group.stage < settings.last_stage(current)
+        self._stage = group.stage if is_stage else None  # what is shown of the model afterwards
+        self._job = None
 
     def run(self, progress=None):
         """Builds in this thread and puts the model into the scene."""
         model = build(self.composed.project, cells=self.cells, progress=progress)
-        self.prepared = built_scene.prepare(model, self.composed)
-        return self._put()
+        return self._put(built_scene.prepare(model, self.composed))
 
     def start(self):
-        self._thread = threading.Thread(target=self._work, name="realmodel build")
-        self._thread.start()
+        self._job = ThreadJob("build", self._work)
 
-    def _work(self):
-        try:
-            model = build(
-                self.composed.project,
-                cells=self.cells,
-                threads=max(1, (os.cpu_count() or 1) - _LEFT_FREE),
-                progress=self._tell,
-                cancel=lambda: self.cancelled,
-            )
-            self.prepared = built_scene.prepare(model, self.composed)
-        except BaseException as error:  # handed to the main thread, which raises it
-            self.error = error
-        finally:
-            self._ended.set()
-
-    def _tell(self, fraction, text):
-        self._told = (fraction, text)
+    def _work(self, job):
+        model = build(
+            self.composed.project,
+            cells=self.cells,
+            threads=threads(),
+            progress=job.tell,
+            cancel=lambda: job.cancelled,
+        )
+        return built_scene.prepare(model, self.composed, self._stage)
 
     @property
     def done(self):
-        return self._ended.is_set()
+        return self._job.done
 
     def state(self):
         """(fraction done, what is being done)."""
-        return self._told
+        return self._job.state()
 
     def cancel(self):
-        self.cancelled = True
+        self._job.cancel()
 
-    def wait(self, seconds=None):
+    def wait(self):
         """Waits for the thread."""
-        if self._thread is not None:
-            self._thread.join(seconds)
+        self._job.wait()
 
     def finish(self, in_place=False):
-        """Puts the model that the thread has built into the scene; returns it."""
-        self.wait()
-        if self.cancelled:
-            raise Cancelled("the build was cancelled")
-        if self.error is not None:
-            raise self.error
-        return self._put(in_place)
+        """Puts the model that the thread has built into the scene; returns it. Raises Cancelled, and what the
+        build has raised."""
+        return self._put(self._job.result(), in_place)
 
-    def _put(self, in_place=False):
+    def _put(self, prepared, in_place=False):
         current = bpy.data.scenes.get(self.scene_name)
         if current is None:
             raise BuildFailed(
@@ -99,8 +78,8 @@ class BuildJob:
         last = settings.last_stage(current)
         group = current.realmodel
         whole = group.stage >= last or not len(group.results)
-        built_scene.put(current, self.prepared, self.composed, in_place)
-        model = self.prepared.model
+        built_scene.put(current, prepared, self.composed, in_place)
+        model = prepared.model
         with settings.filling():
             group.exists = True
             group.version = settings.VERSION
@@ -108,7 +87,7 @@ class BuildJob:
             group.warnings = "\n".join(str(warning) for warning in model.warnings)
             if whole:
                 group.stage = last
-        display.built(current)
+        display.built(current, prepared.bounds, prepared.stage)
         return model
 
 

@@ -13,7 +13,9 @@ import bpy
 import numpy as np
 
 from ..core import BuildFailed
+from ..core.build import build_stage
 from . import (
+    block_shapes,
     display,
     library_rows,
     materials,
@@ -35,23 +37,26 @@ class Prepared:
     """A model as Blender takes it: all that can be made without touching Blender.
 
     interfaces: by (rock, surface) numbers (offsets (V, 3) float32, triangles, digest). blocks: for each block
-    of the model (offsets, face_offsets, face_vertices, face_surface), None where it has no cells. stored: by
-    (rock, surface or None for the region) the text that its row is to keep of its file, and the stamp of the
-    file. figures: for each surface what surface_figures says of it. told: by (rock, surface) numbers
-    what is known of an interface's vertices (Model.surface_attributes).
+    of the model its arrays as `block_shapes` has them, and their bounds. stored: by (rock, surface or None
+    for the region) the text that its row is to keep of its file, and the stamp of the file. figures: for each
+    surface what surface_figures says of it. told: by (rock, surface) numbers what is known of an interface's
+    vertices (Model.surface_attributes). stage: what `shown_models.remember_stage` takes, or None.
     """
 
     model: object
     origin: np.ndarray
     interfaces: dict = field(default_factory=dict)
     blocks: list = field(default_factory=list)
+    bounds: tuple = ()
     stored: dict = field(default_factory=dict)
     figures: list = field(default_factory=list)
     told: dict = field(default_factory=dict)
+    stage: tuple | None = None
 
 
-def prepare(model, composed):
-    """Prepared arrays of a model; may run in a thread of its own."""
+def prepare(model, composed, stage=None):
+    """Prepared arrays of a model; may run in a thread of its own. stage: the one that will be shown, where it
+    is not the whole."""
     origin = composed.origin
     if composed.origin_is_free:
         origin = choose_origin(model.surface_vertices)
@@ -66,18 +71,8 @@ def prepare(model, composed):
                 prepared.interfaces[r, s] = (given, triangles, shapes.digest(given, triangles))
                 prepared.told[r, s] = model.surface_attributes(surface)
             surface += 1
-    for number, block in enumerate(model.blocks):
-        shell = model.block_boundary(number) if block.cells else None
-        prepared.blocks.append(
-            None
-            if shell is None
-            else (
-                offsets_from(origin, shell.vertices),
-                shell.face_offsets.astype(np.int32),
-                shell.face_vertices,
-                shell.face_surface,
-            )
-        )
+    prepared.blocks = block_shapes.of_model(model, origin)
+    prepared.bounds = block_shapes.bounds(prepared.blocks)
     for (r, s), stamp in composed.read.items():
         rock = model.project.rocks[r]
         text = (
@@ -87,6 +82,10 @@ def prepare(model, composed):
     for r, s in composed.edited:  # the digits that Blender's 32 bits do not have
         prepared.stored[r, s] = (project_settings.packed(model.project.rocks[r].surfaces[s]), "")
     prepared.figures = surface_figures.of_model(model)
+    if stage is not None:
+        at_stage = build_stage(model, stage, cells="blocks")
+        found = block_shapes.by_name(at_stage, block_shapes.of_model(at_stage, origin))
+        prepared.stage = (stage, at_stage, found)
     return prepared
 
 

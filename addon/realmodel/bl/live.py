@@ -12,12 +12,10 @@ from contextlib import contextmanager
 import bpy
 
 from ..core import Cancelled
+from .rested_work import RestedWork
 
-REST_SECONDS = 0.06  # without a change, after which the hand is taken to rest
-_LOOK_SECONDS = 0.015  # between two looks at what goes on
+REST_SECONDS = 0.03  # without a change, after which the hand is taken to rest
 
-_changed_at = {}  # by the name of a scene: when something changed that has not been built from yet
-_jobs = {}  # by the name of a scene: (BuildJob, when its last change was)
 _at_work = False  # what Blender tells of now is our own doing
 measured = {}  # by the name of a scene: seconds from the last change to the new blocks
 
@@ -25,15 +23,19 @@ measured = {}  # by the name of a scene: seconds from the last change to the new
 def touch(scene):
     """Something that the model of a scene depends on was changed."""
     if scene.realmodel.live:
-        _changed_at[scene.name] = time.perf_counter()
-        _look_soon()
+        _work.touch(scene.name)
 
 
 def switched():
     """`live` was switched on or off in some scene, or another file was opened."""
-    _changed_at.clear()
+    _work.forget_changes()
     for scene in bpy.data.scenes:
         touch(scene)
+
+
+def is_working():
+    """Whether a rebuild is under way, or waits for the hand to rest."""
+    return _work.is_working()
 
 
 def changed(scene, depsgraph):
@@ -74,48 +76,16 @@ def undone():
 
 def stop_work():
     """Stops builds that are under way, and forgets what they were for."""
-    for job, _ in _jobs.values():
-        job.cancel()
-    for job, _ in _jobs.values():
-        job.wait()
-    _jobs.clear()
-    _changed_at.clear()
+    _work.stop_jobs()
 
 
 def stop():
     """Ends everything: the add-on is disabled."""
-    stop_work()
+    _work.stop()
     measured.clear()
-    if bpy.app.timers.is_registered(_look):
-        bpy.app.timers.unregister(_look)
 
 
-def _look_soon():
-    if not bpy.app.timers.is_registered(_look):
-        bpy.app.timers.register(_look, first_interval=_LOOK_SECONDS)
-
-
-def _look():
-    """The timer: finishes what is built, begins what waits; ends when there is nothing to do."""
-    if not hasattr(bpy.types.Scene, "realmodel"):
-        return None
-    if bpy.context.window_manager.realmodel.running:
-        return _LOOK_SECONDS
-    for name in list(_jobs):
-        _look_at_job(name)
-    for name, at in list(_changed_at.items()):
-        if name not in _jobs and time.perf_counter() - at >= REST_SECONDS:
-            _begin(name)
-    return _LOOK_SECONDS if _jobs or _changed_at else None
-
-
-def _look_at_job(name):
-    job, at = _jobs[name]
-    if name in _changed_at:
-        job.cancel()  # it is built from what is no longer so
-    if not job.done:
-        return
-    del _jobs[name]
+def _finish(name, job, changed_at):
     try:
         with _our_own(bpy.data.scenes.get(name)):
             job.finish(in_place=True)
@@ -124,7 +94,7 @@ def _look_at_job(name):
     except Exception as error:
         _tell(error)
     else:
-        measured[name] = time.perf_counter() - at
+        measured[name] = time.perf_counter() - changed_at
         _tell(None)
 
 
@@ -141,13 +111,12 @@ def _our_own(scene):
         _at_work = False
 
 
-def _begin(name):
+def _begin(name, _changed_at):
     from . import build_job
 
-    at = _changed_at.pop(name)
     scene = bpy.data.scenes.get(name)
     if scene is None or not scene.realmodel.live:
-        return
+        return None
     layer = next((w.view_layer for w in bpy.context.window_manager.windows if w.scene == scene), None)
     layer = layer or scene.view_layers[0]
     try:
@@ -156,9 +125,9 @@ def _begin(name):
             job = build_job.BuildJob(scene, layer.depsgraph, "blocks", whole=False)
     except Exception as error:
         _tell(error)
-        return
+        return None
     job.start()
-    _jobs[name] = (job, at)
+    return job
 
 
 def _tell(error):
@@ -173,3 +142,6 @@ def _tell(error):
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
+
+
+_work = RestedWork(REST_SECONDS, _begin, _finish, lambda: not bpy.context.window_manager.realmodel.running)

@@ -9,6 +9,8 @@ from . import versions
 # Face attribute: global index of the surface a face lies on; -1 a vertical wall, -2 the flat base
 FACE_SURFACE = "realmodel_surface"
 
+_corners = {}  # by the name of a mesh: the corners that it was given last, where asking Blender takes long
+
 
 def new_mesh(name, coordinates, offsets, corners, face_surface=None):
     """A new mesh datablock.
@@ -74,18 +76,27 @@ def holds(mesh, coordinates, corners):
         return False
     if not np.array_equal(mesh_coordinates(mesh), coordinates):
         return False
-    found = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("vertex_index", found)
+    found = _corners.get(mesh.name_full)
+    if found is None or len(found) != len(mesh.loops):
+        found = versions.corner_vertices(mesh)
     return np.array_equal(found, corners)
 
 
+def forget():
+    """What is known of meshes may no longer be so: Blender has undone something or opened a file."""
+    _corners.clear()
+
+
 def _fill(mesh, coordinates, offsets, corners, face_surface):
+    corners = np.ascontiguousarray(corners, np.int32)
     versions.fill_mesh(
         mesh,
         np.ascontiguousarray(coordinates, np.float32),
         np.ascontiguousarray(offsets, np.int32),
-        np.ascontiguousarray(corners, np.int32),
+        corners,
     )
+    if versions.READS_CORNERS_SLOWLY:
+        _corners[mesh.name_full] = corners
     if face_surface is not None:
         attribute = mesh.attributes.new(FACE_SURFACE, "INT", "FACE")
         attribute.data.foreach_set("value", np.ascontiguousarray(face_surface, np.int32))

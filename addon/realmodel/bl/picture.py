@@ -60,6 +60,7 @@ class Stage:
     def remove(self):
         bpy.data.scenes.remove(self.scene)
         for image in [i for i in bpy.data.images if i.type == "RENDER_RESULT" and i not in self._images]:
+            image.user_clear()  # Blender counts itself as one
             bpy.data.images.remove(image)
         for store, datablock in reversed(self._made):
             store.remove(datablock)

@@ -37,14 +37,20 @@ def read(row):
 def _surviving_areas(model):
     """(S,) float64: the area in plan of the faces that lie on each surface."""
     plan = model.vertices[:, :2] - model.vertices[:1, :2]
-    corners = plan[model.face_vertices]
-    following = np.arange(1, len(model.face_vertices) + 1)
-    following[model.face_offsets[1:] - 1] = model.face_offsets[:-1]
-    after = corners[following]
-    doubled = corners[:, 0] * after[:, 1] - corners[:, 1] * after[:, 0]
-    area = np.abs(np.add.reduceat(doubled, model.face_offsets[:-1])) / 2 if len(doubled) else np.zeros(0)
+    x, y = (np.ascontiguousarray(plan[:, axis])[model.face_vertices] for axis in range(2))
+    first, last = model.face_offsets[:-1], model.face_offsets[1:] - 1
+    doubled = x * _next(y, first, last) - y * _next(x, first, last)
+    area = np.abs(np.add.reduceat(doubled, first)) / 2 if len(doubled) else np.zeros(0)
     on = model.face_surface >= 0
     return np.bincount(model.face_surface[on], area[on], len(model.surface_names))
+
+
+def _next(values, first, last):
+    """Of each corner of polygons, what the next corner has."""
+    found = np.empty_like(values)
+    found[:-1] = values[1:]
+    found[last] = values[first]
+    return found
 
 
 def _plan_area(vertices, triangles):

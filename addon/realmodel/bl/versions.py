@@ -10,6 +10,9 @@ import numpy as np
 OLDEST = (3, 4, 0)
 
 
+READS_CORNERS_SLOWLY = bpy.app.version < (3, 6, 0)  # one by one, not in one piece
+
+
 def fill_mesh(mesh, coordinates, offsets, corners):
     """Give an empty mesh its vertices and polygons.
 
@@ -34,11 +37,19 @@ def fill_mesh(mesh, coordinates, offsets, corners):
         mesh.attributes["position"].data.foreach_set("vector", coordinates.ravel())
         mesh.attributes[".corner_vert"].data.foreach_set("value", corners)
     mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(offsets[:-1]))
-    if bpy.app.version < (4, 1, 0):
-        mesh.polygons.foreach_set("use_smooth", np.zeros(count, bool))
-    else:
+    if bpy.app.version >= (4, 1, 0):
         mesh.attributes.new("sharp_face", "BOOLEAN", "FACE").data.foreach_set("value", np.ones(count, bool))
     mesh.update(calc_edges=True)
+
+
+def corner_vertices(mesh):
+    """(C,) int32: the vertex of each corner of a mesh's polygons, one polygon after the other."""
+    found = np.empty(len(mesh.loops), np.int32)
+    if READS_CORNERS_SLOWLY:
+        mesh.loops.foreach_get("vertex_index", found)
+    elif len(found):
+        mesh.attributes[".corner_vert"].data.foreach_get("value", found)
+    return found
 
 
 def layer_collections(view_layer):

@@ -244,12 +244,7 @@ class Model:
         first, second = self.face_blocks[:, 0] == block, self.face_blocks[:, 1] == block
         faces = np.flatnonzero(first != second)
         turned = second[faces]
-        size = np.diff(self.face_offsets)[faces]
-        offsets = np.concatenate([[0], np.cumsum(size)]).astype(np.int64)
-        owner = np.repeat(np.arange(len(faces)), size)
-        rank = np.arange(len(owner)) - offsets[owner]
-        rank = np.where(turned[owner], size[owner] - 1 - rank, rank)
-        corners = self.face_vertices[self.face_offsets[faces][owner] + rank]
+        offsets, corners = self.face_corners(faces, turned)
         used = np.zeros(len(self.vertices), bool)
         used[corners] = True
         number = np.cumsum(used, dtype=np.int64) - 1
@@ -260,6 +255,21 @@ class Model:
             self.face_surface[faces],
             faces,
         )
+
+    def face_corners(self, faces: np.ndarray, turned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The corners of some faces, one face after the other.
+
+        faces: (N,) numbers of faces. turned: (N,) bool, those that are taken the other way round.
+        Returns offsets (N + 1,) int64 and vertex numbers (sum,) as `face_vertices`.
+        """
+        begin, end = self.face_offsets[faces], self.face_offsets[1:][faces]
+        offsets = np.zeros(len(faces) + 1, np.int64)
+        np.cumsum(end - begin, out=offsets[1:])
+        step = np.where(turned, -1, 1)
+        start = np.where(turned, end - 1, begin) - step * offsets[:-1]
+        size = np.diff(offsets)
+        at = np.repeat(start, size) + np.repeat(step, size) * np.arange(offsets[-1])
+        return offsets, self.face_vertices[at]
 
     @cached_property
     def cell_volumes(self) -> np.ndarray:

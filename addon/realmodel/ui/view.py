@@ -4,7 +4,7 @@
 import bpy
 
 from ..bl import library_rows, settings, units
-from ..bl.display import coordinates, cuts, modes
+from ..bl.display import coordinates, cuts, modes, preparing
 from .panel import TabPanel, hint, wrapped
 
 _WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
@@ -29,6 +29,8 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
         rows = [surface for _, surface in settings.surface_rows(context.scene)]
         if group.stage < last and len(group.rocks) == 1 and group.stage < len(rows):
             hint(layout, f"of {last}: just after {rows[group.stage].name}")
+        if preparing.is_working(context.scene):
+            hint(layout, "making it ...")
         column = layout.column(align=True)
         column.prop(group, "explode", slider=True)
         if group.explode > 0.0:

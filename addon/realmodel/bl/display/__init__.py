@@ -13,6 +13,7 @@ drawing        points and lines
 explosion      the blocks moved apart
 colours        what the colours tell
 cuts, sections the movable plane; sections as mesh objects
+preparing      what takes long, in a thread
 viewpoints     where the viewports look from
 capture        pictures
 coordinates    what is under the cursor
@@ -33,11 +34,13 @@ __all__ = [
     "forget",
     "frame_changed",
     "mode_changed",
+    "opened",
     "register",
     "render_begins",
     "render_ends",
     "section_changed",
     "show",
+    "show_all",
     "stage_changed",
     "undone",
     "unregister",
@@ -55,10 +58,11 @@ def register():
 
 def unregister():
     """Called when the add-on is disabled: no handler of drawing may stay."""
-    from . import cuts, drawing, replacing, shown_models, viewpoints
+    from . import cuts, drawing, preparing, replacing, shown_models, viewpoints
 
     drawing.unregister()
     cuts.stop()
+    preparing.stop()
     replacing.stop()
     shown_models.forget()
     viewpoints.forget()
@@ -66,10 +70,13 @@ def unregister():
 
 def forget():
     """Another file was opened."""
-    from . import cuts, replacing, shown_models, viewpoints
+    from .. import meshes
+    from . import cuts, preparing, replacing, shown_models, viewpoints
 
     cuts.stop()
+    preparing.stop()
     replacing.stop()
+    meshes.forget()
     forget_meshes()
     shown_models.forget()
     viewpoints.forget()
@@ -81,6 +88,26 @@ def forget_meshes():
 
     drawing.forget()
     coordinates.forget()
+
+
+def show_all(scene):
+    """Shows everything as the settings say."""
+    _show(scene, **{key: getattr(scene.realmodel, key) for key in _ANIMATED})
+
+
+def opened():
+    """A .blend was opened, which may have been saved before all that its settings ask for was made."""
+    import bpy
+
+    for scene in bpy.data.scenes:
+        group = scene.realmodel
+        different = {
+            key: getattr(group, key)
+            for key, value in _applied(scene).items()
+            if key in _ANIMATED and getattr(group, key) != value
+        }
+        if different:
+            _show(scene, **different)
 
 
 def mode_changed(scene):
@@ -119,15 +146,19 @@ def section_changed(scene):
         mode_changed(scene)
 
 
-def built(scene):
-    """A model was built anew: `built_models.current(scene)` has it."""
+def built(scene, bounds, stage=None):
+    """A model was built anew: `built_models.current(scene)` has it. bounds: lowest and highest coordinates of
+    its blocks, (3,) each. stage: the stage that is shown, where it was made with the model: (number, model,
+    shapes)."""
     from . import explosion, shown_models
 
     for layer in scene.view_layers:
         layer.update()  # or it would not know the new objects, and show them all when it learns of them
     forget_meshes()
     shown_models.forget()
-    explosion.remember_bounds(scene)
+    if stage is not None:
+        shown_models.remember_stage(scene, *stage)
+    explosion.set_bounds(scene, *bounds)
     group = scene.realmodel
     group.view.cells_of = ""
     whole = group.stage >= settings.last_stage(scene)
@@ -185,8 +216,10 @@ def undone():
     """Blender has undone or redone something: what was read from meshes may be of others now."""
     import bpy
 
+    from .. import meshes
     from . import cuts
 
+    meshes.forget()
     forget_meshes()
     for scene in bpy.data.scenes:
         if cuts.is_on(scene):
@@ -217,7 +250,7 @@ def _applied(scene):
 def _show(scene, has_shapes=False, **wanted):
     """Shows what is wanted: any of the settings that can be animated, by their names. has_shapes: the blocks
     have the shapes of the stage already."""
-    from . import colours, cuts, explosion, modes, replacing, stages
+    from . import colours, cuts, explosion, modes, preparing, replacing, stages
 
     group = scene.realmodel
     if not len(group.results) or scene.library is not None:
@@ -225,9 +258,12 @@ def _show(scene, has_shapes=False, **wanted):
     replacing.tidy()
     group.view.message = ""
     now = {key: getattr(group, key) for key in _ANIMATED} | _applied(scene) | wanted
+    stage = now["stage"] if "stage" in wanted and not has_shapes else None
+    if ("display" in wanted or "stage" in wanted) and preparing.lacks(scene, stage, now["display"]):
+        return  # and comes here again when it has been made
     try:
-        if "stage" in wanted and not has_shapes:
-            stages.show(scene, now["stage"])
+        if stage is not None:
+            stages.show(scene, stage)
             forget_meshes()
         if "stage" in wanted and cuts.is_on(scene):
             cuts.refresh(scene, now["stage"])

@@ -6,22 +6,17 @@ body whose cut is filled. The blocks themselves stay whole, only hidden.
 """
 
 import json
-import os
-import threading
-import time
 
 import bpy
 import numpy as np
 
 from ...core import Cancelled, InputRefused, RealModelError
-from .. import meshes, project_settings, scene, settings
-from ..origin import offsets_from
+from .. import block_shapes, meshes, project_settings, scene, settings
+from ..rested_work import RestedWork
+from ..thread_job import ThreadJob, threads
 from . import bodies, explosion, replacing, shown_models
 
 REST_SECONDS = 0.08  # without a movement of the plane, after which the hand is taken to rest
-_LOOK_SECONDS = 0.02
-_changed_at = {}  # by the name of a scene: when its plane was moved
-_jobs = {}  # by the name of a scene: the _Job that is under way
 _halves = {}  # by the name of a scene: (what it was cut from and where, the half as a Model)
 
 
@@ -55,7 +50,6 @@ def plane_in_model(current, matrix=None):
 
 def add_plane(current):
     """A plane through the middle of the model, upright, looking south; returns its object."""
-    explosion.remember_bounds(current)
     low, high = explosion.bounds(current)
     middle, size = (low + high) / 2, 0.6 * float(np.linalg.norm(high - low))
     corners = size * np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
@@ -90,16 +84,11 @@ def _state(current, stage, matrix=None):
     return json.dumps([point.tolist(), normal.tolist(), stage, current.realmodel.built_stamp])
 
 
-def half(current, state, cells=None):
-    """The half that is left by a cut, as a realmodel.core.Model. state: as `view.cut` has it. Raises
-    RealModelError."""
+def known_half(current, state, cells=None):
+    """The half that is left by a cut, as a realmodel.core.Model; None where it is not at hand. state: as
+    `view.cut` has it."""
     known, model = _halves.get(current.name, ("", None))
-    if known == state and (cells is None or model.cell_kind == cells):
-        return model
-    point, normal, stage, _ = json.loads(state)
-    model = shown_models.at_stage(current, stage, cells).cut_by_plane(point, normal).below
-    _halves[current.name] = (state, model)
-    return model
+    return model if known == state and (cells is None or model.cell_kind == cells) else None
 
 
 def cut_now(current, stage=None, matrix=None):
@@ -107,8 +96,8 @@ def cut_now(current, stage=None, matrix=None):
     if matrix is None:
         _layer(current).update()  # the plane's matrix may be of before it was moved
     state = _state(current, current.realmodel.stage if stage is None else stage, matrix)
-    model = half(current, state, _wanted_cells(current))
-    _put(current, _shapes(model, project_settings.model_origin(current)), state)
+    job = _begun(current, state)
+    _take(current, job.result())
 
 
 def follow(current, depsgraph):
@@ -120,7 +109,7 @@ def follow(current, depsgraph):
     cut = json.loads(current.realmodel.view.cut or "[[], []]")
     if [found.tolist() for found in plane_in_model(current, matrix)] == cut[:2]:
         return False
-    if bpy.app.background or replacing.is_rendering():
+    if replacing.nobody_waits():
         cut_now(current, cut[2] if len(cut) > 2 else None, matrix)
         return True
     touch(current)
@@ -129,7 +118,7 @@ def follow(current, depsgraph):
 
 def refresh(current, stage=None):
     """Makes the cut anew: at once where nobody waits for the window, else when the hand rests."""
-    if bpy.app.background or replacing.is_rendering():
+    if replacing.nobody_waits():
         cut_now(current, stage)
     else:
         touch(current)
@@ -142,21 +131,6 @@ def _layer(current):
 
 def _wanted_cells(current):
     return "columns" if current.realmodel.display == "POLYHEDRA" else None
-
-
-def _shapes(model, origin):
-    """{(rock mass, block): arrays} of the blocks of a half."""
-    found = {}
-    for number, block in enumerate(model.blocks):
-        if block.cells:
-            shell = model.block_boundary(number)
-            found[model.project.rocks[block.rock].name, block.name] = (
-                offsets_from(origin, shell.vertices),
-                shell.face_offsets.astype(np.int32),
-                shell.face_vertices,
-                shell.face_surface,
-            )
-    return found
 
 
 def _put(current, shapes, state):
@@ -175,80 +149,61 @@ def take_off(current):
 
 def touch(current):
     """The plane was moved, or the model is another: the cut is made when the hand rests."""
-    _changed_at[current.name] = time.perf_counter()
-    if not bpy.app.timers.is_registered(_look):
-        bpy.app.timers.register(_look, first_interval=_LOOK_SECONDS)
+    _work.touch(current.name)
 
 
-class _Job:
-    """One cut in a thread of its own."""
+def _begun(current, state):
+    """A job that makes a cut; its result is what `_take` takes. Raises InputRefused."""
+    point, normal, stage, _ = json.loads(state)
+    recipe = shown_models.Recipe(current, stage, _wanted_cells(current))
+    half, origin = known_half(current, state, _wanted_cells(current)), project_settings.model_origin(current)
 
-    def __init__(self, current):
-        self.state = _state(current, current.realmodel.stage)
-        self.shapes = self.model = self.error = None
-        self.cancelled = False
-        base = shown_models.at_stage(current, current.realmodel.stage, _wanted_cells(current))
-        self._arguments = (base, *plane_in_model(current), project_settings.model_origin(current))
-        self._thread = threading.Thread(target=self._work, name="realmodel section")
-        self._thread.start()
+    def task(job):
+        def cancel():
+            return job.cancelled
 
-    def _work(self):
-        base, point, normal, origin = self._arguments
-        try:
-            threads = max(1, (os.cpu_count() or 1) - 1)  # one core is left to the window
-            cut = base.cut_by_plane(point, normal, threads, cancel=lambda: self.cancelled)
-            self.model = cut.below
-            self.shapes = _shapes(cut.below, origin)
-        except BaseException as error:  # told by the main thread
-            self.error = error
+        model = half
+        if model is None:
+            model = recipe.make(cancel).cut_by_plane(point, normal, threads(), cancel=cancel).below
+        shapes = block_shapes.by_name(model, block_shapes.of_model(model, origin))
+        return state, model, shapes, recipe
 
-    @property
-    def done(self):
-        return not self._thread.is_alive()
-
-    def wait(self):
-        self._thread.join()
+    return ThreadJob("section", task)
 
 
-def _look():
-    """The timer: begins and finishes cuts; ends when there is nothing to do."""
-    if not hasattr(bpy.types.Scene, "realmodel"):
+def _take(current, made):
+    """Shows the halves that a job has made, and keeps them."""
+    state, model, shapes, recipe = made
+    recipe.keep()
+    _halves[current.name] = (state, model)
+    _put(current, shapes, state)
+
+
+def _begin(name, _changed_at):
+    current = bpy.data.scenes.get(name)
+    if current is None or not is_on(current):
         return None
-    for name in list(_jobs):
-        job = _jobs[name]
-        if name in _changed_at:
-            job.cancelled = True
-        if job.done:
-            del _jobs[name]
-            _finish(name, job)
-    for name, at in list(_changed_at.items()):
-        if name not in _jobs and time.perf_counter() - at >= REST_SECONDS:
-            del _changed_at[name]
-            _begin(name)
-    return _LOOK_SECONDS if _jobs or _changed_at else None
+    try:
+        _layer(current).update()
+        state = _state(current, current.realmodel.stage)
+        if state != current.realmodel.view.cut:
+            return _begun(current, state)
+    except RealModelError as error:
+        _tell(current, error)
+    return None
 
 
-def _begin(name):
+def _finish(name, job, _changed_at):
     current = bpy.data.scenes.get(name)
     if current is None or not is_on(current):
         return
     try:
-        _layer(current).update()
-        if _state(current, current.realmodel.stage) != current.realmodel.view.cut:
-            _jobs[name] = _Job(current)
+        _take(current, job.result())
+    except Cancelled:
+        return
     except RealModelError as error:
         _tell(current, error)
-
-
-def _finish(name, job):
-    current = bpy.data.scenes.get(name)
-    if current is None or not is_on(current) or isinstance(job.error, Cancelled):
         return
-    if job.error is not None:
-        _tell(current, job.error)
-        return
-    _halves[name] = (job.state, job.model)
-    _put(current, job.shapes, job.state)
     _tell(current, None)
     from . import mode_changed
 
@@ -265,7 +220,7 @@ def _tell(current, error):
 
 def is_working(current):
     """Whether a cut is under way."""
-    return current.name in _jobs or current.name in _changed_at
+    return _work.is_working(current.name)
 
 
 def forget():
@@ -275,12 +230,8 @@ def forget():
 
 def stop():
     """Ends what is under way."""
-    for job in _jobs.values():
-        job.cancelled = True
-    for job in _jobs.values():
-        job.wait()
-    _jobs.clear()
-    _changed_at.clear()
+    _work.stop()
     forget()
-    if bpy.app.timers.is_registered(_look):
-        bpy.app.timers.unregister(_look)
+
+
+_work = RestedWork(REST_SECONDS, _begin, _finish)

@@ -5,7 +5,7 @@ the objects, stay as they are."""
 import numpy as np
 from mathutils import Vector
 
-from .. import meshes, settings
+from .. import block_shapes, meshes, settings
 
 KEY = "realmodel_exploded"  # on an object: by how much it was moved, three numbers
 _LEAST_STEP = 0.25  # of the model's width: thin layers of a wide model come apart too
@@ -55,19 +55,17 @@ def move(item, shift):
             item.delta_location = (0.0, 0.0, 0.0)  # what single precision has left over
 
 
-def remember_bounds(scene):
+def set_bounds(scene, low, high):
     """Keeps how large the whole model is, so that a stage of it comes apart as far."""
-    corners = [meshes.mesh_coordinates(row.object.data) for row in scene.realmodel.results if _has_mesh(row)]
-    corners = [found for found in corners if len(found)]
-    view = scene.realmodel.view
-    if corners:
-        view.bounds_low = np.min([found.min(axis=0) for found in corners], axis=0)
-        view.bounds_high = np.max([found.max(axis=0) for found in corners], axis=0)
+    scene.realmodel.view.bounds_low, scene.realmodel.view.bounds_high = low, high
 
 
 def bounds(scene):
     """(3,) float64 twice: the lowest and highest coordinates of the whole model, in the objects' own."""
     view = scene.realmodel.view
+    if tuple(view.bounds_low) == tuple(view.bounds_high):  # it was built by another version, or in batch
+        items = [row.object for row in scene.realmodel.results if _has_mesh(row)]
+        return block_shapes.bounds([(meshes.mesh_coordinates(item.data),) for item in items])
     return np.array(view.bounds_low, np.float64), np.array(view.bounds_high, np.float64)
 
 

@@ -13,9 +13,8 @@ BLOCKS      the blocks, or their cut halves                Blender
 import json
 
 from ...core import RealModelError
-from .. import project_settings, settings
-from ..origin import offsets_from
-from . import bodies, cells, cuts, shown_models, stages
+from .. import settings
+from . import bodies, cells, cuts, stages
 from .visible import want
 
 WIRE = "realmodel_wire"  # on an object whose wires the view has switched on
@@ -116,20 +115,22 @@ def _wires(item, wanted):
 def _make_cells(scene, stage):
     """A body for each block's cells, or for those of its half."""
     group = scene.realmodel
-    made_of = json.dumps([group.built_stamp, stage, group.view.cut if cuts.is_shown(scene) else ""])
+    made_of = cells.made_of(scene, stage)
     if group.view.cells_of == made_of and bodies.of_kind(scene, bodies.CELLS):
         return
-    half = cuts.half(scene, group.view.cut, "columns") if cuts.is_shown(scene) else None
-    model = half or shown_models.at_stage(scene, stage, "columns")
-    origin = project_settings.model_origin(scene)
-    rows = {(row.rock, row.name): row for row in group.results}
-    shapes = []
-    for block, shell in zip(model.blocks, cells.shells(model), strict=True):
-        row = rows.get((model.project.rocks[block.rock].name, block.name))
-        if shell is not None and row is not None and row.object is not None:
-            shapes.append((row.object, offsets_from(origin, shell[0]), *shell[1:]))
-    bodies.put(scene, bodies.CELLS, shapes)
+    shapes = cells.of_scene(scene, stage)
+    rows = {(row.rock, row.name): row.object for row in group.results}
+    bodies.put(scene, bodies.CELLS, [(rows[key], *arrays) for key, arrays in shapes.items() if rows.get(key)])
     group.view.cells_of = made_of
+    cells.forget()
+
+
+def needs_cells(scene, mode, stage):
+    """Whether a display mode shows cells that are not in the scene yet."""
+    if mode != "POLYHEDRA":
+        return False
+    is_there = scene.realmodel.view.cells_of == cells.made_of(scene, stage)
+    return not (is_there and bodies.of_kind(scene, bodies.CELLS))
 
 
 def hidden_properties(scene):

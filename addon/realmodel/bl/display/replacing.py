@@ -31,6 +31,12 @@ def is_rendering():
     return _rendering
 
 
+def nobody_waits():
+    """Whether things are to be made at once: a script or a renderer needs them now, and there is no window
+    that would freeze."""
+    return bpy.app.background or _rendering
+
+
 def give_shape(item, arrays):
     """Gives an object's mesh other contents; arrays as `meshes.new_mesh` takes them."""
     if not _rendering:

@@ -7,29 +7,105 @@ only the blocks that differ go to Blender.
 
 from ...core import build
 from ...core.build import build_stage
-from .. import built_models, settings
+from .. import block_shapes, built_models, project_settings, settings
+from ..thread_job import threads
 
-_MOST_CORNERS = 20_000_000  # of the faces of all stages that are kept: about 0.3 GB
+_MOST_CORNERS = 20_000_000  # of the faces of all stages that are kept: about 0.6 GB with their shapes
 _stages = {}  # (stamp, stage, cells) -> realmodel.core.Model, the one that was used last at the end
+_shapes = {}  # (stamp, stage) -> {(rock mass, block): arrays} as `block_shapes` has them
 
 
-def whole(scene, cells=None):
-    """The realmodel.core.Model that a scene was built to.
+class Recipe:
+    """How the model of a scene just after surface `stage` of each rock mass is made.
 
-    cells: "columns" or "blocks"; None: whichever is at hand. Where it is not at hand - a .blend was opened -
-    it is built again from the settings, without touching the scene. Raises InputRefused, BuildFailed.
+    cells: "columns" or "blocks"; None: of a stage whole blocks, of the whole model whichever is at hand. A
+    recipe is taken from the scene by the main thread, carried out by any (`make`), and what was made is
+    kept by the main thread again (`keep`). A model that is not at hand at all - a .blend was opened - is
+    built from the settings, without touching the scene. Raises InputRefused.
     """
-    model = built_models.current(scene, cells)
-    if model is not None:
-        return model
-    at_hand = built_models.current(scene)
-    if at_hand is not None:
-        model = build_stage(at_hand, settings.last_stage(scene), cells=cells)
-    else:
-        model = build(_composed(scene, cells), cells=cells or "blocks")
-    if scene.realmodel.built_stamp:
-        built_models.remember(model, scene.realmodel.built_stamp)
+
+    def __init__(self, scene, stage, cells=None):
+        self.stamp, self.stage = scene.realmodel.built_stamp, stage
+        self.is_whole = stage >= settings.last_stage(scene)
+        self.cells = cells if self.is_whole else cells or "blocks"
+        self.origin = project_settings.model_origin(scene)
+        self.model = self._known(scene)
+        self._base = None if self.model else built_models.current(scene)
+        self._project = None if self.model or self._base else _composed(scene, self.cells)
+        self._is_new = self.model is None
+
+    def _known(self, scene):
+        if self.is_whole:
+            return built_models.current(scene, self.cells)
+        return _stages.get((self.stamp, self.stage, self.cells))
+
+    def make(self, cancel=None):
+        """The realmodel.core.Model. cancel: as for `build`. Raises InputRefused, BuildFailed, Cancelled."""
+        if self.model is None and self._base is None:
+            kind = self.cells or "blocks"
+            self._base = build(self._project, cells=kind, threads=threads(), cancel=cancel)
+            if self.is_whole:
+                self.model = self._base
+        if self.model is None:
+            last = max(len(rock.surfaces) for rock in self._base.project.rocks) - 1
+            stage = last if self.is_whole else self.stage
+            self.model = build_stage(self._base, stage, cells=self.cells, cancel=cancel)
+        return self.model
+
+    def make_shapes(self, cancel=None):
+        """{(rock mass, block): arrays} of the model's blocks."""
+        found = _shapes.get((self.stamp, self.stage))
+        if found is None:
+            model = self.make(cancel)
+            found = block_shapes.by_name(model, block_shapes.of_model(model, self.origin))
+        return found
+
+    def keep(self, shapes=None):
+        """Keeps what was made, for the next time."""
+        if not self.stamp:
+            return
+        if shapes is not None:
+            _shapes[self.stamp, self.stage] = shapes
+        if self.model is None:
+            return  # the shapes were at hand already
+        if self._is_new and self._base is not None and self._project is not None:
+            built_models.remember(self._base, self.stamp)
+        if self.is_whole:
+            if self._is_new:
+                built_models.remember(self.model, self.stamp)
+            return
+        _stages.pop((self.stamp, self.stage, self.cells), None)
+        _stages[self.stamp, self.stage, self.cells] = self.model
+        _make_room()
+
+
+def at_stage(scene, stage, cells=None):
+    """The realmodel.core.Model just after surface `stage` of each rock mass, made in this thread. cells: as
+    for `Recipe`. Raises InputRefused, BuildFailed."""
+    recipe = Recipe(scene, stage, cells)
+    model = recipe.make()
+    recipe.keep()
     return model
+
+
+def shapes_at_stage(scene, stage):
+    """{(rock mass, block): arrays} of the blocks at a stage, made in this thread. Raises as `at_stage`."""
+    recipe = Recipe(scene, stage)
+    shapes = recipe.make_shapes()
+    recipe.keep(shapes)
+    return shapes
+
+
+def has_shapes(scene, stage):
+    """Whether the shapes of the blocks at a stage are at hand."""
+    return (scene.realmodel.built_stamp, stage) in _shapes
+
+
+def remember_stage(scene, stage, model, shapes):
+    """Keeps a stage that was made together with the model."""
+    stamp = scene.realmodel.built_stamp
+    _stages[stamp, stage, model.cell_kind] = model
+    _shapes[stamp, stage] = shapes
 
 
 def _composed(scene, cells):
@@ -40,29 +116,15 @@ def _composed(scene, cells):
     return build_job.BuildJob(scene, layer.depsgraph, cells or "blocks", whole=False).composed.project
 
 
-def at_stage(scene, stage, cells=None):
-    """The realmodel.core.Model just after surface `stage` of each rock mass. Raises as `whole`.
-
-    cells: as for `whole`; None: whole blocks, unless the stage is the last.
-    """
-    if stage >= settings.last_stage(scene):
-        return whole(scene, cells)
-    kind = cells or "blocks"
-    stamp = scene.realmodel.built_stamp
-    model = _stages.pop((stamp, stage, kind), None)
-    if model is None:
-        model = build_stage(whole(scene), stage, cells=kind)
-    if stamp:
-        _stages[stamp, stage, kind] = model
-        _make_room()
-    return model
-
-
 def _make_room():
     while len(_stages) > 1 and sum(len(m.face_vertices) for m in _stages.values()) > _MOST_CORNERS:
+        stamp, stage, _ = next(iter(_stages))
         _stages.pop(next(iter(_stages)))
+        if not any(key[:2] == (stamp, stage) for key in _stages):
+            _shapes.pop((stamp, stage), None)
 
 
 def forget():
     """Lets go of all stages."""
     _stages.clear()
+    _shapes.clear()

@@ -8,8 +8,7 @@ has an empty mesh; one that was eroded away later gets an object for as long as 
 import bpy
 import numpy as np
 
-from .. import library_rows, materials, meshes, project_settings, scene
-from ..origin import offsets_from
+from .. import library_rows, materials, meshes, scene
 from . import replacing, shown_models
 
 STAGE_ONLY = "realmodel_stage_only"  # on an object: its block is not in the whole model
@@ -18,20 +17,7 @@ _EMPTY = (np.empty((0, 3), np.float32), np.zeros(1, np.int32), np.empty(0, np.in
 
 def show(current, stage):
     """Shows a stage of a scene's model. Raises RealModelError; then the scene is as it was."""
-    model = shown_models.at_stage(current, stage)
-    origin = project_settings.model_origin(current)
-    shapes = {}
-    for number, block in enumerate(model.blocks):
-        if block.cells:
-            shell = model.block_boundary(number)
-            coordinates = offsets_from(origin, shell.vertices)
-            offsets = shell.face_offsets.astype(np.int32)
-            shapes[model.project.rocks[block.rock].name, block.name] = (
-                coordinates,
-                offsets,
-                shell.face_vertices,
-                shell.face_surface,
-            )
+    shapes = shown_models.shapes_at_stage(current, stage)
     for row in current.realmodel.results:
         _give_shape(current, row, shapes.get((row.rock, row.name)))
 

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the view is to show is made in a thread, while the window stays alive: a stage that was not shown yet,
+the cells of a large model. Then the view is asked again, and finds it at hand."""
+
+import bpy
+
+from ...core import Cancelled, RealModelError
+from ..rested_work import RestedWork
+from ..thread_job import ThreadJob
+from . import cells, modes, replacing, shown_models
+
+
+def lacks(scene, stage, mode):
+    """Whether something is yet to be made to show a scene at a stage in a display mode; stage: None where the
+    blocks have their shapes already. Where a window would freeze for it, it is begun."""
+    if replacing.nobody_waits() or not _is_missing(scene, stage, mode):
+        return False
+    _work.touch(scene.name)
+    return True
+
+
+def _is_missing(scene, stage, mode):
+    if stage is not None and not shown_models.has_shapes(scene, stage):
+        return True
+    stage = scene.realmodel.stage if stage is None else stage
+    return modes.needs_cells(scene, mode, stage) and not cells.Recipe(scene, stage).is_ready
+
+
+def _begin(name, _changed_at):
+    scene = bpy.data.scenes.get(name)
+    if scene is None or not len(scene.realmodel.results):
+        return None
+    group = scene.realmodel
+    try:
+        stage = shown_models.Recipe(scene, group.stage)
+        wanted = (
+            cells.Recipe(scene, group.stage) if modes.needs_cells(scene, group.display, group.stage) else None
+        )
+    except RealModelError as error:
+        group.view.message = str(error)
+        return None
+
+    def task(job):
+        def cancel():
+            return job.cancelled
+
+        shapes = stage.make_shapes(cancel)
+        if wanted is not None:
+            wanted.make(cancel)
+        return stage, shapes, wanted
+
+    return ThreadJob("view", task)
+
+
+def _finish(name, job, _changed_at):
+    scene = bpy.data.scenes.get(name)
+    if scene is None or not len(scene.realmodel.results):
+        return
+    try:
+        stage, shapes, wanted = job.result()
+    except Cancelled:
+        return
+    except RealModelError as error:
+        scene.realmodel.view.message = str(error)
+        return
+    if stage.stamp != scene.realmodel.built_stamp:
+        return  # another model was built meanwhile, and shown
+    stage.keep(shapes)
+    if wanted is not None:
+        wanted.keep()
+    from . import show_all
+
+    show_all(scene)
+
+
+def is_working(scene):
+    """Whether something is being made for a scene."""
+    return _work.is_working(scene.name)
+
+
+def stop():
+    """Ends what is under way."""
+    _work.stop()
+    cells.forget()
+
+
+_work = RestedWork(0.0, _begin, _finish)

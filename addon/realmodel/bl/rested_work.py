@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Work for a scene that begins when the hand rests: nothing has changed for a moment. It goes on in a thread,
+while one of Blender's timers looks after it; what changes meanwhile stops it, and it begins anew."""
+
+import time
+
+import bpy
+
+_LOOK_SECONDS = 0.005  # between two looks, which cost nothing beside what Blender does in that time
+
+
+class RestedWork:
+    """What waits, and what is under way.
+
+    rest: seconds without a change. begin(name, changed_at) returns a job (as ThreadJob: done, cancel, wait)
+    for the scene of that name, or None. finish(name, job, changed_at) takes what it has done. may_begin():
+    whether nothing else is in the way.
+    """
+
+    def __init__(self, rest, begin, finish, may_begin=lambda: True):
+        self._rest, self._begin, self._finish, self._may_begin = rest, begin, finish, may_begin
+        self._changed_at = {}  # by the name of a scene: when something changed that has no job yet
+        self._jobs = {}  # by the name of a scene: (job, when its last change was)
+        self._timer = self.look  # Blender knows timers by the object
+
+    def touch(self, name):
+        """Something that the work of a scene depends on was changed."""
+        self._changed_at[name] = time.perf_counter()
+        if not bpy.app.timers.is_registered(self._timer):
+            bpy.app.timers.register(self._timer, first_interval=_LOOK_SECONDS)
+
+    def is_working(self, name=None):
+        """Whether there is something to do for a scene, or for any."""
+        if name is None:
+            return bool(self._jobs or self._changed_at)
+        return name in self._jobs or name in self._changed_at
+
+    def forget_changes(self):
+        self._changed_at.clear()
+
+    def stop_jobs(self):
+        """Stops what is under way, and forgets what it was for."""
+        for job, _ in self._jobs.values():
+            job.cancel()
+        for job, _ in self._jobs.values():
+            job.wait()
+        self._jobs.clear()
+        self._changed_at.clear()
+
+    def stop(self):
+        """Ends everything: the add-on is disabled, or another file was opened."""
+        self.stop_jobs()
+        if bpy.app.timers.is_registered(self._timer):
+            bpy.app.timers.unregister(self._timer)
+
+    def look(self):
+        """The timer: finishes what is done, begins what waits. Returns the seconds until the next look, None
+        when there is nothing to do."""
+        if not hasattr(bpy.types.Scene, "realmodel"):
+            return None
+        if not self._may_begin():
+            return _LOOK_SECONDS
+        for name in list(self._jobs):
+            job, changed_at = self._jobs[name]
+            if name in self._changed_at:
+                job.cancel()  # it is made from what is no longer so
+            if job.done:
+                del self._jobs[name]
+                self._finish(name, job, changed_at)
+        for name, changed_at in list(self._changed_at.items()):
+            if name not in self._jobs and time.perf_counter() - changed_at >= self._rest:
+                del self._changed_at[name]
+                job = self._begin(name, changed_at)
+                if job is not None:
+                    self._jobs[name] = (job, changed_at)
+        return _LOOK_SECONDS if self._jobs or self._changed_at else None

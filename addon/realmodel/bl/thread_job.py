@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Work in a thread of its own beside a window that stays alive."""
+
+import contextlib
+import os
+import sys
+import threading
+
+from ..core import Cancelled
+
+# Where a thread can have a priority of its own, long work takes all processors, and gives way to the window
+# whenever that has something to do. Elsewhere one processor is left to the window.
+_HAS_OWN_PRIORITY = sys.platform.startswith("linux")
+_LESS_URGENT = 5
+
+
+def threads():
+    """How many threads native work beside a window may take; 0: all that there are."""
+    return 0 if _HAS_OWN_PRIORITY else max(1, (os.cpu_count() or 1) - 1)
+
+
+class ThreadJob:
+    """One piece of work that has begun.
+
+    task(job) touches nothing of Blender. It may ask `job.cancelled` and tell how far it is by
+    `job.tell(fraction, text)`.
+    """
+
+    def __init__(self, name, task):
+        self.cancelled = False
+        self._told = (0.0, "starting")
+        self._result = self._error = None
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._work, args=(task,), name=f"realmodel {name}")
+        self._thread.start()
+
+    def _work(self, task):
+        try:
+            _be_less_urgent()
+            self._result = task(self)
+        except BaseException as error:  # handed to the main thread, which raises it
+            self._error = error
+        finally:
+            self._ended.set()
+
+    def tell(self, fraction, text):
+        self._told = (fraction, text)
+
+    def state(self):
+        """(fraction done, what is being done)."""
+        return self._told
+
+    @property
+    def done(self):
+        return self._ended.is_set()
+
+    def cancel(self):
+        self.cancelled = True
+
+    def wait(self, seconds=None):
+        """Waits for the thread to end."""
+        self._thread.join(seconds)
+
+    def result(self):
+        """What the task has returned, once it has; raises what it has raised, and Cancelled."""
+        self.wait()
+        if self.cancelled:
+            raise Cancelled("cancelled")
+        if self._error is not None:
+            raise self._error
+        return self._result
+
+
+def _be_less_urgent():
+    """Threads that this one starts inherit it."""
+    if _HAS_OWN_PRIORITY:
+        thread = threading.get_native_id()
+        with contextlib.suppress(OSError):  # as before, then
+            os.setpriority(os.PRIO_PROCESS, thread, os.getpriority(os.PRIO_PROCESS, thread) + _LESS_URGENT)
