@@ -260,3 +260,14 @@ def test_any_points_give_heights_or_are_refused(points, weight):
         assert "lie at one place" in str(error) or "no point lies on the mesh" in str(error)
         return
     assert np.isfinite(z).all()
+
+
+def test_a_single_triangle_and_islands_without_inner_edges_take_points():
+    nodes = utm([0, 0], [10, 0], [0, 10], [30, 0], [40, 0], [30, 10], [40, 10])
+    triangles = np.array([[0, 1, 2], [3, 4, 5], [4, 6, 5]])
+    points = np.column_stack([utm([2, 2], [6, 2], [2, 6], [33, 3], [38, 4], [36, 9]), [1, 4, 9, 2, 3, 7.0]])
+    result = interpolate(points, nodes, "dsi", triangles)
+    corners = nodes[triangles[0]]
+    weights = np.linalg.solve(np.vstack([corners.T, np.ones(3)]), np.vstack([points[:3, :2].T, np.ones(3)]))
+    assert np.allclose(weights.T @ result.z[:3], points[:3, 2], atol=1e-5)
+    assert np.isfinite(result.z).all()

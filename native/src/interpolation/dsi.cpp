@@ -159,8 +159,8 @@ void check_constraints(const NodeConstraints& c, std::size_t nodes) {
 class Interpolation {
 public:
     Interpolation(std::span<const std::array<double, 3>> points, std::span<const Place> nodes,
-                  std::span<const Triangle> triangles, const NodeConstraints& constraints,
-                  const DsiOptions& options, Progress* progress)
+                  std::span<const Triangle> triangles, const MeshLocator& locator,
+                  const NodeConstraints& constraints, const DsiOptions& options, Progress* progress)
         : options_(options),
           threads_(thread_count(options.threads)),
           progress_(progress),
@@ -171,7 +171,7 @@ public:
         check();
         system_.emplace(mesh_.nodes, of_mesh, mesh_.grid, threads_, [this] { check(); });
         report(0.1, "points on the mesh");
-        add_points(points, nodes, triangles);
+        add_points(points, locator, triangles);
         add_nodes(constraints.equal, Kind::equal);
         take_plane_off();
         add_nodes(constraints.least, Kind::least);
@@ -211,11 +211,10 @@ private:
         conditions_.push_back({wish, kind, height});
     }
 
-    void add_points(std::span<const std::array<double, 3>> points, std::span<const Place> nodes,
+    void add_points(std::span<const std::array<double, 3>> points, const MeshLocator& locator,
                     std::span<const Triangle> triangles) {
-        const MeshLocator locator(nodes, triangles);
-        std::vector<std::int32_t> new_number(nodes.size());
-        for (std::size_t i = 0; i < nodes.size(); ++i)
+        std::vector<std::int32_t> new_number(mesh_.nodes.size());
+        for (std::size_t i = 0; i < new_number.size(); ++i)
             new_number[static_cast<std::size_t>(mesh_.old_number[i])] =
                 static_cast<std::int32_t>(i);
         for (const auto& [x, y, height] : points) {
@@ -425,8 +424,9 @@ DsiHeights dsi(std::span<const std::array<double, 3>> points, std::span<const Pl
         for (std::size_t i = 0; i < data.places.size(); ++i)
             distinct.push_back({data.places[i][0], data.places[i][1], data.values[i]});
     }
-    const MeshLocator checked(nodes, triangles);
-    Interpolation interpolation(distinct, nodes, triangles, constraints, options, progress);
+    const MeshLocator locator(nodes, triangles);
+    Interpolation interpolation(distinct, nodes, triangles, locator, constraints, options,
+                                progress);
     DsiHeights out = interpolation.heights();
     // To the last digit: the plane was taken off and put back.
     for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -14,7 +14,7 @@ constexpr double flat = 1e-12;  // of the squared edge: triangles of less area h
 
 /// A side of a triangle, kept with the lower of its ends.
 struct Side {
-    std::int32_t other_end, opposite;
+    std::int32_t other_end, opposite, triangle;
 };
 
 /// Height of p over the line from a to b, and where its foot divides a to b.
@@ -61,7 +61,8 @@ Hinge hinge(std::span<const Place> nodes, const std::array<std::int32_t, 4>& of)
 std::vector<Hinge> hinges(std::span<const Place> nodes, std::span<const Triangle> triangles) {
     std::vector<std::size_t> first(nodes.size() + 1, 0);
     const auto for_sides = [&](auto&& visit) {
-        for (const Triangle& t : triangles) {
+        for (std::size_t number = 0; number < triangles.size(); ++number) {
+            const Triangle& t = triangles[number];
             if (!has_area(nodes[static_cast<std::size_t>(t[0])],
                           nodes[static_cast<std::size_t>(t[1])],
                           nodes[static_cast<std::size_t>(t[2])])) {
@@ -69,7 +70,8 @@ std::vector<Hinge> hinges(std::span<const Place> nodes, std::span<const Triangle
             }
             for (int k = 0; k < 3; ++k) {
                 const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
-                visit(static_cast<std::size_t>(low), Side{high, t[(k + 2) % 3]});
+                visit(static_cast<std::size_t>(low),
+                      Side{high, t[(k + 2) % 3], static_cast<std::int32_t>(number)});
             }
         }
     };
@@ -82,6 +84,7 @@ std::vector<Hinge> hinges(std::span<const Place> nodes, std::span<const Triangle
 
     std::vector<Hinge> out;
     out.reserve(sides.size() / 2);
+    std::vector<char> hinged(triangles.size(), 0);
     for (std::size_t v = 0; v < nodes.size(); ++v) {
         const auto begin = sides.begin() + static_cast<std::ptrdiff_t>(first[v]),
                    end = sides.begin() + static_cast<std::ptrdiff_t>(first[v + 1]);
@@ -94,13 +97,23 @@ std::vector<Hinge> hinges(std::span<const Place> nodes, std::span<const Triangle
             }
             out.push_back(hinge(nodes, {static_cast<std::int32_t>(v), side->other_end,
                                         side->opposite, (side + 1)->opposite}));
+            hinged[static_cast<std::size_t>(side->triangle)] = 1;
+            hinged[static_cast<std::size_t>((side + 1)->triangle)] = 1;
         }
+    }
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const auto& [a, b, c] = triangles[t];
+        if (hinged[t] == 0)
+            out.push_back({{a, b, c, c}, {}, nodes[static_cast<std::size_t>(a)], {}});
     }
     return out;
 }
 
 SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int threads)
-    : first_(nodes + 1, 0), diagonal_(nodes, 0.0) {
+    : size_(nodes),
+      first_((nodes + side_by_side - 1) / side_by_side + 1, 0),
+      diagonal_(nodes),
+      rough_diagonal_(nodes) {
     // The hinges of each node, then its row from them.
     std::vector<std::size_t> begin(nodes + 1, 0);
     for (const Hinge& h : hinges) {
@@ -121,6 +134,7 @@ SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int thr
     };
     const auto row_of = [&](std::size_t row, std::vector<Entry>& entries) {
         entries.clear();
+        entries.push_back({static_cast<std::int32_t>(row), 0.0});
         for (std::size_t k = begin[row]; k < begin[row + 1]; ++k) {
             const Hinge& h = hinges[static_cast<std::size_t>(of[k])];
             int mine = 0;
@@ -141,35 +155,84 @@ SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int thr
         std::sort(entries.begin(), entries.end(),
                   [](const Entry& a, const Entry& b) { return a.column < b.column; });
     };
-    in_pieces(nodes, threads, [&](std::size_t from, std::size_t to) {
+    const std::size_t slices = first_.size() - 1;
+    in_pieces(slices, threads, [&](std::size_t from, std::size_t to) {
         std::vector<Entry> entries;
-        for (std::size_t row = from; row < to; ++row) {
-            row_of(row, entries);
-            first_[row + 1] = entries.size();
+        for (std::size_t slice = from; slice < to; ++slice) {
+            std::size_t longest = 0;
+            for (std::size_t row = side_by_side * slice;
+                 row < std::min(side_by_side * (slice + 1), nodes); ++row) {
+                row_of(row, entries);
+                longest = std::max(longest, entries.size());
+            }
+            first_[slice + 1] = side_by_side * longest;
         }
     });
-    for (std::size_t row = 0; row < nodes; ++row)
-        first_[row + 1] += first_[row];
+    for (std::size_t slice = 0; slice < slices; ++slice)
+        first_[slice + 1] += first_[slice];
     column_.resize(first_.back());
     value_.resize(first_.back());
-    in_pieces(nodes, threads, [&](std::size_t from, std::size_t to) {
+    in_pieces(slices, threads, [&](std::size_t from, std::size_t to) {
         std::vector<Entry> entries;
-        for (std::size_t row = from; row < to; ++row) {
-            row_of(row, entries);
-            std::size_t k = first_[row];
-            for (const Entry& e : entries) {
-                if (e.column == static_cast<std::int32_t>(row)) diagonal_[row] = e.value;
-                column_[k] = e.column;
-                value_[k++] = e.value;
+        for (std::size_t slice = from; slice < to; ++slice) {
+            for (std::size_t side = 0; side < side_by_side; ++side) {
+                const std::size_t row = std::min(side_by_side * slice + side, nodes - 1);
+                std::size_t k = first_[slice] + side;
+                if (row == side_by_side * slice + side) {
+                    row_of(row, entries);
+                    for (const Entry& e : entries) {
+                        if (e.column == static_cast<std::int32_t>(row)) {
+                            diagonal_[row] = k;
+                            rough_diagonal_[row] = e.value;
+                        }
+                        column_[k] = e.column;
+                        value_[k] = e.value;
+                        k += side_by_side;
+                    }
+                }
+                for (; k < first_[slice + 1]; k += side_by_side)
+                    column_[k] = static_cast<std::int32_t>(row);
             }
         }
     });
+    make_sweep();
+}
+
+void SparseRows::make_sweep() {
+    constexpr std::size_t piece = most_rows;
+    std::vector<StagedSweep::Reach> reach;
+    for (std::size_t begin = 0; begin < size(); begin += piece) {
+        const auto from =
+            column_.begin() + static_cast<std::ptrdiff_t>(first_[begin / side_by_side]);
+        const std::size_t end = std::min(begin + most_rows, size());
+        const auto to = column_.begin() + static_cast<std::ptrdiff_t>(
+                                              first_[(end + side_by_side - 1) / side_by_side]);
+        const auto [low, high] = std::minmax_element(from, to);
+        reach.emplace_back(static_cast<std::size_t>(*low) / piece,
+                           static_cast<std::size_t>(*high) / piece);
+    }
+    sweep_ = StagedSweep(std::move(reach));
+}
+
+void SparseRows::add(std::int32_t row, std::int32_t column, double value) {
+    const auto number = static_cast<std::size_t>(row);
+    std::size_t entry = first_[number / side_by_side] + number % side_by_side;
+    while (column_[entry] != column)
+        entry += side_by_side;
+    changed_.push_back({entry, value_[entry]});
+    value_[entry] += value;
+}
+
+void SparseRows::take_back() {
+    while (!changed_.empty()) {
+        value_[changed_.back().entry] = changed_.back().before;
+        changed_.pop_back();
+    }
 }
 
 double SparseRows::magnitude(std::size_t row) const {
     double sum = 0;
-    for (std::size_t k = first_[row]; k < first_[row + 1]; ++k)
-        sum += std::abs(value_[k]);
+    for_entries(row, [&](std::int32_t, double value) { sum += std::abs(value); });
     return sum;
 }
 

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace realmodel::interpolation {
 
 namespace {
 
-constexpr int smoothing_degree = 3;
 constexpr int most_iterations = 400;
 constexpr int iterations_before_factor = 60;
 constexpr std::size_t most_factored = 100'000;
@@ -22,15 +22,11 @@ SmoothSystem::SmoothSystem(std::span<const Place> nodes, std::span<const Hinge> 
     : nodes_(nodes),
       threads_(threads),
       check_(check),
-      rough_(nodes.size(), hinges, threads),
+      rows_(nodes.size(), hinges, threads),
       levels_(grid, nodes, hinges, threads, check),
       first_in_cell_(grid.cells() + 1, 0),
-      at_node_(nodes.size(), 0.0),
-      inverse_diagonal_(nodes.size()),
-      smooth_residual_(nodes.size()),
-      step_(nodes.size()),
-      product_(nodes.size()),
       sums_(grid.cells()) {
+    smoother_.resize(nodes.size());
     for (const Place& node : nodes)
         ++first_in_cell_[grid.cell_of(node) + 1];
     for (std::size_t c = 1; c < first_in_cell_.size(); ++c)
@@ -40,146 +36,116 @@ SmoothSystem::SmoothSystem(std::span<const Place> nodes, std::span<const Hinge> 
 double SmoothSystem::stiffness(const std::array<std::int32_t, 3>& nodes) const {
     double sum = 0;
     for (const std::int32_t node : nodes)
-        sum += rough_.diagonal()[static_cast<std::size_t>(node)];
+        sum += rows_.rough_diagonal()[static_cast<std::size_t>(node)];
     return sum > 0 ? sum / 3 : 1;
 }
 
 void SmoothSystem::set_wishes(std::span<const Wish> wishes) {
-    between_.clear();
-    std::fill(at_node_.begin(), at_node_.end(), 0.0);
+    rows_.take_back();
     std::vector<Pull> pulls;
     pulls.reserve(wishes.size());
-    Vector diagonal = rough_.diagonal(), magnitude(nodes_.size());
-    in_pieces(nodes_.size(), threads_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            magnitude[i] = rough_.magnitude(i);
-    });
     for (const Wish& wish : wishes) {
         Place place{};
-        if (wish.at_node()) {
-            const auto node = static_cast<std::size_t>(wish.nodes[0]);
-            at_node_[node] += wish.strength;
-            diagonal[node] += wish.strength;
-            magnitude[node] += wish.strength;
-            place = nodes_[node];
-        } else {
-            between_.push_back(wish);
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto node = static_cast<std::size_t>(wish.nodes[k]);
-                diagonal[node] += wish.strength * wish.weights[k] * wish.weights[k];
-                magnitude[node] += wish.strength * wish.weights[k];  // the weights sum to 1
-                for (std::size_t axis = 0; axis < 2; ++axis)
-                    place[axis] += wish.weights[k] * nodes_[node][axis];
+        const std::size_t corners = wish.at_node() ? 1 : 3;
+        for (std::size_t a = 0; a < corners; ++a) {
+            const double pull = wish.strength * wish.weights[a];
+            for (std::size_t b = 0; b < corners; ++b)
+                rows_.add(wish.nodes[a], wish.nodes[b], pull * wish.weights[b]);
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                place[axis] +=
+                    wish.weights[a] * nodes_[static_cast<std::size_t>(wish.nodes[a])][axis];
             }
         }
         pulls.push_back({place, wish.strength});
     }
-    double bound = 1;
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-        inverse_diagonal_[i] = diagonal[i] > 0 ? 1 / diagonal[i] : 1;
-        bound = std::max(bound, magnitude[i] * inverse_diagonal_[i]);
-    }
+    Vector inverse_diagonal(nodes_.size()), ratio(nodes_.size());
+    in_pieces(nodes_.size(), threads_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const double diagonal = rows_.diagonal(i);
+            inverse_diagonal[i] = diagonal > 0 ? 1 / diagonal : 1;
+            ratio[i] = rows_.magnitude(i) * inverse_diagonal[i];
+        }
+    });
+    const double bound = std::max(1.0, *std::max_element(ratio.begin(), ratio.end()));
+    check_();
+    const double largest = largest_eigenvalue(rows_, inverse_diagonal, bound, threads_);
+    smoother_.set(std::move(inverse_diagonal), largest);
     levels_.set_pulls(pulls);
     if (factor_) factor();  // a mesh that asked for it once does so again
-    largest_ = largest_eigenvalue(inverse_diagonal_, bound, threads_,
-                                  [&](const Vector& x, Vector& out) { multiply(x, out); });
-}
-
-void SmoothSystem::multiply(const Vector& x, Vector& out) const {
-    check_();
-    in_pieces(x.size(), threads_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            out[i] = rough_.times(i, x.data()) + at_node_[i] * x[i];
-    });
-    for (const Wish& wish : between_) {
-        const double pull = wish.strength * wish.of(x);
-        for (std::size_t k = 0; k < 3; ++k)
-            out[static_cast<std::size_t>(wish.nodes[k])] += pull * wish.weights[k];
-    }
 }
 
 /// A V-cycle: smoothed on the mesh, corrected on the splines' grids, smoothed again.
-void SmoothSystem::precondition(const Vector& residual, Vector& out) {
+double SmoothSystem::precondition(const Vector& residual, Vector& out) {
     if (factor_) {
         check_();
         const auto count = static_cast<Eigen::Index>(residual.size());
         Eigen::Map<Eigen::VectorXd>(out.data(), count) =
             factor_->solve(Eigen::Map<const Eigen::VectorXd>(residual.data(), count));
-        return;
+        return dot(residual, out, threads_);
     }
+    check_();
+    smoother_.before(rows_, residual, out, threads_);
+    correct();
+    check_();
+    return smoother_.after(rows_, residual, out, threads_);
+}
+
+/// What the splines' grids say to the residual that smoothing leaves.
+void SmoothSystem::correct() {
     const SplineGrid& grid = levels_.grid();
-    const auto times = [&](const Vector& x, Vector& product) { multiply(x, product); };
-    std::fill(out.begin(), out.end(), 0.0);
-    smooth_residual_ = residual;
-    chebyshev(out, smooth_residual_, step_, product_, inverse_diagonal_, largest_, smoothing_degree,
-              threads_, times);
-    const auto residual_of = [&](const Vector& x) {
-        multiply(x, product_);
-        in_pieces(x.size(), threads_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                smooth_residual_[i] = residual[i] - product_[i];
-        });
-    };
-    residual_of(out);
-    in_pieces(grid.cells(), threads_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c) {
-            sums_[c].fill(0);
+    const Vector& residual = smoother_.residual();
+    for_rows(grid.rows(), threads_, [&](std::size_t row) {
+        for (std::size_t column = 0, c = row * grid.columns(); column < grid.columns();
+             ++column, ++c) {
+            SplineGrid::Weights sums{};
             for (std::size_t i = first_in_cell_[c]; i < first_in_cell_[c + 1]; ++i) {
-                const SplineGrid::Weights weights = grid.values(nodes_[i], c);
+                const auto [x, y] = grid.values_along(nodes_[i], column, row);
                 for (std::size_t k = 0; k < SplineGrid::reach; ++k)
-                    sums_[c][k] += weights[k] * smooth_residual_[i];
+                    sums[k] += y[k / 3] * residual[i] * x[k % 3];
             }
+            sums_[c] = sums;
         }
     });
     Vector& right = levels_.right();
-    in_pieces(grid.rows() + 2, threads_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; ++row) {
-            for (std::size_t column = 0; column < grid.columns() + 2; ++column) {
-                double sum = 0;
-                for (std::size_t k = 0; k < SplineGrid::reach; ++k) {
-                    if (column < k % 3 || row < k / 3) continue;
-                    const std::size_t i = column - k % 3, j = row - k / 3;
-                    if (i < grid.columns() && j < grid.rows())
-                        sum += sums_[j * grid.columns() + i][k];
-                }
-                right[grid.number(column, row)] = sum;
-            }
+    for_rows(grid.rows() + 2, threads_, [&](std::size_t row) {
+        double* const to = right.data() + grid.number(0, row);
+        std::fill(to, to + grid.columns() + 2, 0.0);
+        for (std::size_t k = 0; k < SplineGrid::reach; ++k) {
+            if (row < k / 3 || row - k / 3 >= grid.rows()) continue;
+            const SplineGrid::Weights* from = sums_.data() + (row - k / 3) * grid.columns();
+            for (std::size_t column = 0; column < grid.columns(); ++column)
+                to[column + k % 3] += from[column][k];
         }
     });
     levels_.solve();
     const Vector& coarse = levels_.solution();
-    in_pieces(grid.cells(), threads_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c) {
+    Vector& correction = smoother_.correction();
+    for_rows(grid.rows(), threads_, [&](std::size_t row) {
+        for (std::size_t column = 0, c = row * grid.columns(); column < grid.columns();
+             ++column, ++c) {
             const double* from = coarse.data() + grid.first_of(c);
             for (std::size_t i = first_in_cell_[c]; i < first_in_cell_[c + 1]; ++i) {
-                const SplineGrid::Weights weights = grid.values(nodes_[i], c);
-                for (std::size_t k = 0; k < SplineGrid::reach; ++k)
-                    out[i] += weights[k] * from[k / 3 * grid.stride() + k % 3];
+                const auto [x, y] = grid.values_along(nodes_[i], column, row);
+                double sum = 0;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const double* line = from + k * grid.stride();
+                    sum += y[k] * (x[0] * line[0] + x[1] * line[1] + x[2] * line[2]);
+                }
+                correction[i] = sum;
             }
         }
     });
-    residual_of(out);
-    chebyshev(out, smooth_residual_, step_, product_, inverse_diagonal_, largest_, smoothing_degree,
-              threads_, times);
 }
 
 void SmoothSystem::factor() {
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t row = 0; row < nodes_.size(); ++row) {
         const auto at = static_cast<int>(row);
-        rough_.for_entries(row, [&](std::int32_t column, double value) {
+        rows_.for_entries(row, [&](std::int32_t column, double value) {
             if (column <= at) entries.emplace_back(at, column, value);
         });
-        entries.emplace_back(at, at, at_node_[row] + held / inverse_diagonal_[row]);
-    }
-    for (const Wish& wish : between_) {
-        for (std::size_t a = 0; a < 3; ++a) {
-            for (std::size_t b = 0; b < 3; ++b) {
-                if (wish.nodes[b] > wish.nodes[a]) continue;
-                entries.emplace_back(wish.nodes[a], wish.nodes[b],
-                                     wish.strength * wish.weights[a] * wish.weights[b]);
-            }
-        }
+        const double diagonal = rows_.diagonal(row);
+        entries.emplace_back(at, at, held * (diagonal > 0 ? diagonal : 1));
     }
     const auto count = static_cast<Eigen::Index>(nodes_.size());
     Eigen::SparseMatrix<double> matrix(count, count);
@@ -192,8 +158,7 @@ int SmoothSystem::solve(Vector& z, const Vector& right, double tolerance,
                         const std::function<void(double)>& report) {
     if (reference_ == 0) {
         Vector better(z.size());
-        precondition(right, better);
-        reference_ = std::sqrt(std::max(0.0, dot(right, better, threads_)));
+        reference_ = std::sqrt(std::max(0.0, precondition(right, better)));
         if (!(reference_ > 0)) return 0;
     }
     const double goal = tolerance * reference_;
@@ -210,18 +175,30 @@ int SmoothSystem::solve(Vector& z, const Vector& right, double tolerance,
 int SmoothSystem::iterate(Vector& z, const Vector& right, double goal, int most,
                           const std::function<void(double)>& report) {
     const std::size_t count = z.size();
-    Vector residual(count), better(count), direction(count), product(count);
-    multiply(z, product);
-    for (std::size_t i = 0; i < count; ++i)
-        residual[i] = right[i] - product[i];
-    precondition(residual, better);
-    direction = better;
-    double energy = dot(residual, better, threads_);
+    Vector residual(count), better(count), direction(count, 0.0), product(count);
+    in_pieces(count, threads_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            residual[i] = right[i] - rows_.times(i, z.data());
+    });
+    double energy = precondition(residual, better), ratio = 0;
     const double start = std::sqrt(std::max(energy, 0.0));
     int iteration = 0;
     for (; iteration < most && energy > goal * goal; ++iteration) {
-        multiply(direction, product);
-        const double curvature = dot(direction, product, threads_);
+        check_();
+        const double curvature =
+            rows_.sweep().sum(2, threads_, [&](std::size_t stage, std::ptrdiff_t piece) {
+                const auto [begin, end] = rows_.rows(piece);
+                if (stage == 0) {
+                    for (std::size_t i = begin; i < end; ++i)
+                        direction[i] = better[i] + ratio * direction[i];
+                    return 0.0;
+                }
+                rows_.times(piece, direction.data(), product.data() + begin);
+                double sum = 0;
+                for (std::size_t i = begin; i < end; ++i)
+                    sum += direction[i] * product[i];
+                return sum;
+            });
         if (!(curvature > 0)) break;  // all that is left is rounding
         const double step = energy / curvature;
         in_pieces(count, threads_, [&](std::size_t begin, std::size_t end) {
@@ -230,14 +207,9 @@ int SmoothSystem::iterate(Vector& z, const Vector& right, double goal, int most,
                 residual[i] -= step * product[i];
             }
         });
-        precondition(residual, better);
-        const double next = dot(residual, better, threads_);
-        const double ratio = next / energy;
+        const double next = precondition(residual, better);
+        ratio = next / energy;
         energy = next;
-        in_pieces(count, threads_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                direction[i] = better[i] + ratio * direction[i];
-        });
         // The error falls by nearly the same factor each time.
         if (start > goal && energy > 0) {
             report(std::log(start / std::sqrt(energy)) / std::log(start / goal));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "interpolation/roughness.hpp"
+#include "interpolation/smoother.hpp"
 #include "interpolation/spline_levels.hpp"
 
 namespace realmodel::interpolation {
@@ -56,29 +57,24 @@ public:
               const std::function<void(double)>& report);
 
 private:
-    void multiply(const Vector& x, Vector& out) const;
-    void precondition(const Vector& residual, Vector& out);
+    /// out = M^-1 residual; the scalar product of both.
+    double precondition(const Vector& residual, Vector& out);
+    void correct();
     int iterate(Vector& z, const Vector& right, double goal, int most,
                 const std::function<void(double)>& report);
     void factor();
-
     std::span<const Place> nodes_;
     int threads_;
     std::function<void()> check_;
-    SparseRows rough_;
+    SparseRows rows_;
     SplineLevels levels_;
     std::vector<std::size_t> first_in_cell_;
-    std::vector<Wish> between_;  // wishes within triangles
-    Vector at_node_;             // the sum of strengths of wishes at each node
-    Vector inverse_diagonal_;
-    double largest_ = 1;
+    Smoother smoother_;
     bool converged_ = true;
     double reference_ = 0;
     std::unique_ptr<Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>>
-        factor_;  // where it is needed
-    // Memory of the preconditioner.
-    Vector smooth_residual_, step_, product_;
-    std::vector<std::array<double, SplineGrid::reach>> sums_;
+        factor_;                             // where it is needed
+    std::vector<SplineGrid::Weights> sums_;  // of each cell
 };
 
 }  // namespace realmodel::interpolation

@@ -9,78 +9,15 @@ namespace realmodel::interpolation {
 namespace {
 
 constexpr std::size_t coarsest_coefficients = 300;
-constexpr int smoothing_degree = 3;
 // Of the mean roughness on the diagonal: what no roughness and no pull holds (outside the mesh, or
 // a tilt of all) is held by this much, in the preconditioner only.
 constexpr double held = 1e-10;
-
-using Weights3 = std::array<double, 3>;
-
-Weights3 spline(double u) {
-    return {0.5 * (1 - u) * (1 - u), 0.5 + u * (1 - u), 0.5 * u * u};
-}
-Weights3 slope(double u) {
-    return {u - 1, 1 - 2 * u, u};
-}
-constexpr Weights3 curvature{1, -2, 1};
 
 /// The splines on half a cell from those on the cell: row k gives the k-th on the half.
 constexpr double halves[2][3][3] = {{{0.75, 0.25, 0}, {0.25, 0.75, 0}, {0, 0.75, 0.25}},
                                     {{0.25, 0.75, 0}, {0, 0.75, 0.25}, {0, 0.25, 0.75}}};
 
-SplineGrid::Weights product(const Weights3& x, const Weights3& y, double scale) {
-    SplineGrid::Weights out{};
-    for (std::size_t j = 0; j < 3; ++j) {
-        for (std::size_t i = 0; i < 3; ++i)
-            out[3 * j + i] = scale * x[i] * y[j];
-    }
-    return out;
-}
-
 }  // namespace
-
-SplineGrid::SplineGrid(const Place& low, double cell, std::size_t columns, std::size_t rows)
-    : low_(low), cell_(cell), columns_(columns), rows_(rows) {}
-
-SplineGrid SplineGrid::coarser() const {
-    return {low_, 2 * cell_, (columns_ + 1) / 2, (rows_ + 1) / 2};
-}
-
-std::size_t SplineGrid::cell_of(const Place& place) const {
-    const auto along = [&](int axis, std::size_t count) {
-        const double at = (place[axis] - low_[axis]) / cell_;
-        return at > 0 ? std::min(static_cast<std::size_t>(at), count - 1) : 0;
-    };
-    return along(1, rows_) * columns_ + along(0, columns_);
-}
-
-SplineGrid::Weights SplineGrid::values(const Place& place, std::size_t cell) const {
-    const double u = (place[0] - low_[0]) / cell_ - static_cast<double>(cell % columns_);
-    const double v = (place[1] - low_[1]) / cell_ - static_cast<double>(cell / columns_);
-    return product(spline(u), spline(v), 1);
-}
-
-SplineGrid::Weights SplineGrid::bends(const Place& place, std::size_t cell,
-                                      const std::array<double, 3>& bending) const {
-    const double u = (place[0] - low_[0]) / cell_ - static_cast<double>(cell % columns_);
-    const double v = (place[1] - low_[1]) / cell_ - static_cast<double>(cell / columns_);
-    const double scale = 1 / (cell_ * cell_);
-    const Weights xx = product(curvature, spline(v), scale * bending[0]);
-    const Weights xy = product(slope(u), slope(v), scale * bending[1]);
-    const Weights yy = product(spline(u), curvature, scale * bending[2]);
-    Weights out{};
-    for (std::size_t k = 0; k < reach; ++k)
-        out[k] = xx[k] + xy[k] + yy[k];
-    return out;
-}
-
-void add_square(SplineGrid::Element& element, const SplineGrid::Weights& weights, double strength) {
-    for (std::size_t a = 0; a < SplineGrid::reach; ++a) {
-        const double scaled = strength * weights[a];
-        for (std::size_t b = 0; b < SplineGrid::reach; ++b)
-            element[SplineGrid::reach * a + b] += scaled * weights[b];
-    }
-}
 
 SplineLevels::SplineLevels(const SplineGrid& grid, std::span<const Place> nodes,
                            std::span<const Hinge> hinges, int threads,
@@ -110,13 +47,13 @@ SplineLevels::SplineLevels(const SplineGrid& grid, std::span<const Place> nodes,
     });
     levels_.emplace_back(grid);
     fill_up(nodes, hinges);
-    while (levels_.back().grid.coefficients() > coarsest_coefficients)
-        levels_.emplace_back(levels_.back().grid.coarser());
+    while (levels_.back().stencils.grid().coefficients() > coarsest_coefficients)
+        levels_.emplace_back(levels_.back().stencils.grid().coarser());
     for (Level& level : levels_) {
-        for (Vector* v :
-             {&level.inverse_diagonal, &level.right, &level.x, &level.residual, &level.step})
-            v->assign(level.grid.length(), 0.0);
-        level.stencil.assign(25 * level.grid.length(), 0.0);
+        const std::size_t length = level.stencils.grid().length();
+        level.smoother.resize(length);
+        level.right.assign(length, 0.0);
+        level.x.assign(length, 0.0);
     }
 }
 
@@ -124,7 +61,7 @@ SplineLevels::SplineLevels(const SplineGrid& grid, std::span<const Place> nodes,
 /// to their end: splines of which only a tip reaches the mesh would else be all but free. (That is
 /// harmless: a smooth surface can be continued smoothly.)
 void SplineLevels::fill_up(std::span<const Place> nodes, std::span<const Hinge> hinges) {
-    const SplineGrid& grid = levels_.front().grid;
+    const SplineGrid& grid = levels_.front().stencils.grid();
     std::vector<char> touched(grid.cells(), 0);
     for (const Place& node : nodes)
         touched[grid.cell_of(node)] = 1;
@@ -171,7 +108,7 @@ void SplineLevels::fill_up(std::span<const Place> nodes, std::span<const Hinge> 
 
 void SplineLevels::set_pulls(std::span<const Pull> pulls) {
     std::vector<SplineGrid::Element> elements = rough_;
-    const SplineGrid& finest = levels_.front().grid;
+    const SplineGrid& finest = levels_.front().stencils.grid();
     double trace = 0;
     for (const SplineGrid::Element& element : elements) {
         for (std::size_t k = 0; k < SplineGrid::reach; ++k)
@@ -185,7 +122,7 @@ void SplineLevels::set_pulls(std::span<const Pull> pulls) {
         trace > 0 ? held * trace / static_cast<double>(finest.coefficients()) : 1.0;
     for (std::size_t at = 0; at < levels_.size(); ++at) {
         check_();
-        if (at > 0) restrict_elements(elements, levels_[at - 1].grid);
+        if (at > 0) restrict_elements(elements, levels_[at - 1].stencils.grid());
         assemble(levels_[at], elements, least);
     }
     factor_coarsest(least);
@@ -230,82 +167,52 @@ void SplineLevels::restrict_elements(std::vector<SplineGrid::Element>& elements,
 
 void SplineLevels::assemble(Level& level, const std::vector<SplineGrid::Element>& elements,
                             double least) {
-    const SplineGrid& grid = level.grid;
-    const std::size_t columns = grid.columns() + 2, rows = grid.rows() + 2;
-    Vector magnitude(grid.length(), 0.0);
-    in_pieces(rows, threads_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; ++row) {
-            for (std::size_t column = 0; column < columns; ++column) {
-                const std::size_t number = grid.number(column, row);
-                double* stencil = level.stencil.data() + 25 * number;
-                std::fill(stencil, stencil + 25, 0.0);
-                for (std::size_t a = 0; a < 9; ++a) {  // as the a-th of a cell's
-                    if (column < a % 3 || row < a / 3) continue;
-                    const std::size_t i = column - a % 3, j = row - a / 3;
-                    if (i >= grid.columns() || j >= grid.rows()) continue;
-                    const SplineGrid::Element& element = elements[j * grid.columns() + i];
-                    for (std::size_t b = 0; b < 9; ++b) {
-                        const std::size_t dx = 2 + b % 3 - a % 3, dy = 2 + b / 3 - a / 3;
-                        stencil[5 * dy + dx] += element[9 * a + b];
-                    }
-                }
-                stencil[12] += least;
-                level.inverse_diagonal[number] = 1 / stencil[12];
-                for (int k = 0; k < 25; ++k)
-                    magnitude[number] += std::abs(stencil[k]) / stencil[12];
-            }
+    level.stencils.assemble(elements, least, threads_);
+    const SplineGrid& grid = level.stencils.grid();
+    Vector inverse_diagonal(grid.length(), 0.0);
+    double bound = 1;
+    for (std::size_t row = 0; row < grid.rows() + 2; ++row) {
+        for (std::size_t column = 0; column < grid.columns() + 2; ++column) {
+            const double inverse = 1 / level.stencils.entry(column, row, 12);
+            double magnitude = 0;
+            for (std::size_t k = 0; k < 25; ++k)
+                magnitude += std::abs(level.stencils.entry(column, row, k));
+            inverse_diagonal[grid.number(column, row)] = inverse;
+            bound = std::max(bound, magnitude * inverse);
         }
-    });
-    const double bound = *std::max_element(magnitude.begin(), magnitude.end());
-    level.largest =
-        largest_eigenvalue(level.inverse_diagonal, bound, threads_,
-                           [&](const Vector& x, Vector& out) { multiply(level, x, out); });
+    }
+    const double largest =
+        largest_eigenvalue(level.stencils, inverse_diagonal, bound, threads_of(grid));
+    level.smoother.set(std::move(inverse_diagonal), largest);
+}
+
+/// Small grids are done before threads have met.
+int SplineLevels::threads_of(const SplineGrid& grid) const {
+    return grid.coefficients() > 65536 ? threads_ : 1;
 }
 
 void SplineLevels::factor_coarsest(double least) {
     const Level& level = levels_.back();
     coarsest_numbers_.clear();
-    for (std::size_t row = 0; row < level.grid.rows() + 2; ++row) {
-        for (std::size_t column = 0; column < level.grid.columns() + 2; ++column)
-            coarsest_numbers_.push_back(level.grid.number(column, row));
+    for (std::size_t row = 0; row < level.stencils.grid().rows() + 2; ++row) {
+        for (std::size_t column = 0; column < level.stencils.grid().columns() + 2; ++column)
+            coarsest_numbers_.push_back(level.stencils.grid().number(column, row));
     }
     const auto count = static_cast<Eigen::Index>(coarsest_numbers_.size());
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
-    const auto width = static_cast<Eigen::Index>(level.grid.columns() + 2);
-    const auto height = static_cast<Eigen::Index>(level.grid.rows() + 2);
+    const auto width = static_cast<Eigen::Index>(level.stencils.grid().columns() + 2);
+    const auto height = static_cast<Eigen::Index>(level.stencils.grid().rows() + 2);
     for (Eigen::Index a = 0; a < count; ++a) {
-        const double* stencil =
-            level.stencil.data() + 25 * coarsest_numbers_[static_cast<std::size_t>(a)];
         for (Eigen::Index k = 0; k < 25; ++k) {
             const Eigen::Index column = a % width + k % 5 - 2, row = a / width + k / 5 - 2;
             if (column < 0 || row < 0 || column >= width || row >= height) continue;
-            matrix(a, row * width + column) = stencil[k];
+            matrix(a, row * width + column) = level.stencils.entry(
+                static_cast<std::size_t>(a % width), static_cast<std::size_t>(a / width),
+                static_cast<std::size_t>(k));
         }
         matrix(a, a) += least;
     }
     coarsest_.compute(matrix);
-}
-
-void SplineLevels::multiply(const Level& level, const Vector& x, Vector& out) const {
-    const SplineGrid& grid = level.grid;
-    const std::size_t columns = grid.columns() + 2, rows = grid.rows() + 2, stride = grid.stride();
-    const auto some_rows = static_cast<std::ptrdiff_t>(rows);
-#pragma omp parallel for schedule(static) num_threads(threads_) if (rows * columns > 65536)
-    for (std::ptrdiff_t row = 0; row < some_rows; ++row) {
-        const std::size_t start = grid.number(0, static_cast<std::size_t>(row));
-        for (std::size_t column = 0; column < columns; ++column) {
-            const std::size_t number = start + column;
-            const double* stencil = level.stencil.data() + 25 * number;
-            const double* at = x.data() + number - 2 * stride - 2;
-            double sum = 0;
-            for (int j = 0; j < 5; ++j) {
-                const double* line = at + static_cast<std::size_t>(j) * stride;
-                for (int i = 0; i < 5; ++i)
-                    sum += stencil[5 * j + i] * line[i];
-            }
-            out[number] = sum;
-        }
-    }
 }
 
 void SplineLevels::solve() {
@@ -326,62 +233,44 @@ void SplineLevels::cycle(std::size_t at) {
             level.x[coarsest_numbers_[static_cast<std::size_t>(k)]] = x(k);
         return;
     }
-    smooth(level, true);
-    multiply(level, level.x, level.step);
-    in_pieces(level.x.size(), threads_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            level.residual[i] = level.right[i] - level.step[i];
-    });
+    const int threads = threads_of(level.stencils.grid());
+    level.smoother.before(level.stencils, level.right, level.x, threads);
+    const Vector& residual = level.smoother.residual();
+    Vector& correction = level.smoother.correction();
     Level& coarse = levels_[at + 1];
-    const SplineGrid &fine = level.grid, &grid = coarse.grid;
+    const SplineGrid &fine = level.stencils.grid(), &grid = coarse.stencils.grid();
+    // A coarse coefficient from the fine ones 2 i - 2 .. 2 i + 1 along each axis; what lies beside
+    // the grid is 0.
     constexpr std::array<double, 4> mask{0.25, 0.75, 0.75, 0.25};
-    in_pieces(grid.rows() + 2, threads_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; ++row) {
-            for (std::size_t column = 0; column < grid.columns() + 2; ++column) {
-                double sum = 0;  // fine coefficients 2 i - 2 .. 2 i + 1 along each axis
-                for (std::size_t j = 0; j < 4; ++j) {
-                    if (2 * row + j < 2 || 2 * row + j - 2 >= fine.rows() + 2) continue;
-                    for (std::size_t i = 0; i < 4; ++i) {
-                        if (2 * column + i < 2 || 2 * column + i - 2 >= fine.columns() + 2)
-                            continue;
-                        sum += mask[i] * mask[j] *
-                               level.residual[fine.number(2 * column + i - 2, 2 * row + j - 2)];
-                    }
-                }
-                coarse.right[grid.number(column, row)] = sum;
-            }
+    for_rows(grid.rows() + 2, threads, [&](std::size_t row) {
+        Vector line(fine.columns() + 8, 0.0);  // of fine columns from -2 on
+        for (std::size_t j = 0; j < 4; ++j) {
+            if (2 * row + j < 2 || 2 * row + j - 2 >= fine.rows() + 2) continue;
+            const double* from = residual.data() + fine.number(0, 2 * row + j - 2);
+            for (std::size_t i = 0; i < fine.columns() + 2; ++i)
+                line[i + 2] += mask[j] * from[i];
+        }
+        double* to = coarse.right.data() + grid.number(0, row);
+        for (std::size_t column = 0; column < grid.columns() + 2; ++column) {
+            const double* from = line.data() + 2 * column;
+            to[column] =
+                mask[0] * from[0] + mask[1] * from[1] + mask[2] * from[2] + mask[3] * from[3];
         }
     });
     cycle(at + 1);
-    in_pieces(fine.rows() + 2, threads_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t row = begin; row < end; ++row) {
-            for (std::size_t column = 0; column < fine.columns() + 2; ++column) {
-                const double x0 = column % 2 == 0 ? 0.75 : 0.25, y0 = row % 2 == 0 ? 0.75 : 0.25;
-                const double* from = coarse.x.data() + grid.number(column / 2, row / 2);
-                const double low = x0 * from[0] + (1 - x0) * from[1];
-                const double high = x0 * from[grid.stride()] + (1 - x0) * from[grid.stride() + 1];
-                level.x[fine.number(column, row)] += y0 * low + (1 - y0) * high;
-            }
+    for_rows(fine.rows() + 2, threads, [&](std::size_t row) {
+        const double y0 = row % 2 == 0 ? 0.75 : 0.25;
+        const double* low = coarse.x.data() + grid.number(0, row / 2);
+        const double* high = low + grid.stride();
+        double* to = correction.data() + fine.number(0, row);
+        for (std::size_t column = 0; column < fine.columns() + 2; ++column) {
+            const double x0 = column % 2 == 0 ? 0.75 : 0.25;
+            const std::size_t i = column / 2;
+            to[column] = y0 * (x0 * low[i] + (1 - x0) * low[i + 1]) +
+                         (1 - y0) * (x0 * high[i] + (1 - x0) * high[i + 1]);
         }
     });
-    smooth(level, false);
-}
-
-void SplineLevels::smooth(Level& level, bool from_zero) {
-    if (from_zero) {
-        std::fill(level.x.begin(), level.x.end(), 0.0);
-        level.residual = level.right;
-    } else {
-        multiply(level, level.x, level.step);
-        in_pieces(level.x.size(), threads_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                level.residual[i] = level.right[i] - level.step[i];
-        });
-    }
-    Vector product(level.x.size(), 0.0);
-    chebyshev(level.x, level.residual, level.step, product, level.inverse_diagonal, level.largest,
-              smoothing_degree, threads_,
-              [&](const Vector& x, Vector& out) { multiply(level, x, out); });
+    level.smoother.after(level.stencils, level.right, level.x, threads);
 }
 
 }  // namespace realmodel::interpolation

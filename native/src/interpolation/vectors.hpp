@@ -25,6 +25,15 @@ void in_pieces(std::size_t count, int threads, Work&& work) {
     }
 }
 
+/// Calls work(row) for [0, count), of rows that are work enough each; work must not throw.
+template <class Work>
+void for_rows(std::size_t count, int threads, Work&& work) {
+    const auto rows = static_cast<std::ptrdiff_t>(count);
+#pragma omp parallel for schedule(static) num_threads(threads) if (rows > 64)
+    for (std::ptrdiff_t row = 0; row < rows; ++row)
+        work(static_cast<std::size_t>(row));
+}
+
 /// Sums of fixed pieces, added in their order.
 inline double dot(std::span<const double> a, std::span<const double> b, int threads) {
     constexpr std::size_t piece = 4096;
