@@ -71,13 +71,13 @@ def migrate_all():
 
 
 @persistent
-def _render_begins(*_arguments):
-    display.render_begins()
+def _render_begins(scene, *_arguments):
+    display.render_begins(scene)
 
 
 @persistent
-def _render_ends(*_arguments):
-    display.render_ends()
+def _render_ends(scene, *_arguments):
+    display.render_ends(scene)
 
 
 _HANDLERS = (

@@ -17,16 +17,9 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import props_surface, props_view
-from .bl import changes, display, library_rows, results, settings
-from .core.mesh_sizes import MESHERS
+from . import props_rock, props_surface, props_view
+from .bl import changes, display, library_rows, results
 from .core.units import METRES, MODEL_UNIT
-
-_MESHERS = {
-    "delaunay": ("Delaunay", "Triangles as equal as refinement of a Delaunay triangulation makes them"),
-    "frontal": ("Frontal", "Triangles laid from the border inwards: close to equilateral nearly everywhere"),
-    "grid": ("Grid", "The nodes of a regular grid, and where its lines meet the outline"),
-}
 
 DISPLAYS = (
     ("POINTS", "Points", "Vertices of the interfaces and blocks"),
@@ -76,70 +69,6 @@ class RealModelProperty(bpy.types.PropertyGroup):
     exact: StringProperty(options={"HIDDEN"})
 
 
-class RealModelRock(bpy.types.PropertyGroup):
-    """A rock mass: a region in plan and its surfaces, oldest first."""
-
-    name: StringProperty(name="Name", description="Name of the rock mass", update=changes.setting)
-    region: PointerProperty(
-        name="Region",
-        type=bpy.types.Object,
-        poll=settings.is_region_object,
-        description=(
-            "Curve or mesh object whose outline, seen from above, bounds the rock mass; inner loops are holes"
-        ),
-        update=changes.region,
-    )
-    region_file: StringProperty(
-        name="Region file",
-        description="File with the outline of the rock mass, where no object gives it (GeoJSON, WKT, "
-        "shapefile, GeoPackage)",
-        subtype="FILE_PATH",
-        update=changes.region,
-    )
-    region_stored: StringProperty(options={"HIDDEN"})
-    region_stamp: StringProperty(options={"HIDDEN"})
-    constraints_stored: StringProperty(options={"HIDDEN"})
-    mesh_options: StringProperty(options={"HIDDEN"})
-    region_area: FloatProperty(options={"HIDDEN"}, default=-1.0)
-    edge_length: FloatProperty(
-        name="Edge length",
-        description=(
-            "Length of the edges of the triangles on which surfaces are interpolated; 0: not given. "
-            "Half of it makes four times as many triangles"
-        ),
-        min=0.0,
-        subtype="DISTANCE",
-        update=changes.setting,
-    )
-    mesher: EnumProperty(
-        name="Mesher",
-        description="How the region is divided into triangles",
-        items=[(name, *_MESHERS[name]) for name in MESHERS],
-        default="delaunay",
-        update=changes.setting,
-    )
-    base_elevation: FloatProperty(
-        name="Base elevation",
-        description="Height of the flat base of the oldest block; it lies below all surfaces",
-        subtype="DISTANCE",
-        update=changes.base_elevation,
-    )
-    use_base: BoolProperty(
-        name="Base",
-        description="Lay a block beneath the oldest surface, down to the base elevation",
-        update=changes.setting,
-    )
-    surfaces: CollectionProperty(type=props_surface.RealModelSurface)
-    active_surface: IntProperty(
-        name="Active surface",
-        description="The surface whose settings are shown, counted from the oldest, 0",
-    )
-    collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
-    interfaces: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
-    blocks: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
-    exact: StringProperty(options={"HIDDEN"})
-
-
 class RealModelBlock(bpy.types.PropertyGroup):
     """A row of the results: one block as it was built."""
 
@@ -175,7 +104,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
         description="The project file that the model was opened from or saved to",
         subtype="FILE_PATH",
     )
-    rocks: CollectionProperty(type=RealModelRock)
+    rocks: CollectionProperty(type=props_rock.RealModelRock)
     active_rock: IntProperty(name="Active rock mass", description="The rock mass whose surfaces are shown")
     library: CollectionProperty(type=RealModelProperty)
     library_path: StringProperty(options={"HIDDEN"})
@@ -231,6 +160,12 @@ class RealModelSettings(bpy.types.PropertyGroup):
             ("BLOCK", "Block", "Each block its own colour"),
             ("ROCK", "Rock mass", "Each rock mass its own colour"),
             ("AGE", "Age", "From the oldest to the youngest"),
+            (
+                "UNCERTAINTY",
+                "Uncertainty",
+                "How sure the heights of interpolated surfaces are, with Show: Surfaces. Dark blue: certain; "
+                "yellow: the largest standard deviation of the surface",
+            ),
         ),
         update=lambda self, _context: display.colours_changed(self.id_data),
     )
@@ -276,9 +211,9 @@ class RealModelActivity(bpy.types.PropertyGroup):
 
 _CLASSES = (
     *props_surface.CLASSES,
+    *props_rock.CLASSES,
     *props_view.CLASSES,
     RealModelProperty,
-    RealModelRock,
     RealModelBlock,
     RealModelSettings,
     RealModelActivity,

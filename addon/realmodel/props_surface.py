@@ -4,6 +4,7 @@
 import bpy
 from bpy.props import (
     BoolProperty,
+    CollectionProperty,
     EnumProperty,
     FloatProperty,
     IntProperty,
@@ -11,6 +12,7 @@ from bpy.props import (
     StringProperty,
 )
 
+from . import props_reading
 from .bl import changes, settings
 from .core.methods import DEFAULT_METHOD, DEFAULT_NEIGHBOURS, EXTRAPOLATE, METHODS, THICKNESS_METHODS
 from .core.variogram import VARIOGRAM_MODELS
@@ -59,7 +61,51 @@ def _items(names, labels=None):
     return [(name, *labels.get(name, (name.replace("_", " ").capitalize(), ""))) for name in names]
 
 
-class RealModelSurface(bpy.types.PropertyGroup):
+class RealModelStructure(bpy.types.PropertyGroup):
+    """A part of a nested variogram: what it adds to the nugget and the other parts."""
+
+    model: EnumProperty(
+        name="Model",
+        description="Shape of this part",
+        items=_items(VARIOGRAM_MODELS),
+        update=changes.setting,
+    )
+    range: FloatProperty(
+        name="Range",
+        description="Distance beyond which this part adds nothing more",
+        default=100.0,
+        min=0.0,
+        subtype="DISTANCE",
+        update=changes.setting,
+    )
+    sill: FloatProperty(
+        name="Sill",
+        description="How much variance this part adds",
+        default=1.0,
+        min=0.0,
+        update=changes.setting,
+    )
+    use_anisotropy: BoolProperty(
+        name="Anisotropy of its own",
+        description="Its range is longer along one direction; off: as for the whole variogram",
+        update=changes.setting,
+    )
+    ratio: FloatProperty(
+        name="Ratio",
+        description="How many times its range along the azimuth is longer than across",
+        default=2.0,
+        min=0.001,
+        update=changes.setting,
+    )
+    azimuth: FloatProperty(
+        name="Azimuth",
+        description="Direction of its longest range, in degrees clockwise from north (+y)",
+        update=changes.setting,
+    )
+    exact: StringProperty(options={"HIDDEN"})
+
+
+class RealModelSurface(props_reading.ReadingSettings, bpy.types.PropertyGroup):
     """A surface: where its shape comes from, its rule, and what lies beneath it."""
 
     name: StringProperty(name="Name", description="Name of the surface", update=changes.setting)
@@ -191,6 +237,7 @@ class RealModelSurface(bpy.types.PropertyGroup):
         min=0.0,
         update=changes.setting,
     )
+    structures: CollectionProperty(type=RealModelStructure)
     use_anisotropy: BoolProperty(
         name="Anisotropy",
         description="Points along one direction are more alike than across it",
@@ -296,4 +343,4 @@ class RealModelSurface(bpy.types.PropertyGroup):
     other_options: StringProperty(options={"HIDDEN"})
 
 
-CLASSES = (RealModelSurface,)
+CLASSES = (RealModelStructure, RealModelSurface)

@@ -5,7 +5,7 @@ Version 0 is a scene that build_model.py wrote: it has the stored project and th
 tests/data/versions has a file of each version.
 """
 
-from .bl import adoption, settings
+from .bl import adoption, method_settings, plan_mesh, settings
 
 
 def _from_0(scene):
@@ -13,7 +13,16 @@ def _from_0(scene):
     adoption.adopt(scene)
 
 
-_STEPS = (_from_0,)  # step n makes version n + 1 of version n
+def _from_1(scene):
+    """Nested variograms and places of shorter edges had no rows of their own."""
+    with settings.filling():
+        for rock in scene.realmodel.rocks:
+            plan_mesh.take_up_sizes(rock)
+            for surface in rock.surfaces:
+                method_settings.take_up_nested_variogram(surface)
+
+
+_STEPS = (_from_0, _from_1)  # step n makes version n + 1 of version n
 
 
 def needs_migration(scene):

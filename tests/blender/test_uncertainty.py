@@ -8,7 +8,7 @@ import numpy as np
 from blender_state import empty_file
 from made_projects import interpolated, two_rocks
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import scene, uncertainty
+from realmodel.bl import scene, surface_figures, uncertainty
 from realmodel.core import build
 
 
@@ -70,3 +70,23 @@ class UncertaintyInThePanel(PanelCase):
                 names = set(item.data.attributes.keys())
                 self.assertLessEqual({"variance", "distance", "uncertainty"}, names)
                 self.assertEqual(len(item.data.attributes["variance"].data), len(item.data.vertices))
+
+    def test_it_can_be_seen(self):
+        ops.open_project(filepath=str(SAMPLES / "two_layers" / "project.toml"))
+        ops.build()
+        item = self.model.rocks[0].surfaces[1].interface
+        own = item.material_slots[0].material
+        self.model.display, self.model.color_by = "SURFACES", "UNCERTAINTY"
+        material = item.material_slots[0].material
+        self.assertEqual(material.name, "Uncertainty")
+        given = next(node for node in material.node_tree.nodes if node.type == "ATTRIBUTE")
+        self.assertEqual(given.attribute_name, "uncertainty")
+        self.assertEqual(item.data.color_attributes.active_color_index, 0)
+        self.assertEqual(self.model.results[0].object.material_slots[0].material.name, "Clay")
+        self.assertGreater(surface_figures.read(self.model.rocks[0].surfaces[1])["deviation"], 0.0)
+        path = self.folder / "uncertain.png"
+        ops.view(direction="TOP")
+        ops.capture(filepath=str(path), width=64, height=64)
+        self.model.color_by = "PROPERTY"
+        self.assertEqual(item.material_slots[0].material, own)
+        self.assertNotIn("Uncertainty", bpy.data.materials)

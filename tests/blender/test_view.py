@@ -101,6 +101,26 @@ class Modes(Case):
         bpy.ops.realmodel.build()
         self.assertTrue(self.blocks()["Sand"].hide_get())
 
+    def test_interfaces_beside_blocks_do_not_flicker(self):
+        interface = bpy.data.objects["S1"]
+        self.assertEqual(interface.display_type, "WIRE")
+        self.settings.display = "SURFACES"
+        self.assertEqual(interface.display_type, "TEXTURED")
+        self.settings.display = "AREAS"
+        self.settings.view.subject = "INTERFACES"
+        self.assertEqual(interface.display_type, "TEXTURED")
+        self.settings.view.subject = "BOTH"
+        self.assertEqual(interface.display_type, "WIRE")
+        self.settings.display = "SURFACES"
+        interface.display_type = "BOUNDS"  # by the user
+        self.settings.display = "BLOCKS"
+        self.assertEqual(interface.display_type, "BOUNDS")
+
+    def test_without_blocks_the_interfaces_are_seen(self):
+        bpy.ops.realmodel.clear()
+        self.assertEqual(self.in_sight("interface"), {f"S{k}" for k in range(5)})
+        self.assertEqual(bpy.data.objects["S1"].display_type, "TEXTURED")
+
     def test_hidden_properties(self):
         bpy.ops.realmodel.hide_property(property_id=2, action="HIDE")
         self.assertNotIn(self.blocks()["Sand"].name, self.in_sight())
@@ -214,23 +234,8 @@ class Stages(Case):
             seen.append({name for name, volume in self.volumes().items() if volume > 0})
 
         self.scene.frame_start, self.scene.frame_end = 1, 3
-        self.scene.render.resolution_x = self.scene.render.resolution_y = 48
+        self.look_from_the_south(48)
         self.scene.render.filepath = str(self.folder / "frame")
-        bpy.ops.realmodel.view(direction="FRONT")
-        camera = bpy.data.cameras.new("camera")
-        camera.type, camera.ortho_scale = "ORTHO", 110.0
-        item = bpy.data.objects.new("camera", camera)
-        item.location, item.rotation_euler = (50.0, -100.0, 20.0), (np.pi / 2, 0.0, 0.0)
-        self.scene.collection.objects.link(item)
-        self.scene.camera = item
-        from realmodel.bl import versions
-
-        if not versions.cycles_available(self.scene):
-            self.skipTest("this Blender has no Cycles, and its other renderers need a display")
-        self.scene.render.engine = "CYCLES"
-        self.scene.cycles.samples, self.scene.cycles.use_denoising = 1, False
-        self.scene.render.film_transparent = True
-        self.scene.render.image_settings.color_mode = "RGBA"
         bpy.app.handlers.render_post.append(look)
         try:
             bpy.ops.render.render(animation=True)
@@ -245,6 +250,32 @@ class Stages(Case):
         self.assertEqual(seen[2], {"base block", "Sand", "Gone"})
         self.assertLess(heights[0], heights[1])
         self.assertLess(heights[1], heights[2])
+
+
+class Renders(Case):
+    def opaque(self):
+        """The share of a render in which something is seen."""
+        path = self.folder / "render.png"
+        self.scene.render.filepath = str(path)
+        bpy.ops.render.render(write_still=True)
+        return float((_alpha(path) > 0.5).mean())
+
+    def test_points_and_lines_as_thick_as_on_the_screen(self):
+        self.look_from_the_south(160)
+        before = self.contents()
+        self.settings.display = "BLOCKS"
+        shown = {"BLOCKS": self.opaque()}
+        for mode in ("POINTS", "LINES"):
+            self.settings.display = mode
+            shown[mode] = self.opaque()
+            self.assertEqual([o.name for o in self.scene.objects if o.get("realmodel_view") == "marks"], [])
+        self.assertLess(0.005, shown["POINTS"])
+        self.assertLess(shown["POINTS"], shown["LINES"])
+        self.assertLess(shown["LINES"], 0.8 * shown["BLOCKS"])
+        self.settings.display = "BLOCKS"
+        self.assertEqual(self.opaque(), shown["BLOCKS"])
+        self.assertEqual(self.contents(), before)
+        self.assertEqual([m.name for m in bpy.data.meshes if not m.users], [])
 
 
 class WithAWindow(Stages):
@@ -302,12 +333,17 @@ class WithAWindow(Stages):
 
 def _opaque_rows(path):
     """Rows of a picture in which something is seen."""
+    return int((_alpha(path).max(axis=1) > 0.5).sum())
+
+
+def _alpha(path):
+    """(height, width) how opaque a picture is."""
     image = bpy.data.images.load(str(path))
     flat = np.empty(image.size[0] * image.size[1] * image.channels, np.float32)
     image.pixels.foreach_get(flat)
     shape = image.size[1], image.size[0], image.channels
     bpy.data.images.remove(image)
-    return int((flat.reshape(shape)[:, :, 3].max(axis=1) > 0.5).sum())
+    return flat.reshape(shape)[:, :, 3]
 
 
 class Apart(Case):

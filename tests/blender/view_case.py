@@ -7,7 +7,9 @@ from pathlib import Path
 
 import blender_state
 import bpy
+import numpy as np
 from made_projects import LIBRARY, surface
+from realmodel.bl import versions
 from realmodel.core import Project, Rock, build
 from realmodel.core.project_writer import save_project
 
@@ -58,3 +60,19 @@ class Case(unittest.TestCase):
             for item in self.scene.objects
             if item.visible_get() and (kind is None or item.get("realmodel") == kind)
         }
+
+    def look_from_the_south(self, pixels):
+        """Renders of the scene show the front of the model, by Cycles, on nothing."""
+        if not versions.cycles_available(self.scene):
+            self.skipTest("this Blender has no Cycles, and its other renderers need a display")
+        camera = bpy.data.cameras.new("camera")
+        camera.type, camera.ortho_scale = "ORTHO", 110.0
+        item = bpy.data.objects.new("camera", camera)
+        item.location, item.rotation_euler = (50.0, -100.0, 20.0), (np.pi / 2, 0.0, 0.0)
+        self.scene.collection.objects.link(item)
+        self.scene.camera = item
+        render = self.scene.render
+        render.engine, render.film_transparent = "CYCLES", True
+        render.resolution_x = render.resolution_y = pixels
+        render.image_settings.color_mode = "RGBA"
+        self.scene.cycles.samples, self.scene.cycles.use_denoising = 1, False

@@ -398,6 +398,7 @@ def remove_model(current):
 
 def _release(current, item):
     """An object of the user's that is no interface any more."""
+    display.let_go(item)
     for key in (scene.TAG, scene.ROCK, scene.SURFACE, scene.PROPERTY):
         if key in item:
             del item[key]

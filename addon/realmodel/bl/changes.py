@@ -50,6 +50,16 @@ def source(surface, context):
     setting(surface, context)
 
 
+def reading(surface):
+    """A file is to be read in another way: what was read before is worth nothing."""
+    if settings.is_filling():
+        return
+    surface.interface_digest = ""
+    if surface.filepath:
+        surface.stored = surface.stored_stamp = ""
+    setting(surface, None)
+
+
 def hide(surface, _context):
     if not settings.is_filling():
         display.mode_changed(surface.id_data)

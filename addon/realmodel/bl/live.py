@@ -40,6 +40,8 @@ def is_working():
 
 def changed(scene, depsgraph):
     """Blender has evaluated changed objects."""
+    from . import plan_mesh
+
     group = scene.realmodel
     if _at_work or not len(group.rocks):
         return
@@ -49,6 +51,8 @@ def changed(scene, depsgraph):
     for rock in group.rocks:
         if rock.region is not None and _names(rock.region) & edited:
             rock.region_area = -1.0
+            touch(scene)
+        if any(_names(item) & edited for item in plan_mesh.objects(rock)):
             touch(scene)
         for surface in rock.surfaces:
             made = surface.interface if surface.interface_digest else None

@@ -28,6 +28,7 @@ SHOWN = {
     "anisotropy": ("use_anisotropy", ("anisotropy_ratio", "anisotropy_azimuth")),
     "variogram": (None, ()),
 }
+READY_MESHES = ("MESH_OBJECT", "MESH_FILE")  # sources of surfaces that are not interpolated
 _SURFACES = ("border", "above", "below", "to")
 _NONE_IS_ZERO = ("radius",)
 _WORDS = ("drift", "extrapolate", "thickness_method")
@@ -78,10 +79,22 @@ def _surface_or_height(text):
 
 
 def _variogram(row):
+    if len(row.structures):
+        return {
+            "nugget": number(row, "variogram_nugget"),
+            "structures": [_structure(part) for part in row.structures],
+        }
     return {
         "model": row.variogram_model,
         **{key: number(row, f"variogram_{key}") for key in _VARIOGRAM},
     }
+
+
+def _structure(part):
+    found = {"model": part.model, **{key: number(part, key) for key in ("range", "sill")}}
+    if part.use_anisotropy:
+        found["anisotropy"] = {key: number(part, key) for key in ("ratio", "azimuth")}
+    return found
 
 
 def _anisotropy(row):
@@ -127,14 +140,30 @@ def _set(row, name, value):
 def _set_variogram(row, value):
     value = value.settings() if hasattr(value, "settings") else value
     row.fit_variogram = False
+    row.structures.clear()
     if "structures" in value:
-        return False  # nested ones are kept as they are
+        set_number(row, "variogram_nugget", value.get("nugget", 0.0))
+        for given in value["structures"]:
+            _set_structure(row.structures.add(), given)
+        return True
     row.variogram_model = value["model"]
     for key in _VARIOGRAM:
         set_number(row, f"variogram_{key}", value.get(key, 0.0))
     return True
 
 
-def has_nested_variogram(row):
-    """Whether a variogram of several structures, which the panel cannot change, came with the project."""
-    return bool(row.other_options) and "variogram" in json.loads(row.other_options)
+def _set_structure(part, given):
+    part.model = given["model"]
+    for key in ("range", "sill"):
+        set_number(part, key, given[key])
+    for key, value in (given.get("anisotropy") or {}).items():
+        part.use_anisotropy = True
+        set_number(part, key, value)
+
+
+def take_up_nested_variogram(row):
+    """A nested variogram that a file of an earlier version has kept as it was gets its rows."""
+    others = json.loads(row.other_options) if row.other_options else {}
+    if "variogram" in others:
+        _set_variogram(row, others.pop("variogram"))
+        row.other_options = json.dumps(others) if others else ""

@@ -16,10 +16,17 @@ from ..core import InputRefused, PointFile, Project, Rock, Surface
 from ..core.project import rock_item, surface_item
 from ..core.rock_input import read_rocks
 from ..core.work import run
-from . import built_models, library_rows, method_settings, settings, shapes, stored_arrays
+from . import (
+    built_models,
+    library_rows,
+    method_settings,
+    plan_mesh,
+    reading_text,
+    settings,
+    shapes,
+    stored_arrays,
+)
 from .origin import KEY as ORIGIN_KEY
-
-POINTS, MESHES = ("POINTS_FILE", "POINTS_OBJECT"), ("MESH_OBJECT", "MESH_FILE")
 
 
 @dataclass
@@ -72,10 +79,7 @@ def compose(scene, depsgraph, whole=True):
     composed = Composed(project, origin, _origin_is_free(scene))
     for number, row in enumerate(scene.realmodel.rocks):
         rock = Rock(row.name, [], mesher=row.mesher)
-        for key, value in json.loads(row.mesh_options or "{}").items():
-            setattr(rock, key, value)
-        if row.edge_length > 0.0:  # which says more than what the project file said of it
-            rock.edge_length, rock.triangles = settings.number(row, "edge_length"), None
+        plan_mesh.compose(rock, row, depsgraph, origin)
         if row.use_base:
             rock.base_elevation = settings.number(row, "base_elevation")
         _region(composed, number, rock, row, depsgraph, whole)
@@ -88,14 +92,14 @@ def compose(scene, depsgraph, whole=True):
                 raise error.within(surface_item(rock, surface)) from error
             rock.surfaces.append(surface)
         if not rock.interpolates:  # nothing is meshed that they could shape
-            rock.constraints = []
+            rock.constraints, rock.size = [], []
     return composed
 
 
 def _plain_surface(row):
     """A surface with everything but its shape."""
     surface = Surface(row.name, rule=row.rule, property=row.property_id, block=row.block or None)
-    if row.source not in MESHES:
+    if row.source not in method_settings.READY_MESHES:
         surface.method = row.method
         surface.options = method_settings.options_of(row)
         if row.use_minimum_thickness:
@@ -117,8 +121,6 @@ def _region(composed, number, rock, row, depsgraph, whole):
             rings = _stored_rings(composed, number, rock, row, whole)
     except InputRefused as error:
         raise error.within(rock_item(rock)) from error
-    if row.constraints_stored:
-        rock.constraints = list(stored_arrays.unpack(row.constraints_stored).values())
     if rings:  # which of them are holes is not said: they count even-odd
         rock.region = rings if len(rings) > 1 else rings[0]
 
@@ -159,7 +161,7 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
     path, stored = absolute(row.filepath), stored_shape(row)
     if path is not None and (not stored or (whole and _changed(path, row.stored_stamp))):
         if row.source == "POINTS_FILE":
-            surface.points = PointFile(path, **json.loads(row.reading or "{}"))
+            surface.points = PointFile(path, **reading_text.options(row))
         else:
             surface.mesh = path
         composed.read[place] = stored_arrays.file_stamp(path)
@@ -293,14 +295,7 @@ def add_rock(group, rock):
     row = group.rocks.add()
     with settings.filling():
         row.name = rock.name
-        options = {"triangles": rock.triangles, "size": list(rock.size)}
-        if isinstance(rock.edge_length, str):
-            options["edge_length"] = rock.edge_length
-        elif rock.edge_length is not None:
-            settings.set_number(row, "edge_length", rock.edge_length)
-        given = {key: value for key, value in options.items() if value}
-        row.mesh_options = json.dumps(given, default=lambda array: array.tolist()) if given else ""
-        row.mesher = rock.mesher
+        plan_mesh.fill(row, rock)
         if rock.base_elevation is not None:
             settings.set_number(row, "base_elevation", rock.base_elevation)
             row.use_base = True
@@ -308,9 +303,6 @@ def add_rock(group, rock):
             row.region_file = str(rock.region_file)
         elif rock.region is not None:
             row.region_stored = packed_region(rock)
-        if len(rock.constraints):
-            named = {f"constraint{n}": np.asarray(c, np.float64) for n, c in enumerate(rock.constraints)}
-            row.constraints_stored = stored_arrays.pack(**named)
         for surface in rock.surfaces:
             fill_surface(row.surfaces.add(), surface)
         row.active_surface = max(len(rock.surfaces) - 1, 0)

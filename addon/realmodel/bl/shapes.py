@@ -99,6 +99,24 @@ def rings(item, depsgraph):
     return [plan[ring] for ring in _closed_chains(edges, len(plan), where, plan)]
 
 
+def plan_lines(item, depsgraph):
+    """The edges of a curve or mesh object seen from above, each a line (2, 2), and its loose vertices, each a
+    point (1, 2), as float64 offsets from the origin. Raises InputRefused where it has neither."""
+    with evaluated_mesh(item, depsgraph) as mesh:
+        plan = offsets(item, mesh)[:, :2]
+        edges = np.empty(2 * len(mesh.edges), np.int32)
+        mesh.edges.foreach_get("vertices", edges)
+    edges = edges.reshape(-1, 2)
+    loose = np.setdiff1d(np.arange(len(plan)), edges)
+    found = [line for line in plan[edges] if (line[0] != line[1]).any()]
+    found += list(plan[loose][:, None])
+    if not found:
+        raise InputRefused(
+            "it has no edges and no vertices", item=f"object '{item.name}'", advice="choose another object"
+        )
+    return found
+
+
 def _bounding_edges(mesh):
     """(E, 2) the edges that only one face uses; all edges of a mesh that has no faces."""
     edges = np.empty(2 * len(mesh.edges), np.int32)

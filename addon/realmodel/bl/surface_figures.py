@@ -8,7 +8,8 @@ import numpy as np
 
 def of_model(model):
     """For each surface of a model a JSON text: points, triangles, low, high, area (in plan, of what survives,
-    model units squared) and share (of the surface itself; null where the region cuts it off)."""
+    model units squared), deviation (the largest standard deviation of its heights; null where it is not
+    known) and share (of the surface itself; null where the region cuts it off)."""
     areas = _surviving_areas(model)
     found, number = [], 0
     for rock in model.project.rocks:
@@ -22,11 +23,18 @@ def of_model(model):
                 "low": float(heights.min()),
                 "high": float(heights.max()),
                 "area": float(areas[number]),
+                "deviation": _most_deviation(model.surface_attributes(number)["variance"]),
                 "share": min(float(areas[number]) / whole, 1.0) if whole else None,
             }
             found.append(json.dumps(figures))
             number += 1
     return found
+
+
+def _most_deviation(variance):
+    """The largest standard deviation of heights; None where none is known."""
+    known = variance[np.isfinite(variance)]
+    return float(np.sqrt(max(known.max(), 0.0))) if len(known) else None
 
 
 def read(row):

@@ -37,6 +37,7 @@ def add_attributes(mesh, attributes):
     if np.isfinite(attributes[VARIANCE]).any():
         layer = mesh.color_attributes.new(UNCERTAINTY, "BYTE_COLOR", "POINT")
         layer.data.foreach_set("color_srgb", colours(attributes[VARIANCE]).ravel())
+        mesh.color_attributes.active_color_index = 0  # what viewports show
 
 
 def colours(variance):

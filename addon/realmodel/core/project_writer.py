@@ -96,6 +96,8 @@ def _rock_lines(rock: Rock) -> list[str]:
         {
             "name": rock.name,
             "edge_length": rock.edge_length,
+            "triangles": rock.triangles,
+            "size": list(rock.size) or None,
             "mesher": rock.mesher if rock.mesher != "delaunay" else None,
             "base_elevation": rock.base_elevation,
         }

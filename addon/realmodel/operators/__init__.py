@@ -4,9 +4,35 @@
 import bpy
 
 from ..registration import register_modules, unregister_modules
-from . import build, files, library, results, rocks, sections, start, surfaces, view
+from . import (
+    boreholes,
+    build,
+    files,
+    library,
+    plan_mesh,
+    results,
+    rocks,
+    sections,
+    start,
+    surfaces,
+    variograms,
+    view,
+)
 
-_MODULES = (start, rocks, surfaces, build, files, library, results, view, sections)
+_MODULES = (
+    start,
+    rocks,
+    plan_mesh,
+    surfaces,
+    boreholes,
+    variograms,
+    build,
+    files,
+    library,
+    results,
+    view,
+    sections,
+)
 
 
 def register():

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import region_size, settings
+from ..bl import method_settings, plan_mesh, region_size, settings
 from .panel import TabPanel, hint
 
 
@@ -29,13 +29,8 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
             layout.prop(rock, "region_file", text="or file")
             if rock.region_stored and not rock.region_file:
                 hint(layout, "Its outline is kept in this file.")
-        layout.prop(rock, "edge_length")
-        if rock.region_area < 0.0:
-            region_size.ask()
-        count = region_size.expected_triangles(rock)
-        if count is not None:
-            hint(layout, f"gives about {_rounded(count):,} triangles a surface")
-        layout.prop(rock, "mesher")
+        if any(surface.source not in method_settings.READY_MESHES for surface in rock.surfaces):
+            _draw_density(layout, rock)
         base = layout.row(heading="Base")
         base.prop(rock, "use_base", text="")
         height = base.row()
@@ -43,9 +38,67 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
         height.prop(rock, "base_elevation", text="")
 
 
+def _draw_density(layout, rock):
+    column = layout.column(align=True)
+    column.prop(rock, "edges_by")
+    if rock.edges_by == "LENGTH":
+        column.prop(rock, "edge_length")
+        if rock.region_area < 0.0:
+            region_size.ask()
+        count = region_size.expected_triangles(rock)
+        if count is not None:
+            hint(layout, f"gives about {_rounded(count):,} triangles a surface")
+    elif rock.edges_by == "TRIANGLES":
+        column.prop(rock, "triangles")
+    elif plan_mesh.has_triangles(rock):
+        column.prop(rock, "triangles", text="Scaled to")
+    layout.prop(rock, "mesher")
+
+
+class REALMODEL_PT_rock_mesh(TabPanel, bpy.types.Panel):
+    bl_label = "Mesh of the Region"
+    bl_idname = "REALMODEL_PT_rock_mesh"
+    bl_parent_id = "REALMODEL_PT_rocks"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        rock = settings.active_rock(context.scene)
+        return rock is not None and any(
+            surface.source not in method_settings.READY_MESHES for surface in rock.surfaces
+        )
+
+    def draw_in(self, layout, context, _group):
+        rock = settings.active_rock(context.scene)
+        hint(layout, "Smaller triangles where more is to be seen:")
+        for number, entry in enumerate(rock.sizes):
+            box = layout.box().column(align=True)
+            row = box.row(align=True)
+            row.prop(entry, "at")
+            row.operator("realmodel.size_remove", text="", icon="X").index = number
+            if entry.at == "OBJECT":
+                box.prop(entry, "object")
+            box.prop(entry, "length")
+            box.prop(entry, "distance")
+        layout.operator("realmodel.size_add", icon="ADD")
+        hint(layout, "Lines and points that the mesh must contain, such as rivers and faults:")
+        for number, entry in enumerate(rock.constraints):
+            row = layout.row(align=True)
+            row.prop(entry, "object", text="")
+            row.operator("realmodel.constraint_remove", text="", icon="X").index = number
+        lines, points = plan_mesh.stored_constraints(rock)
+        if lines or points:
+            row = layout.row(align=True)
+            row.label(text=f"{lines} lines, {points} points from files")
+            row.operator("realmodel.constraint_remove", text="", icon="X").index = -1
+        row = layout.row(align=True)
+        row.operator("realmodel.constraint_add", text="Add Object", icon="ADD")
+        row.operator("realmodel.constraint_read", text="Read File...", icon="FILE_FOLDER")
+
+
 def _rounded(count):
     digits = max(0, len(str(int(count))) - 2)
     return round(int(count), -digits)
 
 
-CLASSES = (REALMODEL_PT_rocks,)
+CLASSES = (REALMODEL_PT_rocks, REALMODEL_PT_rock_mesh)

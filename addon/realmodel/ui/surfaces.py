@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import library_rows, method_settings, settings, surface_figures, units
+from ..bl import library_rows, method_settings, project_settings, settings, surface_figures, units
 from ..core.methods import METHODS
 from .panel import TabPanel, hint, wrapped
 
@@ -35,6 +35,7 @@ class REALMODEL_PT_surfaces(TabPanel, bpy.types.Panel):
         line = layout.column(align=True)
         line.operator("realmodel.surface_add", text="Add from File...", icon="FILE_FOLDER")
         line.operator("realmodel.surface_add", text="Add Active Mesh", icon="OBJECT_DATA").use_object = True
+        line.operator("realmodel.boreholes_read", text="Read Boreholes...", icon="EMPTY_SINGLE_ARROW")
         surface = settings.active_surface(context.scene)
         if surface is not None:
             _draw_surface(layout, context, surface)
@@ -47,7 +48,9 @@ def _draw_surface(layout, context, surface):
         layout.prop(surface, "object")
     elif surface.source in ("POINTS_FILE", "MESH_FILE"):
         layout.prop(surface, "filepath")
-    if surface.source not in ("MESH_OBJECT", "MESH_FILE"):
+        if project_settings.stored_shape(surface) and not surface.filepath:
+            hint(layout, "What was read is kept in the .blend.")
+    if surface.source not in method_settings.READY_MESHES:
         _draw_method(layout.column(), surface)
     layout.prop(surface, "rule")
     hint(layout, surface.bl_rna.properties["rule"].enum_items[surface.rule].description)
@@ -90,11 +93,27 @@ def _draw_variogram(layout, surface):
     layout.prop(surface, "fit_variogram")
     if surface.fit_variogram:
         return
-    if method_settings.has_nested_variogram(surface):
-        hint(layout, "A variogram of several structures, from the project file.")
-        return
-    for key in ("variogram_model", "variogram_range", "variogram_sill", "variogram_nugget"):
+    parts = len(surface.structures)
+    keys = (
+        ("variogram_nugget",)
+        if parts
+        else ("variogram_model", "variogram_range", "variogram_sill", "variogram_nugget")
+    )
+    for key in keys:
         layout.prop(surface, key)
+    for number, part in enumerate(surface.structures):
+        box = layout.box().column(align=True)
+        row = box.row(align=True)
+        row.prop(part, "model")
+        row.operator("realmodel.structure_remove", text="", icon="X").index = number
+        box.prop(part, "range")
+        box.prop(part, "sill")
+        box.prop(part, "use_anisotropy")
+        if part.use_anisotropy:
+            box.prop(part, "ratio")
+            box.prop(part, "azimuth")
+    text = "Add Part" if parts else "In Several Parts"
+    layout.operator("realmodel.structure_add", text=text, icon="ADD")
 
 
 def _draw_figures(layout, context, surface):
@@ -108,6 +127,8 @@ def _draw_figures(layout, context, surface):
         column.label(text=f"{figures['triangles']:,} triangles")
     low, high = (units.length_text(scene, figures[key]) for key in ("low", "high"))
     column.label(text=f"Heights {low} to {high}")
+    if figures.get("deviation"):
+        column.label(text=f"Standard deviation to {units.length_text(scene, figures['deviation'])}")
     share = "" if figures["share"] is None else f" ({100 * figures['share']:.0f} %)"
     left = f"Survives over {units.area_text(scene, figures['area'])}{share}"
     for line in wrapped(
@@ -116,4 +137,22 @@ def _draw_figures(layout, context, surface):
         column.label(text=line)
 
 
-CLASSES = (REALMODEL_PT_surfaces,)
+class REALMODEL_PT_surface_reading(TabPanel, bpy.types.Panel):
+    bl_label = "How the File is Read"
+    bl_idname = "REALMODEL_PT_surface_reading"
+    bl_parent_id = "REALMODEL_PT_surfaces"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        surface = settings.active_surface(context.scene)
+        return surface is not None and surface.source == "POINTS_FILE" and bool(surface.filepath)
+
+    def draw_in(self, layout, context, _group):
+        surface = settings.active_surface(context.scene)
+        hint(layout, "Most files need nothing here.")
+        for key in ("columns", "where", "separator", "decimal", "nodata", "plan_unit", "height_unit"):
+            layout.prop(surface, key)
+
+
+CLASSES = (REALMODEL_PT_surfaces, REALMODEL_PT_surface_reading)

@@ -24,6 +24,9 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
         if group.display in _WITH_SUBJECT:
             column.prop(group.view, "subject")
         column.prop(group, "color_by")
+        if group.color_by == "UNCERTAINTY":
+            text = "Dark blue: certain; yellow: the largest deviation of each surface, told in Surfaces."
+            hint(layout, text if group.display == "SURFACES" else "Choose Surfaces to see it.")
         layout.prop(group, "stage", slider=True)
         last = settings.last_stage(context.scene)
         rows = [surface for _, surface in settings.surface_rows(context.scene)]
@@ -42,15 +45,19 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
                 box.label(text=line)
 
 
-class REALMODEL_PT_view_properties(TabPanel, bpy.types.Panel):
-    bl_label = "Blocks by Property"
-    bl_idname = "REALMODEL_PT_view_properties"
-    bl_parent_id = "REALMODEL_PT_view"
-    bl_options = {"DEFAULT_CLOSED"}
+class _OfABuiltModel:
+    """A panel that has nothing to show before a build."""
 
     @classmethod
     def poll(cls, context):
         return len(context.scene.realmodel.results) > 0
+
+
+class REALMODEL_PT_view_properties(_OfABuiltModel, TabPanel, bpy.types.Panel):
+    bl_label = "Blocks by Property"
+    bl_idname = "REALMODEL_PT_view_properties"
+    bl_parent_id = "REALMODEL_PT_view"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, group):
         hidden = modes.hidden_properties(context.scene)
@@ -74,15 +81,11 @@ class REALMODEL_PT_view_properties(TabPanel, bpy.types.Panel):
             column.operator("realmodel.hide_property", text="Show All").action = "ALL"
 
 
-class REALMODEL_PT_view_section(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view_section(_OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_label = "Section"
     bl_idname = "REALMODEL_PT_view_section"
     bl_parent_id = "REALMODEL_PT_view"
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return len(context.scene.realmodel.results) > 0
 
     def draw_in(self, layout, context, group):
         view, scene = group.view, context.scene
@@ -123,15 +126,11 @@ class REALMODEL_PT_view_camera(TabPanel, bpy.types.Panel):
         layout.operator("realmodel.capture", text="Capture...", icon="RENDER_STILL")
 
 
-class REALMODEL_PT_view_coordinates(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view_coordinates(_OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_label = "Coordinates"
     bl_idname = "REALMODEL_PT_view_coordinates"
     bl_parent_id = "REALMODEL_PT_view"
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return len(context.scene.realmodel.results) > 0
 
     def draw_in(self, layout, context, _group):
         row = layout.row(align=True)

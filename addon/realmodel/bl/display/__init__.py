@@ -9,7 +9,7 @@ stages         the blocks' shapes at a stage
 modes          the six display modes
 visible        hiding and showing objects without taking back what the user does
 bodies, cells  objects that are only for viewing
-drawing        points and lines
+drawing        points and lines; render_marks: the same in a final render
 explosion      the blocks moved apart
 colours        what the colours tell
 cuts, sections the movable plane; sections as mesh objects
@@ -33,6 +33,7 @@ __all__ = [
     "explode_changed",
     "forget",
     "frame_changed",
+    "let_go",
     "mode_changed",
     "opened",
     "register",
@@ -165,14 +166,22 @@ def built(scene, bounds, stage=None):
     _show(scene, whole, **{key: getattr(group, key) for key in _ANIMATED})
 
 
+def let_go(item):
+    """An interface is one no more: it is drawn as any object."""
+    from . import modes
+
+    modes.let_go(item)
+
+
 def cleared(scene):
     """The blocks are gone."""
-    from . import bodies, colours, cuts
+    from . import bodies, colours, cuts, modes
 
     forget_meshes()
     bodies.remove(scene, bodies.CELLS)
     cuts.take_off(scene)
     colours.forget(scene)
+    modes.without_blocks(scene)
     scene.realmodel.view.applied = ""
 
 
@@ -198,17 +207,22 @@ def frame_changed(scene, depsgraph=None):
         scene.realmodel.view.message = str(error)
 
 
-def render_begins(*_arguments):
+def render_begins(scene):
     """From now on nothing may be freed that a renderer may hold."""
-    from . import replacing
+    from . import render_marks, replacing
 
+    replacing.tidy()
     replacing.begin_render()
+    if len(scene.realmodel.results) and scene.library is None:
+        render_marks.put(scene, scene.realmodel.display)
 
 
-def render_ends(*_arguments):
+def render_ends(scene):
     """The render is complete or cancelled."""
-    from . import replacing
+    from . import bodies, replacing
 
+    if scene.library is None:
+        bodies.remove(scene, bodies.MARKS)
     replacing.end_render()
 
 
@@ -250,7 +264,7 @@ def _applied(scene):
 def _show(scene, has_shapes=False, **wanted):
     """Shows what is wanted: any of the settings that can be animated, by their names. has_shapes: the blocks
     have the shapes of the stage already."""
-    from . import colours, cuts, explosion, modes, preparing, replacing, stages
+    from . import colours, cuts, explosion, modes, preparing, render_marks, replacing, stages
 
     group = scene.realmodel
     if not len(group.results) or scene.library is not None:
@@ -274,6 +288,10 @@ def _show(scene, has_shapes=False, **wanted):
         explosion.apply(scene, now["explode"], now["explode_direction"])
     if "display" in wanted or "stage" in wanted:
         modes.apply(scene, now["display"], now["stage"])
+        if replacing.is_rendering():
+            render_marks.put(scene, now["display"])
     if "color_by" in wanted or "stage" in wanted:
         colours.apply(scene)
+    if "color_by" in wanted or "display" in wanted:
+        colours.shade_viewports(scene, now["color_by"], now["display"], _applied(scene))
     group.view.applied = json.dumps({key: now[key] for key in _ANIMATED})

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that are only for viewing: cut halves of blocks, single cells. They stand beside the model, in the
-collection "<project> view", each a child of the block that it stands for, and go where that goes."""
+"""Objects that are only for viewing: cut halves of blocks, single cells, points and lines of renders. They
+stand beside the model, in the collection "<project> view", each a child of the block that it stands for, and
+go where that goes."""
 
 import bpy
 
@@ -8,7 +9,7 @@ from .. import meshes, scene
 from . import replacing
 
 KIND = "realmodel_view"  # on an object: what it is for
-CUT, CELLS, PLANE, SECTION = "cut", "cells", "plane", "section"
+CUT, CELLS, MARKS, PLANE, SECTION = "cut", "cells", "marks", "plane", "section"
 
 
 def of_kind(current, kind):
@@ -47,6 +48,7 @@ def _new(collection, kind, block, mesh):
     item[scene.TAG] = "view"
     item[scene.BLOCK] = block.get(scene.BLOCK, "")
     item.hide_select = True
+    item.hide_viewport = kind == MARKS  # which viewports draw themselves
     item.parent = block
     collection.objects.link(item)
     return item

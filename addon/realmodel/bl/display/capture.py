@@ -9,12 +9,11 @@ from mathutils import Matrix
 from ...core import InputRefused, OutputFailed
 from ...core.atomic import Outputs
 from .. import batch, meshes, picture, scene, settings
-from . import bodies, colours, drawing, marks, modes, viewpoints
+from . import bodies, colours, drawing, marks, modes, render_marks, viewpoints
 
 LARGEST = 16384  # pixels along a side
 _SAMPLES = 16
 _DARK = (0.02, 0.02, 0.02, 1.0)
-_POINT_RADIUS, _LINE_RADIUS = 2.0, 0.8  # pixels
 
 
 def write(context, path, size):
@@ -131,16 +130,18 @@ def _put_bodies(stage, current, size, space):
             made = stage.keep(bpy.data.meshes, mesh.copy())
             made.transform(modes.world_matrix(item))
             stage.add("body", made)
-            if item.get(scene.TAG) != "section":  # which has a material for each layer
+            if item.get(scene.TAG) != "section" and not colours.has_shades(item):  # several colours each
                 made.materials.clear()
                 made.materials.append(_plain(stage, colour))
         if mode == "POINTS":
-            soup = marks.points(coordinates, _POINT_RADIUS * pixel)
+            arrays = marks.points(coordinates, render_marks.POINT_RADIUS * pixel)
         elif mode in ("LINES", "AREAS"):
-            soup = marks.lines(coordinates, marks.edges(mesh), _LINE_RADIUS * pixel)
+            arrays = marks.lines(coordinates, marks.edges(mesh), render_marks.LINE_RADIUS * pixel)
         else:
             continue
-        stage.add_triangles("marks", soup, _glowing(stage, _DARK if mode == "AREAS" else colour))
+        made = stage.keep(bpy.data.meshes, meshes.new_mesh("marks", *arrays))
+        made.materials.append(_glowing(stage, _DARK if mode == "AREAS" else colour))
+        stage.add("marks", made)
     return np.concatenate(corners) if corners else np.empty((0, 3))
 
 

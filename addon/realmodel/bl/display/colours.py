@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the colours of the blocks tell: their property, themselves, their rock mass, their age.
+"""What the colours of the blocks tell: their property, themselves, their rock mass, their age; and those of
+the interfaces, how sure their heights are.
 
 The mesh of a block keeps its property's material. Other colours are materials that the object, not the mesh,
 has in its slot, so they show in every way of shading and in renders, and go without a trace.
@@ -9,7 +10,7 @@ import colorsys
 
 import bpy
 
-from .. import library_rows, materials, settings
+from .. import library_rows, materials, settings, uncertainty
 from . import bodies
 
 KEY = "realmodel_colour"  # on a material: what it stands for
@@ -23,7 +24,9 @@ def apply(scene):
     places = _places(scene)
     for row in scene.realmodel.results:
         if _can_take(row.object):
-            material = None if by == "PROPERTY" else _material(*_entry(scene, by, row, places))
+            material = (
+                None if by in ("PROPERTY", "UNCERTAINTY") else _material(*_entry(scene, by, row, places))
+            )
             _put_into_slot(row.object, material)
     blocks = {(row.rock, row.surface): row for row in scene.realmodel.results}
     for rock, surface in settings.surface_rows(scene):
@@ -32,7 +35,9 @@ def apply(scene):
             continue
         if any(m is not None for m in item.data.materials):
             continue  # the user's own
-        if by == "PROPERTY" or row is None:
+        if by == "UNCERTAINTY" and uncertainty.UNCERTAINTY in item.data.color_attributes:
+            material = _of_vertices()
+        elif by in ("PROPERTY", "UNCERTAINTY") or row is None:
             material = _of_property(scene, surface.property_id)
         else:
             material = _material(*_entry(scene, by, row, places))
@@ -41,6 +46,26 @@ def apply(scene):
         _put_into_slot(item, material)
     bodies.follow_materials(scene)
     _remove_unused()
+
+
+def has_shades(item):
+    """Whether an object's colours are those of its vertices."""
+    material = item.material_slots[0].material if len(item.material_slots) else None
+    return material is not None and material.get(KEY) == uncertainty.UNCERTAINTY
+
+
+def shade_viewports(scene, by, display, before):
+    """Viewports of solid shading show the colours of vertices while these are what is to be seen, and those
+    of materials again afterwards. before: the settings that were shown before."""
+    wanted = by == "UNCERTAINTY" and display == "SURFACES"
+    was = before.get("color_by") == "UNCERTAINTY" and before.get("display") == "SURFACES"
+    if wanted == was:
+        return
+    old, new = ("MATERIAL", "VERTEX") if wanted else ("VERTEX", "MATERIAL")
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas if window.scene == scene else ():
+            if area.type == "VIEW_3D" and area.spaces.active.shading.color_type == old:
+                area.spaces.active.shading.color_type = new
 
 
 def forget(scene):
@@ -123,6 +148,23 @@ def _material(name, colour):
     material = materials.new_material(name, materials.NO_PROPERTY, colour)
     del material[materials.KEY]
     material[KEY] = stands_for
+    return material
+
+
+def _of_vertices():
+    """The material that shows how sure the heights of an interface are."""
+    name = "Uncertainty"
+    known = next((m for m in bpy.data.materials if m.get(KEY) == uncertainty.UNCERTAINTY), None)
+    if known is not None and known.library is None:
+        return known
+    material = materials.new_material(name, materials.NO_PROPERTY, materials.NEUTRAL_GREY)
+    del material[materials.KEY]
+    material[KEY] = uncertainty.UNCERTAINTY
+    nodes = material.node_tree.nodes
+    given = nodes.new("ShaderNodeAttribute")
+    given.attribute_name = uncertainty.UNCERTAINTY
+    shader = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
+    material.node_tree.links.new(given.outputs["Color"], shader.inputs["Base Color"])
     return material
 
 

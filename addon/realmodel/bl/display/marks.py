@@ -3,18 +3,21 @@
 
 import numpy as np
 
-_OCTAHEDRON = np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float64)
+_OCTAHEDRON = np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float32)
 _FACES = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]])
+_SIDES = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [2, 0, 3, 5]])
 
 
 def points(places, radius):
-    """(8 N, 3, 3) float64 triangles: an octahedron around each place, (N, 3)."""
-    return (places[:, None, None, :] + radius * _OCTAHEDRON[_FACES]).reshape(-1, 3, 3)
+    """An octahedron around each place, (N, 3), as (coordinates (6 N, 3) float32, offsets, corners)."""
+    coordinates = (places[:, None].astype(np.float32) + radius * _OCTAHEDRON).reshape(-1, 3)
+    return coordinates, *_repeated(_FACES, len(places), 6)
 
 
 def lines(places, pairs, radius):
-    """(6 E, 3, 3) float64 triangles: a three-sided bar along each pair (E, 2) of places (V, 3)."""
-    begin, end = places[pairs[:, 0]], places[pairs[:, 1]]
+    """A three-sided bar along each pair (E, 2) of places (V, 3); as `points`, of 6 E coordinates. Pairs at
+    one place have none."""
+    begin, end = places[pairs[:, 0]].astype(np.float64), places[pairs[:, 1]].astype(np.float64)
     along = end - begin
     length = np.linalg.norm(along, axis=1)
     begin, end, along = begin[length > 0], end[length > 0], along[length > 0] / length[length > 0, None]
@@ -26,11 +29,14 @@ def lines(places, pairs, radius):
     ring = radius * (
         np.cos(angles)[None, :, None] * side[:, None] + np.sin(angles)[None, :, None] * other[:, None]
     )
-    near, far = begin[:, None] + ring, end[:, None] + ring
-    following = [1, 2, 0]
-    first = np.stack([near, near[:, following], far[:, following]], axis=2)
-    second = np.stack([near, far[:, following], far], axis=2)
-    return np.concatenate([first.reshape(-1, 3, 3), second.reshape(-1, 3, 3)])
+    coordinates = np.concatenate([begin[:, None] + ring, end[:, None] + ring], axis=1)
+    return coordinates.reshape(-1, 3).astype(np.float32), *_repeated(_SIDES, len(begin), 6)
+
+
+def _repeated(faces, count, vertices):
+    """(offsets, corners) int32 of a body that is there so many times."""
+    corners = (np.arange(count, dtype=np.int32)[:, None, None] * vertices + faces).astype(np.int32)
+    return np.arange(0, corners.size + 1, faces.shape[1], dtype=np.int32), corners.ravel()
 
 
 def edges(mesh):

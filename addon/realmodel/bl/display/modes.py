@@ -2,7 +2,7 @@
 """The six display modes: which of the model's objects are in sight, and how each is drawn.
 
 mode        what is in sight                               drawn by
-POINTS      vertices of blocks or interfaces               `drawing`, in the viewport; the objects are hidden
+POINTS      vertices of blocks or interfaces               `drawing`, in renders `render_marks`
 LINES       edges of blocks or interfaces                  likewise
 AREAS       faces of blocks or interfaces with their edges Blender, wires over the faces
 SURFACES    the interfaces, smooth                         Blender
@@ -15,9 +15,10 @@ import json
 from ...core import RealModelError
 from .. import settings
 from . import bodies, cells, cuts, stages
-from .visible import want
+from .visible import WANTED, want
 
 WIRE = "realmodel_wire"  # on an object whose wires the view has switched on
+SEE_THROUGH = "realmodel_see_through"  # on an interface that is drawn as wires because blocks are in sight
 DRAWN = ("POINTS", "LINES")
 _WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
 
@@ -41,14 +42,14 @@ def apply(scene, mode, stage):
     solid = mode in ("BLOCKS", "AREAS")
     for row in scene.realmodel.results:
         here = stages.present(row) and not is_hidden(scene, row)
-        rendered = here and with_blocks and mode != "POLYHEDRA"
+        rendered = here and with_blocks and solid
         want(scene, row.object, here and with_blocks and solid and not cut, rendered and not cut)
         half = halves.get(row.object)
         want(scene, half, here and with_blocks and solid and cut, rendered and cut)
         want(scene, cell_bodies.get(row.object), here, here)
         for item in (row.object, half):
             _wires(item, mode == "AREAS")
-    _interfaces(scene, with_interfaces and mode not in DRAWN, mode == "AREAS")
+    _interfaces(scene, with_interfaces and mode not in DRAWN, mode == "AREAS", with_blocks)
 
 
 def shown_kinds(mode, subject):
@@ -58,12 +59,14 @@ def shown_kinds(mode, subject):
     return mode != "SURFACES", mode == "SURFACES"
 
 
-def drawn(scene):
-    """The objects whose points or lines are drawn, in the modes that Blender does not draw itself."""
+def drawn(scene, mode=None):
+    """The objects whose points or lines are drawn, in the modes that Blender does not draw itself. mode:
+    where it is not the one of the settings."""
     group = scene.realmodel
-    if group.display not in DRAWN:
+    mode = mode or group.display
+    if mode not in DRAWN:
         return []
-    with_blocks, with_interfaces = shown_kinds(group.display, group.view.subject)
+    with_blocks, with_interfaces = shown_kinds(mode, group.view.subject)
     found = []
     if with_blocks:
         halves = bodies.of_kind(scene, bodies.CUT) if cuts.is_shown(scene) else None
@@ -90,7 +93,21 @@ def world_matrix(item):
     return item.matrix_world
 
 
-def _interfaces(scene, shown, wires):
+def _see_through(item, wanted):
+    """Draws an interface as wires where blocks are in sight too, whoever shows it: it lies on their faces,
+    and the two would flicker. One that the user draws otherwise than solid is left as it is."""
+    if item is None or item.library is not None:
+        return
+    if wanted and item.display_type == "TEXTURED":
+        item.display_type = "WIRE"
+        item[SEE_THROUGH] = True
+    elif not wanted and SEE_THROUGH in item:
+        if item.display_type == "WIRE":
+            item.display_type = "TEXTURED"
+        del item[SEE_THROUGH]
+
+
+def _interfaces(scene, shown, wires, beside_blocks):
     for rock in scene.realmodel.rocks:
         if rock.interfaces is not None and rock.interfaces.library is None:
             hidden = not shown
@@ -99,6 +116,7 @@ def _interfaces(scene, shown, wires):
         for surface in rock.surfaces:
             want(scene, surface.interface, shown and not surface.hide, not surface.hide)
             _wires(surface.interface, wires)
+            _see_through(surface.interface, beside_blocks)
 
 
 def _wires(item, wanted):
@@ -123,6 +141,22 @@ def _make_cells(scene, stage):
     bodies.put(scene, bodies.CELLS, [(rows[key], *arrays) for key, arrays in shapes.items() if rows.get(key)])
     group.view.cells_of = made_of
     cells.forget()
+
+
+def without_blocks(scene):
+    """Shows the interfaces alone, as ordinary objects: the blocks are gone."""
+    for _, surface in settings.surface_rows(scene):
+        item = surface.interface
+        if item is not None and item.library is None:
+            item.pop(WANTED, None)
+            want(scene, item, not surface.hide, not surface.hide)
+            let_go(item)
+
+
+def let_go(item):
+    """Draws an interface as Blender does of its own accord."""
+    _wires(item, False)
+    _see_through(item, False)
 
 
 def needs_cells(scene, mode, stage):

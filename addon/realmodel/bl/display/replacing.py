@@ -23,7 +23,9 @@ def end_render():
     """The renderer may still be about to let go of its data: what is left over goes a moment later."""
     global _rendering
     _rendering = False
-    if not bpy.app.background and not bpy.app.timers.is_registered(tidy):
+    if bpy.app.background:
+        tidy()
+    elif not bpy.app.timers.is_registered(tidy):
         bpy.app.timers.register(tidy, first_interval=0.5)
 
 

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The points where boreholes met surfaces go to the surfaces of a rock mass, and are kept in the .blend."""
+
+import numpy as np
+
+from ..core import PointFile
+from ..core.readers import read_point_file
+from . import project_settings, reading_text, settings, stored_arrays
+
+
+def give(scene, rock, points, add_surfaces=False):
+    """Gives points to surfaces by name, beside those that they have.
+
+    rock: its row. points: {surface: (P, 3) float64 in model units}. add_surfaces: adds those that are not
+    there, the lowest first. Returns sentences about what had no use. Raises InputRefused.
+    """
+    rows = {row.name: row for row in rock.surfaces}
+    own = {name: _own_points(scene, rows[name]) for name in points if name in rows}
+    told = []
+    with settings.filling():
+        for name in sorted(points, key=lambda name: float(points[name][:, 2].mean())):
+            if name not in rows:
+                if add_surfaces:
+                    row = rock.surfaces.add()
+                    row.name = name
+                    _keep(row, points[name])
+                else:
+                    told.append(f"the boreholes met '{name}', which is no surface of {rock.name}")
+            elif own[name] is None:
+                told.append(f"'{name}' is a mesh and takes no points from boreholes")
+            else:
+                _keep(rows[name], np.concatenate([own[name], points[name]]))
+        rock.active_surface = len(rock.surfaces) - 1
+    return told
+
+
+def _own_points(scene, row):
+    """The points that a surface has from its file; None where it is no surface of such points."""
+    if row.source == "NONE":
+        return np.empty((0, 3))
+    if row.source != "POINTS_FILE":
+        return None
+    if row.stored:
+        return stored_arrays.unpack(row.stored)["points"]
+    path = project_settings.absolute(row.filepath)
+    if path is None:
+        return np.empty((0, 3))
+    return read_point_file(PointFile(path, **reading_text.options(row)), scene.realmodel.units)[0]
+
+
+def _keep(row, points):
+    row.source, row.filepath, row.reading = "POINTS_FILE", "", ""
+    row.stored, row.stored_stamp = stored_arrays.pack(points=points), ""
+    row.interface_digest = ""

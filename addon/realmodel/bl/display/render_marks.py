@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points and lines in a final render: while one is under way each block has a body of small octahedra or bars
+beside it, as thick as points and lines are on the screen."""
+
+import numpy as np
+
+from .. import meshes
+from . import bodies, marks, modes, viewpoints
+
+POINT_RADIUS, LINE_RADIUS = 2.0, 0.8  # pixels
+
+
+def put(scene, mode):
+    """Makes the bodies of what a display mode draws, or removes them in the other modes."""
+    if mode not in modes.DRAWN:
+        bodies.remove(scene, bodies.MARKS)
+        return
+    pixel = _pixel_size(scene)
+    shapes = []
+    for item in modes.drawn(scene, mode):
+        coordinates = meshes.mesh_coordinates(item.data)
+        if mode == "POINTS":
+            shapes.append((item, *marks.points(coordinates, POINT_RADIUS * pixel)))
+        else:
+            shapes.append((item, *marks.lines(coordinates, marks.edges(item.data), LINE_RADIUS * pixel)))
+    bodies.put(scene, bodies.MARKS, shapes)
+
+
+def _pixel_size(scene):
+    """About how large a pixel of a render is at the model, in the units of the scene."""
+    render, camera = scene.render, scene.camera
+    pixels = max(render.resolution_x, render.resolution_y) * render.resolution_percentage / 100.0
+    points = viewpoints.model_points(scene)
+    size = float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else 1.0
+    if camera is None or camera.type != "CAMERA":
+        return size / pixels
+    if camera.data.type == "ORTHO":
+        return camera.data.ortho_scale / pixels
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2 if len(points) else np.zeros(3)
+    away = float(np.linalg.norm(np.array(camera.matrix_world.translation) - middle))
+    return 2.0 * np.tan(camera.data.angle / 2.0) * away / pixels

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What shapes the mesh of a region: where its triangles are smaller, what lines and points it contains."""
+
+import bpy
+from bpy.props import IntProperty
+from bpy_extras.io_utils import ImportHelper
+
+from ..bl import live, plan_mesh, project_settings, settings
+from ..core import InputRefused
+from ..core.plan_input import read_constraints
+from .reporting import Reporting, needed_path, needed_rock
+
+
+def _mesh_or_curve(context):
+    """The active object where it can give lines, or None."""
+    item = context.active_object
+    return item if item is not None and settings.is_region_object(None, item) else None
+
+
+def _removed(rows, index, what):
+    if not 0 <= index < len(rows):
+        raise InputRefused(f"there is no {what} {index}", advice="they are counted from 0")
+    rows.remove(index)
+
+
+class REALMODEL_OT_size_add(Reporting, bpy.types.Operator):
+    """Have smaller triangles somewhere: along the outline, or at the active curve or mesh object"""
+
+    bl_idname = "realmodel.size_add"
+    bl_label = "Add Smaller Triangles"
+
+    def act(self, context):
+        rock, item = needed_rock(context), _mesh_or_curve(context)
+        with settings.filling():
+            row = rock.sizes.add()
+            if item is not None and item != rock.region:
+                row.at, row.object = "OBJECT", item
+            row.length = rock.edge_length / 4.0 or 1.0
+        live.touch(context.scene)
+
+
+class REALMODEL_OT_size_remove(Reporting, bpy.types.Operator):
+    """Have triangles there as large as elsewhere"""
+
+    bl_idname = "realmodel.size_remove"
+    bl_label = "Remove Smaller Triangles"
+
+    index: IntProperty(name="Number", description="Which of them, counted from 0", min=0)
+
+    def act(self, context):
+        _removed(needed_rock(context).sizes, self.index, "entry")
+        live.touch(context.scene)
+
+
+class REALMODEL_OT_constraint_add(Reporting, bpy.types.Operator):
+    """Have the mesh contain the edges of the active curve or mesh object, such as a river or a fault trace"""
+
+    bl_idname = "realmodel.constraint_add"
+    bl_label = "Add Constraint"
+
+    def act(self, context):
+        rock, item = needed_rock(context), _mesh_or_curve(context)
+        if item is None:
+            raise InputRefused(
+                "the active object has no lines", advice="make a curve or a mesh object active"
+            )
+        with settings.filling():
+            rock.constraints.add().object = item
+        live.touch(context.scene)
+
+
+class REALMODEL_OT_constraint_remove(Reporting, bpy.types.Operator):
+    """Take a constraint out of the mesh; its object stays in the scene"""
+
+    bl_idname = "realmodel.constraint_remove"
+    bl_label = "Remove Constraint"
+
+    index: IntProperty(
+        name="Number", description="Which of them, counted from 0; -1: all that were read from files", min=-1
+    )
+
+    def act(self, context):
+        rock = needed_rock(context)
+        if self.index < 0:
+            rock.constraints_stored = ""
+        else:
+            _removed(rock.constraints, self.index, "constraint")
+        live.touch(context.scene)
+
+
+class REALMODEL_OT_constraint_read(Reporting, bpy.types.Operator, ImportHelper):
+    """Read lines and points that the mesh must contain from a file (GeoJSON, WKT, shapefile, GeoPackage)"""
+
+    bl_idname = "realmodel.constraint_read"
+    bl_label = "Read Constraints"
+
+    filename_ext = ""
+    filter_glob: bpy.props.StringProperty(
+        default="*.geojson;*.json;*.wkt;*.txt;*.shp;*.gpkg", options={"HIDDEN"}
+    )
+
+    def act(self, context):
+        rock = needed_rock(context)
+        path = project_settings.absolute(needed_path(self.filepath, "the constraints"))
+        if not path.is_file():
+            raise InputRefused(f"there is no file {path}", advice="check the path")
+        found = read_constraints([path], context.scene.realmodel.units)
+        plan_mesh.add_constraints(rock, found)
+        live.touch(context.scene)
+        self.report({"INFO"}, f"Read {len(found)} lines and points")
+
+    def check(self, _context):
+        return False  # a file of any ending
+
+
+CLASSES = (
+    REALMODEL_OT_size_add,
+    REALMODEL_OT_size_remove,
+    REALMODEL_OT_constraint_add,
+    REALMODEL_OT_constraint_remove,
+    REALMODEL_OT_constraint_read,
+)

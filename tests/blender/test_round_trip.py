@@ -1,0 +1,388 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A project file opened in the panel and saved again says the same: nothing that it can say is lost."""
+
+from pathlib import Path
+
+import bpy
+from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet
+from realmodel.bl import plan_mesh, project_settings, reading_text
+from realmodel.core import load_project
+from realmodel.core.project_file import _ROCK_KEYS, _SURFACE_KEYS
+from realmodel.core.rock_input import read_rocks
+from realmodel.core.work import run
+
+EVERY_KEY = """
+format = 1
+name = "every key"
+units = "ft"
+library = "library.toml"
+
+[[rock]]
+name = "first"
+region = [[0, 0], [100, 0], [100, 80], [0, 80]]
+holes = [[[40, 30], [50, 30], [50, 40]]]
+edge_length = 9.7
+mesher = "frontal"
+base_elevation = -12.1
+size = [{ at = "outline", length = 4.1, distance = 2.3 },
+  { at = [10.1, 20], length = 2, distance = 1 },
+  { at = [[60, 20], [70, 25.5]], length = 2.5, distance = 0 },
+  { at = "constraints", length = 3, distance = 1 }]
+constraints = ["river.geojson", [[5, 5], [30.3, 60]], [80, 60]]
+boreholes = { collars = "collars.csv", picks = "picks.csv", columns = { hole = "BHID" }, units = "ft" }
+
+[[rock.surface]]
+name = "kriged"
+points = "points.csv"
+columns = ["east", "north", "level"]
+where = { bed = "A", year = [2019, 2020] }
+separator = ";"
+decimal = ","
+nodata = [-999, "none"]
+units = { xy = "ft", z = "m" }
+method = "kriging"
+neighbours = 0
+octants = 2
+radius = 500.5
+variogram = { nugget = 0.25, structures = [{ model = "spherical", range = 33.3, sill = 4.1 },
+  { model = "gaussian", range = 90, sill = 2, anisotropy = { ratio = 1.7, azimuth = 35 } }] }
+anisotropy = { ratio = 2.5, azimuth = 30 }
+extrapolate = "nearest"
+property = 4
+block = "Bottom"
+
+[[rock.surface]]
+name = "trend"
+points = "plain.csv"
+method = "universal_kriging"
+drift = "quadratic"
+variogram = { model = "exponential", range = 60.6, sill = 4.4, nugget = 0.1 }
+rule = "conformable"
+minimum_thickness = 0.35
+
+[[rock.surface]]
+name = "distance"
+points = "plain.csv"
+method = "idw"
+power = 2.6
+
+[[rock.surface]]
+name = "smooth"
+points = "plain.csv"
+method = "spline"
+smoothing = 0.3
+
+[[rock.surface]]
+name = "dsi"
+points = "plain.csv"
+method = "dsi"
+weight = 3.3
+border = 31
+above = "smooth"
+below = 90
+
+[[rock.surface]]
+name = "plane"
+points = "plain.csv"
+method = "plane"
+dip = 11.1
+dip_direction = 200
+
+[[rock.surface]]
+name = "level"
+method = "constant"
+value = 44.4
+
+[[rock.surface]]
+name = "parallel"
+points = "plain.csv"
+method = "parallel"
+to = "level"
+thickness_method = "plane"
+
+[[rock.surface]]
+name = "thick"
+method = "parallel"
+to = "level"
+thickness = 3.21
+rule = "discontinuous"
+
+[[rock.surface]]
+name = "in holes only"
+
+[[rock]]
+name = "by number"
+region = { file = "two.geojson", where = { unit = "b" }, units = "ft" }
+triangles = 300
+mesher = "grid"
+
+[[rock.surface]]
+name = "low"
+points = "plain.csv"
+
+[[rock]]
+name = "by points"
+region = "POLYGON ((400 0, 500 0, 500 80, 400 80, 400 0))"
+edge_length = "auto"
+
+[[rock.surface]]
+name = "mesh"
+mesh = "mesh.off"
+rule = "base"
+
+[[rock.surface]]
+name = "top"
+points = "plain.csv"
+"""
+
+
+def write_files(folder: Path):
+    (folder / "project.toml").write_text(EVERY_KEY)
+    (folder / "library.toml").write_text(
+        '[[property]]\nid = 4\nname = "Clay"\nrock = "clay"\nage = "Eocene"\nstructure = "bedded"\n'
+        'color = "#102030"\ndensity = 2123.4\ndescription = "grün"\n'
+    )
+    rows = [(i * 13 % 97, i * 29 % 79, 5 + i % 7) for i in range(40)]
+    own = "\n".join(f"{x},5;{y};{z};A;{2019 + n % 3};" for n, (x, y, z) in enumerate(rows))
+    (folder / "points.csv").write_text(f"east;north;level;bed;year\n{own}\n")
+    plain = [(x + shift, y, 20 + z) for shift in (0, 200, 400) for x, y, z in rows]
+    (folder / "plain.csv").write_text("x,y,z\n" + "\n".join(f"{x},{y},{z}" for x, y, z in plain) + "\n")
+    (folder / "collars.csv").write_text("BHID,x,y,z\nB1,20,20,60\nB2,70,50,61\nB3,30,70,60.5\n")
+    picks = "".join(
+        f"B{n},{name},{depth + n}\n"
+        for n in (1, 2, 3)
+        for name, depth in (("in holes only", 8), ("trend", 30))
+    )
+    (folder / "picks.csv").write_text("BHID,surface,depth\n" + picks)
+    (folder / "river.geojson").write_text('{"type": "LineString", "coordinates": [[90, 5], [95, 60]]}')
+    squares = ",".join(
+        f'{{"type": "Feature", "properties": {{"unit": "{unit}"}}, "geometry": {{"type": "Polygon", '
+        f'"coordinates": [[[{x}, 0], [{x + 90}, 0], [{x + 90}, 70], [{x}, 70], [{x}, 0]]]}}}}'
+        for unit, x in (("a", 700), ("b", 200))
+    )
+    (folder / "two.geojson").write_text(f'{{"type": "FeatureCollection", "features": [{squares}]}}')
+    (folder / "mesh.off").write_text("OFF\n4 2 0\n390 -5 1\n510 -5 1\n510 90 2\n390 90 2\n3 0 1 2\n3 0 2 3\n")
+
+
+def said(project):
+    """All that a project says, with arrays in the place of files, and equal where it means the same."""
+    rocks = [entry.rock for entry in run(lambda work: read_rocks(work, project))]
+    return {
+        "name": project.name,
+        "units": project.units,
+        "library": [vars(entry) for entry in project.library or ()],
+        "rocks": [_rock(rock) for rock in rocks],
+    }
+
+
+def _rock(rock):
+    return {
+        "rings": [ring.tolist() for ring in rock.rings()] if rock.region is not None else None,
+        "size": [{**entry, "at": _plain(entry["at"])} for entry in rock.size],
+        "constraints": [line.tolist() for line in rock.constraints],
+        "surfaces": [_surface(surface) for surface in rock.surfaces],
+        **{
+            key: getattr(rock, key)
+            for key in ("name", "edge_length", "triangles", "mesher", "base_elevation")
+        },
+    }
+
+
+def _surface(surface):
+    return {
+        "shape": [
+            None if array is None else array.tolist()
+            for array in (surface.points, surface.vertices, surface.triangles)
+        ],
+        "method": surface.method_options() if surface.interpolated else None,
+        **{key: getattr(surface, key) for key in ("name", "rule", "property", "block", "minimum_thickness")},
+    }
+
+
+def _plain(at):
+    return (
+        at
+        if isinstance(at, str)
+        else [list(map(float, p)) if isinstance(p, (list, tuple)) else float(p) for p in at]
+    )
+
+
+class RoundTrip(PanelCase):
+    def opened_and_saved(self, path):
+        ops.open_project(filepath=str(path))
+        saved = self.folder / "saved" / "p.toml"
+        saved.parent.mkdir(exist_ok=True)
+        ops.save_project(filepath=str(saved))
+        return load_project(saved)
+
+    def assert_says_the_same(self, path):
+        self.maxDiff = 4000
+        before, after = said(load_project(path)), said(self.opened_and_saved(path))
+        for one, other in zip(before["rocks"], after["rocks"], strict=True):
+            for surface, again in zip(one["surfaces"], other["surfaces"], strict=True):
+                self.assertEqual(again, surface)
+        self.assertEqual(after, before)
+
+    def test_examples(self):
+        for path in sorted(SAMPLES.glob("*/project.toml")):
+            with self.subTest(path.parent.name):
+                self.assert_says_the_same(path)
+
+    def test_every_key(self):
+        for key in (*_ROCK_KEYS, *_SURFACE_KEYS):
+            self.assertIn(f"\n{key} =" if key != "surface" else "[[rock.surface]]", EVERY_KEY, "say it above")
+        write_files(self.folder)
+        self.assert_says_the_same(self.folder / "project.toml")
+
+    def test_the_panel_shows_what_the_file_says(self):
+        write_files(self.folder)
+        ops.open_project(filepath=str(self.folder / "project.toml"))
+        first, number, points = self.model.rocks
+        self.assertEqual([rock.edges_by for rock in self.model.rocks], ["LENGTH", "TRIANGLES", "AUTO"])
+        self.assertEqual(number.triangles, 300)
+        self.assertEqual([entry.at for entry in first.sizes], ["OUTLINE", "STORED", "STORED", "CONSTRAINTS"])
+        self.assertEqual(plan_mesh.stored_constraints(first), (2, 1))
+        surface = first.surfaces[0]
+        self.assertEqual(
+            (surface.columns, surface.where, surface.separator, surface.decimal, surface.nodata),
+            ("east, north, level", "bed = A; year = 2019, 2020", ";", ",", "-999, none"),
+        )
+        self.assertEqual((surface.plan_unit, surface.height_unit), ("ft", "m"))
+        self.assertEqual([part.model for part in surface.structures], ["spherical", "gaussian"])
+        self.assertTrue(surface.structures[1].use_anisotropy)
+
+
+class Written(PanelCase):
+    """What is set in the panel reaches the build."""
+
+    def composed(self):
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        return project_settings.compose(self.scene, depsgraph).project.rocks[0]
+
+    def test_how_a_file_is_read(self):
+        (self.folder / "p.csv").write_text("a|b|c|bed\n1|2|3|x\n4|5|-9|x\n6|7|8|y\n")
+        ops.rock_add()
+        ops.surface_add(filepath=str(self.folder / "p.csv"))
+        row = self.model.rocks[0].surfaces[0]
+        row.columns, row.where, row.separator, row.nodata = "a, b, c", "bed = x", "|", "-9"
+        row.height_unit, row.decimal = "ft", "."
+        given = self.composed().surfaces[0].points
+        self.assertEqual(
+            (list(given.columns), given.where, given.separator, given.nodata, given.units, given.decimal),
+            (["a", "b", "c"], {"bed": "x"}, "|", -9, {"z": "ft"}, "."),
+        )
+        row.where = row.nodata = ""
+        row.height_unit = "NONE"
+        self.assertNotIn("where", row.reading)
+        self.assertNotIn("units", row.reading)
+
+    def test_texts_come_back_as_they_were(self):
+        ops.rock_add()
+        ops.surface_add(empty=True)
+        row = self.model.rocks[0].surfaces[0]
+        for key, value in (
+            ("columns", [2, 3, "z; up"]),
+            ("where", {"a": "60", "b": [1.5, "x, y"]}),
+            ("separator", "\t"),
+            ("separator", " "),
+            ("nodata", [-9999, "n/a", ""]),
+        ):
+            row.reading = ""
+            reading_text._set(row, key, value)
+            shown = reading_text.text(row, key)
+            row.reading = ""
+            reading_text.set_text(row, key, shown)
+            self.assertEqual(reading_text.options(row)[key], value)
+
+    def test_smaller_triangles_and_constraints(self):
+        ops.open_sample(sample="two_layers")
+        rock = self.model.rocks[0]
+        river = outline("river", [(10, 10), (50, 30), (90, 20)], cyclic=False)
+        select(river)
+        ops.constraint_add()
+        ops.size_add()
+        rock.sizes[0].length, rock.sizes[0].distance = 1.0, 3.0
+        (self.folder / "well.wkt").write_text("POINT (20 50)")
+        ops.constraint_read(filepath=str(self.folder / "well.wkt"))
+        given = self.composed()
+        self.assertEqual([len(line) for line in given.constraints], [1, 2, 2])
+        self.assertEqual([entry["length"] for entry in given.size], [1.0, 1.0])
+        ops.build()
+        finer = len(rock.surfaces[0].interface.data.polygons)
+        ops.size_remove(index=0)
+        ops.constraint_remove(index=0)
+        ops.constraint_remove(index=-1)
+        ops.build()
+        self.assertGreater(finer, 1.5 * len(rock.surfaces[0].interface.data.polygons))
+        self.refused(ops.size_remove, "no entry 0", index=0)
+        self.refused(ops.constraint_remove, "no constraint 3", index=3)
+        select()
+        self.refused(ops.constraint_add, "no lines")
+        self.refused(ops.constraint_read, "no file", filepath=str(self.folder / "none.wkt"))
+
+    def test_triangles_by_number_and_by_points(self):
+        ops.open_sample(sample="two_layers")
+        rock = self.model.rocks[0]
+        rock.edges_by = "TRIANGLES"
+        rock.triangles = 500
+        ops.build()
+        self.assertAlmostEqual(len(rock.surfaces[0].interface.data.polygons), 500, delta=50)
+        rock.edges_by = "AUTO"
+        self.assertEqual((self.composed().edge_length, self.composed().triangles), ("auto", None))
+        rock.edge_length = 7.0  # as a script sets it
+        self.assertEqual((rock.edges_by, self.composed().edge_length), ("LENGTH", 7.0))
+
+    def test_boreholes(self):
+        write_files(self.folder)
+        self.refused(ops.boreholes_read, "no rock mass", filepath=str(self.folder / "picks.csv"))
+        ops.rock_add()
+        rock = self.model.rocks[0]
+        rock.region, rock.edge_length = outline("region", [(0, 0), (100, 0), (100, 80), (0, 80)]), 10.0
+        ops.boreholes_read(
+            filepath=str(self.folder / "picks.csv"), collars="collars.csv", columns="hole = BHID"
+        )
+        self.assertEqual([s.name for s in rock.surfaces], ["trend", "in holes only"])
+        ops.boreholes_read(
+            filepath=str(self.folder / "picks.csv"), collars="collars.csv", columns="hole = BHID"
+        )
+        self.assertEqual([len(s.points) for s in self.composed().surfaces], [6, 6])
+        for surface in rock.surfaces:
+            surface.method = "plane"
+        ops.build()
+        self.assertEqual([row.name for row in self.model.results], ["in holes only block"])
+        self.refused(
+            ops.boreholes_read, "columns", filepath=str(self.folder / "picks.csv"), columns="bore = X"
+        )
+        self.refused(ops.boreholes_read, "no file", filepath=str(self.folder / "none.csv"))
+
+    def test_nested_variograms(self):
+        ops.open_sample(sample="two_layers")
+        rock = self.model.rocks[0]
+        row = rock.surfaces[rock.active_surface]
+        row.variogram_range, row.variogram_sill, row.variogram_nugget = 50.0, 5.0, 1.0
+        ops.structure_add()
+        ops.structure_add()
+        given = self.composed().surfaces[rock.active_surface].options["variogram"]
+        self.assertEqual(
+            given,
+            {
+                "nugget": 1.0,
+                "structures": [
+                    {"model": "spherical", "range": 50.0, "sill": 4.0},
+                    {"model": "spherical", "range": 100.0, "sill": 4.0},
+                ],
+            },
+        )
+        ops.build()
+        ops.structure_remove(index=1)
+        ops.structure_remove(index=0)
+        self.assertEqual(row.variogram_range, 50.0)
+        self.refused(ops.structure_remove, "no part 0", index=0)
+
+    def test_a_sheet_has_no_mesh_to_be_shaped(self):
+        sheet("a", 1.0)
+        sheet("b", 2.0)
+        select(bpy.data.objects["a"], bpy.data.objects["b"])
+        ops.from_selected()
+        ops.size_add()
+        self.assertEqual(self.composed().size, [])
