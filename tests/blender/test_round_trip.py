@@ -237,7 +237,7 @@ class RoundTrip(PanelCase):
     def test_the_panel_shows_what_the_file_says(self):
         write_files(self.folder)
         ops.open_project(filepath=str(self.folder / "project.toml"))
-        first, number, points = self.model.rocks
+        first, number, _ = self.model.rocks
         self.assertEqual([rock.edges_by for rock in self.model.rocks], ["LENGTH", "TRIANGLES", "AUTO"])
         self.assertEqual(number.triangles, 300)
         self.assertEqual([entry.at for entry in first.sizes], ["OUTLINE", "STORED", "STORED", "CONSTRAINTS"])
