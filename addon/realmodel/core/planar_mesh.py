@@ -10,7 +10,7 @@ import numpy as np
 
 from .errors import InputRefused, place_text
 from .mesh_sizes import check_mesher, local_lengths, places_of, size_of_edges
-from .region_rings import checked_ring, region_rings
+from .region_rings import numbered_ring, region_rings
 from .work import Cancel, Progress, Work, native_module, run
 
 
@@ -136,19 +136,13 @@ def triangulate_polygon(outline, holes=()) -> np.ndarray:
     Raises InputRefused where a ring bounds nothing. Whether rings cross is looked for only where ears run
     out: mesh_region looks for it always.
     """
-    rings = [_polygon_ring(outline, "outline")]
-    rings += [_polygon_ring(hole, f"hole {number}") for number, hole in enumerate(holes, 1)]
+    rings = [numbered_ring(outline, "outline")]
+    rings += [numbered_ring(hole, f"hole {number}") for number, hole in enumerate(holes, 1)]
     native = native_module()
     try:
         return native.triangulate_polygon(rings)
     except native.InputError as error:
         raise refused_region(error) from error
-
-
-def _polygon_ring(ring, item: str) -> np.ndarray:
-    """The ring as it is, so that corners keep their numbers, once checked_ring accepts it."""
-    checked_ring(ring, item)
-    return np.ascontiguousarray(ring, np.float64)
 
 
 def _checked(outline, holes, *others) -> dict:

@@ -26,9 +26,15 @@ class NamedRing:
 def checked_ring(ring, item: str) -> np.ndarray:
     """One ring as (N, 2) float64, neither closed by repeating its first corner nor with repeated corners
     in a row. Raises InputRefused where it bounds nothing."""
+    return _without_repetition(numbered_ring(ring, item))
+
+
+def numbered_ring(ring, item: str) -> np.ndarray:
+    """One ring as (N, 2) float64, its corners all there, so that they keep their numbers. Raises InputRefused
+    where it bounds nothing."""
     corners = _corners(ring, item)
     _require_corners(corners, item)
-    return _without_repetition(corners)
+    return corners
 
 
 def _corners(ring, item: str) -> np.ndarray:
@@ -42,8 +48,9 @@ def _corners(ring, item: str) -> np.ndarray:
 
 
 def _require_corners(corners: np.ndarray, item: str) -> None:
-    bad = np.flatnonzero(~np.isfinite(corners).all(axis=1))
-    if len(bad):
+    finite = np.isfinite(corners)
+    if not finite.all():
+        bad = np.flatnonzero(~finite.all(axis=1))
         what = f"corner {bad[0]} is {place_text(corners[bad[0]])}, not finite"
         raise InputRefused(what, item=item)
     if not _three_differ(corners):
@@ -54,7 +61,8 @@ def _require_corners(corners: np.ndarray, item: str) -> None:
 
 def _three_differ(corners: np.ndarray) -> bool:
     """Whether there are three different places; quick for ten thousand holes."""
-    others = corners[(corners != corners[:1]).any(axis=1)]
+    x, y = corners.T
+    others = corners[(x != x[:1]) | (y != y[:1])]
     return len(others) > 1 and bool((others != others[0]).any())
 
 

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "meshing/check.hpp"
+#include "meshing/corner_grid.hpp"
 #include "meshing/ear_ring.hpp"
 #include "meshing/plan_predicates.hpp"
+#include "meshing/point_insertion.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/meshing/rings.hpp"
 
@@ -17,137 +18,193 @@ namespace {
 
 using Triangles = std::vector<std::array<std::int32_t, 3>>;
 
-/// Spreads the lower 16 bits of a number over its even bits.
-std::uint32_t spread(std::uint32_t bits) {
-    bits = (bits | bits << 8) & 0x00ff00ff;
-    bits = (bits | bits << 4) & 0x0f0f0f0f;
-    bits = (bits | bits << 2) & 0x33333333;
-    return (bits | bits << 1) & 0x55555555;
-}
-
 /// Cuts ears off a ring until a triangle is left.
 class Clipping {
 public:
     Clipping(EarRing& ring, std::span<const PlanPoint> corners, const Check& check)
-        : ring_(ring), check_(check) {
+        : ring_(ring),
+          check_(check),
+          places_(ring.nodes.size()),
+          turns_(ring.nodes.size(), 0),
+          entry_(ring.nodes.size(), none),
+          blocker_(ring.nodes.size(), none),
+          waiting_(ring.nodes.size()) {
         mesh_.points.assign(corners.begin(), corners.end());
+        mesh_.corners.reserve(ring.nodes.size());
+        mesh_.across.reserve(ring.nodes.size());
+        mesh_.fixed.reserve(ring.nodes.size());
+        queue_.reserve(2 * ring.nodes.size());
     }
 
     /// False where no ear is left.
     bool run() {
-        lay_curve();
-        Ticker tick(check_);
-        std::int32_t tip = ring_.first(), failed = 0;
-        while (left_ > 3) {
-            tick(0);
-            const EarNode& node = ring_.nodes[tip];
-            if (!is_ear(tip)) {
-                tip = node.next;
-                if (++failed > left_) return false;
-                continue;
-            }
-            // Going on after the next corner spreads the ears, which keeps triangles from becoming
-            // slivers that flips must mend.
-            const std::int32_t after = ring_.nodes[node.next].next;
-            cut(tip);
-            tip = after;
-            failed = 0;
+        CornerGrid grid = take_corners();
+        std::int32_t tip = ring_.first();
+        for (const bool is_choosy : {true, false}) {
+            queue_.clear();
+            const std::int32_t begin = tip;
+            do {
+                enqueue(tip);
+                tip = ring_.nodes[tip].next;
+            } while (tip != begin);
+            tip = cut_ears(grid, is_choosy, begin);
         }
+        if (left_ > 3 || turns_[tip] <= 0) return false;
         const EarNode& node = ring_.nodes[tip];
-        if (side_of_line(ring_.place(node.previous), ring_.place(tip), ring_.place(node.next)) <=
-            0) {
-            return false;
-        }
         const std::int32_t t = add(node.previous, tip, node.next);
         place({t, 2}, node.next);
         return true;
     }
 
     Triangles swapped() {
+        Ticker tick(check_);
         std::vector<Side> doubtful;
         const auto count = static_cast<std::int32_t>(mesh_.corners.size());
         for (std::int32_t t = 0; t < count; ++t) {
-            for (int i = 0; i < 3; ++i) {
-                const Side side(t, i);
-                if (mesh_.is_border(side)) {
-                    mesh_.fix(side);
-                } else if (mesh_.behind(side).triangle() > t) {
-                    doubtful.push_back(side);
-                }
-            }
+            for (int i = 0; i < 3; ++i)
+                if (mesh_.is_border({t, i})) mesh_.fix({t, i});
         }
-        std::reverse(doubtful.begin(), doubtful.end());
-        mesh_.legalise(doubtful);
+        for (std::int32_t t = 0; t < count; ++t) {
+            tick(0);
+            for (int i = 0; i < 3; ++i)
+                if (mesh_.behind({t, i}).triangle() > t) doubtful.push_back({t, i});
+            mesh_.legalise(doubtful);
+        }
         return std::move(mesh_.corners);
     }
 
 private:
-    void lay_curve() {
-        const std::size_t count = ring_.nodes.size();
-        PlanPoint low = ring_.place(0), high = low;
-        for (std::size_t n = 0; n < count; ++n) {
-            for (int k = 0; k < 2; ++k) {
-                low[k] = std::min(low[k], ring_.place(static_cast<std::int32_t>(n))[k]);
-                high[k] = std::max(high[k], ring_.place(static_cast<std::int32_t>(n))[k]);
-            }
-        }
-        low_ = low;
-        const double width = std::max(high[0] - low[0], high[1] - low[1]);
-        scale_ = width > 0 ? 65535 / width : 0;
-        curve_.resize(count);
-        before_.assign(count, -1);
-        after_.assign(count, -1);
-        std::vector<std::pair<std::uint32_t, std::int32_t>> order;
+    static constexpr std::int32_t none = -1;
+
+    int turn_at(std::int32_t node) const {
+        const EarNode& n = ring_.nodes[node];
+        return side_of_line(places_[n.previous], places_[node], places_[n.next]);
+    }
+
+    /// Only corners that do not turn left can hide in an ear: of those that lie in it, the one
+    /// farthest from its diagonal turns right or not at all.
+    CornerGrid take_corners() {
+        for (std::size_t n = 0; n < places_.size(); ++n)
+            places_[n] = ring_.place(static_cast<std::int32_t>(n));
+        std::vector<std::int32_t> hiding;
         std::int32_t node = ring_.first();
         do {
-            curve_[node] = on_curve(ring_.place(node));
-            order.emplace_back(curve_[node], node);
+            turns_[node] = static_cast<std::int8_t>(turn_at(node));
+            if (turns_[node] <= 0) hiding.push_back(node);
+            ++left_;
             node = ring_.nodes[node].next;
         } while (node != ring_.first());
-        left_ = static_cast<std::int32_t>(order.size());
-        std::sort(order.begin(), order.end());
-        for (std::size_t i = 0; i + 1 < order.size(); ++i) {
-            after_[order[i].second] = order[i + 1].second;
-            before_[order[i + 1].second] = order[i].second;
+        return {places_, hiding};
+    }
+
+    /// Cuts the ears in the queue and those that come of it; returns a corner that is left.
+    std::int32_t cut_ears(CornerGrid& grid, bool is_choosy, std::int32_t left_over) {
+        for (std::size_t i = 0; i < queue_.size() && left_ > 3; ++i) {
+            if (i % 1024 == 0) check_(0);
+            const std::int32_t tip = queue_[i];
+            if (entry_[tip] != static_cast<std::int32_t>(i)) continue;  // it comes again, or is cut
+            entry_[tip] = none;
+            const std::int32_t a = ring_.nodes[tip].previous, c = ring_.nodes[tip].next;
+            const std::int32_t blocker = blocker_of(tip, grid, is_choosy);
+            if (blocker != none) {
+                wait(tip, blocker);
+                continue;
+            }
+            cut(tip);
+            wake(tip);
+            if (left_over == tip) left_over = c;
+            for (const std::int32_t n : {a, c}) {
+                const int turn = turn_at(n);
+                if (turns_[n] <= 0 && turn > 0) {
+                    grid.remove(n);
+                    wake(n);
+                }
+                turns_[n] = static_cast<std::int8_t>(turn);
+                enqueue(n);
+            }
         }
+        return left_over;
     }
 
-    std::uint32_t on_curve(const PlanPoint& p) const {
-        const auto cell = [&](int k) {
-            return static_cast<std::uint32_t>(std::clamp((p[k] - low_[k]) * scale_, 0.0, 65535.0));
-        };
-        return spread(cell(0)) | spread(cell(1)) << 1;
+    /// To the end of the queue: going round spreads the ears, which keeps triangles from becoming
+    /// slivers that flips must mend.
+    void enqueue(std::int32_t tip) {
+        stop_waiting(tip);
+        entry_[tip] = none;
+        if (turns_[tip] <= 0) return;
+        entry_[tip] = static_cast<std::int32_t>(queue_.size());
+        queue_.push_back(tip);
     }
 
-    bool is_ear(std::int32_t tip) const {
+    // A corner that cannot be cut off waits until what is in its way is cut off itself, or turns
+    // left and hides in no ear any more.
+
+    void wait(std::int32_t tip, std::int32_t blocker) {
+        Waiting& first = waiting_[blocker];
+        blocker_[tip] = blocker;
+        waiting_[tip].before = none;
+        waiting_[tip].after = first.head;
+        if (first.head != none) waiting_[first.head].before = tip;
+        first.head = tip;
+    }
+
+    void stop_waiting(std::int32_t tip) {
+        if (blocker_[tip] == none) return;
+        const auto [head, before, after] = waiting_[tip];
+        if (before != none) {
+            waiting_[before].after = after;
+        } else {
+            waiting_[blocker_[tip]].head = after;
+        }
+        if (after != none) waiting_[after].before = before;
+        blocker_[tip] = none;
+    }
+
+    void wake(std::int32_t blocker) {
+        while (waiting_[blocker].head != none)
+            enqueue(waiting_[blocker].head);
+    }
+
+    /// What keeps a corner that turns left from being cut off, or none. Who is choosy takes only
+    /// triangles that hardly need flips: with none of a few corners nearby in their circle.
+    std::int32_t blocker_of(std::int32_t tip, const CornerGrid& grid, bool is_choosy) const {
         const EarNode& node = ring_.nodes[tip];
-        const PlanPoint &a = ring_.place(node.previous), &b = ring_.place(tip),
-                        &c = ring_.place(node.next);
-        if (side_of_line(a, b, c) <= 0) return false;
+        const PlanPoint &a = places_[node.previous], &b = places_[tip], &c = places_[node.next];
+        std::int32_t blocker = none;
+        if (is_choosy) {
+            // Rounded: it decides how good the triangle is, not whether it is one.
+            const double ux = a[0] - b[0], uy = a[1] - b[1], vx = c[0] - b[0], vy = c[1] - b[1];
+            const double twice = 2 * (vx * uy - vy * ux);
+            const double u2 = ux * ux + uy * uy, v2 = vx * vx + vy * vy;
+            const double x = (v2 * uy - u2 * vy) / twice, y = (u2 * vx - v2 * ux) / twice;
+            const double radius2 = (1 - 1e-9) * (x * x + y * y);
+            const auto is_within = [&](std::int32_t n) {
+                const PlanPoint& p = places_[n];
+                const double dx = p[0] - b[0] - x, dy = p[1] - b[1] - y;
+                if (dx * dx + dy * dy >= radius2 || twice_area(c, p, a) <= 0) return false;
+                blocker = n;
+                return true;
+            };
+            if (is_within(ring_.nodes[node.previous].previous) ||
+                is_within(ring_.nodes[node.next].next) ||
+                grid.any_beside(middle(a, c), is_within)) {
+                return blocker;
+            }
+        }
         const PlanPoint low{std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})},
             high{std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})};
-        const std::uint32_t from = on_curve(low), to = on_curve(high);
-        const auto blocks = [&](std::int32_t n) {
-            const PlanPoint& p = ring_.place(n);
+        grid.any_in_triangle(a, b, c, [&](std::int32_t n) {
+            const PlanPoint& p = places_[n];
             if (p[0] < low[0] || p[0] > high[0] || p[1] < low[1] || p[1] > high[1]) return false;
             if (p == a || p == b || p == c) return false;
-            return side_of_line(a, b, p) >= 0 && side_of_line(b, c, p) >= 0 &&
-                   side_of_line(c, a, p) >= 0;
-        };
-        std::int32_t up = after_[tip], down = before_[tip];
-        while (true) {
-            const bool goes_up = up >= 0 && curve_[up] <= to;
-            const bool goes_down = down >= 0 && curve_[down] >= from;
-            if (!goes_up && !goes_down) return true;
-            if (goes_up) {
-                if (blocks(up)) return false;
-                up = after_[up];
+            if (side_of_line(a, b, p) < 0 || side_of_line(b, c, p) < 0 ||
+                side_of_line(c, a, p) < 0) {
+                return false;
             }
-            if (goes_down) {
-                if (blocks(down)) return false;
-                down = before_[down];
-            }
-        }
+            blocker = n;
+            return true;
+        });
+        return blocker;
     }
 
     /// Makes a triangle whose first two sides are the edges of nodes a and b.
@@ -182,8 +239,6 @@ private:
         from.behind = {t, 2};
         from.next = c;
         ring_.nodes[c].previous = a;
-        if (before_[tip] >= 0) after_[before_[tip]] = after_[tip];
-        if (after_[tip] >= 0) before_[after_[tip]] = before_[tip];
         --left_;
     }
 
@@ -195,13 +250,21 @@ private:
         other.behind = placed;
     }
 
+    struct Waiting {
+        std::int32_t head = none;                  ///< the first that waits for this corner
+        std::int32_t before = none, after = none;  ///< others that wait for the same as this one
+    };
+
     EarRing& ring_;
     const Check& check_;
     FlatMesh mesh_;
-    std::vector<std::uint32_t> curve_;
-    std::vector<std::int32_t> before_, after_;
-    PlanPoint low_{};
-    double scale_ = 0;
+    // Of each node:
+    std::vector<PlanPoint> places_;
+    std::vector<std::int8_t> turns_;     ///< 1 left, 0 straight on or back, -1 right
+    std::vector<std::int32_t> entry_;    ///< where it stands in the queue
+    std::vector<std::int32_t> blocker_;  ///< what it waits for
+    std::vector<Waiting> waiting_;
+    std::vector<std::int32_t> queue_;
     std::int32_t left_ = 0;
 };
 

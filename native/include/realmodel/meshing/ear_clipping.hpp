@@ -16,9 +16,9 @@ namespace realmodel::meshing {
 
 /// Divides a polygon, an outline and holes in it, into triangles of its corners, and swaps edges
 /// until they are constrained Delaunay (Mei 2014, section 2.2.3): holes are joined to the outline
-/// by bridges (Eberly 2002, "Triangulation by ear clipping"), ears are cut off (Meisters 1975) that
-/// hold none of the corners near them on a space-filling curve, as earcut does it, and diagonals
-/// are flipped (Lawson 1977). Decisions are exact.
+/// by bridges (Eberly 2002, "Triangulation by ear clipping"), ears are cut off (Meisters 1975), at
+/// first those whose circles are empty nearby, and diagonals are flipped (Lawson 1977). Decisions
+/// are exact.
 ///
 /// Returns corner numbers, counter-clockwise, counting through the rings; corners at one place keep
 /// their own numbers. All corners are used but those that repeat the one before; corners in one
