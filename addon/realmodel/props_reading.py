@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of a surface that say how its file of points is read, where the file does not tell it."""
+"""The settings of a surface that say how its file of points or mesh is read, where the file does not tell it."""
 
 from bpy.props import EnumProperty, StringProperty
 
@@ -49,6 +49,12 @@ class ReadingSettings:
         "decimal", reading_text.DECIMALS, "Decimals", "What stands between whole numbers and decimals"
     )
     nodata: _text("nodata", "No value", "What stands for no value, such as -9999; such points are left out")
+    height_attribute: _text(
+        "height",
+        "Height attribute",
+        "Of contour lines and the like: the attribute that holds their height; empty: z of the positions",
+    )
+    layer: _text("layer", "Layer", "The layer of a GeoPackage that has several")
     plan_unit: _choice(
         "xy", reading_text.UNITS, "Unit of x and y", "Unit of the coordinates in plan in the file"
     )

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A project file opened in the panel and saved again says the same: nothing that it can say is lost."""
 
+import sqlite3
+import struct
 from pathlib import Path
 
 import bpy
@@ -59,6 +61,14 @@ drift = "quadratic"
 variogram = { model = "exponential", range = 60.6, sill = 4.4, nugget = 0.1 }
 rule = "conformable"
 minimum_thickness = 0.35
+
+[[rock.surface]]
+name = "contours"
+points = "contours.gpkg"
+layer = "second"
+height = "5"
+where = { kind = "contour" }
+units = { z = "m" }
 
 [[rock.surface]]
 name = "distance"
@@ -128,6 +138,7 @@ edge_length = "auto"
 [[rock.surface]]
 name = "mesh"
 mesh = "mesh.off"
+units = "m"
 rule = "base"
 
 [[rock.surface]]
@@ -161,7 +172,23 @@ def write_files(folder: Path):
         for unit, x in (("a", 700), ("b", 200))
     )
     (folder / "two.geojson").write_text(f'{{"type": "FeatureCollection", "features": [{squares}]}}')
+    write_contours(folder / "contours.gpkg")
     (folder / "mesh.off").write_text("OFF\n4 2 0\n390 -5 1\n510 -5 1\n510 90 2\n390 90 2\n3 0 1 2\n3 0 2 3\n")
+
+
+def write_contours(path):
+    """Three contour lines in the second of two layers, their heights in an attribute called 5."""
+    base = sqlite3.connect(path)
+    base.execute("CREATE TABLE gpkg_geometry_columns (table_name TEXT, column_name TEXT)")
+    for layer in ("first", "second"):
+        base.execute("INSERT INTO gpkg_geometry_columns VALUES (?, 'geom')", (layer,))
+        base.execute(f'CREATE TABLE {layer} (fid INTEGER PRIMARY KEY, geom BLOB, "5" REAL, kind TEXT)')
+        for x, height in ((5.0, 3.0), (40.0, 4.5), (90.0, 5.25)):
+            line = struct.pack("<BII4d", 1, 2, 2, x, 5.0, x + 3, 75.0)
+            blob = b"GP" + struct.pack("<BBi", 0, 1, 0) + line
+            base.execute(f"INSERT INTO {layer} VALUES (NULL, ?, ?, 'contour')", (blob, height))
+    base.commit()
+    base.close()
 
 
 def said(project):

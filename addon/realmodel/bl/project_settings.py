@@ -12,7 +12,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ..core import InputRefused, PointFile, Project, Rock, Surface
+from ..core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
 from ..core.project import rock_item, surface_item
 from ..core.rock_input import read_rocks
 from ..core.work import run
@@ -163,7 +163,7 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
         if row.source == "POINTS_FILE":
             surface.points = PointFile(path, **reading_text.options(row))
         else:
-            surface.mesh = path
+            surface.mesh = MeshFile(path, **reading_text.options(row))
         composed.read[place] = stored_arrays.file_stamp(path)
     elif stored:
         _take_stored(surface, stored)
@@ -310,9 +310,10 @@ def add_rock(group, rock):
 
 
 def _reading(file):
-    """How a project file has a file of points read - columns, filters, units - as text; "" for the usual."""
-    usual = PointFile(file.file)
-    keys = (field.name for field in dataclasses.fields(PointFile) if field.name != "file")
+    """How a project file has a file of points or a mesh read - columns, filters, units - as text; "" for the
+    usual."""
+    usual = type(file)(file.file)
+    keys = (field.name for field in dataclasses.fields(file) if field.name != "file")
     given = {key: getattr(file, key) for key in keys if getattr(file, key) != getattr(usual, key)}
     return json.dumps(given) if given else ""
 
@@ -331,8 +332,7 @@ def fill_surface(row, surface):
         if surface.input_file is not None:
             row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
             row.filepath = str(surface.input_file)
-            if surface.point_file is not None:
-                row.reading = _reading(surface.point_file)
+            row.reading = _reading(surface.point_file or surface.mesh_file)
         elif surface.interpolated and surface.points is None:
             row.source = "NONE"
         else:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a file of points is read, between `reading` of a surface's row - JSON, as realmodel.core.PointFile
-takes it - and what a person writes in the panel."""
+"""How a file of points, or a mesh, is read, between `reading` of a surface's row - JSON, as
+realmodel.core.PointFile and MeshFile take it - and what a person writes in the panel."""
 
 import json
 
@@ -12,11 +12,12 @@ DECIMALS = (
     (",", "Comma", "1234,5"),
 )
 UNITS = (("", "As the model", "The unit of the model"), *((unit, unit, "") for unit in METRES))
+_NAMES = ("height", "layer")  # taken as they are written, "5" too
 _SEPARATORS = {"tab": "\t", "blank": " "}
 
 
 def options(row):
-    """The keyword arguments of PointFile that a surface's row asks for."""
+    """The keyword arguments of PointFile, or MeshFile, that a surface's row asks for."""
     return json.loads(row.reading) if row.reading else {}
 
 
@@ -25,6 +26,8 @@ def text(row, key):
     value = options(row).get(key)
     if value is None:
         return ""
+    if key in _NAMES:
+        return value
     if key == "separator":
         return next((word for word, sign in _SEPARATORS.items() if sign == value), value)
     if key == "where":
@@ -37,6 +40,8 @@ def set_text(row, key, given):
     given = given.strip() if key != "separator" or given.strip() else given
     if key == "separator":
         value = _SEPARATORS.get(given.lower(), given)
+    elif key in _NAMES:
+        value = given
     elif key == "where":
         value = {}
         for part in filter(None, (part.strip() for part in given.split(";"))):

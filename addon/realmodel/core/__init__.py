@@ -23,7 +23,7 @@ from .library import Library, Property, load_library
 from .map_layer import MapLayer
 from .model import Block, BlockBoundary, Model
 from .planar_mesh import MeshEstimate, estimate_mesh, mesh_region, triangulate_polygon
-from .point_file import PointFile
+from .point_file import MeshFile, PointFile
 from .project import Project, Rock, Surface
 from .project_file import load_project
 from .section import Fence, Section
@@ -48,6 +48,7 @@ __all__ = [
     "Library",
     "MapLayer",
     "MeshEstimate",
+    "MeshFile",
     "Model",
     "NotEnoughMemory",
     "OutputFailed",

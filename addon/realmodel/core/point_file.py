@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .units import METRES
+from .units import METRES, factor
 
 
 class ReadingRefused(ValueError):
@@ -22,15 +22,18 @@ class ReadingRefused(ValueError):
 
 @dataclass(frozen=True)
 class PointFile:
-    """Points in a table of text, an ESRI ASCII grid or a GeoTIFF.
+    """Points in a table of text, an ESRI ASCII grid, a GeoTIFF, or a file of shapes: GeoJSON, well-known
+    text, a shapefile or a layer of a GeoPackage.
 
     columns: the three of x, y and z, by name or by number from 1; None: those named so, or the first three.
-    where: {column: value, or a list of them}; only rows that hold it count.
+    where: {column or attribute: value, or a list of them}; only rows or features that hold it count.
     separator: one character; " " stands for any blanks and tabs; None: told from the file.
     decimal: "." or ","; None: told from the file.
     nodata: what stands for no value, a number, a text or a list of such; points without a value are left out.
     units: of the file, "ft" for all three coordinates, or {"xy": "m", "z": "ft"}; None: those of the model.
-    columns, where, separator and decimal are for tables only.
+    height: the attribute of features that holds their height; None: the z of their positions.
+    layer: of a GeoPackage, needed where it has several.
+    columns, separator and decimal are for tables only, height and layer for shapes.
     """
 
     file: str | Path
@@ -40,6 +43,8 @@ class PointFile:
     decimal: str | None = None
     nodata: Sequence | float | str = ()
     units: str | Mapping | None = None
+    height: str | None = None
+    layer: str | None = None
 
     @builtins.property
     def nodata_values(self) -> list:
@@ -54,10 +59,14 @@ class PointFile:
         return self.units.get("z") if isinstance(self.units, Mapping) else self.units
 
     @builtins.property
-    def for_tables(self) -> list[str]:
+    def only_for_tables(self) -> list[str]:
         """The keys given that only a table of text can have."""
-        given = {"columns": self.columns, "where": self.where, "separator": self.separator}
-        return [key for key, value in {**given, "decimal": self.decimal}.items() if value]
+        return [key for key in ("columns", "separator", "decimal") if getattr(self, key)]
+
+    @builtins.property
+    def only_for_shapes(self) -> list[str]:
+        """The keys given that only a file of shapes can have."""
+        return [key for key in ("height", "layer") if getattr(self, key)]
 
     def check(self) -> None:
         """Raises ReadingRefused for a key that makes no sense."""
@@ -78,7 +87,28 @@ class PointFile:
             raise ReadingRefused("decimal", "a comma cannot be both 'separator' and 'decimal'")
         if not all(_is_value(value) for value in self.nodata_values):
             raise ReadingRefused("nodata", f"'nodata' must be a number or text, not {self.nodata!r}")
+        for key in ("height", "layer"):
+            name = getattr(self, key)
+            if name is not None and not (isinstance(name, str) and name.strip()):
+                raise ReadingRefused(key, f"'{key}' must be a name, not {name!r}")
         check_units(self.units)
+
+
+@dataclass(frozen=True)
+class MeshFile:
+    """A ready mesh (OFF) in units of its own, as those of a PointFile; None: those of the model."""
+
+    file: str | Path
+    units: str | Mapping | None = None
+
+    def check(self) -> None:
+        """Raises ReadingRefused for a unit that is not known."""
+        check_units(self.units)
+
+    def scale(self, model_unit: str) -> tuple[float, float]:
+        """What its plan and its heights are multiplied by."""
+        units = self.units if isinstance(self.units, Mapping) else {"xy": self.units, "z": self.units}
+        return factor(units.get("xy"), model_unit), factor(units.get("z"), model_unit)
 
 
 def list_of(value) -> list:

@@ -25,7 +25,7 @@ from .methods import (
     checked_options,
 )
 from .plan_input import check_layer, layer_files, map_layer
-from .point_file import PointFile, ReadingRefused
+from .point_file import MeshFile, PointFile, ReadingRefused
 from .readers.point_input import companions
 from .region_rings import is_several
 from .toml_table import TomlDocument
@@ -51,8 +51,8 @@ class Surface:
     """One bounding surface of the layers.
 
     Its shape is a ready triangulation - `vertices` (V, 3) float64 in model units with `triangles`
-    (T, 3) of vertex numbers, or the file `mesh` - or scattered `points`, (P, 3), a file or a PointFile, which
-    are interpolated on the planar mesh of the rock's region by `method` with its `options`.
+    (T, 3) of vertex numbers, or a file or MeshFile `mesh` - or scattered `points`, (P, 3), a file or a
+    PointFile, which are interpolated on the planar mesh of the rock's region by `method` with its `options`.
     Some methods do without points. With `minimum_thickness` an interpolated surface stays so far above the
     older one. `property` is the library id of the block deposited beneath it (0: none), `block` that block's
     name.
@@ -68,7 +68,7 @@ class Surface:
     rule: str = "erosional"
     property: int = 0
     block: str | None = None
-    mesh: str | Path | None = None
+    mesh: str | Path | MeshFile | None = None
     minimum_thickness: float | None = None
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False)
@@ -95,7 +95,12 @@ class Surface:
         """The file that gives this surface its shape; None where arrays do."""
         if self.interpolated:
             return None if self.point_file is None else Path(self.point_file.file)
-        return Path(self.mesh) if isinstance(self.mesh, (str, Path)) else None
+        return None if self.mesh_file is None else Path(self.mesh_file.file)
+
+    @builtins.property  # a field of this class is called property
+    def mesh_file(self) -> MeshFile | None:
+        """The file of its ready mesh; None where it has none."""
+        return MeshFile(self.mesh) if isinstance(self.mesh, (str, Path)) else self.mesh
 
     @builtins.property  # a field of this class is called property
     def point_file(self) -> PointFile | None:
@@ -379,6 +384,11 @@ def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
     if file is not None and not is_file(file):
         raise refuse(f"there is no file {file}", shapes[0], "check the path")
     if not surface.interpolated:
+        try:
+            if surface.mesh_file is not None:
+                surface.mesh_file.check()
+        except ReadingRefused as error:
+            raise refuse(error.what, error.key, error.advice) from error
         given = [*(["method"] if surface.method is not None else []), *surface.options]
         given += ["minimum_thickness"] if surface.minimum_thickness is not None else []
         if given:

@@ -12,7 +12,7 @@ from .finite import is_finite
 from .library import load_library
 from .map_layer import MapLayer, is_wkt
 from .methods import ALL_OPTIONS
-from .point_file import PointFile
+from .point_file import MeshFile, PointFile
 from .project import Project, Rock, Source, Surface, check_project, is_file
 from .toml_table import Table, TomlDocument
 from .units import METRES, MODEL_UNIT
@@ -32,7 +32,16 @@ _ROCK_KEYS = (
     "boreholes",
     "surface",
 )
-_READING_KEYS = ("columns", "where", "separator", "decimal", "nodata", "units")  # of a file of points
+_READING_KEYS = (
+    "columns",
+    "where",
+    "separator",
+    "decimal",
+    "nodata",
+    "units",
+    "height",
+    "layer",
+)  # of a file of points
 _BOREHOLES = 'write boreholes = { collars = "collars.csv", picks = "picks.csv" }'
 _SURFACE_KEYS = (
     "name",
@@ -217,6 +226,8 @@ def _read_surface(table: Table, folder: Path) -> Surface:
     table.allow_only(_SURFACE_KEYS)
     files = {key: folder / table.text(key) for key in ("points", "mesh") if key in table}
     reading = {key: table.content[key] for key in _READING_KEYS if key in table}
+    if "mesh" in files and "units" in reading and "points" not in files:
+        files["mesh"] = MeshFile(files["mesh"], reading.pop("units"))
     if reading and "points" not in files:
         key = next(iter(reading))
         raise table.refuse(f"'{key}' says how a file of points is read, and there is none", key)

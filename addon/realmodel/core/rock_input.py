@@ -214,6 +214,9 @@ def _read_surface(
         if surface.mesh is not None:
             mesh = read_off(surface.input_file, step)
             vertices, triangles, faces = mesh.vertices, mesh.triangles, mesh.face_of_triangle
+            plan_scale, height_scale = surface.mesh_file.scale(units)
+            if (plan_scale, height_scale) != (1.0, 1.0):
+                vertices = vertices * (plan_scale, plan_scale, height_scale)
         else:
             vertices, triangles = checked_triangulation(surface.vertices, surface.triangles)
     except InputRefused as error:

@@ -146,12 +146,14 @@ class REALMODEL_PT_surface_reading(TabPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context):
         surface = settings.active_surface(context.scene)
-        return surface is not None and surface.source == "POINTS_FILE" and bool(surface.filepath)
+        files = ("POINTS_FILE", "MESH_FILE")
+        return surface is not None and surface.source in files and bool(surface.filepath)
 
     def draw_in(self, layout, context, _group):
         surface = settings.active_surface(context.scene)
         hint(layout, "Most files need nothing here.")
-        for key in ("columns", "where", "separator", "decimal", "nodata", "plan_unit", "height_unit"):
+        points = ("columns", "where", "separator", "decimal", "nodata", "height_attribute", "layer")
+        for key in (*(points if surface.source == "POINTS_FILE" else ()), "plan_unit", "height_unit"):
             layout.prop(surface, key)
 
 

@@ -11,11 +11,11 @@ import numpy as np
 
 from ..errors import InputRefused
 from ..finite import is_finite
-from .shapes import Selection, Shapes
+from .shapes import Heights, Selection, Shapes
 
 
-def read_geojson(file: str | Path, where: Mapping | None = None) -> Shapes:
-    """What a GeoJSON file holds; heights of positions are left out.
+def read_geojson(file: str | Path, where: Mapping | None = None, heights: Heights | None = None) -> Shapes:
+    """What a GeoJSON file holds; heights of positions are left out where they are not wanted.
 
     Raises InputRefused naming the file and the line, or the feature.
     """
@@ -36,7 +36,7 @@ def read_geojson(file: str | Path, where: Mapping | None = None) -> Shapes:
     except (RecursionError, ValueError) as error:
         what = "lists nested too deep" if isinstance(error, RecursionError) else "a number of too many digits"
         raise InputRefused(f"not a file to be read: {what}", file=file) from error
-    walk = _Walk(file, where or {})
+    walk = _Walk(file, where or {}, heights)
     walk.node(content, "")
     walk.selection.require_some()
     return walk.shapes
@@ -51,10 +51,11 @@ def _refuse_constant(name: str):
 
 
 class _Walk:
-    def __init__(self, file: Path, where: Mapping):
+    def __init__(self, file: Path, where: Mapping, heights: Heights | None):
         self.file = file
         self.selection = Selection(file, where)
-        self.shapes = Shapes()
+        self.shapes = Shapes(has_heights=heights is not None)
+        self.attribute = heights.attribute if heights else None
 
     def refuse(self, what: str, item: str) -> InputRefused:
         return InputRefused(what, file=self.file, item=item or None)
@@ -68,9 +69,13 @@ class _Walk:
             if "geometry" not in node:
                 raise self.refuse("a Feature has no geometry", item)
             properties = node.get("properties")
-            taken = self.selection.takes(properties if isinstance(properties, dict) else {})
-            if taken and node["geometry"] is not None:
+            properties = properties if isinstance(properties, dict) else {}
+            if self.selection.takes(properties) and node["geometry"] is not None:
+                before = self.shapes.counts()
                 self.node(node["geometry"], item)
+                if self.attribute is not None:
+                    height = self.selection.height(properties, self.attribute, item)
+                    self.shapes.set_height(before, height)
         elif kind == "GeometryCollection":
             for number, part in enumerate(self.members(node, "geometries", item), 1):
                 self.node(part, f"{item}, geometry {number}" if item else f"geometry {number}")
@@ -110,19 +115,21 @@ class _Walk:
         self.shapes.add_polygon(item, found)
 
     def positions(self, places, item: str, least: int) -> np.ndarray:
-        """(N, 2) float64 of a list of at least so many positions."""
+        """(N, 2) float64 of a list of at least so many positions; (N, 3) where heights are wanted."""
         if not isinstance(places, list) or len(places) < least:
             raise self.refuse(f"a list of at least {least} positions is needed", item)
         found = [self.position(place, item, number) for number, place in enumerate(places, 1)]
-        return np.array(found, np.float64).reshape(-1, 2)
+        return np.array(found, np.float64).reshape(-1, self.shapes.ordinates)
 
-    def position(self, position, item: str, number: int) -> tuple[float, float]:
+    def position(self, position, item: str, number: int) -> tuple[float, ...]:
+        count = self.shapes.ordinates
         plain = isinstance(position, list) and len(position) >= 2
-        if not plain or not all(_is_number(coordinate) for coordinate in position[:2]):
+        if not plain or not all(_is_number(coordinate) for coordinate in position[:count]):
             raise self.refuse(f"position {number} is not [x, y]: {position!r:.40}", item)
-        if not all(is_finite(coordinate) for coordinate in position[:2]):
+        if not all(is_finite(coordinate) for coordinate in position[:count]):
             raise self.refuse(f"position {number} is not finite", item)
-        return float(position[0]), float(position[1])
+        plan_and_height = [float(coordinate) for coordinate in position[:count]]
+        return (*plan_and_height, float("nan")) if len(plan_and_height) < count else tuple(plan_and_height)
 
 
 def _is_number(value) -> bool:

@@ -13,7 +13,7 @@ from urllib.parse import quote
 import numpy as np
 
 from ..errors import InputRefused
-from .shapes import Selection, Shapes
+from .shapes import Heights, Selection, Shapes
 from .table_layout import names_shown
 from .text import Step, no_step
 
@@ -31,19 +31,30 @@ def is_geopackage(head: bytes) -> bool:
 
 
 def read_geopackage(
-    file: str | Path, layer: str | None = None, where: Mapping | None = None, step: Step = no_step
+    file: str | Path,
+    layer: str | None = None,
+    where: Mapping | None = None,
+    step: Step = no_step,
+    heights: Heights | None = None,
 ) -> Shapes:
     """The features of one layer: of `layer`, or of the only one. Raises InputRefused naming both."""
     file = Path(file)
     address = f"file:{quote(str(file.resolve()))}?mode=ro&immutable=1"
     try:
         with closing(sqlite3.connect(address, uri=True)) as base:
-            return _read(file, base, layer, where or {}, step)
+            return _read(file, base, layer, where or {}, step, heights)
     except sqlite3.Error as error:
         raise InputRefused(f"not a GeoPackage that can be read: {error}", file=file) from error
 
 
-def _read(file: Path, base: sqlite3.Connection, layer: str | None, where: Mapping, step: Step) -> Shapes:
+def _read(
+    file: Path,
+    base: sqlite3.Connection,
+    layer: str | None,
+    where: Mapping,
+    step: Step,
+    heights: Heights | None,
+) -> Shapes:
     try:
         layers = dict(
             base.execute("SELECT table_name, column_name FROM gpkg_geometry_columns ORDER BY rowid")
@@ -59,7 +70,8 @@ def _read(file: Path, base: sqlite3.Connection, layer: str | None, where: Mappin
     if table not in layers:
         what = f"it has no layer '{layer}'"
         raise InputRefused(what, file=file, advice=f"it has {names_shown(list(layers))}")
-    selection, shapes = Selection(file, where, table), Shapes()
+    selection = Selection(file, where, table)
+    shapes = Shapes(has_heights=heights is not None)
     rows = base.execute(f"SELECT * FROM {_quoted(table)} ORDER BY rowid")
     names = [entry[0] for entry in rows.description]
     if layers[table] not in names:
@@ -71,12 +83,14 @@ def _read(file: Path, base: sqlite3.Connection, layer: str | None, where: Mappin
         attributes = {name: value for name, value in zip(names, row, strict=True) if name != layers[table]}
         if not selection.takes(attributes) or row[at] is None:
             continue
-        item = f"feature {number}"
+        item, before = f"feature {number}", shapes.counts()
         try:
             _geometry(bytes(row[at]), item, shapes)
         except (ValueError, struct.error, IndexError, TypeError) as error:
             what = f"its geometry cannot be read: {error}"
             raise InputRefused(what, file=file, item=f"layer '{table}', {item}") from error
+        if heights and heights.attribute is not None:
+            shapes.set_height(before, selection.height(attributes, heights.attribute, item))
     selection.require_some()
     return shapes
 
@@ -110,14 +124,16 @@ class _WellKnownBinary:
         self.at += 4
         return value
 
-    def places(self, order: str, count: int, size: int) -> np.ndarray:
-        """(count, 2) of positions of `size` numbers."""
+    def places(self, order: str, count: int, size: int, has_z: bool, ordinates: int) -> np.ndarray:
+        """(count, ordinates) of positions of `size` numbers."""
         if count * size * 8 > len(self.blob) - self.at:
             raise ValueError("it is cut off")
         numbers = np.frombuffer(self.blob, f"{order}f8", count * size, self.at)
         self.at += 8 * count * size
-        places = np.ascontiguousarray(numbers.reshape(count, size)[:, :2], np.float64)
-        if not np.isfinite(places).all():
+        places = np.full((count, ordinates), np.nan)
+        kept = min(ordinates, 3 if has_z else 2)
+        places[:, :kept] = numbers.reshape(count, size)[:, :kept]
+        if not np.isfinite(places[:, :2]).all():
             raise ValueError("a position is not finite")
         return places
 
@@ -127,20 +143,27 @@ class _WellKnownBinary:
         order = "<" if self.blob[self.at] else ">"
         self.at += 1
         code = self.number(order)
-        plain, more = code & 0x0FFFFFFF, 2
-        more += bool(code & 0x80000000) + bool(code & 0x40000000)  # as PostGIS marks Z and M
-        more += (0, 1, 1, 2)[plain // 1000] if plain // 1000 < 4 else 0
+        plain = code & 0x0FFFFFFF
+        thousands = plain // 1000 if plain // 1000 < 4 else 0  # 1: Z, 2: M, 3: both
+        has_z = bool(code & 0x80000000) or thousands in (1, 3)  # the bits are PostGIS's marks
+        has_m = bool(code & 0x40000000) or thousands in (2, 3)
+        size = 2 + has_z + has_m
+
+        def read(count: int) -> np.ndarray:
+            return self.places(order, count, size, has_z, shapes.ordinates)
+
         kind = plain % 1000
         if kind == _POINT:
-            numbers = np.frombuffer(self.blob, f"{order}f8", more, self.at)
-            self.at += 8 * more
-            if not np.isnan(numbers[:2]).all():  # NaN is how an empty point is written
-                shapes.points.append((item, numbers[:2].astype(np.float64)))
+            numbers = np.frombuffer(self.blob, f"{order}f8", size, self.at)
+            if np.isnan(numbers[:2]).all():  # how an empty point is written
+                self.at += 8 * size
+            else:
+                shapes.points.append((item, read(1)[0]))
         elif kind == _LINE:
-            if len(line := self.places(order, self.number(order), more)):
+            if len(line := read(self.number(order))):
                 shapes.lines.append((item, line))
         elif kind == _POLYGON:
-            rings = [self.places(order, self.number(order), more) for _ in range(self.number(order))]
+            rings = [read(self.number(order)) for _ in range(self.number(order))]
             shapes.add_polygon(item, [ring for ring in rings if len(ring)])
         elif kind in _COLLECTIONS:
             for _ in range(self.number(order)):

@@ -13,16 +13,33 @@ from ..units import MODEL_UNIT, factor
 from .geojson import read_geojson
 from .geopackage import is_geopackage, read_geopackage
 from .shapefile_reader import beside, is_shapefile, read_shapefile
-from .shapes import Shapes
+from .shapes import Heights, Shapes
 from .text import Step, no_step, read_text
 from .wkt import parse_wkt
 
 _HEAD = 512
 _JSON = (".json", ".geojson")
+_BOM = b"\xef\xbb\xbf"
 
 
-def read_shapes(given: MapLayer, model_unit: str = MODEL_UNIT, step: Step = no_step) -> Shapes:
-    """What a file holds, in the model's unit. Raises InputRefused naming the file."""
+def is_map_layer(file: Path, head: bytes) -> bool:
+    """Whether a file that begins so is one of shapes rather than a table or a raster."""
+    if is_geopackage(head) or is_shapefile(head) or _is_json(file, head):
+        return True
+    return begins_as_wkt(head.removeprefix(_BOM).decode("latin-1"))
+
+
+def _is_json(file: Path, head: bytes) -> bool:
+    return file.suffix.lower() in _JSON or head.removeprefix(_BOM).lstrip()[:1] in (b"{", b"[")
+
+
+def read_shapes(
+    given: MapLayer, model_unit: str = MODEL_UNIT, step: Step = no_step, heights: Heights | None = None
+) -> Shapes:
+    """What a file holds, in the model's unit; with heights where these are wanted.
+
+    Raises InputRefused naming the file.
+    """
     file = Path(given.file)
     try:
         with file.open("rb") as opened:
@@ -30,14 +47,14 @@ def read_shapes(given: MapLayer, model_unit: str = MODEL_UNIT, step: Step = no_s
     except OSError as error:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
     if is_geopackage(head):
-        shapes = read_geopackage(file, given.layer, given.where, step)
+        shapes = read_geopackage(file, given.layer, given.where, step, heights)
     elif given.layer is not None:
         what = f"it is no GeoPackage, so it has no layer '{given.layer}'"
         raise InputRefused(what, file=file, advice="take 'layer' out")
     elif is_shapefile(head):
-        shapes = read_shapefile(file, given.where, step)
-    elif file.suffix.lower() in _JSON or head.removeprefix(b"\xef\xbb\xbf").lstrip()[:1] in (b"{", b"["):
-        shapes = read_geojson(file, given.where)
+        shapes = read_shapefile(file, given.where, step, heights)
+    elif _is_json(file, head):
+        shapes = read_geojson(file, given.where, heights)
     else:
         text = read_text(file)
         if not begins_as_wkt(text):
@@ -46,7 +63,10 @@ def read_shapes(given: MapLayer, model_unit: str = MODEL_UNIT, step: Step = no_s
             )
         if given.where:
             raise InputRefused("well-known text has no attributes, so 'where' has no meaning here", file=file)
-        shapes = parse_wkt(text, file)
+        if heights and heights.attribute is not None:
+            what = "well-known text has no attributes, so 'height' has no meaning here"
+            raise InputRefused(what, file=file, advice="write the heights as z")
+        shapes = parse_wkt(text, file, heights is not None)
     return shapes.scaled(factor(given.units, model_unit))
 
 

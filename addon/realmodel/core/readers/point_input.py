@@ -12,6 +12,8 @@ from ..point_file import PointFile
 from ..units import MODEL_UNIT, factor
 from .ascii_grid import is_ascii_grid, read_ascii_grid
 from .geotiff import is_tiff, read_geotiff, world_file
+from .map_input import is_map_layer, map_companions
+from .map_points import read_map_points
 from .points import read_point_rows
 from .raster import Raster
 from .text import Step, no_step
@@ -30,7 +32,11 @@ def read_point_file(
     head = _head(file)
     if is_tiff(head) or is_ascii_grid(head):
         points, warnings = _raster_points(given, file, head, step)
+    elif is_map_layer(file, head):
+        _refuse_keys(file, "has shapes", given.only_for_tables)
+        points, warnings = read_map_points(given, step)
     else:
+        _refuse_keys(file, "is a table", given.only_for_shapes)
         rows = read_point_rows(
             file, given.columns, given.where, given.separator, given.decimal, given.nodata_values, step
         )
@@ -43,8 +49,15 @@ def read_point_file(
     return np.ascontiguousarray(points), warnings
 
 
+def _refuse_keys(file: Path, what: str, keys: list[str]) -> None:
+    if keys:
+        raise InputRefused(f"it {what}, so '{keys[0]}' has no meaning here", file=file, advice="take it out")
+
+
 def companions(file: Path) -> list[Path]:
     """Files beside a file of points that are read with it."""
+    if file.suffix.lower() == ".shp":
+        return map_companions(file)
     beside = world_file(file) if file.suffix.lower() in (".tif", ".tiff") else None
     return [] if beside is None else [beside]
 
@@ -58,9 +71,8 @@ def _head(file: Path) -> bytes:
 
 
 def _raster_points(given: PointFile, file: Path, head: bytes, step: Step) -> tuple[np.ndarray, list[str]]:
-    if given.for_tables:
-        what = f"it is a raster, so '{given.for_tables[0]}' has no meaning here"
-        raise InputRefused(what, file=file, advice="take it out")
+    chosen = ["where"] if given.where else []
+    _refuse_keys(file, "is a raster", [*given.only_for_tables, *chosen, *given.only_for_shapes])
     nodata = [value for value in given.nodata_values if not isinstance(value, str)]
     read = read_geotiff if is_tiff(head) else read_ascii_grid
     raster: Raster = read(file, nodata, step)

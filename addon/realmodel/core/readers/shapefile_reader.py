@@ -12,12 +12,13 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputRefused
-from .shapes import Selection, Shapes
+from .shapes import Heights, Selection, Shapes
 from .text import Step, no_step
 from .vendored import vendored
 
 _MAGIC = b"\0\0\x27\x0a"
 _POINTS, _LINES, _POLYGONS, _MULTIPOINTS = (1, 11, 21), (3, 13, 23), (5, 15, 25), (8, 18, 28)
+_WITH_Z = (11, 13, 15, 18)
 _STEP = 1000  # features
 
 
@@ -32,28 +33,39 @@ def beside(file: Path) -> list[Path]:
     return [path for ending in endings if (path := file.with_suffix(ending)).is_file()]
 
 
-def read_shapefile(file: str | Path, where: Mapping | None = None, step: Step = no_step) -> Shapes:
+def read_shapefile(
+    file: str | Path,
+    where: Mapping | None = None,
+    step: Step = no_step,
+    heights: Heights | None = None,
+) -> Shapes:
     """What a shapefile holds. Rings count even-odd, whichever way they go round: many writers get the
     directions wrong that are to tell outlines from holes. Raises InputRefused, BuildFailed without pyshp."""
     file, where = Path(file), where or {}
     shapefile = vendored("shapefile", "pyshp", "reading shapefiles")
     files = {path.suffix.lower(): path for path in beside(file)}
-    if where and ".dbf" not in files:
+    attribute = heights.attribute if heights else None
+    has_table = bool(where) or attribute is not None
+    if has_table and ".dbf" not in files:
         what = "there is no .dbf beside it, which holds the attributes"
-        raise InputRefused(what, file=file, advice="bring it along, or leave out 'where'")
-    selection, shapes = Selection(file, where), Shapes()
+        advice = f"bring it along, or leave out '{'where' if where else 'height'}'"
+        raise InputRefused(what, file=file, advice=advice)
+    selection, shapes = Selection(file, where), Shapes(has_heights=heights is not None)
     try:
-        with open(file, "rb") as shp, _opened(files.get(".dbf") if where else None) as dbf:
+        with open(file, "rb") as shp, _opened(files.get(".dbf") if has_table else None) as dbf:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")  # of sizes in headers that many writers get wrong
                 reader = shapefile.Reader(shp=shp, dbf=dbf, encoding="utf-8", encodingErrors="replace")
-            records = reader.iterRecords() if where else None
+            records = reader.iterRecords() if has_table else None
             for number, shape in enumerate(reader.iterShapes(), 1):
                 if number % _STEP == 0:
                     step(1 - _STEP / (number + _STEP))
                 attributes = next(records).as_dict() if records is not None else {}
                 if selection.takes(attributes):
-                    _add(shape, f"feature {number}", shapes)
+                    item, before = f"feature {number}", shapes.counts()
+                    _add(shape, item, shapes)
+                    if attribute is not None:
+                        shapes.set_height(before, selection.height(attributes, attribute, item))
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
         raise InputRefused(what, file=file, advice="check the path") from error
@@ -87,6 +99,11 @@ def _add(shape, item: str, shapes: Shapes) -> None:
     places = np.array([point[:2] for point in shape.points], np.float64).reshape(-1, 2)
     if not np.isfinite(places).all():
         raise ValueError(f"{item} has a position that is not finite")
+    if shapes.has_heights:
+        z = np.full(len(places), np.nan)
+        if shape.shapeType in _WITH_Z:
+            z[:] = shape.z
+        places = np.column_stack([places, z])
     if shape.shapeType in (*_POINTS, *_MULTIPOINTS):
         shapes.points += [(item, place) for place in places]
         return

@@ -29,14 +29,36 @@ class Polygon:
 
 @dataclass
 class Shapes:
-    """What one file holds: polygons, lines (N, 2) and points (2,), the latter two with what to call them."""
+    """What one file holds: polygons, lines (N, 2) and points (2,), the latter two with what to call them.
+
+    Read with heights, positions have three numbers, the third NaN where the file gives none.
+    """
 
     polygons: list[Polygon] = field(default_factory=list)
     lines: list[tuple[str, np.ndarray]] = field(default_factory=list)
     points: list[tuple[str, np.ndarray]] = field(default_factory=list)
+    has_heights: bool = False
+
+    @property
+    def ordinates(self) -> int:
+        """How many numbers a position has."""
+        return 3 if self.has_heights else 2
+
+    def counts(self) -> tuple[int, int, int]:
+        """How many polygons, lines and points there are."""
+        return len(self.polygons), len(self.lines), len(self.points)
+
+    def set_height(self, since: tuple[int, int, int], height: float) -> None:
+        """Gives all positions added since there were so many parts one height."""
+        rings = [ring for polygon in self.polygons[since[0] :] for ring in polygon.rings]
+        lines = [line for _, line in self.lines[since[1] :]]
+        for places in [*rings, *lines, *(point for _, point in self.points[since[2] :])]:
+            places[..., 2] = height
 
     def add_polygon(self, item: str, rings: Sequence[np.ndarray], has_roles: bool = True) -> None:
-        open_rings = [ring[:-1] if len(ring) > 1 and (ring[0] == ring[-1]).all() else ring for ring in rings]
+        open_rings = [
+            ring[:-1] if len(ring) > 1 and (ring[0, :2] == ring[-1, :2]).all() else ring for ring in rings
+        ]
         if open_rings:
             self.polygons.append(Polygon(item, open_rings, has_roles))
 
@@ -57,6 +79,13 @@ class Shapes:
         return [f"{file}: {item or 'it'} is a {kind}, which bounds no area: left out" for item, kind in items]
 
 
+@dataclass(frozen=True)
+class Heights:
+    """That heights are wanted: those of the positions, or one for each feature, by its attribute."""
+
+    attribute: str | None = None
+
+
 class Selection:
     """Which features count, by their attributes; remembers what there was for a refusal."""
 
@@ -66,9 +95,30 @@ class Selection:
         self.known: dict[str, None] = {}
         self.seen: dict[str, dict[str, None]] = {name: {} for name in where}
         self.features = self.taken = 0
+        self.names: dict[str, None] = {}  # of attributes
+
+    def height(self, attributes: Mapping, name: str, item: str) -> float:
+        """The height that an attribute of a feature holds; NaN where it holds nothing."""
+        key = name if name in attributes else _same_name(name, attributes)
+        if key is None:
+            there = names_shown(list(attributes)) if attributes else "no attributes"
+            raise self._no_height(f"it has no attribute '{name}'", item, f"it has {there}")
+        value = attributes[key]
+        if value is None or (isinstance(value, str) and not value.strip()):
+            return float("nan")
+        try:
+            if isinstance(value, bool):
+                raise ValueError
+            return float(value)
+        except (TypeError, ValueError) as error:
+            raise self._no_height(f"its attribute '{key}' is not a number: {value!r:.40}", item) from error
+
+    def _no_height(self, what: str, item: str, advice: str | None = None) -> InputRefused:
+        return InputRefused(what, file=self.file, item=item or self.item, advice=advice)
 
     def takes(self, attributes: Mapping) -> bool:
         self.features += 1
+        self.names.update(dict.fromkeys(attributes))
         if not self.where:
             self.taken += 1
             return True

@@ -25,15 +25,17 @@ _KINDS = (
 _DEEPEST = 50
 
 
-def parse_wkt(text: str, file: Path | None = None) -> Shapes:
-    """What a text holds. Z and M are left out. Raises InputRefused naming the line of the text."""
-    return _Parser(text, file).shapes
+def parse_wkt(text: str, file: Path | None = None, heights: bool = False) -> Shapes:
+    """What a text holds; Z only where heights are wanted, never M. Raises InputRefused naming the line of the
+    text."""
+    return _Parser(text, file, heights).shapes
 
 
 class _Parser:
-    def __init__(self, text: str, file: Path | None):
+    def __init__(self, text: str, file: Path | None, heights: bool):
         self.text, self.file, self.at = text, file, 0
-        self.shapes = Shapes()
+        self.shapes = Shapes(has_heights=heights)
+        self.only_m = False  # a third number of the present geometry is no height
         number = 0
         several = len(re.findall(r"\b(?:MULTI)?(?:POLYGON|LINESTRING|POINT)\b", text, re.IGNORECASE)) > 1
         while True:
@@ -89,13 +91,14 @@ class _Parser:
     def geometry(self, item: str, depth: int) -> None:
         word = self.next()
         kind = word.upper()
+        self.only_m = kind not in _KINDS and kind.endswith("M") and not kind.endswith("ZM")
         for suffix in ("ZM", "Z", "M"):  # as some write it: POLYGONZ
             if kind not in _KINDS and kind.removesuffix(suffix) in _KINDS:
                 kind = kind.removesuffix(suffix)
         if kind not in _KINDS:
             raise self.refuse(f"'{word:.30}' is no geometry that is read")
         if (self.peek() or "").upper() in ("Z", "M", "ZM"):
-            self.next()
+            self.only_m = self.next().upper() == "M"
         if kind == "GEOMETRYCOLLECTION":
             if depth > _DEEPEST:
                 raise self.refuse("collections nested too deep")
@@ -117,9 +120,10 @@ class _Parser:
             more = self.more()
 
     def positions(self) -> np.ndarray:
-        """(N, 2) of the brackets that come, without what lies behind x and y."""
+        """(N, 2) of the brackets that come, without what lies behind x and y; (N, 3) where heights are
+        wanted."""
         if not self.opens():
-            return np.empty((0, 2))
+            return np.empty((0, self.shapes.ordinates))
         close = self.text.find(")", self.at)
         if close < 0:
             self.at = len(self.text)
@@ -130,14 +134,21 @@ class _Parser:
             try:
                 if not 2 <= len(numbers) <= 4:
                     raise ValueError
-                places.append((float(numbers[0]), float(numbers[1])))
+                places.append(self.ordinates(numbers))
             except ValueError as error:
                 raise self.refuse(f"'{entry.strip():.40}' is no position x y") from error
         self.at = close + 1
-        found = np.array(places, np.float64).reshape(-1, 2)
-        if not np.isfinite(found).all():
+        found = np.array(places, np.float64).reshape(-1, self.shapes.ordinates)
+        if not np.isfinite(found[:, :2]).all():
             raise self.refuse("a position is not finite")
         return found
+
+    def ordinates(self, numbers: list[str]) -> list[float]:
+        """Those of a position that count."""
+        place = [float(number) for number in numbers[: self.shapes.ordinates]]
+        if self.shapes.has_heights and (len(numbers) < 3 or self.only_m):
+            place[2:] = [float("nan")]
+        return place
 
     def polygon(self, item: str) -> None:
         rings = []
@@ -164,6 +175,6 @@ class _Parser:
         while self.peek() not in (",", ")", None):
             numbers.append(self.next())
         try:
-            return np.array([[float(numbers[0]), float(numbers[1])]])
+            return np.array([self.ordinates(numbers)]).reshape(1, self.shapes.ordinates)
         except (ValueError, IndexError) as error:
             raise self.refuse(f"'{' '.join(numbers):.40}' is no position x y") from error
