@@ -2,7 +2,8 @@
 """Hunts for cuts that fail or are refused: python -m tests.core.stacks.cut_hunt CASES [SEED] [FAMILY ...]
 
 Every case has a number: the same number makes the same stack and cutter (--only N runs it alone).
-Ends with a table of what was refused, by family and kind of cutter, and the numbers of what failed.
+Ends with a table of what was refused, by family and kind of cutter, and the numbers of what failed;
+--keep FOLDER writes models and cutters of what failed there, as tests/data/cuts has them.
 """
 
 import argparse
@@ -10,6 +11,9 @@ import collections
 import random
 import sys
 import time
+from pathlib import Path
+
+import numpy as np
 
 from . import places
 from .cutters import random_cutter
@@ -29,6 +33,25 @@ def case(seed, number, families, kind=None):
         return None
     found = random_cutter(rng, stack, family, model, cells, kind)
     return None if found is None else (family, found[0], model, found[1])
+
+
+def save(path, kind, model, cutter):
+    """Writes model and cutter, so that they stay what they are when building changes."""
+    arrays = {f"model_{name}": value for name, value in model.items()}
+    arrays |= {f"cutter_{i}": array for i, array in enumerate(cutter)}
+    np.savez_compressed(path, kind=kind, **arrays)
+
+
+def load(path):
+    """(kind, model, cutter) of a file that save() wrote."""
+    with np.load(path) as file:
+        model = {
+            name.removeprefix("model_"): file[name] if file[name].ndim else file[name].item()
+            for name in file.files
+            if name.startswith("model_")
+        }
+        cutter = [file[f"cutter_{i}"] for i in range(sum(n.startswith("cutter_") for n in file.files))]
+        return file["kind"].item(), model, cutter
 
 
 def judged(model, kind, cutter):
@@ -52,6 +75,7 @@ def main():
     parser.add_argument("--kind")
     parser.add_argument("--only", type=int)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--keep", type=Path)
     options = parser.parse_args()
     numbers = range(options.first, options.cases) if options.only is None else [options.only]
     made, refused, failed, slowest = 0, collections.Counter(), [], (0.0, -1)
@@ -71,6 +95,8 @@ def main():
         if failures:
             failed.append((number, family, kind, failures))
             print(number, family, kind, failures, flush=True)
+            if options.keep is not None:
+                save(options.keep / f"seed{options.seed}_case{number}.npz", kind, model, cutter)
     for key, count in sorted(refused.items()):
         print(f"{count:6} refused {key}: {by[key][:8]}")
     print(f"{made} cuts, {sum(refused.values())} refused, {len(failed)} failed; slowest {slowest}")
