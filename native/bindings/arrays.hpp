@@ -70,15 +70,23 @@ inline Indices Indices::from(const pybind11::array& given) {
     return Indices(Array<std::int32_t>(given));
 }
 
-/// Hands a vector's memory to NumPy: an array of shape (values.size() / columns, columns), or
-/// one-dimensional where columns is 0. The array owns the memory; nothing is copied.
-template <class T>
-Array<T> to_array(std::vector<T>&& values, std::size_t columns = 0) {
-    auto owned = std::make_unique<std::vector<T>>(std::move(values));
-    std::vector<T>* const kept = owned.get();
-    const pybind11::capsule owner(
-        kept, [](void* memory) { delete static_cast<std::vector<T>*>(memory); });
+/// Keeps a vector for as long as an array lives.
+template <class Values>
+pybind11::capsule owner_of(Values&& values, Values*& kept) {
+    auto owned = std::make_unique<Values>(std::forward<Values>(values));
+    kept = owned.get();
+    pybind11::capsule owner(kept, [](void* memory) { delete static_cast<Values*>(memory); });
     (void)owned.release();
+    return owner;
+}
+
+/// Hands the memory of a vector (std::vector or GrowingArray) to NumPy: an array of shape
+/// (values.size() / columns, columns), or one-dimensional where columns is 0; of rows of N numbers
+/// one of shape (rows.size(), N). The array owns the memory; nothing is copied.
+template <template <class...> class Vector, class T, class... More>
+Array<T> to_array(Vector<T, More...>&& values, std::size_t columns = 0) {
+    Vector<T, More...>* kept = nullptr;
+    const pybind11::capsule owner = owner_of(std::move(values), kept);
     if (columns == 0) {
         return Array<T>({static_cast<pybind11::ssize_t>(kept->size())}, kept->data(), owner);
     }
@@ -86,16 +94,11 @@ Array<T> to_array(std::vector<T>&& values, std::size_t columns = 0) {
                      static_cast<pybind11::ssize_t>(columns)},
                     kept->data(), owner);
 }
-
-/// The same for rows of N numbers: an array of shape (rows.size(), N).
-template <class T, std::size_t N>
-Array<T> to_array(std::vector<std::array<T, N>>&& rows) {
+template <template <class...> class Vector, class T, std::size_t N, class... More>
+Array<T> to_array(Vector<std::array<T, N>, More...>&& rows) {
     static_assert(sizeof(std::array<T, N>) == N * sizeof(T));
-    auto owned = std::make_unique<std::vector<std::array<T, N>>>(std::move(rows));
-    auto* const kept = owned.get();
-    const pybind11::capsule owner(
-        kept, [](void* memory) { delete static_cast<std::vector<std::array<T, N>>*>(memory); });
-    (void)owned.release();
+    Vector<std::array<T, N>, More...>* kept = nullptr;
+    const pybind11::capsule owner = owner_of(std::move(rows), kept);
     return Array<T>(
         {static_cast<pybind11::ssize_t>(kept->size()), static_cast<pybind11::ssize_t>(N)},
         reinterpret_cast<const T*>(kept->data()), owner);

@@ -39,6 +39,15 @@ void PlanGeometry::expect_lines(std::size_t count) {
     line_table_.reserve(count);
 }
 
+void PlanGeometry::make_room(std::size_t lines, std::size_t points) {
+    const auto make = [](auto& array, std::size_t more) {
+        if (array.capacity() - array.size() < more)
+            array.reserve(std::max(array.size() + more, 2 * array.capacity()));
+    };
+    make(lines_, lines);
+    make(points_, points);
+}
+
 VertexId PlanGeometry::add_vertex(double x, double y) {
     const auto found = vertex_table_.insert(position_key(x, y), [&](std::int32_t number) {
         const Point& vertex = points_[static_cast<std::size_t>(number)];
@@ -122,6 +131,28 @@ void PlanGeometry::freeze_vertices() {
     if (height_exponent_ == kNone) height_exponent_ = 0;
 }
 
+void PlanGeometry::forget_names() {
+    line_table_ = {};
+    point_table_ = {};
+    names_forgotten_ = true;
+}
+
+void PlanGeometry::remember_names() {
+    names_forgotten_ = false;
+    line_table_.reserve(lines_.size());
+    point_table_.reserve(points_.size() - vertex_count_);
+    const auto line_key = [&](std::int32_t number) {
+        return line_key_of(lines_[static_cast<std::size_t>(number)]);
+    };
+    const auto point_key = [&](std::int32_t number) {
+        return point_key_of(points_[vertex_count_ + static_cast<std::size_t>(number)]);
+    };
+    for (const Line& line : lines_)
+        line_table_.insert(line_key_of(line), line_key);
+    for (std::size_t p = vertex_count_; p < points_.size(); ++p)
+        point_table_.insert(point_key_of(points_[p]), point_key);
+}
+
 DirectedLine PlanGeometry::add_edge(VertexId from, VertexId to) {
     const bool reversed = from > to;
     const LineId id = add_line({Line::Kind::kEdge, reversed ? to : from, reversed ? from : to});
@@ -129,6 +160,7 @@ DirectedLine PlanGeometry::add_edge(VertexId from, VertexId to) {
 }
 
 LineId PlanGeometry::add_line(const Line& line) {
+    if (names_forgotten_) remember_names();
     const auto found = line_table_.insert(line_key_of(line), [&](std::int32_t number) {
         return line_key_of(lines_[static_cast<std::size_t>(number)]);
     });
@@ -140,6 +172,7 @@ LineId PlanGeometry::add_line(const Line& line) {
 }
 
 PointId PlanGeometry::add_point(const Point& point) {
+    if (names_forgotten_) remember_names();
     const auto found = point_table_.insert(point_key_of(point), [&](std::int32_t number) {
         return point_key_of(points_[vertex_count_ + static_cast<std::size_t>(number)]);
     });

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "arithmetic.hpp"
 #include "formulas.hpp"
@@ -50,6 +51,19 @@ bool Scope::vanishes(const LineFilter& edge, const Point& vertex) const {
     return (vertex.x == edge.x0 || edge.a == 0.0) && (vertex.y == edge.y0 || edge.b == 0.0);
 }
 
+// The same of a crossing: whether it lies on an input edge parallel to an axis that runs where this
+// one does, as the edges of such a border do.
+bool Scope::runs_along(const LineFilter& edge, const Point& crossing) const {
+    const auto runs_on = [&](LineId id) {
+        if (line(id).kind != Line::Kind::kEdge) return false;
+        const LineFilter other = filter(id);
+        return (edge.a == 0.0 && other.a == 0.0 && edge.y0 == other.y0) ||
+               (edge.b == 0.0 && other.b == 0.0 && edge.x0 == other.x0);
+    };
+    return (edge.a == 0.0 || edge.b == 0.0) &&
+           (runs_on(crossing.first) || runs_on(crossing.second));
+}
+
 int Scope::exact_side(const Line& line, PointId point) {
     ++exact_;
     return exactly(shared_, [&](const auto& in, auto number) -> std::optional<int> {
@@ -87,22 +101,29 @@ int Scope::side(DirectedLine directed_line, PointId id) {
     if (result == 2) {
         const LineFilter f = filter(line_id);
         result = filtered_side(f, p);
-        if (result == 2 && l.kind == Line::Kind::kEdge && is_vertex(id) && vanishes(f, p)) return 0;
+        if (result == 2 && l.kind == Line::Kind::kEdge) {
+            if (is_vertex(id) ? vanishes(f, p) : runs_along(f, p)) return 0;
+        }
     }
     if (result == 2) result = exact_side(l, id);
     return is_reversed(directed_line) ? -result : result;
 }
 
-// Both triangles stand on the input edge, or one on the edge and the other pierced by it.
+// Both triangles stand on an input edge that meets the point, or one on the edge and the other
+// pierced by it.
 bool Scope::on_trace_by_name(PlaneId a, PlaneId b, const Point& p) const {
-    const auto has_edge = [&](PlaneId plane) {
+    const auto has_edge = [&](PlaneId plane, SpaceId from, SpaceId to) {
         const auto& c = shared_.plane(plane).corner;
-        return (c[0] == p.edge_from || c[1] == p.edge_from || c[2] == p.edge_from) &&
-               (c[0] == p.edge_to || c[1] == p.edge_to || c[2] == p.edge_to);
+        return (c[0] == from || c[1] == from || c[2] == from) &&
+               (c[0] == to || c[1] == to || c[2] == to);
     };
     if (p.edge_from >= 0) {
-        const bool edge_a = a == p.pierced || has_edge(a), edge_b = b == p.pierced || has_edge(b);
-        if (edge_a && edge_b) return true;
+        const auto meets = [&](PlaneId plane) {
+            return has_edge(plane, p.edge_from, p.edge_to) ||
+                   (p.pierced_to < 0 ? plane == p.pierced
+                                     : has_edge(plane, p.pierced, p.pierced_to));
+        };
+        if (meets(a) && meets(b)) return true;
     }
     for (const LineId id : {p.first, p.second}) {
         const Line& l = line(id);
@@ -239,15 +260,20 @@ PointId Scope::crossing_between_ends(LineId a, LineId b) {
     if ((la.kind == Line::Kind::kEdge) != (lb.kind == Line::Kind::kEdge)) {
         const Line& edge = la.kind == Line::Kind::kEdge ? la : lb;
         const Line& trace_line = la.kind == Line::Kind::kEdge ? lb : la;
-        for (const bool second : {false, true}) {
-            const PlaneId standing = second ? trace_line.second : trace_line.first;
-            const SpaceId s = shared_.corner_above(standing, edge.first);
-            const SpaceId t = s < 0 ? -1 : shared_.corner_above(standing, edge.second);
-            if (t < 0) continue;
-            p.edge_from = std::min(s, t);
-            p.edge_to = std::max(s, t);
-            p.pierced = second ? trace_line.first : trace_line.second;
-            break;
+        const auto standing = [&](PlaneId plane) {
+            const SpaceId s = shared_.corner_above(plane, edge.first);
+            const SpaceId t = s < 0 ? -1 : shared_.corner_above(plane, edge.second);
+            return std::array{t < 0 ? -1 : std::min(s, t), std::max(s, t)};
+        };
+        auto one = standing(trace_line.first), other = standing(trace_line.second);
+        if (one[0] >= 0 && other[0] >= 0) {
+            if (other < one) std::swap(one, other);
+            std::tie(p.edge_from, p.edge_to) = std::tie(one[0], one[1]);
+            std::tie(p.pierced, p.pierced_to) = std::tie(other[0], other[1]);
+        } else if (one[0] >= 0 || other[0] >= 0) {
+            const auto& there = one[0] >= 0 ? one : other;
+            std::tie(p.edge_from, p.edge_to) = std::tie(there[0], there[1]);
+            p.pierced = one[0] >= 0 ? trace_line.second : trace_line.first;
         }
     }
     const auto found = point_table_.insert(point_key_of(p), [&](std::int32_t number) {

@@ -95,10 +95,12 @@ private:
     void conform() {
         const FaceList& faces = made_.faces;
         std::vector<ExtraPoint> extra;
+        geometry_.forget_names();
         for (;;) {
             const Places places = find_places(geometry_, faces, extra, threads_, progress_);
             Tracks tracks = find_tracks(geometry_, faces, places, extra, threads_, progress_);
             loops_ = find_loops(geometry_, faces, places, tracks, threads_, progress_);
+            place_vertices(places, loops_, threads_, progress_);
             TrackContacts contacts =
                 find_contacts(geometry_, faces, made_.node_block, tracks, loops_, overlay_.tiles(),
                               overlay_.on_border(), threads_, progress_);

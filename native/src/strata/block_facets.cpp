@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "ordered_hand_over.hpp"
 #include "parallel_chunks.hpp"
 #include "pieces.hpp"
 #include "shared_polygons.hpp"
@@ -137,9 +138,13 @@ private:
                 result_.kept.add_facet(outline, in.plane[facet], in.layer[facet],
                                        piece.side == Side::kNotBelow ? number_ : in.pending[facet]);
             }
+            const bool only_one = in.face_offsets[facet + 1] - in.face_offsets[facet] == 1;
+            if (!only_one) clipper_.begin(outline);
             for (auto f = in.face_offsets[facet]; f < in.face_offsets[facet + 1]; ++f) {
                 const auto face = static_cast<std::size_t>(f);
-                const PolygonView part = clipper_.intersect(in.face_polygons[face], outline);
+                // the faces tile the facet, so one alone is the facet
+                const PolygonView part =
+                    only_one ? outline : clipper_.intersect(in.face_polygons[face]);
                 if (part.empty()) continue;
                 if (below) {
                     result_.faces.add(part, in.plane[facet], in.layer[facet], in.face_above[face],
@@ -156,18 +161,19 @@ private:
     std::vector<std::uint8_t>& is_divided_;
     OverlaidChunk& result_;
     PieceFinder finder_;
-    Clipper clipper_;
+    FacetClipper clipper_;
 };
 
 }  // namespace
 
-std::vector<std::unique_ptr<OverlaidChunk>> overlay_facets(const PlanGeometry& geometry,
+std::vector<std::unique_ptr<OverlaidChunk>> overlay_facets(PlanGeometry& geometry,
                                                            const ExactFacets& exact,
                                                            const Layer& layer, std::int32_t number,
                                                            std::vector<std::uint8_t>& is_divided,
                                                            int threads, const Progress* progress) {
     const std::size_t count = exact.facets.size(), chunks = (count + kChunk - 1) / kChunk;
     std::vector<std::unique_ptr<OverlaidChunk>> result(chunks);
+    OrderedHandOver hand_over(geometry, chunks, count);
     parallel_chunks(chunks, threads, progress, [&](std::size_t c) {
         result[c] = std::make_unique<OverlaidChunk>(geometry);
         FacetOverlay overlay(exact, layer, number, is_divided, *result[c]);
@@ -175,7 +181,9 @@ std::vector<std::unique_ptr<OverlaidChunk>> overlay_facets(const PlanGeometry& g
             overlay.process(f);
         for (const PolygonPool* pool : result[c]->pools())
             ask_for(result[c]->scope, *pool);
+        hand_over.finished(c, result[c]->scope);
     });
+    hand_over.finish();
     return result;
 }
 

@@ -53,7 +53,7 @@ struct OverlaidChunk {
 
 /// Overlays facets with part of surface `number`; marks polygons of it that do not lie below as a
 /// whole.
-std::vector<std::unique_ptr<OverlaidChunk>> overlay_facets(const exact::PlanGeometry& geometry,
+std::vector<std::unique_ptr<OverlaidChunk>> overlay_facets(exact::PlanGeometry& geometry,
                                                            const ExactFacets& exact,
                                                            const Layer& layer, std::int32_t number,
                                                            std::vector<std::uint8_t>& is_divided,

@@ -164,8 +164,6 @@ void BlockOverlay::overlay_exactly(const BlockLayer& layer, const Layer& part,
     c.is_divided.assign(part.plane.size(), 0);
     const auto overlaid =
         overlay_facets(geometry_, exact, part, layer.number, c.is_divided, threads_, progress_);
-    for (const auto& chunk : overlaid)
-        chunk->scope.hand_over(geometry_);
     parallel_chunks(overlaid.size(), threads_, progress_, [&](std::size_t i) {
         for (PolygonPool* pool : overlaid[i]->pools())
             share(overlaid[i]->scope, *pool);

@@ -151,7 +151,7 @@ struct OpenWall {
 
 /// Whether walls beside each other at a vertical edge make one face: where the edge is much longer
 /// than what rounding moves places by, for rounded places are not quite on one line.
-bool is_high(const std::vector<std::array<double, 3>>& positions, std::int32_t lower,
+bool is_high(std::span<const std::array<double, 3>> positions, std::int32_t lower,
              std::int32_t upper) {
     const auto& p = positions[static_cast<std::size_t>(lower)];
     const auto& q = positions[static_cast<std::size_t>(upper)];
@@ -159,7 +159,7 @@ bool is_high(const std::vector<std::array<double, 3>>& positions, std::int32_t l
 }
 
 std::vector<OpenWall> joined(const std::vector<WallStretch>& stretches,
-                             const std::vector<std::array<double, 3>>& positions) {
+                             std::span<const std::array<double, 3>> positions) {
     std::vector<OpenWall> walls;
     std::vector<std::size_t> open, growing;  // of the interval before, of this one
     for (std::size_t i = 0; i < stretches.size();) {
@@ -197,7 +197,7 @@ std::vector<OpenWall> joined(const std::vector<WallStretch>& stretches,
 }  // namespace
 
 Walls join_walls(const std::vector<WallStretch>& stretches,
-                 const std::vector<std::array<double, 3>>& positions,
+                 std::span<const std::array<double, 3>> positions,
                  const std::vector<std::uint8_t>& may_bend, std::vector<std::uint8_t>& is_needed) {
     const std::vector<OpenWall> open = joined(stretches, positions);
     for (const WallStretch& s : stretches) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -45,7 +46,7 @@ struct Walls {
 /// nothing needs left out. Marks in `is_needed` the vertices that end a vertical edge, and those of
 /// `may_bend` that a wall passes: where heights of the two sides cross, no face has a corner.
 Walls join_walls(const std::vector<WallStretch>& stretches,
-                 const std::vector<std::array<double, 3>>& positions,
+                 std::span<const std::array<double, 3>> positions,
                  const std::vector<std::uint8_t>& may_bend, std::vector<std::uint8_t>& is_needed);
 
 }  // namespace realmodel::strata

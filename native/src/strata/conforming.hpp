@@ -39,7 +39,7 @@ Places find_places(const exact::PlanGeometry& geometry, const FaceList& faces,
 /// A face edge on its track.
 struct TrackEdge {
     std::int32_t from, to;  ///< its ends, counted along the track
-    std::uint32_t corner;   ///< of all faces, that it leaves
+    std::uint32_t begin;  ///< the corner, of all faces, that it leaves; for loops: its first entry
     std::int32_t face;
 };
 
@@ -67,15 +67,22 @@ Tracks find_tracks(const exact::PlanGeometry& geometry, const FaceList& faces, c
 /// The faces with every vertex that lies on their edges put in, and all vertices: on each place one
 /// for each height that a face has there, ascending.
 struct Loops {
-    FlatArray<std::uint32_t> face_offsets;         ///< entries of each face
-    FlatArray<std::uint32_t> edge_begin;           ///< first entry of the edge that leaves a corner
-    FlatArray<std::int32_t> vertices;              ///< of each entry, counter-clockwise in plan
-    FlatArray<std::int32_t> place_offsets;         ///< first vertex of each place
-    std::vector<std::array<double, 3>> positions;  ///< rounded, heights of a place all different
+    FlatArray<std::uint32_t> face_offsets;  ///< entries of each face
+    FlatArray<std::uint32_t> edge_begin;    ///< first entry of the edge that leaves a corner
+    FlatArray<std::int32_t> vertices;       ///< of each entry, counter-clockwise in plan
+    FlatArray<std::int32_t> place_offsets;  ///< first vertex of each place
+    /// Of the vertices, for so many places each: rounded, those of a place all different.
+    std::vector<std::vector<double>> heights;
+    static constexpr std::size_t kPlacesTogether = 1 << 11;
+    GrowingArray<std::array<double, 3>> positions;  ///< empty until place_vertices
 };
-/// Takes what it needs of the tracks: their `places` and `passed` are given back.
+/// Takes what it needs of the tracks: their `places` and `passed` are given back, and their edges
+/// name the first of their entries from here on.
 Loops find_loops(const exact::PlanGeometry& geometry, const FaceList& faces, const Places& places,
                  Tracks& tracks, int threads, const Progress* progress);
+
+/// Gives the vertices their positions, which takes the heights.
+void place_vertices(const Places& places, Loops& loops, int threads, const Progress* progress);
 
 /// Some of the vertical faces between columns. Loops counter-clockwise seen from the right of their
 /// track.
@@ -95,6 +102,6 @@ std::vector<WallBatch> find_walls(exact::PlanGeometry& geometry, const FaceList&
 /// back as they are used.
 CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
                      Loops loops, std::vector<WallBatch> walls,
-                     std::vector<std::int32_t> cell_block, int threads, const Progress* progress);
+                     GrowingArray<std::int32_t> cell_block, int threads, const Progress* progress);
 
 }  // namespace realmodel::strata

@@ -16,10 +16,10 @@ inline constexpr std::int32_t kOutsideCell = -1;
 /// cells.
 struct FaceList {
     PolygonPool polygons;
-    std::vector<PlaneId> plane;
-    std::vector<std::int32_t> layer;  ///< number of the surface that the face lies on, -1 the base
-    std::vector<std::int32_t> above;  ///< cell, or kOutsideCell
-    std::vector<std::int32_t> below;
+    GrowingArray<PlaneId> plane;
+    GrowingArray<std::int32_t> layer;  ///< number of the surface that the face lies on, -1 the base
+    GrowingArray<std::int32_t> above;  ///< cell, or kOutsideCell
+    GrowingArray<std::int32_t> below;
 
     std::size_t size() const { return plane.size(); }
     void add(PolygonView polygon, PlaneId in_plane, std::int32_t in_layer, std::int32_t cell_above,
@@ -37,12 +37,12 @@ struct FaceList {
 /// it already have there; they tile the facet.
 struct Envelope {
     PolygonPool outlines;
-    std::vector<PlaneId> plane;         ///< kSky, kOutside, or the plane of a triangle
-    std::vector<std::int32_t> layer;    ///< surface of the facet, -1 for the sky
-    std::vector<std::int32_t> pending;  ///< the block beneath: last surface seen here, -1 the sky
-    std::vector<std::int64_t> face_offsets{0};
+    GrowingArray<PlaneId> plane;         ///< kSky, kOutside, or the plane of a triangle
+    GrowingArray<std::int32_t> layer;    ///< surface of the facet, -1 for the sky
+    GrowingArray<std::int32_t> pending;  ///< the block beneath: last surface seen here, -1 the sky
+    GrowingArray<std::int64_t> face_offsets{0};
     PolygonPool face_polygons;
-    std::vector<std::int32_t> face_above;  ///< cell above each face, or kOutsideCell
+    GrowingArray<std::int32_t> face_above;  ///< cell above each face, or kOutsideCell
 
     std::size_t size() const { return plane.size(); }
     void add_facet(PolygonView outline, PlaneId in_plane, std::int32_t in_layer,
@@ -72,7 +72,7 @@ struct Envelope {
 /// Cells and faces made so far.
 struct Construction {
     FaceList faces;
-    std::vector<std::int32_t> cell_block;
+    GrowingArray<std::int32_t> cell_block;
 };
 
 /// The envelope before the first overlay: the youngest surface itself, or the region under the sky.

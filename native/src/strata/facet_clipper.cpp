@@ -62,8 +62,7 @@ PolygonView FacetClipper::intersect(PolygonView window) {
         on_line |= (window_corners_[j].left | window_corners_[j].right) != all;
     }
     if (reached != all) return {};  // all of the window lies right of one of the facet's lines
-    // A corner of one on a line of the other is for the clipper, which takes line by line.
-    return on_line ? clipper_.intersect(facet_, window) : follow(window);
+    return on_line ? cut_by_lines(window) : follow(window);
 }
 
 PointId FacetClipper::crossing(std::size_t i, std::size_t j, PolygonView window) {
@@ -109,6 +108,53 @@ PolygonView FacetClipper::follow(PolygonView window) {
             result_.push_back(window[j]);
     }
     if (result_.empty()) result_.assign(window.begin(), window.end());  // it lies in the facet
+    return result_;
+}
+
+/// Clips the facet by the lines of the window in turn, as `clip` does, where a corner of one may
+/// lie on a line of the other; only about new corners more is asked.
+PolygonView FacetClipper::cut_by_lines(PolygonView window) {
+    left_.clear();
+    for (std::size_t i = 0; i < facet_.size(); ++i)
+        left_.push_back({facet_[i], static_cast<std::int32_t>(i)});
+    for (std::size_t j = 0; j < window.size(); ++j) {
+        const DirectedLine line = window[j].line;
+        const Sides& known = edges_[j].corners;
+        bool any_left = false, any_right = false;
+        sides_.clear();
+        for (const Left& at : left_) {
+            int side;
+            if (at.of_facet < 0) {
+                side = scope_.side(line, at.corner.point);
+            } else {
+                const auto i = static_cast<std::size_t>(at.of_facet);
+                side = bit(known.left, i) ? 1 : (bit(known.right, i) ? -1 : 0);
+            }
+            any_left |= side > 0;
+            any_right |= side < 0;
+            sides_.push_back(side);
+        }
+        if (!any_left) return {};
+        if (!any_right) continue;
+        next_left_.clear();
+        for (std::size_t i = 0; i < left_.size(); ++i) {
+            const int here = sides_[i], there = sides_[i + 1 < left_.size() ? i + 1 : 0];
+            const Left& at = left_[i];
+            if (here >= 0) {
+                const DirectedLine leaving = here == 0 && there < 0 ? line : at.corner.line;
+                next_left_.push_back({{at.corner.point, leaving}, at.of_facet});
+            }
+            if (here * there < 0) {
+                const PointId crossing =
+                    scope_.crossing(exact::line_of(at.corner.line), exact::line_of(line));
+                next_left_.push_back({{crossing, here > 0 ? line : at.corner.line}, -1});
+            }
+        }
+        std::swap(left_, next_left_);
+    }
+    result_.clear();
+    for (const Left& at : left_)
+        result_.push_back(at.corner);
     return result_;
 }
 

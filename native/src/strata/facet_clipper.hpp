@@ -45,6 +45,7 @@ private:
     const KnownPoint& known_point(PointId point);
     KnownLine& known_line(LineId line);
     PolygonView follow(PolygonView window);
+    PolygonView cut_by_lines(PolygonView window);
     PointId crossing(std::size_t facet_edge, std::size_t window_edge, PolygonView window);
 
     Scope& scope_;
@@ -58,6 +59,13 @@ private:
     std::array<Edge, exact::kRowLength> edges_;
     std::array<exact::Sides, exact::kRowLength> window_corners_;
     Polygon result_;
+    /// A corner of what lines have left of the facet.
+    struct Left {
+        Corner corner;
+        std::int32_t of_facet;  ///< which corner of the facet it is, -1: a new one
+    };
+    std::vector<Left> left_, next_left_;
+    std::vector<int> sides_;
 };
 
 }  // namespace realmodel::strata

@@ -12,7 +12,8 @@ using exact::PlanGeometry;
 
 namespace {
 
-constexpr std::size_t kFaces = 1 << 12, kEntries = 1 << 15, kPlaces = 1 << 11;  // at a time
+constexpr std::size_t kFaces = 1 << 12, kEntries = 1 << 15,
+                      kPlaces = Loops::kPlacesTogether;  // at a time
 
 /// What faces have on places, sorted by place.
 struct FacesOnPlaces {
@@ -129,15 +130,14 @@ FacesOnPlaces sort_by_place(const FaceList& faces, const FlatArray<PlaceId>& pla
 }
 
 /// Finds the heights on each place and turns planes into ranks.
-std::vector<std::vector<double>> find_heights(const PlanGeometry& geometry, const Places& places,
-                                              FacesOnPlaces& on, Loops& loops, int threads,
-                                              const Progress* progress) {
+void find_heights(const PlanGeometry& geometry, const Places& places, FacesOnPlaces& on,
+                  Loops& loops, int threads, const Progress* progress) {
     loops.place_offsets = FlatArray<std::int32_t>(places.size() + 1);
-    std::vector<std::vector<double>> heights((places.size() + kPlaces - 1) / kPlaces);
+    loops.heights.resize((places.size() + kPlaces - 1) / kPlaces);
     parallel_ranges(
         places.size(), kPlaces, threads, progress, [&](std::size_t begin, std::size_t end) {
             PlaceHeights of_place(geometry);
-            auto& all = heights[begin / kPlaces];
+            auto& all = loops.heights[begin / kPlaces];
             for (std::size_t p = begin; p < end; ++p) {
                 prefetch_points(geometry, places, p);
                 of_place.find(places.representative[p], {on.values.begin() + on.offsets[p],
@@ -148,7 +148,19 @@ std::vector<std::vector<double>> find_heights(const PlanGeometry& geometry, cons
             }
         });
     running_totals(loops.place_offsets, INT32_MAX, threads, progress);
-    return heights;
+}
+
+/// From here on the edges on tracks name their first entries: what follows asks for nothing else of
+/// a corner.
+void name_entries(Tracks& tracks, const Loops& loops, int threads, const Progress* progress) {
+    parallel_ranges(tracks.edges.size(), kEntries, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t e = begin; e < end; ++e) {
+                            const std::size_t ahead = std::min(e + 32, end - 1);
+                            prefetch(&loops.edge_begin[tracks.edges[ahead].begin]);
+                            tracks.edges[e].begin = loops.edge_begin[tracks.edges[e].begin];
+                        }
+                    });
 }
 
 }  // namespace
@@ -163,23 +175,16 @@ Loops find_loops(const PlanGeometry& geometry, const FaceList& faces, const Plac
             places_of_entries(tracks, loops, loops.face_offsets[faces.size()], threads, progress);
         tracks.places = {};
         tracks.passed = {};
+        name_entries(tracks, loops, threads, progress);
         on = sort_by_place(faces, place, places.size(), loops, threads, progress);
     }
-    auto heights = find_heights(geometry, places, on, loops, threads, progress);
-    loops.positions.resize(static_cast<std::size_t>(loops.place_offsets[places.size()]));
+    find_heights(geometry, places, on, loops, threads, progress);
     parallel_ranges(places.size(), kPlaces, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
-                        auto& all = heights[begin / kPlaces];
-                        auto z = all.begin();
                         for (std::size_t p = begin; p < end; ++p) {
-                            const std::int32_t first = loops.place_offsets[p];
-                            const auto [x, y] = places.position[p];
-                            for (auto v = first; v < loops.place_offsets[p + 1]; ++v)
-                                loops.positions[static_cast<std::size_t>(v)] = {x, y, *z++};
                             for (auto i = on.offsets[p]; i < on.offsets[p + 1]; ++i)
-                                on.values[i] += first;
+                                on.values[i] += loops.place_offsets[p];
                         }
-                        all = {};
                     });
     parallel_ranges(loops.vertices.size(), kEntries, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
@@ -192,6 +197,22 @@ Loops find_loops(const PlanGeometry& geometry, const FaceList& faces, const Plac
                         }
                     });
     return loops;
+}
+
+void place_vertices(const Places& places, Loops& loops, int threads, const Progress* progress) {
+    loops.positions.resize(static_cast<std::size_t>(loops.place_offsets[places.size()]));
+    parallel_ranges(
+        places.size(), kPlaces, threads, progress, [&](std::size_t begin, std::size_t end) {
+            auto& heights = loops.heights[begin / kPlaces];
+            auto z = heights.begin();
+            for (std::size_t p = begin; p < end; ++p) {
+                const auto [x, y] = places.position[p];
+                for (auto v = loops.place_offsets[p]; v < loops.place_offsets[p + 1]; ++v)
+                    loops.positions[static_cast<std::size_t>(v)] = {x, y, *z++};
+            }
+            heights = {};
+        });
+    loops.heights = {};
 }
 
 }  // namespace realmodel::strata

@@ -5,10 +5,12 @@
 #include <memory>
 
 #include "envelope.hpp"
+#include "ordered_hand_over.hpp"
 #include "parallel_chunks.hpp"
 #include "pieces.hpp"
 #include "realmodel/base/errors.hpp"
 #include "shared_polygons.hpp"
+#include "surface_facets.hpp"
 
 namespace realmodel::strata {
 
@@ -30,10 +32,10 @@ struct ChunkResult {
     explicit ChunkResult(const PlanGeometry& geometry) : scope(geometry) {}
 
     Scope scope;
-    std::vector<std::int32_t> cell_block;
+    GrowingArray<std::int32_t> cell_block;
     FaceList faces;  ///< finished; above is a shared cell, below one of the chunk's
     PolygonPool lowered_outlines;
-    std::vector<LoweredPiece> lowered;
+    GrowingArray<LoweredPiece> lowered;
     Envelope kept;
 
     std::array<PolygonPool*, 4> pools() {
@@ -133,7 +135,7 @@ private:
 
     void split(std::size_t facet, const Pieces& pieces, std::int32_t cells, bool one_cell) {
         const auto first_cell = static_cast<std::int32_t>(result_.cell_block.size());
-        result_.cell_block.insert(result_.cell_block.end(), static_cast<std::size_t>(cells),
+        result_.cell_block.resize(result_.cell_block.size() + static_cast<std::size_t>(cells),
                                   envelope_.pending[facet]);
         const auto begin = static_cast<std::size_t>(envelope_.face_offsets[facet]);
         const auto end = static_cast<std::size_t>(envelope_.face_offsets[facet + 1]);
@@ -156,8 +158,11 @@ private:
                     outline, envelope_.plane[facet], envelope_.layer[facet],
                     piece.side == Side::kNotBelow ? number_ : envelope_.pending[facet]);
             }
+            const bool only_one = end - begin == 1;  // then it is the facet
+            if (!only_one) clipper_.begin(outline);
             for (std::size_t f = begin; f < end; ++f) {
-                const PolygonView part = clipper_.intersect(envelope_.face_polygons[f], outline);
+                const PolygonView part =
+                    only_one ? outline : clipper_.intersect(envelope_.face_polygons[f]);
                 if (part.empty()) continue;
                 if (below) {
                     close(facet, f, part, cell);
@@ -181,15 +186,8 @@ private:
     ChunkResult& result_;
     PieceFinder finder_;
     PieceGrouping grouping_;
-    Clipper clipper_;
+    FacetClipper clipper_;
     std::vector<std::int32_t> group_;
-};
-
-/// The lowered pieces of all chunks, under shared ids.
-struct LoweredPieces {
-    PolygonPool outlines;
-    std::vector<std::int32_t> polygon;
-    std::vector<std::int32_t> cell_above;
 };
 
 /// Polygons and corners counted up to a chunk.
@@ -220,7 +218,7 @@ struct ChunkStart {
 };
 
 template <class Element, class From>
-void put(std::vector<Element>& to, std::size_t at, const From& from) {
+void put(GrowingArray<Element>& to, std::size_t at, const From& from) {
     std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
@@ -233,15 +231,12 @@ void put(PolygonPool& to, const PoolStart& at, const PolygonPool& from) {
 /// Puts what the chunks became behind what is there already, in order of chunks.
 class ChunkJoining {
 public:
-    ChunkJoining(PlanGeometry& geometry, std::vector<std::unique_ptr<ChunkResult>>& chunks,
-                 Construction& construction, const Progress* progress)
+    ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, Construction& construction)
         : chunks_(chunks), construction_(construction) {
         ChunkStart at;
         at.cell = static_cast<std::int64_t>(construction.cell_block.size());
         at.face.pass(construction.faces.polygons);
         for (auto& chunk : chunks) {
-            if (progress != nullptr) progress->check();
-            chunk->scope.hand_over(geometry);
             start_.push_back(at);
             at.pass(*chunk);
         }
@@ -327,48 +322,6 @@ private:
     ChunkStart end_;
 };
 
-/// The surface's own facets: a polygon that lies below the envelope all over becomes one facet
-/// again, so that the overlay does not compound; of others each piece is a facet.
-void add_surface_facets(const Layer& layer, const std::vector<std::uint8_t>& whole,
-                        const LoweredPieces& lowered, std::int32_t number, Envelope& next,
-                        const Progress* progress) {
-    std::vector<std::int64_t> offsets(layer.plane.size() + 1, 0);
-    for (const std::int32_t p : lowered.polygon)
-        ++offsets[static_cast<std::size_t>(p) + 1];
-    for (std::size_t p = 0; p < layer.plane.size(); ++p)
-        offsets[p + 1] += offsets[p];
-    std::vector<std::uint32_t> of_polygon(lowered.polygon.size());
-    {
-        auto free = offsets;
-        for (std::size_t i = 0; i < lowered.polygon.size(); ++i) {
-            of_polygon[static_cast<std::size_t>(
-                free[static_cast<std::size_t>(lowered.polygon[i])]++)] =
-                static_cast<std::uint32_t>(i);
-        }
-    }
-    for (std::size_t p = 0; p < layer.plane.size(); ++p) {
-        poll(progress, p);
-        const auto begin = static_cast<std::size_t>(offsets[p]);
-        const auto end = static_cast<std::size_t>(offsets[p + 1]);
-        if (begin == end) continue;
-        const bool open =
-            std::all_of(of_polygon.begin() + offsets[p], of_polygon.begin() + offsets[p + 1],
-                        [&](std::size_t i) { return lowered.cell_above[i] == kOutsideCell; });
-        if (whole[p]) {
-            next.add_facet(layer.polygons[p], layer.plane[p], number, number);
-            if (open) {  // nothing above needs the pieces
-                next.add_face(layer.polygons[p], kOutsideCell);
-                continue;
-            }
-        }
-        for (std::size_t i = begin; i < end; ++i) {
-            const std::size_t piece = of_polygon[i];
-            if (!whole[p]) next.add_facet(lowered.outlines[piece], layer.plane[p], number, number);
-            next.add_face(lowered.outlines[piece], lowered.cell_above[piece]);
-        }
-    }
-}
-
 }  // namespace
 
 Envelope initial_envelope(const Layer& layer, std::int32_t number) {
@@ -388,6 +341,7 @@ Envelope overlay(PlanGeometry& geometry, const Envelope& envelope, const Layer& 
     std::vector<std::uint8_t> whole(layer.plane.size(), 1);
     const std::size_t chunks = (envelope.size() + kChunk - 1) / kChunk;
     std::vector<std::unique_ptr<ChunkResult>> results(chunks);
+    OrderedHandOver hand_over(geometry, chunks, envelope.size());
     parallel_chunks(chunks, threads, progress, [&](std::size_t c) {
         results[c] = std::make_unique<ChunkResult>(geometry);
         FacetOverlay facets(envelope, layer, number, whole, *results[c]);
@@ -396,11 +350,13 @@ Envelope overlay(PlanGeometry& geometry, const Envelope& envelope, const Layer& 
         }
         for (const PolygonPool* pool : results[c]->pools())
             ask_for(results[c]->scope, *pool);
+        hand_over.finished(c, results[c]->scope);
     });
+    hand_over.finish();
     Envelope next;
     LoweredPieces lowered;
-    ChunkJoining(geometry, results, construction, progress).join(next, lowered, threads, progress);
-    add_surface_facets(layer, whole, lowered, number, next, progress);
+    ChunkJoining(results, construction).join(next, lowered, threads, progress);
+    add_surface_facets(layer, whole, lowered, number, next, threads, progress);
     return next;
 }
 

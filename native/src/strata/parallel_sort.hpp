@@ -10,19 +10,18 @@ namespace realmodel::strata {
 
 /// Sorts by a total order on several threads; can be cancelled. Equal elements must be alike, for
 /// their order is not kept.
-template <class Element, class Less>
-void parallel_sort(std::vector<Element>& elements, const Less& less, int threads,
-                   const Progress* progress) {
+template <class Array, class Less>
+void parallel_sort(Array& elements, const Less& less, int threads, const Progress* progress) {
     constexpr std::size_t kRun = 1 << 16;
     const std::size_t count = elements.size();
-    const auto at = [&](std::vector<Element>& of, std::size_t i) {
+    const auto at = [&](Array& of, std::size_t i) {
         return of.begin() + static_cast<std::ptrdiff_t>(std::min(i, count));
     };
     parallel_chunks((count + kRun - 1) / kRun, threads, progress, [&](std::size_t run) {
         std::sort(at(elements, run * kRun), at(elements, (run + 1) * kRun), less);
     });
     if (count <= kRun) return;
-    std::vector<Element> merged(count);
+    Array merged(count);
     for (std::size_t width = kRun; width < count; width *= 2) {
         // Each pair of runs is merged in pieces of about one run, cut where a value of the first
         // run would stand in the second, so that the last merges are shared between threads too.

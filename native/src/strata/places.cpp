@@ -23,9 +23,9 @@ struct Rounded {
 };
 
 /// The points that faces use and the extra ones, in order of position.
-std::vector<Rounded> points_in_use(const PlanGeometry& geometry, const FaceList& faces,
-                                   const std::vector<ExtraPoint>& extra, int threads,
-                                   const Progress* progress) {
+GrowingArray<Rounded> points_in_use(const PlanGeometry& geometry, const FaceList& faces,
+                                    const std::vector<ExtraPoint>& extra, int threads,
+                                    const Progress* progress) {
     auto used = zeros<std::uint8_t>(geometry.point_count(), threads, progress);
     const auto& corners = faces.polygons.corners;
     parallel_ranges(corners.size(), kChunk, threads, progress,
@@ -42,7 +42,7 @@ std::vector<Rounded> points_in_use(const PlanGeometry& geometry, const FaceList&
             before[begin / kChunk] =
                 static_cast<std::size_t>(std::count(used.begin() + begin, used.begin() + end, 1));
         });
-    std::vector<Rounded> points(count_before(before));
+    GrowingArray<Rounded> points(count_before(before));
     parallel_ranges(used.size(), kChunk, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         std::size_t next = before[begin / kChunk];
@@ -61,7 +61,7 @@ std::vector<Rounded> points_in_use(const PlanGeometry& geometry, const FaceList&
 
 /// Calls visit(begin, end) for the groups of points in equal positions that begin in a range.
 template <class Visit>
-void for_each_position(const std::vector<Rounded>& points, std::size_t begin, std::size_t end,
+void for_each_position(const GrowingArray<Rounded>& points, std::size_t begin, std::size_t end,
                        const Visit& visit) {
     while (begin < end && begin > 0 && points[begin].in_position_of(points[begin - 1]))
         ++begin;
@@ -80,7 +80,7 @@ void for_each_position(const std::vector<Rounded>& points, std::size_t begin, st
 // can be in the same place; among those the exact test decides.
 Places find_places(const PlanGeometry& geometry, const FaceList& faces,
                    const std::vector<ExtraPoint>& extra, int threads, const Progress* progress) {
-    const std::vector<Rounded> points = points_in_use(geometry, faces, extra, threads, progress);
+    const GrowingArray<Rounded> points = points_in_use(geometry, faces, extra, threads, progress);
     FlatArray<std::uint32_t> first_there(points.size());  // the first point in the place of each
     std::vector<std::size_t> before((points.size() + kChunk - 1) / kChunk);
     parallel_ranges(points.size(), kChunk, threads, progress,

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "realmodel/base/growing_array.hpp"
 #include "realmodel/exact/plan_geometry.hpp"
 
 namespace realmodel::strata {
@@ -27,15 +28,15 @@ using PolygonView = std::span<const Corner>;
 
 /// Many polygons in one array.
 struct PolygonPool {
-    std::vector<std::int64_t> offsets{0};
-    std::vector<Corner> corners;
+    GrowingArray<std::int64_t> offsets{0};
+    GrowingArray<Corner> corners;
 
     std::size_t size() const { return offsets.size() - 1; }
     PolygonView operator[](std::size_t i) const {
         return {corners.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
     }
     void add(PolygonView polygon) {
-        corners.insert(corners.end(), polygon.begin(), polygon.end());
+        corners.append(polygon.begin(), polygon.end());
         offsets.push_back(static_cast<std::int64_t>(corners.size()));
     }
 };

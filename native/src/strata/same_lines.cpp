@@ -36,8 +36,8 @@ std::uint64_t mixed(const std::array<double, 3>& key) {
     return h * 0xBF58476D1CE4E5B9u;
 }
 
-std::vector<Keyed> lines_in_use(const PlanGeometry& geometry, const FaceList& faces, int threads,
-                                const Progress* progress) {
+GrowingArray<Keyed> lines_in_use(const PlanGeometry& geometry, const FaceList& faces, int threads,
+                                 const Progress* progress) {
     auto used = zeros<std::uint8_t>(geometry.line_count(), threads, progress);
     const auto& corners = faces.polygons.corners;
     parallel_ranges(corners.size(), kChunk, threads, progress,
@@ -51,7 +51,7 @@ std::vector<Keyed> lines_in_use(const PlanGeometry& geometry, const FaceList& fa
             before[begin / kChunk] =
                 static_cast<std::size_t>(std::count(used.begin() + begin, used.begin() + end, 1));
         });
-    std::vector<Keyed> lines(count_before(before));
+    GrowingArray<Keyed> lines(count_before(before));
     parallel_ranges(used.size(), kChunk, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         Scope scope(geometry);
@@ -67,7 +67,7 @@ std::vector<Keyed> lines_in_use(const PlanGeometry& geometry, const FaceList& fa
 
 /// The lines that run where a lower one does; rounded slope and offset are equal for them, and
 /// among lines with equal ones the exact test decides.
-std::vector<Follower> find_followers(const PlanGeometry& geometry, std::vector<Keyed> lines,
+std::vector<Follower> find_followers(const PlanGeometry& geometry, GrowingArray<Keyed> lines,
                                      int threads, const Progress* progress) {
     const auto in_order = [](const Keyed& a, const Keyed& b) {
         return std::tie(a.key, a.line) < std::tie(b.key, b.line);
@@ -105,7 +105,7 @@ std::vector<Follower> find_followers(const PlanGeometry& geometry, std::vector<K
 
 LineTracks join_lines(const PlanGeometry& geometry, const FaceList& faces, int threads,
                       const Progress* progress) {
-    std::vector<Keyed> lines = lines_in_use(geometry, faces, threads, progress);
+    GrowingArray<Keyed> lines = lines_in_use(geometry, faces, threads, progress);
     LineTracks tracks;
     tracks.of_line = FlatArray<std::int32_t>(geometry.line_count());
     std::fill(tracks.of_line.begin(), tracks.of_line.end(), -1);

@@ -198,6 +198,7 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
                     const std::vector<std::int32_t>& surface_of_plane, int threads,
                     Progress* progress) {
     // The peak of memory is still to come, and what chunks of overlays were made in is free.
+    geometry.forget_names();
     constexpr std::size_t kManyPoints = 1000000;
     if (geometry.point_count() > kManyPoints) give_back_memory();
     std::vector<ExtraPoint> extra;
@@ -216,6 +217,7 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
         Tracks tracks = find_tracks(geometry, faces, places, extra, threads, progress);
         next(0.3, "rounding");
         Loops loops = find_loops(geometry, faces, places, tracks, threads, progress);
+        loops.edge_begin = {};
         next(0.1, "building walls");
         std::vector<ExtraPoint> missing;
         auto walls = find_walls(geometry, faces, tracks, loops, missing, threads, progress);
@@ -225,6 +227,7 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
         }
         tracks = {};
         begin(progress, done, 1.0 - done, "putting the cells together");
+        place_vertices(places, loops, threads, progress);
         make_distinct(geometry, faces, places, loops, threads, progress);
         return assemble(faces, surface_of_plane, std::move(loops), std::move(walls),
                         std::move(construction.cell_block), threads, progress);

@@ -13,12 +13,11 @@ namespace realmodel::strata {
     const std::ptrdiff_t left = tracks_.edges.end() - 1 - edge;
     const TrackEdge& far = edge[std::min<std::ptrdiff_t>(24, left)];
     const auto face = static_cast<std::size_t>(far.face);
-    prefetch(&loops_.edge_begin[far.corner]);
     prefetch(&loops_.face_offsets[face]);
     prefetch(&faces_.above[face]);
     prefetch(&faces_.below[face]);
     const TrackEdge& near = edge[std::min<std::ptrdiff_t>(8, left)];
-    prefetch(&loops_.vertices[loops_.edge_begin[near.corner]]);
+    prefetch(&loops_.vertices[near.begin]);
 }
 
 /// Ascending; where two curves start at one vertex the lower end comes first, and of equal
@@ -71,7 +70,7 @@ void TrackCurves::add_curves(const TrackEdge& edge) {
     const bool left = edge.from < edge.to;
     Curve curve{0, 0, edge.face, faces_.above[face], faces_.below[face], left};
     const std::int32_t steps = std::abs(edge.to - edge.from);
-    std::uint32_t entry = loops_.edge_begin[edge.corner];
+    std::uint32_t entry = edge.begin;
     std::int32_t vertex = loops_.vertices[entry];
     std::int32_t interval = left ? edge.from : edge.from - 1;
     for (std::int32_t s = 0; s < steps; ++s) {

@@ -182,7 +182,7 @@ Tracks find_tracks(const PlanGeometry& geometry, const FaceList& faces, const Pl
                     TrackEdge& edge = tracks.edges[e];
                     edge.from = on_track.rank(edge.from);
                     edge.to = on_track.rank(edge.to);
-                    tracks.passed[edge.corner] = {
+                    tracks.passed[edge.begin] = {
                         static_cast<std::uint32_t>(next + static_cast<std::size_t>(edge.from)),
                         edge.to - edge.from};
                 }

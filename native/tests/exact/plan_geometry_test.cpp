@@ -276,6 +276,67 @@ TEST(PlanGeometry, LocalNamesBecomeSharedOnes) {
     EXPECT_DOUBLE_EQ(g.point(first.shared_point(p)).x, 16.0 / 7.0);
 }
 
+/// Two surfaces on the plan mesh of two triangles that share the plan edge of vertices 1 and 2, and
+/// cross each other over it.
+struct CrossingOnOneMesh {
+    CrossingOnOneMesh() {
+        const std::array<VertexId, 4> v{g.add_vertex(0, 0), g.add_vertex(1, 0.125),
+                                        g.add_vertex(0.25, 1), g.add_vertex(1.5, 1.25)};
+        const std::array<std::array<double, 4>, 2> heights{{{0, 0.5, 0.25, 1}, {0.5, 0, 0.75, 0}}};
+        for (std::size_t k = 0; k < 2; ++k) {
+            std::array<SpaceId, 4> s;
+            for (std::size_t i = 0; i < 4; ++i)
+                s[i] = g.add_space_vertex(v[i], heights[k][i]);
+            plane[k] = {g.add_plane({s[0], s[1], s[2]}), g.add_plane({s[2], s[1], s[3]})};
+        }
+        g.freeze_vertices();
+        edge = line_of(g.add_edge(v[1], v[2]));
+    }
+
+    PlanGeometry g;
+    LineId edge;
+    std::array<std::array<PlaneId, 2>, 2> plane;  ///< of each surface, on either side of the edge
+};
+
+TEST(PlanGeometry, EdgesOverEachOtherCrossInOnePointFromBothSides) {
+    CrossingOnOneMesh mesh;
+    Scope scope(mesh.g);
+    const auto trace = [&](std::size_t lower, std::size_t upper) {
+        return line_of(scope.trace(mesh.plane[0][lower], mesh.plane[1][upper]));
+    };
+    const PointId from_one = scope.crossing(mesh.edge, trace(0, 0));
+    EXPECT_EQ(scope.crossing(trace(1, 1), mesh.edge), from_one);
+    EXPECT_EQ(scope.crossing(mesh.edge, trace(0, 1)), from_one);
+    // All four planes are equally high there, which is known without arithmetic.
+    for (const PlaneId a : {mesh.plane[0][0], mesh.plane[0][1]}) {
+        for (const PlaneId b : {mesh.plane[1][0], mesh.plane[1][1]}) {
+            EXPECT_EQ(scope.compare_heights(a, b, from_one), 0);
+            EXPECT_EQ(scope.side(scope.trace(a, b), from_one), 0);
+        }
+    }
+    EXPECT_EQ(scope.exact_decisions(), 0u);
+    scope.ask_for_point(from_one);
+    const auto position = scope.rounded(from_one);
+    scope.hand_over(mesh.g);
+    Scope other(mesh.g);
+    EXPECT_EQ(other.rounded(scope.shared_point(from_one)), position);
+}
+
+TEST(PlanGeometry, CrossingsOnABorderAlongAnAxisNeedNoExactArithmetic) {
+    PlanGeometry g;
+    const double x = 0.1;
+    const std::array<VertexId, 5> v{g.add_vertex(x, 0), g.add_vertex(x, 0.3), g.add_vertex(x, 0.7),
+                                    g.add_vertex(-1, 0.1), g.add_vertex(1, 0.2)};
+    g.freeze_vertices();
+    const LineId lower = line_of(g.add_edge(v[0], v[1])), across = line_of(g.add_edge(v[3], v[4]));
+    const DirectedLine upper = g.add_edge(v[1], v[2]);
+    Scope scope(g);
+    const PointId at = scope.crossing(lower, across);
+    ASSERT_FALSE(scope.is_vertex(at));
+    EXPECT_EQ(scope.side(upper, at), 0);
+    EXPECT_EQ(scope.exact_decisions(), 0u);
+}
+
 TEST(Turn, IsExact) {
     EXPECT_EQ(turn({0, 0}, {1, 0}, {0, 1}), 1);
     EXPECT_EQ(turn({0, 0}, {0, 1}, {1, 0}), -1);

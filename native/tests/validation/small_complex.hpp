@@ -63,13 +63,13 @@ struct OwnedComplex {
 /// What a built model is of.
 inline OwnedComplex owned(const strata::CellComplex& c, bool blocks = false) {
     OwnedComplex o;
-    o.vertices = c.vertices;
+    o.vertices.assign(c.vertices.begin(), c.vertices.end());
     for (std::size_t f = 0; f < c.face_cells.size(); ++f) {
         o.add_face({c.face_vertices.begin() + c.face_offsets[f],
                     c.face_vertices.begin() + c.face_offsets[f + 1]},
                    c.face_cells[f][0], c.face_cells[f][1], c.face_surface[f]);
     }
-    o.block = c.cell_block;
+    o.block.assign(c.cell_block.begin(), c.cell_block.end());
     o.volume = c.volumes;
     o.base.assign(c.volumes.size(), std::numeric_limits<double>::quiet_NaN());
     o.surfaces = static_cast<std::int32_t>(c.volumes.size());

@@ -46,7 +46,7 @@ struct Plane {
 
 /// What lies on the cutter: convex polygons, counter-clockwise seen from above (or outside).
 struct Section {
-    std::vector<std::array<double, 3>> vertices;
+    GrowingArray<std::array<double, 3>> vertices;
     std::vector<std::int64_t> offsets{0};
     std::vector<std::int32_t> polygon_vertices;
     /// The model's cells below (inside) and above (outside): twice the same where a cell is cut,

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "realmodel/base/growing_array.hpp"
 #include "realmodel/exact/key_table.hpp"
 #include "realmodel/exact/side_rows.hpp"
 
@@ -73,6 +74,10 @@ struct Point {
     /// elsewhere.
     SpaceId edge_from = -1, edge_to = -1;
     PlaneId pierced = -1;
+    /// Where the plane's triangle has an edge over the same plan edge, that edge stands for the
+    /// plane, as the triangles beside it share it too: `pierced` is its lower space vertex and this
+    /// the higher one. -1 elsewhere.
+    SpaceId pierced_to = -1;
     double x = 0, y = 0;  ///< the doubles nearest to the true position
 
     /// Bound on the distance from the true position in x and in y.
@@ -99,8 +104,10 @@ inline KeyTable::Key height_key(VertexId plan, double z) {
 inline KeyTable::Key line_key_of(const Line& line) {
     return {static_cast<std::int32_t>(line.kind), line.first, line.second, 0};
 }
-/// The name of a crossing: the edge and the plane that it pierces, or its two lines.
+/// The name of a crossing: the edge and the plane or edge that it meets, or its two lines.
 inline KeyTable::Key point_key_of(const Point& point) {
+    if (point.pierced_to >= 0)
+        return {2 + point.edge_from, point.edge_to, point.pierced, point.pierced_to};
     if (point.edge_from >= 0) return {0, point.edge_from, point.edge_to, point.pierced};
     return {1, std::min(point.first, point.second), std::max(point.first, point.second), 0};
 }
@@ -177,11 +184,22 @@ public:
     /// then on none may be added.
     void freeze_vertices();
 
+    /// Gives back the memory that finds lines and points by name, for when hardly any will be asked
+    /// for; it is made again for the first that is.
+    void forget_names();
+
     /// The line through two plan vertices, made where it is new, directed from `from` to `to`.
     DirectedLine add_edge(VertexId from, VertexId to);
     LineId add_line(const Line& line);
     /// The crossing of two different lines that are not parallel, made where it is new.
     PointId add_point(const Point& point);
+    /// Makes room for so many more lines and points than there are. While there is room for what is
+    /// added, what was there may be read by other threads.
+    void make_room(std::size_t lines, std::size_t points);
+    bool has_room(std::size_t lines, std::size_t points) const {
+        return lines_.capacity() - lines_.size() >= lines &&
+               points_.capacity() - points_.size() >= points;
+    }
     /// To be called some time before one of these is added, as memory takes its time.
     [[gnu::always_inline]] void prefetch_vertex(double x, double y) const {
         vertex_table_.prefetch(position_key(x, y));
@@ -238,12 +256,15 @@ public:
     }
 
 private:
-    std::vector<Point> points_;
-    std::vector<SpaceVertex> space_;
-    std::vector<Plane> planes_;
-    std::vector<PlaneFilter> plane_filters_;
-    std::vector<Line> lines_;
+    GrowingArray<Point> points_;
+    GrowingArray<SpaceVertex> space_;
+    GrowingArray<Plane> planes_;
+    GrowingArray<PlaneFilter> plane_filters_;
+    GrowingArray<Line> lines_;
+    void remember_names();
+
     KeyTable vertex_table_, space_table_, line_table_, point_table_;
+    bool names_forgotten_ = false;
     std::size_t vertex_count_ = 0;
     int plan_exponent_ = 0, height_exponent_ = 0;
     mutable std::atomic<std::uint64_t> exact_decisions_{0}, all_decisions_{0};
@@ -327,6 +348,10 @@ public:
     /// Hands the local lines and points over to the geometry that were asked for; what nobody asks
     /// for stays behind. Nothing new may be found afterwards.
     void hand_over(PlanGeometry& geometry);
+    /// Whether the geometry has room for what was asked for.
+    bool has_room_in(const PlanGeometry& geometry) const {
+        return geometry.has_room(asked_lines_.size(), asked_points_.size());
+    }
     /// The shared id of a line or point, which may be local; handed over now if nobody asked
     /// before.
     LineId shared_line(LineId id);
@@ -338,6 +363,7 @@ public:
 private:
     int filtered_side(const LineFilter& line, const Point& point) const;
     bool vanishes(const LineFilter& edge, const Point& vertex) const;
+    bool runs_along(const LineFilter& edge, const Point& crossing) const;
     int exact_side(const Line& line, PointId point);
     bool on_trace_by_name(PlaneId a, PlaneId b, const Point& point) const;
     NearPoint near(const Point& point) const;

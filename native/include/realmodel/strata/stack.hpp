@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "realmodel/base/growing_array.hpp"
 #include "realmodel/base/progress.hpp"
 
 namespace realmodel::strata {
@@ -51,15 +52,15 @@ struct Warning {
 
 /// Polyhedral cells that share faces exactly (the layout that OpenFOAM calls owner / neighbour).
 struct CellComplex {
-    std::vector<std::array<double, 3>> vertices;
-    std::vector<std::int64_t> face_offsets;
-    std::vector<std::int32_t>
+    GrowingArray<std::array<double, 3>> vertices;
+    GrowingArray<std::int64_t> face_offsets;
+    GrowingArray<std::int32_t>
         face_vertices;  ///< counter-clockwise seen from outside the first cell
-    std::vector<std::array<std::int32_t, 2>> face_cells;  ///< -1 is outside; the first never is
-    std::vector<std::int32_t> face_surface;               ///< -1 a vertical wall, -2 the flat base
+    GrowingArray<std::array<std::int32_t, 2>> face_cells;  ///< -1 is outside; the first never is
+    GrowingArray<std::int32_t> face_surface;               ///< -1 a vertical wall, -2 the flat base
     /// The surface that the cell's block lies beneath; of the oldest surface of a rock mass: the
     /// block between it and the base. Surfaces are counted through all rock masses.
-    std::vector<std::int32_t> cell_block;
+    GrowingArray<std::int32_t> cell_block;
     std::vector<double> volumes;  ///< of the block beneath each surface
     std::vector<Warning> warnings;
     std::uint64_t decisions = 0;        ///< how many signs were asked

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <mutex>
+#include <vector>
+
+#include "polygon.hpp"
+
+namespace realmodel::strata {
+
+/// Hands what the scopes of many chunks found over to the geometry, in the order of the chunks
+/// whichever comes first, by whatever thread is free while others still work: the ids do not depend
+/// on threads, and nobody waits.
+class OrderedHandOver {
+public:
+    /// `facets`: those of all chunks.
+    OrderedHandOver(exact::PlanGeometry& geometry, std::size_t chunks, std::size_t facets)
+        : geometry_(geometry), finished_(chunks) {
+        // What others read must not move. Most facets find fewer lines and points than this; where
+        // one finds more, the rest waits until all are done.
+        geometry.make_room(facets * 4 + 1024, facets * 8 + 1024);
+    }
+
+    /// To be called when nothing more will be asked of the scope of a chunk.
+    void finished(std::size_t chunk, Scope& scope) {
+        finished_[chunk].store(&scope, std::memory_order_release);
+        const std::unique_lock lock(busy_, std::try_to_lock);
+        if (!lock) return;  // another thread goes on, now or with its next chunk
+        for (Scope* next = finished_scope(); next != nullptr && next->has_room_in(geometry_);
+             next = finished_scope())
+            hand_over(*next);
+    }
+
+    /// To be called when all chunks are finished: hands over what is left.
+    void finish() {
+        for (Scope* next = finished_scope(); next != nullptr; next = finished_scope())
+            hand_over(*next);
+    }
+
+private:
+    Scope* finished_scope() const {
+        return next_ < finished_.size() ? finished_[next_].load(std::memory_order_acquire)
+                                        : nullptr;
+    }
+    void hand_over(Scope& scope) {
+        scope.hand_over(geometry_);
+        ++next_;
+    }
+
+    exact::PlanGeometry& geometry_;
+    std::vector<std::atomic<Scope*>> finished_;
+    std::mutex busy_;
+    std::size_t next_ = 0;  ///< chunk to be handed over; with busy_
+};
+
+}  // namespace realmodel::strata

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/ordered_hand_over.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+#include <vector>
+
+namespace realmodel::strata {
+namespace {
+
+using exact::PlanGeometry;
+using exact::VertexId;
+
+/// A comb of edges, upright ones over level ones: each chunk finds the crossings of one upright.
+class Comb {
+public:
+    static constexpr int kEdges = 12;
+
+    Comb() {
+        std::vector<std::array<VertexId, 2>> upright, level;
+        for (int i = 0; i < kEdges; ++i) {
+            upright.push_back({geometry.add_vertex(i, -1), geometry.add_vertex(i + 0.25, kEdges)});
+            level.push_back({geometry.add_vertex(-1, i), geometry.add_vertex(kEdges, i + 0.25)});
+        }
+        geometry.freeze_vertices();
+        for (int i = 0; i < kEdges; ++i) {
+            const auto& [from, to] = upright[static_cast<std::size_t>(i)];
+            upright_.push_back(exact::line_of(geometry.add_edge(from, to)));
+            const auto& [left, right] = level[static_cast<std::size_t>(i)];
+            level_.push_back(exact::line_of(geometry.add_edge(left, right)));
+        }
+    }
+
+    /// Hands over in this order of finishing; the crossings by number.
+    std::vector<std::array<LineId, 2>> hand_over(const std::vector<std::size_t>& order,
+                                                 std::size_t facets) {
+        OrderedHandOver handing(geometry, order.size(), facets);
+        std::vector<std::unique_ptr<Scope>> scopes(order.size());
+        for (const std::size_t chunk : order) {
+            scopes[chunk] = std::make_unique<Scope>(geometry);
+            for (const LineId other : level_) {
+                const PointId at = scopes[chunk]->crossing(upright_[chunk], other);
+                scopes[chunk]->ask_for_point(at);
+            }
+            handing.finished(chunk, *scopes[chunk]);
+        }
+        handing.finish();
+        std::vector<std::array<LineId, 2>> crossings;
+        for (auto p = geometry.vertex_count(); p < static_cast<PointId>(geometry.point_count());
+             ++p)
+            crossings.push_back({geometry.point(p).first, geometry.point(p).second});
+        return crossings;
+    }
+
+    PlanGeometry geometry;
+
+private:
+    std::vector<LineId> upright_, level_;
+};
+
+std::vector<std::size_t> in_order() {
+    std::vector<std::size_t> order(Comb::kEdges);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    return order;
+}
+
+TEST(OrderedHandOver, NumbersDoNotDependOnWhoIsFirst) {
+    const auto expected = Comb().hand_over(in_order(), 1000);
+    ASSERT_EQ(expected.size(), static_cast<std::size_t>(Comb::kEdges * Comb::kEdges));
+    auto order = in_order();
+    std::reverse(order.begin(), order.end());
+    EXPECT_EQ(Comb().hand_over(order, 1000), expected);
+    std::rotate(order.begin(), order.begin() + 5, order.end());
+    EXPECT_EQ(Comb().hand_over(order, 1000), expected);
+}
+
+TEST(PlanGeometry, FindsByNameAgainWhatItHasForgotten) {
+    Comb comb;
+    const auto first = comb.hand_over(in_order(), 1000);
+    comb.geometry.forget_names();
+    EXPECT_EQ(comb.hand_over(in_order(), 1000), first);  // nothing came twice
+}
+
+TEST(PlanGeometry, HasTheRoomThatWasMade) {
+    PlanGeometry geometry;
+    geometry.make_room(10, 20);
+    EXPECT_TRUE(geometry.has_room(10, 20));
+    EXPECT_FALSE(geometry.has_room(1, 1000000));
+    EXPECT_FALSE(geometry.has_room(1000000, 1));
+}
+
+}  // namespace
+}  // namespace realmodel::strata
