@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of a surface that say how its file of points or mesh is read, where the file does not tell it."""
+"""The settings of a surface that say how its file of points or mesh is read, where it does not tell that."""
 
 from bpy.props import EnumProperty, StringProperty
 

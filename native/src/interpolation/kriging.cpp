@@ -99,7 +99,8 @@ void krige_from_nearest(const Task& task, const LocalSystem& system) {
 
 constexpr std::size_t nodes_in_order = 1U << 22;  // put in order at a time: some tens of ms
 
-/// The nearest of all directions and distances, few enough: several systems at once.
+/// The nearest of all directions and distances, few enough: several systems at once. Those that are
+/// not well posed - points in one line and a drift across it - one by one.
 void krige_in_lanes(const Task& task) {
     const auto neighbours = static_cast<std::size_t>(task.options.neighbours);
     const std::size_t count = task.count();
@@ -110,20 +111,28 @@ void krige_in_lanes(const Task& task) {
         for (std::size_t i = 0; i < here; ++i)
             places[i] = task.node(first + i);
         const std::vector<std::uint32_t> order = along_curve(places);
-        const auto make = [&](const StopSign&) {
+        const auto make = [&](const StopSign& stop) {
             return [&, nodes = std::vector<LaneKriging::Node>(),
-                    kriging = LaneKriging(task.data, task.tree, task.covariance, neighbours,
-                                          task.leaves_out(), lane_kernels().front())](
-                       std::size_t begin, std::size_t end) mutable {
+                    kriging =
+                        LaneKriging(task.data, task.tree, task.covariance, neighbours,
+                                    task.leaves_out(), lane_kernels().front(), task.options.drift),
+                    hard = DriftKriging(task.data, task.covariance, task.options.drift),
+                    search = NeighbourSearch(task.data, task.tree, task.neighbourhood()),
+                    near = std::vector<spatial::Neighbour>()](std::size_t begin,
+                                                              std::size_t end) mutable {
                 nodes.clear();
                 for (std::size_t k = begin; k < end; ++k) {
                     const std::size_t i = first + order[k];
                     nodes.push_back(
                         {places[order[k]], static_cast<std::uint32_t>(i), task.left_out(i)});
                 }
-                kriging.krige(nodes, [&](std::uint32_t i, const Estimate& estimate) {
-                    task.set(i, estimate);
-                });
+                kriging.krige(
+                    nodes,
+                    [&](std::uint32_t i, const Estimate& estimate) { task.set(i, estimate); },
+                    [&](std::uint32_t i) {
+                        search.find(task.node(i), near, task.left_out(i));
+                        task.set(i, hard.at(task.node(i), near, stop));
+                    });
             };
         };
         for_chunks(here, 512, task.options.threads, task.progress,
@@ -265,8 +274,7 @@ Kriged krige_nodes(const DataPoints& data, std::span<const Place> nodes, const V
     const auto neighbours = static_cast<std::size_t>(options.neighbours);
     if (task.neighbourhood().plain() && (neighbours == 0 || neighbours >= data.local.size())) {
         krige_from_all(task);
-    } else if (task.neighbourhood().plain() && options.drift == Drift::constant &&
-               neighbours <= LaneKriging::most_neighbours) {
+    } else if (task.neighbourhood().plain() && neighbours <= LaneKriging::most_neighbours) {
         krige_in_lanes(task);
     } else if (options.drift == Drift::constant) {
         krige_from_nearest(task, LocalKriging(data, covariance));

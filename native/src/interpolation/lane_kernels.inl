@@ -121,13 +121,9 @@ inline void eliminate(double* const* rows, const double* pivot_row, int k, Vecto
 constexpr int at_once = 4;       // rows whose sums are in registers together
 constexpr int most_points = 64;  // lane_kriging.hpp asks for no more
 
-void krige_part(int points, double* numbers, double* estimates, double* variances) {
-    double* rows[most_points + 3];
-    for (int i = 0; i < points; ++i)
-        rows[i] = numbers + (i * (i + 1) / 2) * lanes;
-    for (int extra = 0; extra < 3; ++extra)
-        rows[points + extra] = numbers + (points * (points + 1) / 2 + extra * points) * lanes;
-
+/// Eliminates systems with some rows behind the points'. The least pivot, for each lane.
+Vector eliminate_all(double** rows, int points, int all_rows) {
+    Vector least = all(1);
     for (int k = 0; k < points; ++k) {
         double* const pivot_row = rows[k];
         Vector pivot = load(pivot_row + k * lanes);
@@ -135,14 +131,15 @@ void krige_part(int points, double* numbers, double* estimates, double* variance
             const Vector factor = load(pivot_row + j * lanes);
             pivot -= factor * factor;
         }
+        least = pivot < least ? pivot : least;
         // What the nearer points leave open of this one; nothing: it is passed over.
         const Vector scale = pivot < redundant_variance
                                  ? all(0)
                                  : 1 / root(pivot < redundant_variance ? all(1) : pivot);
         int row = k + 1;
-        for (; row + at_once <= points + 3; row += at_once)
+        for (; row + at_once <= all_rows; row += at_once)
             eliminate<at_once>(rows + row, pivot_row, k, scale);
-        switch (points + 3 - row) {
+        switch (all_rows - row) {
             case 3:
                 eliminate<3>(rows + row, pivot_row, k, scale);
                 break;
@@ -156,6 +153,21 @@ void krige_part(int points, double* numbers, double* estimates, double* variance
                 break;
         }
     }
+    return least;
+}
+
+/// Where the rows begin of which `numbers` are the first; those behind the points' have all points.
+void find_rows(double** rows, double* numbers, int points, int all_rows) {
+    for (int i = 0; i < points; ++i)
+        rows[i] = numbers + (i * (i + 1) / 2) * lanes;
+    for (int i = points; i < all_rows; ++i)
+        rows[i] = numbers + (points * (points + 1) / 2 + (i - points) * points) * lanes;
+}
+
+void krige_part(int points, double* numbers, double* estimates, double* variances) {
+    double* rows[most_points + 3];
+    find_rows(rows, numbers, points, points + 3);
+    eliminate_all(rows, points, points + 3);
     Vector uu = all(0), us = all(0), ut = all(0), ss = all(0), st = all(0);
     for (int k = 0; k < points; ++k) {
         const Vector u = load(rows[points] + k * lanes), s = load(rows[points + 1] + k * lanes),
@@ -173,6 +185,88 @@ void krige_part(int points, double* numbers, double* estimates, double* variance
     store(variances, variance > 0.0 ? variance : all(0));
 }
 
+Vector product(const double* a, const double* b, int points) {
+    Vector sum = all(0);
+    for (int k = 0; k < points; ++k)
+        sum += load(a + k * lanes) * load(b + k * lanes);
+    return sum;
+}
+
+/// Makes vectors orthonormal, each against those before it (modified Gram-Schmidt); upper[b][a] is
+/// the part of the a-th along the b-th. The least part of any that those before it leave.
+Vector make_orthonormal(double* const* vectors, int terms, int points,
+                        Vector (*upper)[most_lane_terms]) {
+    Vector least = all(1);
+    for (int a = 0; a < terms; ++a) {
+        const Vector whole = product(vectors[a], vectors[a], points);
+        for (int b = 0; b < a; ++b) {
+            const Vector part = product(vectors[b], vectors[a], points);
+            upper[b][a] = part;
+            for (int k = 0; k < points; ++k) {
+                store(vectors[a] + k * lanes,
+                      load(vectors[a] + k * lanes) - part * load(vectors[b] + k * lanes));
+            }
+        }
+        const Vector left = product(vectors[a], vectors[a], points);
+        const Vector share = left / (whole > 0.0 ? whole : all(1));
+        least = share < least ? share : least;
+        upper[a][a] = root(left > 0.0 ? left : all(1));
+        for (int k = 0; k < points; ++k)
+            store(vectors[a] + k * lanes, load(vectors[a] + k * lanes) / upper[a][a]);
+    }
+    return least;
+}
+
+// Of a term's square, what the terms before it must leave: terms less apart cost digits.
+constexpr double well_apart = 1e-6;
+
+/// universal_kriging, with the terms (1, 0, ..) at the place.
+void krige_part_about_drift(int points, int terms, double* numbers, double* estimates,
+                            double* variances, double* well_posed) {
+    double* rows[most_points + 2 + most_lane_terms];
+    find_rows(rows, numbers, points, points + 2 + terms);
+    double* const* drift = rows + points + 1;
+    Vector upper[most_lane_terms][most_lane_terms];
+
+    // Whether they are told apart is seen of the terms as they are.
+    alignas(64) double plain[most_lane_terms * most_points * lanes];
+    double* copies[most_lane_terms] = {};
+    for (int a = 0; a < terms; ++a) {
+        copies[a] = plain + a * most_points * lanes;
+        for (int k = 0; k < points; ++k)
+            store(copies[a] + k * lanes, load(drift[a] + k * lanes));
+    }
+    const Vector apart = make_orthonormal(copies, terms, points, upper);
+
+    const Vector pivot = eliminate_all(rows, points, points + 2 + terms);
+    const Vector apart_then = make_orthonormal(drift, terms, points, upper);
+    const double* const u = rows[points];
+    const double* const t = rows[points + 1 + terms];
+    Vector estimate = product(u, t, points), variance = 1 - product(u, u, points);
+    Vector at_place[most_lane_terms];
+    for (int a = 0; a < terms; ++a) {
+        Vector sum = all(a == 0 ? 1 : 0);
+        for (int b = 0; b < a; ++b)
+            sum -= upper[b][a] * at_place[b];
+        at_place[a] = sum / upper[a][a];
+        const Vector open = at_place[a] - product(drift[a], u, points);
+        estimate += open * product(drift[a], t, points);
+        variance += open * open;
+    }
+    store(estimates, estimate);
+    store(variances, variance > 0.0 ? variance : all(0));
+    const Vector worst = apart < apart_then ? apart : apart_then;
+    store(well_posed, pivot < redundant_variance ? all(0) : worst < well_apart ? all(0) : all(1));
+}
+
+void krige_about_drift(const LaneSystems& systems, double* estimates, double* variances,
+                       double* well_posed) {
+    for (int lane = 0; lane < lanes; lane += LANES_WIDTH) {
+        krige_part_about_drift(systems.points, systems.terms, systems.rows + lane, estimates + lane,
+                               variances + lane, well_posed + lane);
+    }
+}
+
 void krige(const LaneSystems& systems, double* estimates, double* variances) {
     for (int lane = 0; lane < lanes; lane += LANES_WIDTH)
         krige_part(systems.points, systems.rows + lane, estimates + lane, variances + lane);
@@ -181,6 +275,6 @@ void krige(const LaneSystems& systems, double* estimates, double* variances) {
 }  // namespace
 
 extern const LaneKernels kernels;
-const LaneKernels kernels{LANES_TEXT, &covariances, &krige};
+const LaneKernels kernels{LANES_TEXT, &covariances, &krige, &krige_about_drift};
 
 }  // namespace realmodel::interpolation::LANES_NAME

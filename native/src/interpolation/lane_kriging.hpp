@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ordinary kriging of many nodes from a few points each, several at once. Private.
+// Kriging of many nodes from a few points each, several at once. Private.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include "interpolation/block_neighbours.hpp"
 #include "interpolation/covariance.hpp"
 #include "interpolation/lane_kernels.hpp"
+#include "realmodel/interpolation/drift.hpp"
 
 namespace realmodel::interpolation {
 
@@ -27,7 +28,8 @@ private:
 };
 
 /// Takes nodes that lie close together, block by block, and solves their systems side by side. One
-/// for each thread. What it says of a node is, to the last bit, what LocalKriging says of it.
+/// for each thread. Without a drift, what it says of a node is, to the last bit, what LocalKriging
+/// says of it; with one it leaves systems that are not well posed to DriftKriging.
 class LaneKriging {
 public:
     static constexpr std::size_t most_neighbours = 64;
@@ -44,11 +46,16 @@ public:
     ///                    one more in the data
     LaneKriging(const DataPoints& data, const spatial::NearestPoints& tree,
                 const Covariance& covariance, std::size_t neighbours, bool leaves_out,
-                const LaneKernels& kernels);
+                const LaneKernels& kernels, Drift drift = Drift::constant);
 
     /// Solves the systems of some nodes; set(number, estimate) gets each estimate, in any order.
+    /// leave(number): a node whose system is not well posed; never without a drift.
+    template <class Set, class Leave>
+    void krige(std::span<const Node> nodes, Set&& set, Leave&& leave);
     template <class Set>
-    void krige(std::span<const Node> nodes, Set&& set);
+    void krige(std::span<const Node> nodes, Set&& set) {
+        krige(nodes, set, [](std::uint32_t) {});
+    }
 
 private:
     static constexpr std::size_t most_in_block = 64;
@@ -56,9 +63,10 @@ private:
     void prepare_covariances();
     /// Puts a node into the next lane; whether all lanes are full.
     bool add(const Node& node, std::span<const std::int32_t> nearest);
+    void set_drift(double* terms);
     void solve();
-    template <class Set>
-    void flush(Set&& set);
+    template <class Set, class Leave>
+    void flush(Set&& set, Leave&& leave);
 
     const DataPoints& data_;
     Covariance covariance_;
@@ -70,14 +78,16 @@ private:
     std::vector<double> table_;  // covariances of all candidates with each other
     std::size_t pair_count_ = 0;
     AlignedNumbers pair_x_, pair_y_, pair_covariance_;
-    AlignedNumbers rows_, node_x_, node_y_, estimates_, variances_;
+    Drift drift_;
+    std::size_t terms_;
+    AlignedNumbers rows_, node_x_, node_y_, estimates_, variances_, well_posed_;
     std::size_t filled_ = 0;  // lanes
     std::uint32_t number_[lanes] = {};
     double base_[lanes] = {};
 };
 
-template <class Set>
-void LaneKriging::krige(std::span<const Node> nodes, Set&& set) {
+template <class Set, class Leave>
+void LaneKriging::krige(std::span<const Node> nodes, Set&& set, Leave&& leave) {
     while (!nodes.empty()) {
         std::size_t count = std::min(run_, nodes.size());
         places_.clear();
@@ -94,18 +104,22 @@ void LaneKriging::krige(std::span<const Node> nodes, Set&& set) {
                     block_.candidates()[static_cast<std::size_t>(nearest[0])]);
                 set(node.number, Estimate{data_.values[point], 0});
             } else if (add(node, nearest)) {
-                flush(set);
+                flush(set, leave);
             }
         }
         nodes = nodes.subspan(count);
     }
-    if (filled_ > 0) flush(set);
+    if (filled_ > 0) flush(set, leave);
 }
 
-template <class Set>
-void LaneKriging::flush(Set&& set) {
+template <class Set, class Leave>
+void LaneKriging::flush(Set&& set, Leave&& leave) {
     solve();
     for (std::size_t lane = 0; lane < filled_; ++lane) {
+        if (drift_ != Drift::constant && well_posed_.data()[lane] == 0) {
+            leave(number_[lane]);
+            continue;
+        }
         set(number_[lane],
             Estimate{base_[lane] + estimates_.data()[lane], variances_.data()[lane]});
     }

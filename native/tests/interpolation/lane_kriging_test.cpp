@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dense_kriging.hpp"
+#include "interpolation/drift_kriging.hpp"
 #include "interpolation/local_kriging.hpp"
 #include "interpolation/neighbour_search.hpp"
 #include "interpolation/node_order.hpp"
@@ -116,6 +117,69 @@ TEST(LaneKriging, NodesFarApartAndOnPoints) {
     for (const auto& p : points)
         nodes.push_back({p[0], p[1]});
     expect_same_bytes(points, nodes, {VariogramModel::spherical, 300, 9}, 12, false);
+}
+
+/// All kernels the same bytes, and what DriftKriging says of each node; how many were left to it.
+std::size_t left_to_others(const Points& points, const Nodes& nodes, const Variogram& variogram,
+                           int neighbours, Drift drift) {
+    const DataPoints data = prepare_points(points);
+    const Covariance covariance(variogram);
+    const spatial::NearestPoints tree(data.local);
+    NeighbourSearch search(data, tree, {neighbours, 0, 0});
+    DriftKriging plain(data, covariance, drift);
+    std::vector<spatial::Neighbour> near;
+    std::vector<LaneKriging::Node> all;
+    for (std::uint32_t i = 0; i < nodes.size(); ++i)
+        all.push_back({data.to_local(nodes[i]), i});
+    std::vector<Estimate> first;
+    std::size_t left = 0;
+    for (const LaneKernels& kernels : lane_kernels()) {
+        SCOPED_TRACE(kernels.name);
+        LaneKriging kriging(data, tree, covariance, static_cast<std::size_t>(neighbours), false,
+                            kernels, drift);
+        std::vector<Estimate> found(all.size(), Estimate{-1, -1});
+        left = 0;
+        kriging.krige(
+            all, [&](std::uint32_t i, const Estimate& e) { found[i] = e; },
+            [&](std::uint32_t) { ++left; });
+        if (first.empty()) first = found;
+        EXPECT_EQ(std::memcmp(first.data(), found.data(), first.size() * sizeof(Estimate)), 0);
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (first[i].variance == -1) continue;
+        search.find(all[i].place, near);
+        if (near[0].squared_distance == 0) continue;
+        const Estimate one = plain.at(all[i].place, near, [] { return false; });
+        EXPECT_NEAR(first[i].value, one.value, 1e-9 * (1 + one.variance)) << i;
+        EXPECT_NEAR(first[i].variance, one.variance, 1e-9 * (1 + one.variance)) << i;
+    }
+    return left;
+}
+
+TEST(LaneKriging, AboutADriftWhatOneSystemAtATimeSays) {
+    for (const Drift drift : {Drift::linear, Drift::quadratic}) {
+        for (const VariogramModel model : all_variogram_models) {
+            SCOPED_TRACE(std::string(name_of(model)));
+            const Variogram v{model, 400, 9, 0.01, {2, 30}, {}};
+            const Points scattered = some_points("scattered", 400);
+            EXPECT_LT(left_to_others(scattered, some_nodes(21), v, 16, drift), 20U);
+            EXPECT_EQ(left_to_others(scattered, some_nodes(9), v, 64, drift), 0U);
+        }
+    }
+}
+
+TEST(LaneKriging, ADriftThatThePointsDoNotShowIsLeftToOthers) {
+    const Variogram v{VariogramModel::spherical, 400, 9, 0.01, {}, {}};
+    const Nodes nodes = some_nodes(9);
+    Points line;
+    for (int i = 0; i < 60; ++i)
+        line.push_back({431000 + 10.0 * i, 5398000 + 7.0 * i, std::sin(i / 5.0)});
+    EXPECT_EQ(left_to_others(line, nodes, v, 16, Drift::linear), nodes.size());
+    const Points scattered = some_points("scattered", 50);
+    EXPECT_EQ(left_to_others(scattered, nodes, v, 2, Drift::linear), nodes.size());
+    EXPECT_EQ(left_to_others(scattered, nodes, v, 5, Drift::quadratic), nodes.size());
+    const Variogram smooth{VariogramModel::gaussian, 3000, 9, 0, {}, {}};
+    EXPECT_GT(left_to_others(some_points("grid", 400), nodes, smooth, 16, Drift::linear), 0U);
 }
 
 TEST(Decay, WithinTwoUnitsInTheLastPlace) {
