@@ -80,6 +80,61 @@ def test_edges_are_shorter_at_constraints(write):
     assert raised.value.line == 9
 
 
+def at_size(entries, write):
+    text = PROJECT.format(constraints="[]", shape=CONSTANT)
+    return write("p.toml", text.replace("[[rock.surface]]", f"size = [{entries}]\n[[rock.surface]]"))
+
+
+def test_edges_are_shorter_at_what_files_hold(write, tmp_path):
+    write("river.geojson", RIVER)
+    write("wells.wkt", "MULTIPOINT ((6 3), (1 3.5))")
+    project = load_project(
+        at_size(
+            '{ at = "river.geojson", length = 0.1, distance = 0 },'
+            '{ at = { file = "wells.wkt" }, length = 0.05, distance = 0.1 },'
+            '{ at = "POLYGON ((4 3, 5 3, 5 3.5, 4 3))", length = 0.2, distance = 0 },'
+            "{ at = [7.5, 0.5], length = 0.1, distance = 0 }",
+            write,
+        )
+    )
+    assert {tmp_path / "river.geojson", tmp_path / "wells.wkt"} <= set(project.input_files())
+    model = build(project)
+    vertices, triangles = model.rock_inputs[0].region
+    sides = vertices[triangles] - vertices[np.roll(triangles, 1, axis=1)]
+    lengths = np.hypot(*np.moveaxis(sides, -1, 0)).mean(axis=1)
+    centres = vertices[triangles].mean(axis=1)
+
+    def mean_at(place):
+        return lengths[np.hypot(*(centres - place).T) < 0.25].mean()
+
+    river, well, other, side, point, far = map(
+        mean_at, [(2, 2), (6, 3), (1, 3.5), (4.5, 3), (7.5, 0.5), (4, 0.3)]
+    )
+    assert max(well, other) < 0.1 < river < 0.2 < far
+    assert point < 0.2 and side < 0.3 < far
+
+    again = build(model.project)  # from the places that were read
+    save_project(model.project, tmp_path / "saved.toml")
+    saved = build(load_project(tmp_path / "saved.toml"))
+    for mesh in (again.rock_inputs[0].region, saved.rock_inputs[0].region):
+        assert np.array_equal(mesh[0], vertices)
+
+
+@pytest.mark.parametrize(
+    ("at", "words"),
+    [
+        ('"outlines"', "there is no file .*outlines"),
+        ('{ layer = "x" }', "key 'file' is missing"),
+        ('"empty.geojson"', "size 0: there are no lines or points in it"),
+        ('"POINT (1"', "size 0"),
+    ],
+)
+def test_places_of_short_edges_refused(write, at, words):
+    write("empty.geojson", '{"type":"FeatureCollection","features":[]}')
+    with pytest.raises(InputRefused, match=words):
+        build(load_project(at_size(f"{{ at = {at}, length = 0.1, distance = 0 }}", write)))
+
+
 @pytest.mark.parametrize(
     ("constraints", "shape", "line", "words"),
     [

@@ -12,6 +12,7 @@ from .finite import is_finite
 
 MESHERS = ("delaunay", "frontal", "grid")
 AUTO = "auto"  # an edge length by the density of points
+AT_WORDS = ("outline", "constraints")
 _SIZE_KEYS = ("at", "length", "distance")
 _AT = "'outline', 'constraints', a place [x, y] or a line [[x, y], ...]"
 

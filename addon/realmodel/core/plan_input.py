@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from .errors import InputRefused, place_text
 from .map_layer import MapLayer, is_wkt
+from .mesh_sizes import AT_WORDS
 from .point_file import ReadingRefused
 from .readers import read_shapes
 from .readers.map_input import map_companions, require_polygons
@@ -99,6 +100,33 @@ def read_constraints(given: Sequence, units: str = MODEL_UNIT) -> list[np.ndarra
             found += [places_of_constraint(entry)] if shapes is None else _lines_of(shapes, map_layer(entry))
         except InputRefused as error:
             raise error.within(f"constraint {number}") from error
+    return found
+
+
+def is_place_elsewhere(at) -> bool:
+    """Whether the place of a local edge length is a file or well-known text."""
+    return isinstance(at, (Path, MapLayer)) or (isinstance(at, str) and at not in AT_WORDS)
+
+
+def files_of_sizes(sizes: Sequence[Mapping]) -> list[Path]:
+    """The files that the places of local edge lengths are read from."""
+    found = [entry.get("at") for entry in sizes if isinstance(entry, Mapping)]
+    return [file for at in found if is_place_elsewhere(at) for file in layer_files(at)]
+
+
+def read_sizes(sizes: Sequence[Mapping], units: str = MODEL_UNIT) -> list[Mapping]:
+    """Entries of local edge lengths without files or text: one for each line, outline and point in them.
+    Raises InputRefused."""
+    found: list[Mapping] = []
+    for number, entry in enumerate(sizes):
+        if not is_place_elsewhere(entry["at"]):
+            found.append(entry)
+            continue
+        try:
+            lines = _lines_of(shapes_of(entry["at"], units), map_layer(entry["at"]))
+        except InputRefused as error:
+            raise error.within(f"size {number}") from error
+        found += [{**entry, "at": line.tolist() if len(line) > 1 else line[0].tolist()} for line in lines]
     return found
 
 

@@ -24,7 +24,7 @@ from .methods import (
     check_method,
     checked_options,
 )
-from .plan_input import check_layer, layer_files, map_layer
+from .plan_input import check_layer, files_of_sizes, is_place_elsewhere, layer_files, map_layer
 from .point_file import MeshFile, PointFile, ReadingRefused
 from .readers.point_input import companions
 from .region_rings import is_several
@@ -136,7 +136,7 @@ class Rock:
     "auto": half as long as the points of the surfaces are apart; `triangles` is how many there should be
     instead. `mesher` and `size` (where edges are shorter) are as mesh_region takes them.
     `constraints` are what the planar mesh must contain beside: lines (N, 2), points [x, y], and files of them
-    as of a region.
+    as of a region; `size` may be at what is in such files too.
     With `base_elevation` there is a block between this height and the oldest surface.
     `shape_file` is the file that the rings were read from, if any: messages name it.
     """
@@ -212,6 +212,7 @@ class Project:
         for rock in self.rocks:
             files += [*layer_files(rock.region), *(surface.input_file for surface in rock.surfaces)]
             files += [file for given in rock.constraints for file in layer_files(given)]
+            files += files_of_sizes(rock.size)
             files += rock.boreholes.files if rock.boreholes is not None else []
             for surface in rock.surfaces:
                 if surface.point_file is not None:
@@ -335,9 +336,19 @@ def _check_mesh(rock: Rock, refuse) -> None:
     if rock.triangles is not None and rock.edge_length not in (None, AUTO):
         raise refuse("edge_length and triangles exclude one another", "triangles", "give one of them")
     try:
-        local_lengths(rock.size, [np.zeros((1, 2))] if len(rock.constraints) else [], None)
+        sizes = [_at_a_place(entry, refuse) for entry in rock.size]
+        local_lengths(sizes, [np.zeros((1, 2))] if len(rock.constraints) else [], None)
     except InputRefused as error:
         raise refuse(f"{error.item}: {error.what}" if error.item else error.what, "size") from error
+
+
+def _at_a_place(entry, refuse):
+    """An entry of `size` that is at what a file or a text holds, with a place instead, once there is that
+    file; others as they are."""
+    if not (isinstance(entry, Mapping) and is_place_elsewhere(entry.get("at"))):
+        return entry
+    check_layer(entry["at"], "size", refuse, is_file)
+    return {**entry, "at": [0.0, 0.0]}
 
 
 def _is_number(value) -> bool:

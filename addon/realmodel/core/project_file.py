@@ -12,6 +12,7 @@ from .finite import is_finite
 from .library import load_library
 from .map_layer import MapLayer, is_wkt
 from .methods import ALL_OPTIONS
+from .plan_input import is_place_elsewhere
 from .point_file import MeshFile, PointFile
 from .project import Project, Rock, Source, Surface, check_project, is_file
 from .toml_table import Table, TomlDocument
@@ -99,7 +100,7 @@ def _read_rock(table: Table, folder: Path) -> Rock:
         if _is_text(table, "edge_length")
         else table.number("edge_length"),
         triangles=table.integer("triangles"),
-        size=_read_size(table),
+        size=_read_size(table, folder),
         mesher=table.text("mesher") or "delaunay",
         base_elevation=table.number("base_elevation"),
         constraints=_read_constraints(table, folder),
@@ -112,13 +113,24 @@ def _is_text(table: Table, key: str) -> bool:
     return isinstance(table.content.get(key), str)
 
 
-def _read_size(table: Table) -> list[dict]:
+def _read_size(table: Table, folder: Path) -> list:
     size = table.content.get("size", [])
     if not isinstance(size, list):
         raise table.refuse(
             "'size' must be a list", "size", "write [{ at = ..., length = ..., distance = ... }]"
         )
-    return size
+    return [_read_place(table, entry, number, folder) for number, entry in enumerate(size)]
+
+
+def _read_place(table: Table, entry, number: int, folder: Path):
+    """An entry of `size`; where it is at a file, at a path or a MapLayer."""
+    at = entry.get("at") if isinstance(entry, dict) else None
+    if isinstance(at, dict):
+        keys = Table(table.document, at, (*table.path, "size", number, "at"), table.item)
+        return {**entry, "at": _layer_table(keys, folder)}
+    if is_place_elsewhere(at) and not is_wkt(at):
+        return {**entry, "at": folder / at}
+    return entry
 
 
 def _read_region(table: Table, folder: Path):

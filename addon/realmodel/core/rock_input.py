@@ -13,7 +13,7 @@ from .errors import InputRefused, number_list, place_text
 from .heights import Interpolation
 from .interpolation import checked_points
 from .mesh_sizes import AUTO
-from .plan_input import map_layer, read_constraints, read_rings, ring_path
+from .plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
 from .planar_mesh import mesh_rings, triangulate_rings
 from .project import Project, Rock, Surface, rock_item, surface_item
 from .readers import Picks, read_boreholes, read_off, read_point_file
@@ -159,13 +159,14 @@ def _read_region(work: Work, rock: Rock, units: str) -> tuple[Rock, list[BuildWa
 
 
 def _read_constraints(rock: Rock, units: str) -> Rock:
-    """The rock mass with arrays (N, 2) as constraints, points in one row."""
+    """The rock mass with arrays (N, 2) as constraints, points in one row, and local lengths at places."""
+    key = "constraints"
     try:
-        return replace(rock, constraints=read_constraints(rock.constraints, units))
+        lines = read_constraints(rock.constraints, units)
+        key = "size"
+        return replace(rock, constraints=lines, size=read_sizes(rock.size, units))
     except InputRefused as error:
-        file, line = (
-            (rock.source.document.file, rock.source.line("constraints")) if rock.source else (None, None)
-        )
+        file, line = (rock.source.document.file, rock.source.line(key)) if rock.source else (None, None)
         raise error.within(rock_item(rock), file=file, line=line) from error
 
 
