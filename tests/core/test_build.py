@@ -359,3 +359,15 @@ def seconds_to_cancel(project, share):
 @pytest.mark.parametrize("share", [0.0, 0.2, 0.4, 0.6])
 def test_a_build_is_cancelled_within_a_fifth_of_a_second(long_build, share):
     assert least_of(lambda: seconds_to_cancel(long_build, share), 0.2) < 0.2
+
+
+def test_a_base_that_a_method_passed_says_which_points_did_not(write):
+    """Two points in one triangle make DSI steep: the lowest place is none that points show."""
+    write("p.csv", "x,y,z\n5,5,10\n5.2,5.1,13\n5.1,5.2,11\n")
+    path = write(
+        "p.toml",
+        'format = 1\nname = "x"\n[[rock]]\nname = "r"\nregion = [[0, 0], [20, 0], [20, 20], [0, 20]]\n'
+        'edge_length = 4\nbase_elevation = 0\n[[rock.surface]]\nname = "s"\npoints = "p.csv"\nmethod = "dsi"\n',
+    )
+    with pytest.raises(InputRefused, match="points of surface 's' go down to 10 only: look at its method"):
+        build(load_project(path))

@@ -184,8 +184,36 @@ def test_bounds_from_surfaces():
     assert 0 < known.sum() < len(NODES)
     assert (result.z[known] >= bound[known]).all()
     assert (result.z <= 310).all()
-    with pytest.raises(InputRefused, match="should be at or above 305"):
+    with pytest.raises(InputRefused, match="above = 305 is 5 higher than below = 300 at"):
         dsi(POINTS, above=305, below=300)
+    with pytest.raises(InputRefused, match="above = 305 is 3 higher than border = 302 at"):
+        dsi(POINTS, above=305, border=302)
+
+
+def test_points_beyond_a_bound_are_told():
+    """The bound goes before them; those outside the mesh never counted."""
+    points = np.vstack([POINTS, [[*(UTM - 10), 200.0]]])
+    wrong = POINTS[:, 2] < 298
+    assert 0 < wrong.sum() < len(POINTS)
+    result = dsi(points, above=298)
+    worst = int(POINTS[:, 2].argmin())
+    told = [text for text in result.warnings if "lie below 298, which the surface is kept above" in text]
+    assert len(told) == 1 and told[0].startswith(f"{wrong.sum()} of 16 points")
+    assert f"point {worst} at" in told[0]
+    assert not any("cannot all be met" in text for text in result.warnings)
+    assert result.z.min() == 298
+    assert dsi(POINTS, above=POINTS[:, 2].min() - 50).warnings == ()
+
+
+def test_heights_far_beyond_the_points_are_told():
+    """Three points of a triangle that differ by chance make a slope that goes on to the border."""
+    middle = NODES[TRIANGLES[7]].mean(axis=0)
+    plan = np.add(middle, [[0, 0], [0.2, 0.1], [0.1, 0.2]])
+    points = np.column_stack([plan, [10.0, 13.0, 11.0]])
+    told = dsi(points).warnings
+    assert any("go far beyond those of its points, 10 to 13; " in text for text in told)
+    assert not any("far beyond" in text for text in dsi(points, border=0).warnings)
+    assert not any("far beyond" in text for text in dsi(POINTS).warnings)
 
 
 def test_what_cannot_be_met_is_told():

@@ -36,6 +36,8 @@ def refused_stack(error, inputs: list[RockInput]) -> InputRefused | BuildFailed:
         what = f"base_elevation {rock.base_elevation:.9g} is not below all of the rock mass"
         lowest = f", whose lowest place is {place_text(place)}" if place else ""
         advice = f"choose one below {place[2]:.9g}" if place else "choose a lower one"
+        if place and (beyond := _beyond_its_points(entry, place[2])):
+            advice = f"{advice}; {beyond}"
         return InputRefused(
             what + lowest, file=file, line=line, item=rock_item(rock), advice=advice, place=place
         )
@@ -72,6 +74,17 @@ def _surface_at(inputs: list[RockInput], surface: int) -> tuple[RockInput | None
                 return entry, surface
             surface -= len(entry.surfaces)
     return None, -1
+
+
+def _beyond_its_points(entry, lowest: float) -> str:
+    """What to say where the lowest place is none that points show, but where a method took a surface."""
+    for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True):
+        if shape is None or shape[0][:, 2].min() > lowest or not surface.interpolated:
+            continue
+        if surface.points is not None and len(surface.points) and surface.points[:, 2].min() > lowest:
+            least = surface.points[:, 2].min()
+            return f"the points of surface '{surface.name}' go down to {least:.6g} only: look at its method"
+    return ""
 
 
 def _triangles(items: tuple[int, ...], file_faces) -> str:

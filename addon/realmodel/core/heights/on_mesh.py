@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import UsageError
+from ..errors import InputRefused, UsageError, place_text
 from ..work import native_module
 from .interpolation import Result, Task
 from .surface_reference import heights_of
+
+_ARGUMENTS = {"border": "equal", "above": "least", "below": "most"}  # of native code, by options
 
 
 def dsi(task: Task) -> Result:
@@ -16,11 +18,13 @@ def dsi(task: Task) -> Result:
         raise UsageError("method 'dsi' works on a mesh: give the triangles of the nodes")
     settings = task.settings
     given = {}
-    for option, argument in (("border", "equal"), ("above", "least"), ("below", "most")):
+    for option, argument in _ARGUMENTS.items():
         if settings[option] is not None:
             given[argument] = heights_of(task, settings[option], task.nodes, option)
     if "equal" in given:
         given["equal"] = np.where(border_nodes(task.triangles, len(task.nodes)), given["equal"], np.nan)
+    for lower, upper in (("above", "below"), ("above", "border"), ("border", "below")):
+        _refuse_crossed(task, given, lower, upper)
     found = task.run(
         native_module().dsi,
         task.points,
@@ -35,7 +39,9 @@ def dsi(task: Task) -> Result:
             f"{found['outside']} of {len(task.points)} points lie outside the mesh and do not count; "
             "other methods take them in"
         )
-    if found["missed"]:
+    beyond = [*_beyond(task, "above"), *_beyond(task, "below")]
+    warnings += beyond
+    if found["missed"] and not beyond:
         warnings.append(
             f"{found['missed']} of {len(task.points)} points cannot all be met on this mesh, the farthest "
             f"is missed by {found['misfit']:.3g}: use a shorter edge_length, or give points a weight"
@@ -46,6 +52,51 @@ def dsi(task: Task) -> Result:
             "or shapes; a more even mesh helps"
         )
     return Result(found["z"], warnings=warnings)
+
+
+def _called(reference) -> str:
+    """What messages call the surface or height that an option names."""
+    if isinstance(reference, str):
+        return f"'{reference}'"
+    return f"{reference:g}" if isinstance(reference, float) else "what was given"
+
+
+def _refuse_crossed(task: Task, given: dict, lower: str, upper: str) -> None:
+    """Refuses heights that are to lie above others and below them: there is no surface."""
+    low, high = (given.get(_ARGUMENTS[option]) for option in (lower, upper))
+    if low is None or high is None:
+        return
+    gap = np.where(np.isfinite(low) & np.isfinite(high), low - high, 0.0)
+    worst = int(gap.argmax())
+    if not gap[worst] > 0:
+        return
+    names = {option: f"{option} = {_called(task.settings[option])}" for option in (lower, upper)}
+    raise InputRefused(
+        f"no surface lies between: {names[lower]} is {gap[worst]:.4g} higher than {names[upper]} at "
+        f"{place_text(task.nodes[worst])}",
+        advice="take one of them out, or change what they name",
+    )
+
+
+def _beyond(task: Task, option: str) -> list[str]:
+    """What to tell of points on the wrong side of a bound: it goes before them."""
+    reference = task.settings[option]
+    if reference is None or not len(task.points):
+        return []
+    plan = np.ascontiguousarray(task.points[:, :2])
+    bound = heights_of(task, reference, plan, option)
+    past = bound - task.points[:, 2] if option == "above" else task.points[:, 2] - bound
+    past += heights_of(task, np.zeros(len(task.nodes)), plan, option)  # NaN outside the mesh
+    past[~(past > 0)] = 0.0  # NaN, where the bound has no height, too
+    wrong = int(np.count_nonzero(past))
+    if not wrong:
+        return []
+    other, worst = "below" if option == "above" else "above", int(past.argmax())
+    return [
+        f"{wrong} of {len(past)} points lie {other} {_called(reference)}, which the surface is kept "
+        f"{option}, and are not met, the farthest by {past[worst]:.4g}: point {worst} at "
+        f"{place_text(task.points[worst])}"
+    ]
 
 
 def border_nodes(triangles: np.ndarray, nodes: int) -> np.ndarray:

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import InputRefused
-from ..methods import METHODS, checked_options
+from ..methods import METHODS, SURFACE_OPTIONS, checked_options
 from ..mis_ties import without_mis_ties
 from ..work import Work, native_module
 from . import automatic, from_neighbours, from_triangulation, on_mesh, plain, regular_grid
@@ -63,6 +63,8 @@ def heights(
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error
     warnings = [*([mis_ties] if mis_ties else []), *few_points(points, method), *result.warnings]
+    if not any(settings.get(option) is not None for option in SURFACE_OPTIONS):
+        warnings += runs_away(points, result.z, method)
     share = float(outside.mean()) if len(outside) else 0.0
     return Interpolation(
         result.z,
@@ -87,6 +89,27 @@ def few_points(points: np.ndarray, method: str) -> list[str]:
     if len(elsewhere) and (elsewhere == elsewhere[0]).all():
         return ["there are two points only: the surface is known along their line at best"]
     return []
+
+
+_TAMED_BY = {
+    "dsi": "points that differ much within a triangle make it steep: give points a weight",
+    "spline": 'use smoothing, or extrapolate = "nearest"',
+    "universal_kriging": 'its drift goes on beyond them: use a simpler one, or extrapolate = "nearest"',
+}
+
+
+def runs_away(points: np.ndarray, z: np.ndarray, method: str) -> list[str]:
+    """What to tell where heights go much farther than the points do, beyond twice their range."""
+    if method not in _TAMED_BY or not len(points) or not np.isfinite(z).any():
+        return []
+    low, high = points[:, 2].min(), points[:, 2].max()
+    lowest, highest = np.nanmin(z), np.nanmax(z)
+    if not max(low - lowest, highest - high) > 2 * (high - low) > 0:
+        return []
+    return [
+        f"its heights, {lowest:.6g} to {highest:.6g}, go far beyond those of its points, {low:.6g} to "
+        f"{high:.6g}; {_TAMED_BY[method]}"
+    ]
 
 
 def left_out_heights(work: Work, points, method: str, settings: dict, threads: int) -> Result:
