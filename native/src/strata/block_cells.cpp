@@ -9,7 +9,7 @@
 #include "conforming.hpp"
 #include "disjoint_parts.hpp"
 #include "distinct_positions.hpp"
-#include "parallel_chunks.hpp"
+#include "parallel_counts.hpp"
 
 namespace realmodel::strata {
 
@@ -33,8 +33,8 @@ public:
           progress_(progress) {}
 
     CellComplex assemble() {
+        find_touched_triangles();
         add_touched_triangles();
-        link_whole_triangles();
         conform();
         add_parts();
         add_walls();
@@ -45,22 +45,50 @@ public:
 private:
     WholeFace& whole(PlaneId plane) { return made_.whole[static_cast<std::size_t>(plane)]; }
 
+    /// Calls visit(plane, its neighbours) for the triangles of all surfaces, from several threads.
+    template <class Visit>
+    void for_each_triangle(const Visit& visit) const {
+        for (const BlockLayer& layer : overlay_.layers()) {
+            parallel_ranges(layer.size(), kTriangles, threads_, progress_,
+                            [&](std::size_t begin, std::size_t end) {
+                                for (std::size_t t = begin; t < end; ++t) {
+                                    auto neighbours = layer.neighbour[t];
+                                    for (PlaneId& n : neighbours)
+                                        n = n < 0 ? n : n + layer.first_plane;
+                                    visit(layer.first_plane + static_cast<PlaneId>(t), neighbours);
+                                }
+                            });
+        }
+    }
+
     /// Whole triangles on whose edges vertices may lie: those looked at exactly, and the neighbours
     /// of divided ones. The others are touched by nothing.
-    void add_touched_triangles() {
+    void find_touched_triangles() {
         is_touched_.assign(made_.whole.size(), 0);
+        for_each_triangle([&](PlaneId plane, const std::array<PlaneId, 3>& neighbours) {
+            const auto p = static_cast<std::size_t>(plane);
+            if (made_.whole[p].below == WholeFace::kUnset) return;
+            const bool touched =
+                made_.is_exact[p] != 0 ||
+                std::any_of(neighbours.begin(), neighbours.end(), [&](PlaneId n) {
+                    return n >= 0 && made_.is_in_parts[static_cast<std::size_t>(n)] != 0;
+                });
+            is_touched_[p] = touched ? 1 : 0;
+        });
+    }
+
+    void add_touched_triangles() {
+        std::vector<PlaneId> planes;
         for (std::size_t p = 0; p < made_.whole.size(); ++p) {
             poll(progress_, p);
-            const auto plane = static_cast<PlaneId>(p);
-            if (made_.whole[p].below == WholeFace::kUnset) continue;
-            bool touched = made_.is_exact[p] != 0;
-            for (const PlaneId n : overlay_.neighbours_of(plane))
-                touched |= n >= 0 && made_.is_in_parts[static_cast<std::size_t>(n)] != 0;
-            if (!touched) continue;
-            is_touched_[p] = 1;
-            if (!made_.whole[p].is_face()) continue;
-            made_.faces.add(overlay_.outline_of(plane), plane, overlay_.layer_of(plane),
-                            made_.whole[p].above, made_.whole[p].below);
+            if (is_touched_[p] != 0 && made_.whole[p].is_face())
+                planes.push_back(static_cast<PlaneId>(p));
+        }
+        PolygonPool outlines;
+        overlay_.add_outlines(planes, outlines);
+        for (std::size_t i = 0; i < planes.size(); ++i) {
+            made_.faces.add(outlines[i], planes[i], overlay_.layer_of(planes[i]),
+                            whole(planes[i]).above, whole(planes[i]).below);
         }
         for (const auto& [plane, node] : made_.on_base) {
             if (is_touched_[static_cast<std::size_t>(plane)] != 0)
@@ -68,25 +96,26 @@ private:
         }
     }
 
-    /// What bounds told about is thick along every edge.
-    void link_whole_triangles() {
-        for (std::size_t p = 0; p < made_.whole.size(); ++p) {
-            poll(progress_, p);
+    /// Whole triangles hang together with their neighbours: what bounds told about is thick along
+    /// every edge.
+    void join_whole_triangles(DisjointParts& sets) const {
+        const auto join = [&](std::int32_t a, std::int32_t b) {
+            if (a >= 0 && b >= 0 && block(a) == block(b)) sets.join(a, b);
+        };
+        for_each_triangle([&](PlaneId plane, const std::array<PlaneId, 3>& neighbours) {
+            const auto p = static_cast<std::size_t>(plane);
             const WholeFace& face = made_.whole[p];
-            if (face.below == WholeFace::kUnset) continue;
-            for (const PlaneId n : overlay_.neighbours_of(static_cast<PlaneId>(p))) {
-                if (n <= static_cast<PlaneId>(p)) continue;
-                const WholeFace& other = whole(n);
+            if (face.below == WholeFace::kUnset) return;
+            for (const PlaneId n : neighbours) {
+                if (n <= plane) continue;
+                const WholeFace& other = made_.whole[static_cast<std::size_t>(n)];
                 if (other.below == WholeFace::kUnset) continue;
                 if (made_.is_exact[p] != 0 && made_.is_exact[static_cast<std::size_t>(n)] != 0)
                     continue;  // compared on the track of their edge
-                link(face.above, other.above);
-                link(face.below, other.below);
+                join(face.above, other.above);
+                join(face.below, other.below);
             }
-        }
-    }
-    void link(std::int32_t a, std::int32_t b) {
-        if (a >= 0 && b >= 0 && block(a) == block(b)) made_.links.emplace_back(a, b);
+        });
     }
     std::int32_t block(std::int32_t node) const {
         return made_.node_block[static_cast<std::size_t>(node)];
@@ -134,8 +163,12 @@ private:
     /// from here on.
     void number_cells() {
         DisjointParts sets(made_.node_block.size());
-        for (const auto& [a, b] : made_.links)
-            sets.join(a, b);
+        parallel_ranges(made_.links.size(), kLinks, threads_, progress_,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t i = begin; i < end; ++i)
+                                sets.join(made_.links[i].first, made_.links[i].second);
+                        });
+        join_whole_triangles(sets);
         cell_of_node_.assign(made_.node_block.size(), -1);
         for (std::size_t n = 0; n < cell_of_node_.size(); ++n) {
             poll(progress_, n);
@@ -223,6 +256,8 @@ private:
                 if (s >= 0) of_space[static_cast<std::size_t>(s)] = number;
             }
         }
+        number_vertices(of_space);
+        add_rest(of_space);
         const auto vertex = [&](std::int32_t& number, const std::array<double, 3>& position) {
             if (number < 0) {
                 number = static_cast<std::int32_t>(complex_.vertices.size());
@@ -230,18 +265,6 @@ private:
             }
             complex_.face_vertices.push_back(number);
         };
-        for (std::size_t p = 0; p < made_.whole.size(); ++p) {
-            poll(progress_, p);
-            if (is_touched_[p] != 0 || !made_.whole[p].is_face()) continue;
-            const std::size_t begin = complex_.face_vertices.size();
-            for (const SpaceId s : geometry_.plane(static_cast<PlaneId>(p)).corner) {
-                const auto& space = geometry_.space(s);
-                const auto& at = geometry_.point(space.plan);
-                vertex(of_space[static_cast<std::size_t>(s)], {at.x, at.y, space.z});
-            }
-            end_face(begin, cell(made_.whole[p].above), cell(made_.whole[p].below),
-                     surface_of_plane_[p]);
-        }
         for (const auto& [plane, node] : made_.on_base) {
             if (is_touched_[static_cast<std::size_t>(plane)] != 0) continue;
             const std::size_t begin = complex_.face_vertices.size();
@@ -254,6 +277,88 @@ private:
             end_face(begin, cell(node), kOutsideCell, kBase);
         }
     }
+
+    bool is_rest(std::size_t plane) const {
+        return is_touched_[plane] == 0 && made_.whole[plane].is_face();
+    }
+
+    /// Numbers the input vertices that only untouched triangles have, in their order.
+    void number_vertices(std::vector<std::int32_t>& of_space) {
+        auto is_new = zeros<std::uint8_t>(of_space.size(), threads_, progress_);
+        parallel_ranges(
+            made_.whole.size(), kTriangles, threads_, progress_,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t p = begin; p < end; ++p) {
+                    if (!is_rest(p)) continue;
+                    for (const SpaceId s : geometry_.plane(static_cast<PlaneId>(p)).corner)
+                        mark(is_new[static_cast<std::size_t>(s)]);
+                }
+            });
+        std::vector<std::size_t> first((of_space.size() + kVertices - 1) / kVertices);
+        const auto for_new = [&](std::size_t begin, std::size_t end, const auto& visit) {
+            for (std::size_t s = begin; s < end; ++s) {
+                if (is_new[s] != 0 && of_space[s] < 0) visit(s);
+            }
+        };
+        parallel_ranges(of_space.size(), kVertices, threads_, progress_,
+                        [&](std::size_t begin, std::size_t end) {
+                            for_new(begin, end, [&](std::size_t) { ++first[begin / kVertices]; });
+                        });
+        const std::size_t before = complex_.vertices.size();
+        complex_.vertices.resize(before + count_before(first));
+        parallel_ranges(of_space.size(), kVertices, threads_, progress_,
+                        [&](std::size_t begin, std::size_t end) {
+                            std::size_t next = before + first[begin / kVertices];
+                            for_new(begin, end, [&](std::size_t s) {
+                                const auto& space = geometry_.space(static_cast<SpaceId>(s));
+                                const auto& at = geometry_.point(space.plan);
+                                complex_.vertices[next] = {at.x, at.y, space.z};
+                                of_space[s] = static_cast<std::int32_t>(next++);
+                            });
+                        });
+    }
+
+    /// The untouched triangles as faces.
+    void add_rest(const std::vector<std::int32_t>& of_space) {
+        const std::size_t planes = made_.whole.size();
+        std::vector<std::size_t> first((planes + kTriangles - 1) / kTriangles);
+        parallel_ranges(planes, kTriangles, threads_, progress_,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t p = begin; p < end; ++p)
+                                first[begin / kTriangles] += is_rest(p) ? 1 : 0;
+                        });
+        const std::size_t count = count_before(first), faces = complex_.face_cells.size(),
+                          corners = complex_.face_vertices.size();
+        complex_.face_vertices.resize(corners + 3 * count);
+        complex_.face_offsets.resize(faces + count + 1);
+        complex_.face_cells.resize(faces + count);
+        complex_.face_surface.resize(faces + count);
+        parallel_ranges(
+            planes, kTriangles, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+                std::size_t next = first[begin / kTriangles];
+                for (std::size_t p = begin; p < end; ++p) {
+                    if (!is_rest(p)) continue;
+                    const auto& corner = geometry_.plane(static_cast<PlaneId>(p)).corner;
+                    std::int32_t* loop = complex_.face_vertices.begin() + corners + 3 * next;
+                    std::transform(corner.begin(), corner.end(), loop, [&](SpaceId s) {
+                        return of_space[static_cast<std::size_t>(s)];
+                    });
+                    std::int32_t above = cell(made_.whole[p].above),
+                                 below = cell(made_.whole[p].below);
+                    if (below < 0) {
+                        std::reverse(loop, loop + 3);
+                        std::swap(above, below);
+                    }
+                    complex_.face_cells[faces + next] = {below, above};
+                    complex_.face_surface[faces + next] = surface_of_plane_[p];
+                    ++next;
+                    complex_.face_offsets[faces + next] =
+                        static_cast<std::int64_t>(corners + 3 * next);
+                }
+            });
+    }
+
+    static constexpr std::size_t kTriangles = 1 << 13, kVertices = 1 << 14, kLinks = 1 << 14;
 
     PlanGeometry& geometry_;
     BlockOverlay& overlay_;

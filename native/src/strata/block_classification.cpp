@@ -43,24 +43,34 @@ Standing compare_over(const PlanGeometry& geometry, PlaneId lower, PlaneId upper
 /// Numbers of things by the tiles that their boxes meet.
 class TileBins {
 public:
-    /// `visit(add)` calls add(number, span) for every thing, and does so twice.
-    template <class Visit>
-    TileBins(const PlanTiles& tiles, const std::vector<std::uint8_t>& is_wanted, const Visit& visit)
-        : offsets_(tiles.size() + 1, 0) {
-        visit([&](std::int32_t, const TileSpan& span) {
-            tiles.for_each(span, [&](std::size_t tile) { offsets_[tile + 1] += is_wanted[tile]; });
-        });
-        for (std::size_t tile = 0; tile < tiles.size(); ++tile)
-            offsets_[tile + 1] += offsets_[tile];
-        items_.resize(static_cast<std::size_t>(offsets_.back()));
-        std::vector<std::int64_t> free(offsets_.begin(), offsets_.end() - 1);
-        visit([&](std::int32_t number, const TileSpan& span) {
-            tiles.for_each(span, [&](std::size_t tile) {
-                if (is_wanted[tile] != 0) items_[static_cast<std::size_t>(free[tile]++)] = number;
-            });
+    /// span_of(number) is where each of `count` things is, or null where it does not count.
+    template <class SpanOf>
+    TileBins(const PlanTiles& tiles, const std::vector<std::uint8_t>& is_wanted, std::size_t count,
+             const SpanOf& span_of, int threads, const Progress* progress)
+        : offsets_(zeros<std::uint32_t>(tiles.size() + 1, threads, progress)) {
+        // Calls visit(tile, number), from several threads.
+        const auto for_all = [&](const auto& visit) {
+            parallel_ranges(count, kChunk, threads, progress,
+                            [&](std::size_t begin, std::size_t end) {
+                                for (std::size_t i = begin; i < end; ++i) {
+                                    const TileSpan* span = span_of(i);
+                                    if (span == nullptr) continue;
+                                    tiles.for_each(*span, [&](std::size_t tile) {
+                                        if (is_wanted[tile] != 0) visit(tile, i);
+                                    });
+                                }
+                            });
+        };
+        for_all([&](std::size_t tile, std::size_t) { count_one(offsets_[tile]); });
+        running_totals(offsets_, UINT32_MAX, threads, progress);
+        items_ = FlatArray<std::int32_t>(offsets_[tiles.size()]);
+        auto filled = zeros<std::uint32_t>(tiles.size(), threads, progress);
+        for_all([&](std::size_t tile, std::size_t i) {
+            items_[offsets_[tile] + count_one(filled[tile])] = static_cast<std::int32_t>(i);
         });
     }
-    /// Calls test(number) for the things in a tile until it is false; whether it never was.
+    /// Calls test(number) for the things in a tile, in no order that may matter, until it is false;
+    /// whether it never was.
     template <class Test>
     bool all(std::size_t tile, const Test& test) const {
         return std::all_of(items_.begin() + offsets_[tile], items_.begin() + offsets_[tile + 1],
@@ -68,8 +78,8 @@ public:
     }
 
 private:
-    std::vector<std::int64_t> offsets_;
-    std::vector<std::int32_t> items_;
+    FlatArray<std::uint32_t> offsets_;
+    FlatArray<std::int32_t> items_;
 };
 
 }  // namespace
@@ -207,14 +217,13 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
     }
     if (unclear.empty()) return;
     // whole facets first, then parts
-    const TileBins bins(tiles_, is_wanted, [&](const auto& add) {
-        for (std::size_t f = 0; f < whole_.size(); ++f)
-            add(static_cast<std::int32_t>(f), whole_at_[f].span);
-        for (std::size_t f = 0; f < parts_.size(); ++f) {
-            if (parts_.plane[f] >= 0)
-                add(static_cast<std::int32_t>(whole_.size() + f), part_at_[f].span);
-        }
-    });
+    const auto span_of = [&](std::size_t i) -> const TileSpan* {
+        if (i < whole_.size()) return &whole_at_[i].span;
+        const std::size_t part = i - whole_.size();
+        return parts_.plane[part] >= 0 ? &part_at_[part].span : nullptr;
+    };
+    const TileBins bins(tiles_, is_wanted, whole_.size() + parts_.size(), span_of, threads_,
+                        progress_);
     parallel_chunks(
         (unclear.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
             for (std::size_t i = k * kChunk; i < std::min(unclear.size(), (k + 1) * kChunk); ++i) {
@@ -302,11 +311,9 @@ void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
         if (c.part[f] == Classified::kToCompare) want(part_at_[f]);
     }
     if (!any) return;
-    const TileBins bins(tiles_, is_wanted, [&](const auto& add) {
-        for (std::size_t t = 0; t < layer.size(); ++t) {
-            add(static_cast<std::int32_t>(t), surface_at_[t].span);
-        }
-    });
+    const TileBins bins(
+        tiles_, is_wanted, layer.size(), [&](std::size_t t) { return &surface_at_[t].span; },
+        threads_, progress_);
     const auto compare = [&](PlaneId facet, const TileBounds& at) {
         const PlanBox& box = at.bounds.box;
         bool below = true, above = true;

@@ -85,6 +85,7 @@ public:
     /// Adds those of several triangles.
     void add_outlines(std::span<const PlaneId> planes, PolygonPool& pool);
 
+    std::span<const BlockLayer> layers() const { return layers_; }
     BlockConstruction& construction() { return made_; }
     const PlanTiles& tiles() const { return tiles_; }
     const std::vector<std::uint8_t>& on_border() const { return on_border_; }

@@ -19,33 +19,40 @@ constexpr double kLargest = 1e50;
 
 constexpr exact::SpaceId kNotEntered = -1;
 
+constexpr std::size_t kRange = 1 << 14;  // looked at at a time
+
 std::array<double, 3> vertex_of(const SurfaceView& surface, std::int64_t v) {
     const auto i = static_cast<std::size_t>(v) * 3;
     return {surface.vertices[i], surface.vertices[i + 1], surface.vertices[i + 2]};
 }
 
-void check_numbers(const SurfaceView& surface, int index) {
-    const auto count = static_cast<std::int64_t>(surface.vertices.size() / 3);
-    for (std::int64_t v = 0; v < count; ++v) {
-        for (const double c : vertex_of(surface, v)) {
-            if (!(std::abs(c) <= kLargest)) {
-                throw InputError("not_finite",
-                                 "vertex " + std::to_string(v) +
-                                     " has a coordinate that is not a number or is beyond 1e50",
-                                 index, {v});
+void check_numbers(const SurfaceView& surface, int index, int threads, const Progress* progress) {
+    const std::size_t count = surface.vertices.size() / 3;
+    parallel_ranges(count, kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
+        for (auto v = static_cast<std::int64_t>(begin); v < static_cast<std::int64_t>(end); ++v) {
+            for (const double c : vertex_of(surface, v)) {
+                if (!(std::abs(c) <= kLargest)) {
+                    throw InputError("not_finite",
+                                     "vertex " + std::to_string(v) +
+                                         " has a coordinate that is not a number or is beyond 1e50",
+                                     index, {v});
+                }
             }
         }
-    }
-    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-        if (surface.triangles[i] < 0 || surface.triangles[i] >= count) {
-            const auto t = static_cast<std::int64_t>(i / 3);
-            throw InputError("bad_index",
-                             "triangle " + std::to_string(t) + " names vertex " +
-                                 std::to_string(surface.triangles[i]) + " of " +
-                                 std::to_string(count),
-                             index, {t});
-        }
-    }
+    });
+    const std::size_t corners = surface.triangles.size();
+    parallel_ranges(corners, 3 * kRange, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                            const std::int32_t v = surface.triangles[i];
+                            if (v >= 0 && static_cast<std::size_t>(v) < count) continue;
+                            const auto t = static_cast<std::int64_t>(i / 3);
+                            throw InputError("bad_index",
+                                             "triangle " + std::to_string(t) + " names vertex " +
+                                                 std::to_string(v) + " of " + std::to_string(count),
+                                             index, {t});
+                        }
+                    });
 }
 
 bool in_one_line(const std::array<double, 3>& a, const std::array<double, 3>& b,
@@ -141,8 +148,7 @@ std::vector<UsedTriangle> enter_surface(PlanGeometry& geometry, const SurfaceVie
                                         int index, const PlanSnapping& snapping,
                                         std::vector<Warning>& warnings, int threads,
                                         const Progress* progress) {
-    constexpr std::size_t kRange = 1 << 14;
-    check_numbers(surface, index);
+    check_numbers(surface, index, threads, progress);
     const std::size_t count = surface.triangles.size() / 3;
     std::vector<std::uint8_t> is_used(surface.vertices.size() / 3, 0);
     std::vector<RangeOfTriangles> ranges((count + kRange - 1) / kRange);
