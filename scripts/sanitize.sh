@@ -55,7 +55,7 @@ scripts/install_dependencies.sh "${groups[@]}" || exit 1
 
 for preset in "${presets[@]}"; do
     step 1m "$preset: configure" cmake --preset "$preset" --log-level=WARNING
-    step 20m "$preset: build" cmake --build "build/$preset" -j 2
+    step 45m "$preset: build" cmake --build "build/$preset" -j 2
     step 20m "$preset: tests" ctest --preset "$preset" -j 2
     environment=()
     if [[ $preset == tsan ]]; then
