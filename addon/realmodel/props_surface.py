@@ -86,7 +86,7 @@ class RealModelStructure(bpy.types.PropertyGroup):
         update=changes.setting,
     )
     use_anisotropy: BoolProperty(
-        name="Anisotropy of its own",
+        name="Anisotropy",
         description="Its range is longer along one direction; off: as for the whole variogram",
         update=changes.setting,
     )

@@ -8,7 +8,16 @@ import signal
 import sys
 from pathlib import Path
 
-from . import blender_table, display_table, fitting, heights_table, meshing_table, page, watching_table
+from . import (
+    blender_table,
+    display_table,
+    fitting,
+    heights_table,
+    meshing_table,
+    page,
+    watching_table,
+    window_table,
+)
 from .process import ROOT
 from .stacks_table import Limits, Row, StackRows
 
@@ -44,11 +53,16 @@ def main() -> int:
         ]
     if "blender" in parts:
         rows = blender_table.measure(given.quick, memory, _say)
+        live, still = window_table.measure(given.quick, memory, _say)
         frames = display_table.measure(given.quick, memory, _say)
         lines["blender"] = [
             machine,
             "",
             *page.table(blender_table.UPLOADS, rows),
+            "",
+            *page.table(window_table.LIVE, live),
+            "",
+            *page.table(window_table.STILL, still),
             "",
             *page.table(display_table.FRAMES, frames),
         ]

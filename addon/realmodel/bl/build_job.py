@@ -36,14 +36,16 @@ class BuildJob:
         model = build(self.composed.project, cells=self.cells, progress=progress)
         return self._put(built_scene.prepare(model, self.composed))
 
-    def start(self):
+    def start(self, is_short=False):
+        """Builds in a thread. is_short: it is expected to take less than half a second."""
+        self._threads = threads(is_short)
         self._job = ThreadJob("build", self._work)
 
     def _work(self, job):
         model = build(
             self.composed.project,
             cells=self.cells,
-            threads=threads(),
+            threads=self._threads,
             progress=job.tell,
             cancel=lambda: job.cancelled,
         )

@@ -15,6 +15,7 @@ from ..core import Cancelled
 from .rested_work import RestedWork
 
 REST_SECONDS = 0.03  # without a change, after which the hand is taken to rest
+_SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
 
 _at_work = False  # what Blender tells of now is our own doing
 measured = {}  # by the name of a scene: seconds from the last change to the new blocks
@@ -130,22 +131,19 @@ def _begin(name, _changed_at):
     except Exception as error:
         _tell(error)
         return None
-    job.start()
+    job.start(is_short=measured.get(name, 0.0) < _SHORT_SECONDS)
     return job
 
 
 def _tell(error):
     """The panel shows what is wrong, or no longer is; nothing is selected or moved for it."""
-    from . import problems
+    from . import problems, viewports
 
     context = bpy.context
     problems.forget(context)
     if error is not None:
         problems.remember(context, error)
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+    viewports.redraw()
 
 
 _work = RestedWork(REST_SECONDS, _begin, _finish, lambda: not bpy.context.window_manager.realmodel.running)

@@ -9,7 +9,7 @@ import numpy as np
 from mathutils import Vector
 
 from ..core import InputRefused
-from . import build_job, display, project_settings, shapes
+from . import build_job, display, project_settings, shapes, viewports
 
 _FRAMED = 0.05  # of the object's size, at least, around a bad place
 
@@ -62,7 +62,7 @@ def show(context):
     context.view_layer.objects.active = item
     bpy.ops.object.mode_set(mode="EDIT")
     _select_faces(context, item, chosen)
-    _frame(context, places, max(item.dimensions) * _FRAMED)
+    _frame(places, max(item.dimensions) * _FRAMED)
 
 
 def _open_eyes(layer, item):
@@ -89,15 +89,13 @@ def _select_faces(context, item, chosen):
     bmesh.update_edit_mesh(item.data, loop_triangles=False, destructive=False)
 
 
-def _frame(context, places, least):
+def _frame(places, least):
     if not len(places):
         return
     low, high = places.min(axis=0), places.max(axis=0)
     size = max(float(np.linalg.norm(high - low)), least)
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                view = area.spaces.active.region_3d
-                view.view_location = Vector((low + high) / 2)
-                view.view_distance = 2.5 * size
-                area.tag_redraw()
+    for area in viewports.areas():
+        view = area.spaces.active.region_3d
+        view.view_location = Vector((low + high) / 2)
+        view.view_distance = 2.5 * size
+        area.tag_redraw()

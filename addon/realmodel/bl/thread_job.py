@@ -1,22 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Work in a thread of its own beside a window that stays alive."""
 
-import contextlib
 import os
-import sys
 import threading
 
 from ..core import Cancelled
 
-# Where a thread can have a priority of its own, long work takes all processors, and gives way to the window
-# whenever that has something to do. Elsewhere one processor is left to the window.
-_HAS_OWN_PRIORITY = sys.platform.startswith("linux")
-_LESS_URGENT = 5
 
-
-def threads():
-    """How many threads native work beside a window may take; 0: all that there are."""
-    return 0 if _HAS_OWN_PRIORITY else max(1, (os.cpu_count() or 1) - 1)
+def threads(is_short=False):
+    """How many threads native work beside a window may take: one processor is left to the window, or it would
+    stand still for half a second. 0: all that there are, for what is over sooner than that."""
+    return 0 if is_short else max(1, (os.cpu_count() or 1) - 1)
 
 
 class ThreadJob:
@@ -36,7 +30,6 @@ class ThreadJob:
 
     def _work(self, task):
         try:
-            _be_less_urgent()
             self._result = task(self)
         except BaseException as error:  # handed to the main thread, which raises it
             self._error = error
@@ -69,11 +62,3 @@ class ThreadJob:
         if self._error is not None:
             raise self._error
         return self._result
-
-
-def _be_less_urgent():
-    """Threads that this one starts inherit it."""
-    if _HAS_OWN_PRIORITY:
-        thread = threading.get_native_id()
-        with contextlib.suppress(OSError):  # as before, then
-            os.setpriority(os.PRIO_PROCESS, thread, os.getpriority(os.PRIO_PROCESS, thread) + _LESS_URGENT)

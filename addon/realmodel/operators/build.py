@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import batch, build_job, built_scene, live, problems
+from ..bl import batch, build_job, built_scene, live, problems, viewports
 from ..core import Cancelled, RealModelError
 from .reporting import Reporting, needed_model
 
@@ -68,7 +68,7 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
             return {"CANCELLED"}
         except Exception as error:
             return self._refused(context, error)
-        redraw(context)
+        viewports.redraw()
         return {"FINISHED"}
 
     def cancel(self, context):
@@ -83,7 +83,7 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
         context.window_manager.progress_update(100.0 * fraction)
         if context.workspace is not None:
             context.workspace.status_text_set(f"RealModel: {text}, {100 * fraction:.0f} %     Esc: cancel")
-        redraw(context)
+        viewports.redraw_sidebars()
 
     def _leave(self, context):
         if self._job in running:
@@ -96,14 +96,14 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
             self._timer = None
         if context.workspace is not None:
             context.workspace.status_text_set(None)
-        redraw(context)
+        viewports.redraw()
 
     def _refused(self, context, error):
         self.report({"ERROR"}, build_job.message(error))
         problems.remember(context, error)
         if problems.has_place(context):
             problems.show(context)
-        redraw(context)
+        viewports.redraw()
         return {"CANCELLED"}
 
     def _tell_done(self, model):
@@ -117,14 +117,6 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
 
 
 running = []  # the jobs of builds that are shown with progress
-
-
-def redraw(context):
-    """The sidebars show what has changed."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
 
 
 class REALMODEL_OT_cancel(bpy.types.Operator):

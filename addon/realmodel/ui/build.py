@@ -23,6 +23,7 @@ class REALMODEL_PT_build(TabPanel, bpy.types.Panel):
             _draw_progress(layout, activity)
         else:
             row = layout.row(align=True)
+            row.use_property_split = False
             row.scale_y = 1.4
             row.operator("realmodel.build", icon="MOD_BUILD")
             row.prop(group, "live", text="Live", toggle=True, icon="RECOVER_LAST")

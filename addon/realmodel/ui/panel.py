@@ -31,7 +31,7 @@ def _letters():
     region = bpy.context.region
     if region is None:
         return 40
-    return max(16, int((region.width / bpy.context.preferences.system.ui_scale - 45) / 5.9))
+    return max(16, int((region.width / bpy.context.preferences.system.ui_scale - 60) / 5.9))
 
 
 def wrapped(text, width=None):

@@ -40,16 +40,16 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
 
 def _draw_density(layout, rock):
     column = layout.column(align=True)
-    column.prop(rock, "edges_by")
+    column.prop(rock, "edges_by", text="Triangles")
     if rock.edges_by == "LENGTH":
-        column.prop(rock, "edge_length")
+        column.prop(rock, "edge_length", text="Length")
         if rock.region_area < 0.0:
             region_size.ask()
         count = region_size.expected_triangles(rock)
         if count is not None:
             hint(layout, f"gives about {_rounded(count):,} triangles a surface")
     elif rock.edges_by == "TRIANGLES":
-        column.prop(rock, "triangles")
+        column.prop(rock, "triangles", text="Number")
     elif plan_mesh.has_triangles(rock):
         column.prop(rock, "triangles", text="Scaled to")
     layout.prop(rock, "mesher")

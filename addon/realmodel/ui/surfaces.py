@@ -77,20 +77,30 @@ def _draw_method(layout, surface):
         switch, shown = method_settings.SHOWN.get(name, (None, ()))
         if name == "variogram":
             _draw_variogram(layout, surface)
-            continue
-        if switch is not None:
-            layout.prop(surface, switch)
-            if not getattr(surface, switch):
-                continue
-        for key in shown:
+        elif switch is not None:
+            _draw_switched(layout, surface, switch, shown)
+        else:
+            for key in shown:
+                layout.prop(surface, key)
+    _draw_switched(layout, surface, "use_minimum_thickness", ("minimum_thickness",))
+
+
+def _draw_switched(layout, surface, switch, keys):
+    """A tick, and beside it what it switches on; further settings below."""
+    names = surface.bl_rna.properties
+    row = layout.row(heading=names[keys[0]].name if len(keys) == 1 else names[switch].name)
+    row.prop(surface, switch, text="")
+    if len(keys) == 1:
+        value = row.row()
+        value.active = getattr(surface, switch)
+        value.prop(surface, keys[0], text="")
+    elif getattr(surface, switch):
+        for key in keys:
             layout.prop(surface, key)
-    layout.prop(surface, "use_minimum_thickness")
-    if surface.use_minimum_thickness:
-        layout.prop(surface, "minimum_thickness", text="At least")
 
 
 def _draw_variogram(layout, surface):
-    layout.prop(surface, "fit_variogram")
+    layout.row(heading="Variogram").prop(surface, "fit_variogram", text="Fitted")
     if surface.fit_variogram:
         return
     parts = len(surface.structures)
@@ -108,10 +118,7 @@ def _draw_variogram(layout, surface):
         row.operator("realmodel.structure_remove", text="", icon="X").index = number
         box.prop(part, "range")
         box.prop(part, "sill")
-        box.prop(part, "use_anisotropy")
-        if part.use_anisotropy:
-            box.prop(part, "ratio")
-            box.prop(part, "azimuth")
+        _draw_switched(box, part, "use_anisotropy", ("ratio", "azimuth"))
     text = "Add Part" if parts else "In Several Parts"
     layout.operator("realmodel.structure_add", text=text, icon="ADD")
 
@@ -121,20 +128,24 @@ def _draw_figures(layout, context, surface):
     if figures is None:
         return
     scene, column = context.scene, layout.box().column(align=True)
-    if figures["points"]:
-        column.label(text=f"{figures['points']:,} points, {figures['triangles']:,} triangles")
-    else:
-        column.label(text=f"{figures['triangles']:,} triangles")
+    for sentence in _figures(scene, figures):
+        for line in wrapped(sentence):
+            column.label(text=line)
+
+
+def _figures(scene, figures):
+    """What a build tells of a surface, in sentences."""
+    points = f"{figures['points']:,} points, " if figures["points"] else ""
+    yield f"{points}{figures['triangles']:,} triangles"
     low, high = (units.length_text(scene, figures[key]) for key in ("low", "high"))
-    column.label(text=f"Heights {low} to {high}")
+    yield f"Heights {low} to {high}"
     if figures.get("deviation"):
-        column.label(text=f"Standard deviation to {units.length_text(scene, figures['deviation'])}")
-    share = "" if figures["share"] is None else f" ({100 * figures['share']:.0f} %)"
-    left = f"Survives over {units.area_text(scene, figures['area'])}{share}"
-    for line in wrapped(
-        left if figures["area"] > 0.0 else "Nothing of it survives: younger surfaces cut it away"
-    ):
-        column.label(text=line)
+        yield f"Standard deviation to {units.length_text(scene, figures['deviation'])}"
+    if figures["area"] > 0.0:
+        share = "" if figures["share"] is None else f" ({100 * figures['share']:.0f} %)"
+        yield f"Survives over {units.area_text(scene, figures['area'])}{share}"
+    else:
+        yield "Nothing of it survives: younger surfaces cut it away"
 
 
 class REALMODEL_PT_surface_reading(TabPanel, bpy.types.Panel):

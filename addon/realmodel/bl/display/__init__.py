@@ -293,5 +293,5 @@ def _show(scene, has_shapes=False, **wanted):
     if "color_by" in wanted or "stage" in wanted:
         colours.apply(scene)
     if "color_by" in wanted or "display" in wanted:
-        colours.shade_viewports(scene, now["color_by"], now["display"], _applied(scene))
+        colours.shade_viewports(now["color_by"], now["display"], _applied(scene))
     group.view.applied = json.dumps({key: now[key] for key in _ANIMATED})

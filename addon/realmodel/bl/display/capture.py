@@ -8,7 +8,7 @@ from mathutils import Matrix
 
 from ...core import InputRefused, OutputFailed
 from ...core.atomic import Outputs
-from .. import batch, meshes, picture, scene, settings
+from .. import batch, meshes, picture, scene, settings, viewports
 from . import bodies, colours, drawing, marks, modes, render_marks, viewpoints
 
 LARGEST = 16384  # pixels along a side
@@ -28,10 +28,9 @@ def write(context, path, size):
 def viewport(context):
     """(area, region, space) of the 3D viewport that is captured: the context's, or the largest one; None
     where there is none."""
-    areas = [area for window in context.window_manager.windows for area in window.screen.areas]
+    areas = list(viewports.areas())
     if context.area is not None and context.area.type == "VIEW_3D":
         areas = [context.area]
-    areas = [area for area in areas if area.type == "VIEW_3D"]
     if not areas:
         return None
     area = max(areas, key=lambda a: a.width * a.height)

@@ -10,7 +10,7 @@ import colorsys
 
 import bpy
 
-from .. import library_rows, materials, settings, uncertainty
+from .. import library_rows, materials, settings, uncertainty, viewports
 from . import bodies
 
 KEY = "realmodel_colour"  # on a material: what it stands for
@@ -54,7 +54,7 @@ def has_shades(item):
     return material is not None and material.get(KEY) == uncertainty.UNCERTAINTY
 
 
-def shade_viewports(scene, by, display, before):
+def shade_viewports(by, display, before):
     """Viewports of solid shading show the colours of vertices while these are what is to be seen, and those
     of materials again afterwards. before: the settings that were shown before."""
     wanted = by == "UNCERTAINTY" and display == "SURFACES"
@@ -62,10 +62,10 @@ def shade_viewports(scene, by, display, before):
     if wanted == was:
         return
     old, new = ("MATERIAL", "VERTEX") if wanted else ("VERTEX", "MATERIAL")
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas if window.scene == scene else ():
-            if area.type == "VIEW_3D" and area.spaces.active.shading.color_type == old:
-                area.spaces.active.shading.color_type = new
+    for area in viewports.areas():
+        shading = area.spaces.active.shading
+        if shading.color_type == old:
+            shading.color_type = new
 
 
 def forget(scene):

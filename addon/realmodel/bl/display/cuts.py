@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from ...core import Cancelled, InputRefused, RealModelError
-from .. import block_shapes, meshes, project_settings, scene, settings
+from .. import block_shapes, meshes, project_settings, scene, settings, viewports
 from ..rested_work import RestedWork
 from ..thread_job import ThreadJob, threads
 from . import bodies, explosion, replacing, shown_models
@@ -212,10 +212,7 @@ def _finish(name, job, _changed_at):
 
 def _tell(current, error):
     current.realmodel.view.message = "" if error is None else str(error)
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+    viewports.redraw()
 
 
 def is_working(current):

@@ -12,7 +12,7 @@ import numpy as np
 from mathutils import Quaternion, Vector
 
 from ...core import InputRefused
-from .. import meshes
+from .. import meshes, viewports
 from . import bodies, modes
 
 _H = 0.5**0.5
@@ -81,7 +81,7 @@ def turn(context, direction):
         view.view_rotation = DIRECTIONS[direction]
         _frame(context.scene, space)
     _remember(found[0])
-    _redraw(context)
+    viewports.redraw()
 
 
 def frame(context):
@@ -93,7 +93,7 @@ def frame(context):
     for space in found:
         _frame(context.scene, space)
     _remember(found[0])
-    _redraw(context)
+    viewports.redraw()
 
 
 def step(context, by):
@@ -107,7 +107,7 @@ def step(context, by):
     _at += by
     for space in found:
         _history[_at].show(space)
-    _redraw(context)
+    viewports.redraw()
 
 
 def _remember(space):
@@ -182,10 +182,3 @@ def _aspect(space):
                 if region.width > 1 and region.height > 1:
                     return region.width / region.height
     return 1.6
-
-
-def _redraw(context):
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Inside Blender's window: how long it stands still at most while something long is done.
+
+    xvfb-run -a -s "-screen 0 1280x800x24" blender --factory-startup -P blender_window.py -- QUADS
+
+QUADS: along a side of each of the 4 surfaces of the model. Prints one line of JSON: by what goes on (seconds
+without a sign of life of the main thread, at most; seconds in which Blender was given the meshes; seconds
+that drawing the window once takes; polygons).
+"""
+
+import json
+import os
+import sys
+import time
+import traceback
+from pathlib import Path
+
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
+
+import realmodel
+from realmodel.core import Library, Project, Property, Rock, Surface
+
+from benchmarks.made_stacks import StackSpec
+
+PATIENCE = 300.0
+
+
+class Watch:
+    """Longest time between two calls of a timer of Blender, and what was spent in giving meshes to it."""
+
+    def __init__(self):
+        from realmodel.bl import build_job, display
+
+        self.longest = self.upload = 0.0
+        self._last = None
+        build_job.BuildJob._put = self._timed(build_job.BuildJob._put)
+        display._show = self._timed(display._show)
+
+    def _timed(self, function):
+        """What is done within counts as upload, and not as standing still."""
+
+        def timed(*arguments, **options):
+            self.tick()
+            began = time.perf_counter()
+            try:
+                return function(*arguments, **options)
+            finally:
+                self.upload += time.perf_counter() - began
+                self._last = None
+
+        return timed
+
+    def begin(self):
+        self.longest = self.upload = 0.0
+        self._last = time.perf_counter()
+
+    def tick(self):
+        now = time.perf_counter()
+        if self._last is not None:
+            self.longest = max(self.longest, now - self._last)
+        self._last = now
+
+
+watch = None
+
+
+def scene():
+    return bpy.context.scene
+
+
+def large(quads):
+    layers = [
+        Surface(f"S{n}", 1.0 * vertices + [0, 0, n], triangles, property=n + 1)
+        for n, (vertices, triangles) in enumerate(StackSpec(4, quads, "shared").make())
+    ]
+    library = Library([Property(n + 1, f"Rock {n}") for n in range(4)])
+    from realmodel.bl import project_settings
+
+    bpy.ops.realmodel.new()
+    project_settings.fill(scene(), Project("Layers", [Rock("rock", layers)], library))
+    scene().realmodel.cells = "COLUMNS"
+
+
+def still(quads):
+    """What takes long, as a person does it: each while a timer looks how long the window stands still."""
+    from realmodel.bl.display import preparing
+
+    def idle():
+        running = bpy.context.window_manager.realmodel.running
+        return not running and not preparing.is_working(scene())
+
+    large(quads)
+    area = next(a for a in bpy.context.window_manager.windows[0].screen.areas if a.type == "VIEW_3D")
+    region = next(r for r in area.regions if r.type == "WINDOW")
+    for what in ("first build", "building again", "a stage", "polyhedra"):
+        watch.begin()
+        if what.endswith(("build", "again")):
+            with bpy.context.temp_override(
+                window=bpy.context.window_manager.windows[0], area=area, region=region
+            ):
+                bpy.ops.realmodel.build("INVOKE_DEFAULT")
+        elif what == "a stage":
+            scene().realmodel.stage = 2
+        else:
+            scene().realmodel.display = "POLYHEDRA"
+        yield idle
+        found = [watch.longest, watch.upload]
+        with bpy.context.temp_override(
+            window=bpy.context.window_manager.windows[0], area=area, region=region
+        ):
+            bpy.ops.wm.redraw_timer(type="DRAW", iterations=1)
+            began = time.perf_counter()
+            bpy.ops.wm.redraw_timer(type="DRAW", iterations=3)
+        told[what] = [*found, (time.perf_counter() - began) / 3, polygons()]
+
+
+def polygons():
+    return sum(len(o.data.polygons) for o in scene().objects if o.type == "MESH" and o.visible_get())
+
+
+told = {}
+
+
+def steps():
+    yield from still(int(sys.argv[sys.argv.index("--") + 1]))
+
+
+class Run:
+    """Goes through the steps, each when its condition holds, as one of Blender's timers."""
+
+    def __init__(self):
+        self.steps = steps()
+        self.condition = next(self.steps)
+        self.deadline = time.monotonic() + PATIENCE
+
+    def __call__(self):
+        try:
+            watch.tick()
+            if not self.condition():
+                if time.monotonic() > self.deadline:
+                    raise TimeoutError("a step does not end")
+                return 0.001
+            self.condition = next(self.steps)
+            self.deadline = time.monotonic() + PATIENCE
+            return 0.001
+        except StopIteration:
+            print(json.dumps(told), flush=True)
+            status = 0
+        except BaseException:
+            traceback.print_exc()
+            status = 1
+        sys.stdout.flush()
+        os._exit(status)  # Blender would ask whether to save
+
+
+def begin():
+    global watch
+    realmodel.register()
+    watch = Watch()
+    bpy.app.timers.register(Run(), first_interval=0.1)
+
+
+bpy.context.preferences.view.show_splash = False
+bpy.app.timers.register(begin, first_interval=1.0)
