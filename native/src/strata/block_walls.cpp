@@ -37,7 +37,7 @@ public:
         curves_.collect(track);
         for (std::size_t i = 0; i < curves_.intervals(); ++i) {
             const std::span<const Curve> curves = curves_.of_interval(i);
-            if (curves.empty()) continue;
+            if (curves.empty() || go_on(curves)) continue;
             if (may_have_walls(curves.front())) {
                 compare_columns(track, i, curves);
             } else {
@@ -47,6 +47,19 @@ public:
     }
 
 private:
+    /// The common case: one face on either side, as high, between the same blocks. Their nodes hang
+    /// together whether walls may stand here or not.
+    bool go_on(std::span<const Curve> curves) {
+        if (curves.size() != 2) return false;
+        const Curve &a = curves[0], &b = curves[1];
+        if (a.left == b.left || !a.as_high_as(b) || block(a.above) != block(b.above) ||
+            block(a.below) != block(b.below))
+            return false;
+        link(a.above, b.above);
+        link(a.below, b.below);
+        return true;
+    }
+
     bool may_have_walls(const Curve& curve) const {
         const auto& p = loops_.positions[static_cast<std::size_t>(curve.start)];
         const auto& q = loops_.positions[static_cast<std::size_t>(curve.end)];
