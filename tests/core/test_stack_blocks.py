@@ -97,7 +97,25 @@ def parts_of_blocks(built, blocks):
 
 @pytest.mark.parametrize("seed", range(60))
 def test_blocks_are_those_of_the_columns(seed):
-    given = stack(seed)
+    compare(stack(seed))
+
+
+def test_middles_of_facets_on_edges_beneath_them():
+    """Squares of three by three over squares of one: middles lie on vertices of the surface beneath."""
+
+    def level(size, step, z):
+        ticks = np.arange(size + 1.0) * step
+        x, y = np.meshgrid(ticks, ticks, indexing="ij")
+        vertices = np.stack([x, y, np.full(x.shape, z)], -1).reshape(-1, 3)
+        a = (np.arange(size)[:, None] * (size + 1) + np.arange(size)).ravel()
+        corners = np.stack([a, a + size + 1, a + size + 2, a, a + size + 2, a + 1], -1)
+        return vertices, corners.reshape(-1, 3).astype(np.int32)
+
+    fine, coarse = level(30, 1.0, 0.0), level(10, 3.0, 1.0)
+    compare({"surfaces": [fine, coarse], "region": None, "base_elevation": -1.0})
+
+
+def compare(given):
     columns = _native.build_stack(**given, cells="columns", threads=1)
     blocks = _native.build_stack(**given, cells="blocks", threads=2)
     count = len(given["surfaces"])
@@ -125,9 +143,23 @@ def test_untouched_triangles_stay_whole():
     assert (sizes[on_surface] == 3).sum() >= 0.8 * inner
 
 
-def test_same_bytes_for_any_number_of_threads():
-    for seed in (3, 11, 29):
-        given = stack(seed)
-        one, two, many = (_native.build_stack(**given, cells="blocks", threads=n) for n in (1, 2, 5))
-        for name in ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface"):
-            assert one[name].tobytes() == two[name].tobytes() == many[name].tobytes()
+def waves(chance, size):
+    """Surfaces that cross here and there, in more triangles than a thread takes at a time."""
+    ticks = np.arange(size + 1.0)
+    surfaces = []
+    for k in range(3):
+        x, y = (axis.copy() for axis in np.meshgrid(ticks, ticks, indexing="ij"))
+        for axis in (x, y):
+            axis[1:-1, 1:-1] += chance.uniform(-0.2, 0.2, (size - 1, size - 1))
+        vertices = np.stack([x, y, heights(chance, "waves", k, x, y)], -1).reshape(-1, 3)
+        surfaces.append((vertices, triangulated(chance, size)))
+    return {"surfaces": surfaces, "region": None, "base_elevation": -20.0}
+
+
+@pytest.mark.parametrize("cells", ["blocks", "columns"])
+@pytest.mark.parametrize("given", [3, 11, 29, "waves"])
+def test_same_bytes_for_any_number_of_threads(given, cells):
+    given = waves(np.random.default_rng(1), 66) if given == "waves" else stack(given)
+    one, two, many = (_native.build_stack(**given, cells=cells, threads=n) for n in (1, 2, 5))
+    for name in ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block"):
+        assert one[name].tobytes() == two[name].tobytes() == many[name].tobytes()
