@@ -36,5 +36,8 @@ if "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/be
 else
     echo "benchmark.sh: Triangle, Gmsh and earcut could not be installed; measuring without them" >&2
 fi
+if [[ " $* " != *" --only "* || " $* " == *" heights "* ]] && ! "$root/scripts/install_dependencies.sh" heights; then
+    echo "benchmark.sh: GMT and gstat could not be installed; measuring without them" >&2
+fi
 cd "$root/scripts"
 PYTHONPATH="$root/addon:$root/scripts" exec "$runs" -m benchmarks "$@"

@@ -80,6 +80,7 @@ def draw(folder):
         "plane": (given, {}),
         "constant": (wells, {}),
         "parallel": (wells, {"to": below, "triangles": triangles}),
+        "auto": (given, {}),
     }
     for method, (known, options) in methods.items():
         result = interpolate(known, vertices, method, **options)
@@ -87,7 +88,7 @@ def draw(folder):
         axes = figure.subplots()
         shape = np.column_stack([vertices, result.z])
         plots.height_map(shape, triangles, known, axes=axes, limits=_LIMITS)
-        axes.set_title(method, fontsize="medium")
+        axes.set_title(method if method != "auto" else f"auto: {result.method}", fontsize="medium")
         save(figure, folder / f"method_{method}.png")
         if method == "kriging":
             figure = Figure(figsize=(4.4, 2.9), layout="constrained")
@@ -98,12 +99,25 @@ def draw(folder):
             figure = Figure(figsize=(4.4, 2.9), layout="constrained")
             plots.variogram(result.variogram, figure.subplots())
             save(figure, folder / "method_variogram.png")
+    draw_extrapolation(given[-14:], vertices, triangles, folder)
     figure = Figure(figsize=(4.4, 3.4), layout="constrained")
     plots.cross_validation(cross_validate(given), figure.subplots())
     save(figure, folder / "method_cross_validation.png")
     figure = Figure(figsize=(4.4, 2.9), layout="constrained")
     plots.mesh_quality(vertices, triangles, figure.subplots())
     save(figure, folder / "method_mesh_quality.png")
+
+
+def draw_extrapolation(wells, vertices, triangles, folder):
+    """Beside each other, what nodes outside the hull of a few wells get."""
+    figure = Figure(figsize=(8.8, 2.4), layout="constrained")
+    for choice, axes in zip(("method", "nearest", "none"), figure.subplots(1, 3, sharey=True), strict=True):
+        z = interpolate(wells, vertices, "universal_kriging", extrapolate=choice).z
+        kept = triangles[np.isfinite(z)[triangles].all(axis=1)]
+        shape = np.column_stack([vertices, np.nan_to_num(z, nan=_LIMITS[0])])
+        plots.height_map(shape, kept, wells, axes=axes, limits=_LIMITS)
+        axes.set_title(f'extrapolate = "{choice}"', fontsize="medium")
+    save(figure, folder / "method_extrapolate.png")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 # Installs the Debian packages that RealModel needs and this machine lacks; with nothing missing it
 # does nothing. docs/dependencies.md says what each is for.
 #
-#   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|clang|tsan|gui|versions]...      (default: build)
+#   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|heights|clang|tsan|gui|versions]...      (default: build)
 set -euo pipefail
 
 # A package, or package=command where the command in any version on PATH does as well.
@@ -15,6 +15,7 @@ test=(clang-format=clang-format shellcheck=shellcheck git=git)
 tidy=(clang-tidy=clang-tidy)
 versions=(debootstrap)
 benchmark=(libmpfr-dev blender=blender python3-numpy)
+heights=(gmt=gmt r-cran-gstat)
 clang=(clang=clang++ libomp-dev)
 tsan=(clang=clang++ libclang-rt-dev libomp-dev)
 gui=(xvfb=Xvfb xauth=xauth blender=blender python3-numpy libegl1)
@@ -38,12 +39,13 @@ for group in "$@"; do
         test) wanted+=("${test[@]}") ;;
         tidy) wanted+=("${tidy[@]}") ;;
         benchmark) wanted+=("${benchmark[@]}") ;;
+        heights) wanted+=("${heights[@]}") ;;
         clang) wanted+=("${clang[@]}") ;;
         tsan) wanted+=("${tsan[@]}") ;;
         gui) wanted+=("${gui[@]}") ;;
         versions) wanted+=("${versions[@]}") ;;
         *)
-            echo "install_dependencies.sh: no group '$group'; there are build, blender, bpy, test, tidy, benchmark, clang, tsan, gui, versions" >&2
+            echo "install_dependencies.sh: no group '$group'; there are build, blender, bpy, test, tidy, benchmark, heights, clang, tsan, gui, versions" >&2
             exit 2
             ;;
     esac

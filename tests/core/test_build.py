@@ -367,7 +367,8 @@ def test_a_base_that_a_method_passed_says_which_points_did_not(write):
     path = write(
         "p.toml",
         'format = 1\nname = "x"\n[[rock]]\nname = "r"\nregion = [[0, 0], [20, 0], [20, 20], [0, 20]]\n'
-        'edge_length = 4\nbase_elevation = 0\n[[rock.surface]]\nname = "s"\npoints = "p.csv"\nmethod = "dsi"\n',
+        'edge_length = 4\nbase_elevation = 0\n[[rock.surface]]\nname = "s"\npoints = "p.csv"\n'
+        'method = "dsi"\n',
     )
     with pytest.raises(InputRefused, match="points of surface 's' go down to 10 only: look at its method"):
         build(load_project(path))

@@ -46,7 +46,7 @@ struct FittedVariogram {
 /// section 2.6.2, as gstat does); about these fits further nuggets and ranges are tried, each with
 /// the sill that fits best. Of all the one is taken with which up to 10,000 points, left out one by
 /// one, are told best by kriging from their nearest others (root mean square error, errors beyond
-/// ten deviations counted as ten); where several do within half a percent, the one that fits the
+/// twenty deviations counted as twenty); where several do within 0.2 percent, the one that fits the
 /// experimental values best. Then range and sill are moved so that 95 % of those errors lie within
 /// two kriging deviations: variances are honest. Constant values, or fewer than three points, give
 /// a spherical model whose sill is tiny or what the points show.
