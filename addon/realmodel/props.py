@@ -18,8 +18,8 @@ from bpy.props import (
 )
 
 from . import props_rock, props_surface, props_view
-from .bl import changes, display, library_rows, results
-from .core.units import METRES, MODEL_UNIT
+from .bl import changes, display, library_rows, results, units
+from .core.units import MODEL_UNIT
 
 DISPLAYS = (
     ("POINTS", "Points", "Vertices of the interfaces and blocks"),
@@ -95,7 +95,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     units: EnumProperty(
         name="Units",
         description="Unit of the model's lengths; files in other units are brought to it",
-        items=[(unit, unit, "") for unit in METRES],
+        items=units.ITEMS,
         default=MODEL_UNIT,
         update=changes.setting,
     )
@@ -108,7 +108,9 @@ class RealModelSettings(bpy.types.PropertyGroup):
     active_rock: IntProperty(name="Active rock mass", description="The rock mass whose surfaces are shown")
     library: CollectionProperty(type=RealModelProperty)
     library_path: StringProperty(options={"HIDDEN"})
-    active_property: IntProperty(name="Active property")
+    active_property: IntProperty(
+        name="Active property", description="The entry of the library whose settings are shown"
+    )
     cells: EnumProperty(
         name="Cells",
         description="What the model is made of",
@@ -206,7 +208,6 @@ class RealModelActivity(bpy.types.PropertyGroup):
     problem_object: StringProperty(options={"SKIP_SAVE"})
     problem_triangles: StringProperty(options={"SKIP_SAVE"})
     problem_place: StringProperty(options={"SKIP_SAVE"})
-    seconds: FloatProperty(options={"SKIP_SAVE"})
 
 
 _CLASSES = (

@@ -47,6 +47,18 @@ METHOD_LABELS = {
     "auto": ("Automatic", "Chooses the method that predicts left-out points best"),
 }
 
+_VARIOGRAMS = {
+    "spherical": ("Spherical", "Rises straight, and ends at the range: for heights that change often"),
+    "exponential": ("Exponential", "Rises ever more slowly: for rough heights"),
+    "gaussian": (
+        "Gaussian",
+        "Begins level: for very smooth heights; many points near each other suit it ill",
+    ),
+    "cubic": ("Cubic", "Begins level and ends at the range: for smooth heights"),
+    "matern32": ("Matern 3/2", "Between exponential and Gaussian, the rougher one"),
+    "matern52": ("Matern 5/2", "Between exponential and Gaussian, the smoother one"),
+}
+
 _EXTRAPOLATE = {
     "method": ("As the method", "The method goes on outside the points"),
     "nearest": ("Nearest point", "Outside the points the height of the nearest one"),
@@ -67,7 +79,7 @@ class RealModelStructure(bpy.types.PropertyGroup):
     model: EnumProperty(
         name="Model",
         description="Shape of this part",
-        items=_items(VARIOGRAM_MODELS),
+        items=_items(VARIOGRAM_MODELS, _VARIOGRAMS),
         update=changes.setting,
     )
     range: FloatProperty(
@@ -213,7 +225,7 @@ class RealModelSurface(props_reading.ReadingSettings, bpy.types.PropertyGroup):
     variogram_model: EnumProperty(
         name="Variogram",
         description="Shape of the variogram",
-        items=_items(VARIOGRAM_MODELS),
+        items=_items(VARIOGRAM_MODELS, _VARIOGRAMS),
         update=changes.setting,
     )
     variogram_range: FloatProperty(

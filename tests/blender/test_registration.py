@@ -77,6 +77,34 @@ class Registration(unittest.TestCase):
         finally:
             realmodel.unregister()
 
+    def test_every_setting_and_choice_says_what_it_does(self):
+        realmodel.register()
+        self.addCleanup(realmodel.unregister)
+        from realmodel import operators, props_rock, props_surface, props_view
+
+        found = [
+            (cls.__name__, cls.bl_rna) for m in (props_rock, props_surface, props_view) for cls in m.CLASSES
+        ]
+        found.append(("scene.realmodel", bpy.context.scene.realmodel.bl_rna))
+        for group in operators.by_module():
+            for cls in group:
+                made = getattr(bpy.ops.realmodel, cls.bl_idname.split(".")[1])
+                found.append((cls.bl_idname, made.get_rna_type()))
+        silent = []
+        for owner, rna in found:
+            for prop in rna.properties:
+                if prop.is_hidden or prop.identifier == "rna_type" or prop.type in ("COLLECTION", "POINTER"):
+                    continue
+                if not prop.description:
+                    silent.append((owner, prop.identifier))
+                if prop.type == "ENUM":
+                    silent += [
+                        (owner, prop.identifier, item.identifier)
+                        for item in prop.enum_items
+                        if not item.description
+                    ]
+        self.assertEqual(silent, [])
+
     def test_the_menu_has_every_operator_and_choice(self):
         """View > RealModel, drawn into a list: F3 finds nothing that is not there."""
         realmodel.register()

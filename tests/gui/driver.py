@@ -189,6 +189,15 @@ class Walk:
 
 def read_picture(path):
     """(height, width, 3) from 0 to 1, the bottom row first."""
+    return _channels(path)[:, :, :3].copy()
+
+
+def read_alpha(path):
+    """(height, width) how opaque a picture is, from 0 to 1."""
+    return _channels(path)[:, :, 3].copy()
+
+
+def _channels(path):
     image = bpy.data.images.load(str(path))
     try:
         width, height = image.size
@@ -197,7 +206,7 @@ def read_picture(path):
         image.pixels.foreach_get(flat)
     finally:
         bpy.data.images.remove(image)
-    return flat.reshape(height, width, -1)[:, :, :3].copy()
+    return flat.reshape(height, width, -1)
 
 
 def contact_sheet(pictures, path, columns=3, smaller=3):

@@ -11,12 +11,13 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from driver import hue_differs, read_picture
+from driver import hue_differs, read_alpha, read_picture
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "blender"))
 
 from made_projects import surface
 from realmodel.bl import picture
+from realmodel.bl.display import preparing
 from realmodel.core import Library, Project, Property, Rock
 from realmodel.core.project_writer import save_project
 
@@ -187,6 +188,48 @@ def captures(walk):
     yield walk.redrawn(2)
 
 
+def an_animation(walk):
+    """Rendered from the window as Ctrl-F12 does it, beside the window: each frame has its stage."""
+    scene = bpy.context.scene
+    before = [(o.name, len(o.data.polygons)) for o in scene.objects if o.type == "MESH"]
+    for frame, stage in ((1, 0), (2, 1), (3, 2)):
+        scene.realmodel.stage = stage
+        scene.keyframe_insert("realmodel.stage", frame=frame)
+    camera = bpy.data.cameras.new("camera")
+    camera.type, camera.ortho_scale = "ORTHO", 110.0
+    item = bpy.data.objects.new("camera", camera)
+    item.location, item.rotation_euler = (50.0, -100.0, 20.0), (np.pi / 2, 0.0, 0.0)
+    scene.collection.objects.link(item)
+    scene.camera, scene.frame_start, scene.frame_end = item, 1, 3
+    render = scene.render
+    render.engine, render.film_transparent, render.use_lock_interface = "CYCLES", True, True
+    render.resolution_x = render.resolution_y = 64
+    render.image_settings.color_mode = "RGBA"
+    scene.cycles.samples, scene.cycles.use_denoising = 1, False
+    bpy.context.preferences.view.render_display_type = "NONE"
+    for mode in ("BLOCKS", "LINES"):
+        scene.realmodel.display = mode
+        render.filepath = str(walk.folder / f"frame_{mode}_")
+        with in_the_viewport(walk):
+            bpy.ops.render.render("INVOKE_DEFAULT", animation=True)
+        last = walk.folder / f"frame_{mode}_0003.png"
+        yield lambda last=last: last.exists() and not bpy.app.is_job_running("RENDER")
+        yield walk.redrawn(2)
+        covered = [
+            (read_alpha(walk.folder / f"frame_{mode}_{frame:04d}.png") > 0.5).mean() for frame in (1, 2, 3)
+        ]
+        assert 0.01 < covered[0] < covered[1] < covered[2], (mode, covered)
+    yield lambda: not [o for o in scene.objects if o.get("realmodel_view") == "marks"]
+    scene.realmodel.display = "BLOCKS"
+    scene.animation_data_clear()
+    scene.realmodel.stage = 2
+    yield lambda: not preparing.is_working(scene)
+    yield walk.redrawn(2)
+    bpy.data.objects.remove(item)
+    after = [(o.name, len(o.data.polygons)) for o in scene.objects if o.type == "MESH"]
+    assert after == before, (before, after)
+
+
 def coordinates_under_the_mouse(walk):
     with in_the_viewport(walk):
         bpy.ops.realmodel.coordinates("INVOKE_DEFAULT")
@@ -204,4 +247,4 @@ def coordinates_under_the_mouse(walk):
     assert abs(place.thickness - 15.0) < 1e-3, place
 
 
-STEPS = (layers, modes, hidden, stage_and_explode, cut, captures, coordinates_under_the_mouse)
+STEPS = (layers, modes, hidden, stage_and_explode, cut, captures, an_animation, coordinates_under_the_mouse)

@@ -4,14 +4,14 @@ realmodel.core.PointFile and MeshFile take it - and what a person writes in the 
 
 import json
 
-from ..core.units import METRES
+from . import units
 
 DECIMALS = (
     ("", "Told from the file", "A comma is known where it does not separate"),
     (".", "Point", "1234.5"),
     (",", "Comma", "1234,5"),
 )
-UNITS = (("", "As the model", "The unit of the model"), *((unit, unit, "") for unit in METRES))
+UNITS = (("", "As the model", "The unit of the model"), *units.ITEMS)
 _NAMES = ("height", "layer")  # taken as they are written, "5" too
 _SEPARATORS = {"tab": "\t", "blank": " "}
 
@@ -65,15 +65,15 @@ def set_choice(row, key, items, number):
     if key == "decimal":
         _set(row, key, items[number][0])
         return
-    units = {part: _choice(row, part) for part in ("xy", "z")} | {key: items[number][0]}
-    _set(row, "units", {part: unit for part, unit in units.items() if unit})
+    given = {part: _choice(row, part) for part in ("xy", "z")} | {key: items[number][0]}
+    _set(row, "units", {part: unit for part, unit in given.items() if unit})
 
 
 def _choice(row, key):
     if key == "decimal":
         return options(row).get(key) or ""
-    units = options(row).get("units")
-    return (units.get(key) if isinstance(units, dict) else units) or ""
+    given = options(row).get("units")
+    return (given.get(key) if isinstance(given, dict) else given) or ""
 
 
 def _set(row, key, value):

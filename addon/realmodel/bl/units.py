@@ -3,9 +3,22 @@
 
 import bpy
 
+from ..core.units import METRES
 from . import results
 
 _DIGITS = 5
+_NAMES = {
+    "mm": "Millimetres",
+    "cm": "Centimetres",
+    "m": "Metres",
+    "km": "Kilometres",
+    "in": "Inches",
+    "ft": "Feet (international)",
+    "us-ft": "Survey feet of the United States",
+    "yd": "Yards",
+    "mi": "Miles",
+}
+ITEMS = tuple((unit, unit, _NAMES.get(unit, unit)) for unit in METRES)  # of a menu
 
 
 def length_text(scene, value):

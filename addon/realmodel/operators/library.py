@@ -17,7 +17,7 @@ class REALMODEL_OT_library_add(Reporting, bpy.types.Operator):
     bl_idname = "realmodel.library_add"
     bl_label = "Add Property"
 
-    name: StringProperty(name="Name", default="New property")
+    name: StringProperty(name="Name", description="Name of the rock", default="New property")
 
     def act(self, context):
         group = context.scene.realmodel

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What every operator of the panel shares: errors become reports, and files are looked for."""
 
+from bpy.props import FloatVectorProperty
+
 from ..bl import build_job, settings
 from ..core import InputRefused, RealModelError
 
@@ -17,6 +19,11 @@ class Reporting:
         except RealModelError as error:
             self.report({"ERROR"}, build_job.message(error))
             return {"CANCELLED"}
+
+
+def place_property(description):
+    """A property of an operator: a place in the coordinates of the scene."""
+    return FloatVectorProperty(name="Location", description=description, subtype="TRANSLATION")
 
 
 def needed_rock(context):

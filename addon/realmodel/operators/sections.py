@@ -8,7 +8,7 @@ from mathutils import Quaternion, Vector
 from ..bl import display, settings
 from ..bl.display import cuts, sections
 from ..core import InputRefused, UsageError
-from .reporting import Reporting, needed_model
+from .reporting import Reporting, needed_model, place_property
 
 _UPRIGHT = {"X": (1.0, 0.0, 0.0), "Y": (0.0, -1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 
@@ -20,11 +20,7 @@ class REALMODEL_OT_section(Reporting, bpy.types.Operator):
     bl_idname = "realmodel.section"
     bl_label = "Make Section"
 
-    location: FloatVectorProperty(
-        name="Location",
-        description="A point of the plane, in the coordinates of the scene",
-        subtype="TRANSLATION",
-    )
+    location: place_property("A point of the plane, in the coordinates of the scene")
     normal: FloatVectorProperty(
         name="Normal",
         description="The direction that the plane is square to",

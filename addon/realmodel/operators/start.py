@@ -74,7 +74,7 @@ class REALMODEL_OT_open_sample(Reporting, bpy.types.Operator):
     bl_idname = "realmodel.open_sample"
     bl_label = "Open Example"
 
-    sample: EnumProperty(name="Example", items=samples.enum_items)
+    sample: EnumProperty(name="Example", description="Which of them", items=samples.enum_items)
 
     def act(self, context):
         _open(context.scene, samples.project_file(self.sample))

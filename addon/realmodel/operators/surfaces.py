@@ -126,6 +126,7 @@ class REALMODEL_OT_surface_move(Reporting, bpy.types.Operator):
 
     direction: EnumProperty(
         name="Direction",
+        description="Which way it moves in the list",
         items=(
             ("UP", "Up", "Make it younger: up in the list, as in the field"),
             ("DOWN", "Down", "Make it older: down in the list"),
@@ -174,7 +175,7 @@ class REALMODEL_OT_surface_property(Reporting, bpy.types.Operator):
     bl_idname = "realmodel.surface_property"
     bl_label = "Property of the Surface"
 
-    property_id: EnumProperty(name="Property", items=_library_items)
+    property_id: EnumProperty(name="Property", description="The entry of the library", items=_library_items)
 
     def act(self, context):
         needed_surface(context).property_id = int(self.property_id)

@@ -2,14 +2,14 @@
 """Looking at the model: standard views, capture, coordinates, hiding blocks by their property."""
 
 import bpy
-from bpy.props import EnumProperty, FloatVectorProperty, IntProperty, StringProperty
+from bpy.props import EnumProperty, IntProperty, StringProperty
 from bpy_extras import view3d_utils
 from bpy_extras.io_utils import ExportHelper
 
 from ..bl import display, project_settings, units
 from ..bl.display import capture, coordinates, modes, viewpoints
 from ..core import InputRefused, UsageError
-from .reporting import Reporting, needed_model, needed_path
+from .reporting import Reporting, needed_model, needed_path, place_property
 
 _LOOKING = {
     "FRONT": ("Front", "From the south"),
@@ -166,10 +166,8 @@ class REALMODEL_OT_coordinates(Reporting, bpy.types.Operator):
     bl_label = "Coordinates"
     bl_options = {"REGISTER"}
 
-    location: FloatVectorProperty(
-        name="Location",
-        description="The place in the coordinates of the scene; where it is not given, the 3D cursor",
-        subtype="TRANSLATION",
+    location: place_property(
+        "The place in the coordinates of the scene; where it is not given, the 3D cursor"
     )
 
     def act(self, context):

@@ -33,7 +33,7 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
         if group.stage < last and len(group.rocks) == 1 and group.stage < len(rows):
             hint(layout, f"of {last}: just after {rows[group.stage].name}")
         if preparing.is_working(context.scene):
-            hint(layout, "making it ...")
+            hint(layout, "being made ...")
         column = layout.column(align=True)
         column.prop(group, "explode", slider=True)
         if group.explode > 0.0:

@@ -59,7 +59,10 @@ def register():
 
 def unregister():
     """Called when the add-on is disabled: no handler of drawing may stay."""
+    from .. import meshes
     from . import cuts, drawing, preparing, replacing, shown_models, viewpoints
+
+    meshes.forget()
 
     drawing.unregister()
     cuts.stop()

@@ -5,6 +5,7 @@ the cells of a large model. Then the view is asked again, and finds it at hand."
 import bpy
 
 from ...core import Cancelled, RealModelError
+from .. import viewports
 from ..rested_work import RestedWork
 from ..thread_job import ThreadJob
 from . import cells, modes, replacing, shown_models
@@ -71,6 +72,7 @@ def _finish(name, job, _changed_at):
     from . import show_all
 
     show_all(scene)
+    viewports.redraw()
 
 
 def is_working(scene):
