@@ -82,6 +82,8 @@ def plain(blocks):
 
 
 def measure():
+    from realmodel.bl.display import preparing
+
     count, size, frames = map(int, sys.argv[sys.argv.index("--") + 1 :])
     realmodel.register()
     for item in list(bpy.data.objects):
@@ -110,6 +112,9 @@ def measure():
     for mode in MODES:
         began = time.perf_counter()
         scene.realmodel.display = mode
+        while preparing.is_working(scene):  # as Blender's timer does it
+            preparing._work.look()
+            time.sleep(0.005)
         told["switch"][mode] = time.perf_counter() - began
         told["polygons"][mode] = polygons()
         told["seconds"][mode] = seconds_per_frame(area, frames)

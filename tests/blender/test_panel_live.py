@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The live rebuild: what starts it, what it keeps, and that it ends."""
 
+from unittest import mock
+
 import bpy
 from blender_state import volume
 from panel_case import PanelCase, ops, raise_by, select, stack
 from realmodel.bl import live
+from realmodel.bl.display import shown_models
 
 
 class Live(PanelCase):
@@ -40,6 +43,18 @@ class Live(PanelCase):
         bpy.context.view_layer.update()
         self.live_is_done()
         self.assertAlmostEqual(volume(self.block().data), 13e4, delta=1.0)
+
+    def test_at_a_stage(self):
+        """The stage that is shown is made with the model, and stays."""
+        self.model.stage = 1
+        self.assertEqual(len(self.block().data.polygons), 0)
+        with mock.patch.object(shown_models.Recipe, "make", side_effect=AssertionError("made again")):
+            raise_by(self.items[1], 5.0)
+            self.live_is_done()
+        self.assertEqual(self.model.stage, 1)
+        self.assertEqual(len(self.block().data.polygons), 0)
+        self.assertAlmostEqual(volume(bpy.data.objects["S1 block"].data), 15e4, delta=1.0)
+        self.assertAlmostEqual(self.volumes()["S2 block"], 5e4, delta=1.0)
 
     def test_edit_mode(self):
         self.items[2].hide_set(False)

@@ -2,7 +2,7 @@
 """Settings for a model that was built in batch, so that the panel can go on with it."""
 
 from ..core import InputRefused
-from . import project_settings, scene, settings, shapes, stored_project, versions
+from . import built_models, project_settings, scene, settings, shapes, stored_project, versions
 from .origin import KEY as ORIGIN_KEY
 
 
@@ -27,6 +27,7 @@ def adopt(current):
             for surface in row.surfaces:
                 _point_to_interface(surface, objects.get(("interface", row.name, surface.name)))
         _results(current, objects)
+        group.built_stamp = built_models.new_stamp()
     _open_interfaces(current)
 
 

@@ -14,12 +14,17 @@ _models = {}  # (stamp, cells) -> realmodel.core.Model, the oldest first
 def remember(model, stamp=None):
     """Keeps a model; returns the stamp by which a scene names it. stamp: of the same model with other
     cells."""
-    stamp = stamp or secrets.token_hex(8)
+    stamp = stamp or new_stamp()
     _models.pop((stamp, model.cell_kind), None)
     while len(_models) >= _MOST_KEPT:
         _models.pop(next(iter(_models)))
     _models[stamp, model.cell_kind] = model
     return stamp
+
+
+def new_stamp():
+    """A stamp for a model that is yet to be built."""
+    return secrets.token_hex(8)
 
 
 def current(scene, cells=None):

@@ -14,7 +14,9 @@ from . import cells, modes, replacing, shown_models
 def lacks(scene, stage, mode):
     """Whether something is yet to be made to show a scene at a stage in a display mode; stage: None where the
     blocks have their shapes already. Where a window would freeze for it, it is begun."""
-    if replacing.nobody_waits() or not _is_missing(scene, stage, mode):
+    if replacing.nobody_waits() or not scene.realmodel.built_stamp:  # without which nothing is kept
+        return False
+    if not _is_missing(scene, stage, mode):
         return False
     _work.touch(scene.name)
     return True
