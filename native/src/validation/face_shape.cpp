@@ -19,6 +19,13 @@ double cross(const std::array<double, 2>& u, const std::array<double, 2>& v) {
     return u[0] * v[1] - u[1] * v[0];
 }
 
+/// Moving both ends of both edges by the allowance changes their cross product by this much.
+double cross_allowance(const std::array<double, 2>& u, const std::array<double, 2>& v,
+                       const std::array<double, 2>& allowance) {
+    return 2 * (allowance[0] * (std::abs(u[1]) + std::abs(v[1]) + allowance[1]) +
+                allowance[1] * (std::abs(u[0]) + std::abs(v[0]) + allowance[0]));
+}
+
 std::array<double, 2> minus(const std::array<double, 2>& a, const std::array<double, 2>& b) {
     return {a[0] - b[0], a[1] - b[1]};
 }
@@ -146,10 +153,10 @@ FaceShape::PlanPosition FaceShape::way_of_wall() const {
 
 bool FaceShape::is_upright(const PlanPosition& way) const {
     const Position& o = corners_.front();
-    const double allowed =
-        2 * (allowance_[0] * std::abs(way[1]) + allowance_[1] * std::abs(way[0]));
+    const PlanPosition allowance{allowance_[0], allowance_[1]};
     return std::all_of(corners_.begin(), corners_.end(), [&](const Position& p) {
-        return std::abs(cross(way, {p[0] - o[0], p[1] - o[1]})) <= allowed;
+        const PlanPosition d{p[0] - o[0], p[1] - o[1]};
+        return std::abs(cross(way, d)) <= cross_allowance(way, d, allowance);
     });
 }
 
@@ -158,12 +165,6 @@ void FaceShape::project(std::size_t first_axis, std::size_t second_axis) {
     for (std::size_t i = 0; i < corners_.size(); ++i)
         flat_[i] = {corners_[i][first_axis], corners_[i][second_axis]};
     flat_allowance_ = {allowance_[first_axis], allowance_[second_axis]};
-}
-
-// Moving both ends of both edges by the allowance changes their cross product by this much.
-double FaceShape::turn_allowance(const PlanPosition& u, const PlanPosition& v) const {
-    return 2 * (flat_allowance_[0] * (std::abs(u[1]) + std::abs(v[1]) + flat_allowance_[1]) +
-                flat_allowance_[1] * (std::abs(u[0]) + std::abs(v[0]) + flat_allowance_[0]));
 }
 
 // Rounding keeps the order of coordinates on each axis. So a convex polygon still turns one way (up
@@ -180,8 +181,8 @@ bool FaceShape::turns_one_way() const {
     for (std::size_t i = 0; i < n; ++i) {
         const PlanPosition after = minus(flat_[i + 1 < n ? i + 1 : 0], flat_[i]);
         const double turn = cross(before, after);
-        if (turn < 0 && left) left = -turn <= turn_allowance(before, after);
-        if (turn > 0 && right) right = turn <= turn_allowance(before, after);
+        if (turn < 0 && left) left = -turn <= cross_allowance(before, after, flat_allowance_);
+        if (turn > 0 && right) right = turn <= cross_allowance(before, after, flat_allowance_);
         before = after;
     }
     return left || right;
@@ -231,8 +232,8 @@ bool FaceShape::crosses_itself() const {
         const PlanPosition way = minus(at(edge + 1), at(edge));
         const PlanPosition p = minus(at(other), at(edge)), q = minus(at(other + 1), at(edge));
         const double one = cross(way, p), two = cross(way, q);
-        return (one < 0) != (two < 0) && std::abs(one) > turn_allowance(way, p) &&
-               std::abs(two) > turn_allowance(way, q);
+        return (one < 0) != (two < 0) && std::abs(one) > cross_allowance(way, p, flat_allowance_) &&
+               std::abs(two) > cross_allowance(way, q, flat_allowance_);
     };
     for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t j = i + 2; j < n; ++j) {
@@ -260,7 +261,7 @@ bool FaceShape::chains_cross() const {
         const PlanPosition way = minus(flat_[to], flat_[from]);
         const PlanPosition d = minus(flat_[vertex], flat_[from]);
         const double side = cross(way, d);
-        if (std::abs(side) <= turn_allowance(way, d)) return;
+        if (std::abs(side) <= cross_allowance(way, d, flat_allowance_)) return;
         (side > 0 ? left : right) = true;
     };
     std::size_t there = lowest, back = lowest;

@@ -50,7 +50,6 @@ private:
     bool rises_and_falls_once(std::size_t axis) const;
     bool crosses_itself() const;
     bool chains_cross() const;
-    double turn_allowance(const PlanPosition& u, const PlanPosition& v) const;
 
     const ComplexView& model_;
     std::size_t face_ = 0;
