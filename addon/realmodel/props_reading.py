@@ -10,6 +10,7 @@ def _text(key, name, description):
     return StringProperty(
         name=name,
         description=description,
+        options={"SKIP_SAVE"},  # it is kept in `reading`
         get=lambda row: reading_text.text(row, key),
         set=lambda row, given: reading_text.set_text(row, key, given),
     )
@@ -20,6 +21,7 @@ def _choice(key, items, name, description):
         name=name,
         description=description,
         items=[(item[0] or "NONE", *item[1:]) for item in items],
+        options={"SKIP_SAVE"},
         get=lambda row: reading_text.choice(row, key, items),
         set=lambda row, number: reading_text.set_choice(row, key, items, number),
     )

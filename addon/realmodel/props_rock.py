@@ -108,6 +108,7 @@ class RealModelRock(bpy.types.PropertyGroup):
         name="Triangles by",
         description="What says how large the triangles are on which surfaces are interpolated",
         items=plan_mesh.KINDS,
+        options={"SKIP_SAVE"},  # it is kept in `edge_length` and `mesh_options`
         get=plan_mesh.kind,
         set=plan_mesh.set_kind,
     )
@@ -115,6 +116,7 @@ class RealModelRock(bpy.types.PropertyGroup):
         name="Triangles",
         description="How many triangles the mesh of the region should have, within 5 %",
         min=1,
+        options={"SKIP_SAVE"},
         get=plan_mesh.triangles,
         set=plan_mesh.set_triangles,
     )

@@ -278,6 +278,19 @@ class RoundTrip(PanelCase):
         self.assertEqual([part.model for part in surface.structures], ["spherical", "gaussian"])
         self.assertTrue(surface.structures[1].use_anisotropy)
 
+    def test_copies_say_the_same(self):
+        write_files(self.folder)
+        ops.open_project(filepath=str(self.folder / "project.toml"))
+        for number in range(3):
+            self.model.active_rock = number
+            ops.rock_copy()
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        composed = project_settings.compose(self.scene, depsgraph)
+        rocks = said(project_settings.read_project(composed))["rocks"]
+        self.assertEqual(len(rocks), 6)
+        for rock, copy in zip(rocks[:3], rocks[3:], strict=True):
+            self.assertEqual({**copy, "name": rock["name"]}, rock)
+
 
 class Written(PanelCase):
     """What is set in the panel reaches the build."""

@@ -14,22 +14,26 @@ def give(scene, rock, points, add_surfaces=False):
     rock: its row. points: {surface: (P, 3) float64 in model units}. add_surfaces: adds those that are not
     there, the lowest first. Returns sentences about what had no use. Raises InputRefused.
     """
-    rows = {row.name: row for row in rock.surfaces}
-    own = {name: _own_points(scene, rows[name]) for name in points if name in rows}
+    given = {row.name for row in rock.surfaces}
+    new = [name for name in points if name not in given]
+    own = {row.name: _own_points(scene, row) for row in rock.surfaces if row.name in points}
     told = []
     with settings.filling():
-        for name in sorted(points, key=lambda name: float(points[name][:, 2].mean())):
-            if name not in rows:
-                if add_surfaces:
-                    row = rock.surfaces.add()
-                    row.name = name
-                    _keep(row, points[name])
-                else:
-                    told.append(f"the boreholes met '{name}', which is no surface of {rock.name}")
-            elif own[name] is None:
-                told.append(f"'{name}' is a mesh and takes no points from boreholes")
-            else:
-                _keep(rows[name], np.concatenate([own[name], points[name]]))
+        if add_surfaces:
+            for name in sorted(new, key=lambda name: float(points[name][:, 2].mean())):
+                row = rock.surfaces.add()
+                row.name = name
+                own[name] = np.empty((0, 3))
+        else:
+            told += [f"the boreholes met '{name}', which is no surface of {rock.name}" for name in new]
+        for row in rock.surfaces:  # Blender may have moved all of them when some were added
+            if own.get(row.name) is not None:
+                _keep(row, np.concatenate([own[row.name], points[row.name]]))
+        told += [
+            f"'{name}' is made of an object or a mesh, and takes no points from boreholes"
+            for name, array in own.items()
+            if array is None
+        ]
         rock.active_surface = len(rock.surfaces) - 1
     return told
 

@@ -36,6 +36,11 @@ _WHOLE = ("neighbours", "octants")
 _VARIOGRAM = ("range", "sill", "nugget")
 
 
+def interpolates(rock):
+    """Whether surfaces of a rock mass are interpolated on its mesh, or may yet be: there are none."""
+    return not len(rock.surfaces) or any(row.source not in READY_MESHES for row in rock.surfaces)
+
+
 def options_of(row):
     """The options of a surface's method as realmodel.core takes them; those at their default are left out."""
     known = METHODS[row.method].options

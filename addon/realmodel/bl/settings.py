@@ -111,5 +111,5 @@ def copy_row(source, target):
             if prop.type == "COLLECTION":
                 for entry in getattr(source, key):
                     copy_row(entry, getattr(target, key).add())
-            elif not prop.is_readonly:
+            elif not prop.is_readonly and not prop.is_skip_save:  # which others are kept in
                 setattr(target, key, getattr(source, key))

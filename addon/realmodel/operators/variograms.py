@@ -23,8 +23,9 @@ class REALMODEL_OT_structure_add(Reporting, bpy.types.Operator):
                 _take_single(surface)
             else:
                 last = surface.structures[-1]
+                values = last.model, 2.0 * last.range, last.sill
                 part = surface.structures.add()
-                part.model, part.range, part.sill = last.model, 2.0 * last.range, last.sill
+                part.model, part.range, part.sill = values
         live.touch(context.scene)
 
 

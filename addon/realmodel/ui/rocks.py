@@ -29,7 +29,7 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
             layout.prop(rock, "region_file", text="or file")
             if rock.region_stored and not rock.region_file:
                 hint(layout, "Its outline is kept in this file.")
-        if any(surface.source not in method_settings.READY_MESHES for surface in rock.surfaces):
+        if method_settings.interpolates(rock):
             _draw_density(layout, rock)
         base = layout.row(heading="Base")
         base.prop(rock, "use_base", text="")
@@ -64,9 +64,7 @@ class REALMODEL_PT_rock_mesh(TabPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context):
         rock = settings.active_rock(context.scene)
-        return rock is not None and any(
-            surface.source not in method_settings.READY_MESHES for surface in rock.surfaces
-        )
+        return rock is not None and method_settings.interpolates(rock)
 
     def draw_in(self, layout, context, _group):
         rock = settings.active_rock(context.scene)
