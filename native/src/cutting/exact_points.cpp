@@ -78,12 +78,24 @@ NodeId ExactPoints::add(Fractions&& p) {
 }
 
 Fractions ExactPoints::exact(NodeId p) const {
+    Fractions own;
+    return exact(p, own);
+}
+
+const Fractions& ExactPoints::exact(NodeId p, Fractions& own) const {
     auto& known = exact_[index(p)];
     if (known == nullptr && made_of_[index(p)] != nullptr)
         known = std::make_unique<Fractions>(exact_crossing(*made_of_[index(p)]));
     if (known != nullptr) return *known;
     const Position& r = rounded(p);
-    return {mpq_class(r[0]), mpq_class(r[1]), mpq_class(r[2])};
+    for (std::size_t k = 0; k < 3; ++k)
+        own[k] = r[k];
+    return own;
+}
+
+bool ExactPoints::was_made_on(NodeId p, NodeId a, NodeId b) const {
+    const auto& made = made_of_[index(p)];
+    return made != nullptr && made->of[0] == std::min(a, b) && made->of[1] == std::max(a, b);
 }
 
 /// A bound of how far the rounded differences of these points may be from the true ones.
@@ -119,8 +131,10 @@ int ExactPoints::orientation(NodeId a, NodeId b, NodeId c, NodeId d) const {
     const double error = 0x1p-48 * size + 24 * off * (largest + off) * (largest + off) + 1e-280;
     if (value > error) return 1;
     if (value < -error) return -1;
-    const Fractions e = exact(a);
-    return sgn(determinant(minus(exact(b), e), minus(exact(c), e), minus(exact(d), e)));
+    Fractions of_a, other;
+    const Fractions& e = exact(a, of_a);
+    const auto from_a = [&](NodeId node) { return minus(exact(node, other), e); };
+    return sgn(determinant(from_a(b), from_a(c), from_a(d)));
 }
 
 int ExactPoints::turn(std::size_t axis, NodeId a, NodeId b, NodeId c) const {
@@ -135,8 +149,11 @@ int ExactPoints::turn(std::size_t axis, NodeId a, NodeId b, NodeId c) const {
         0x1p-49 * (std::abs(left) + std::abs(right)) + 8 * off * (largest + off) + 1e-280;
     if (left - right > error) return 1;
     if (left - right < -error) return -1;
-    const Fractions e = exact(a);
-    return sgn(cross(minus(exact(b), e), minus(exact(c), e), axis));
+    Fractions of_a, of_b, of_c;
+    const Fractions &e = exact(a, of_a), &f = exact(b, of_b), &g = exact(c, of_c);
+    const mpq_class one = (f[k] - e[k]) * (g[l] - e[l]), other = (f[l] - e[l]) * (g[k] - e[k]);
+    const int order = cmp(one, other);
+    return (order > 0) - (order < 0);
 }
 
 int ExactPoints::compare(std::size_t axis, NodeId a, NodeId b) const {
@@ -144,7 +161,8 @@ int ExactPoints::compare(std::size_t axis, NodeId a, NodeId b) const {
     const double x = rounded(a)[axis], y = rounded(b)[axis];
     if (x != y) return x < y ? -1 : 1;  // rounding keeps the order
     if (is_double(a) && is_double(b)) return 0;
-    return cmp(exact(a)[axis], exact(b)[axis]);
+    Fractions of_a, of_b;
+    return cmp(exact(a, of_a)[axis], exact(b, of_b)[axis]);
 }
 
 int ExactPoints::compare(NodeId a, NodeId b) const {

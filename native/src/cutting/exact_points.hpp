@@ -29,6 +29,8 @@ public:
     /// The doubles nearest to the point.
     const Position& rounded(NodeId p) const { return rounded_[index(p)]; }
     Fractions exact(NodeId p) const;
+    /// Whether a point is known to lie on the line through a and b, as it was made there.
+    bool was_made_on(NodeId p, NodeId a, NodeId b) const;
 
     /// Which side of the plane of a, b, c has d: 1 where a, b, c turn counter-clockwise seen from
     /// d, -1 the other, 0 on it.
@@ -73,6 +75,8 @@ private:
     struct CrossingHash {
         std::size_t operator()(const Crossing& c) const;
     };
+    /// What is known, or else made of the doubles into `own`.
+    const Fractions& exact(NodeId p, Fractions& own) const;
     double slack(NodeId a, NodeId b, NodeId c, NodeId d) const;
     bool is_double(NodeId p) const {
         return exact_[index(p)] == nullptr && made_of_[index(p)] == nullptr;

@@ -181,16 +181,15 @@ void Overlay::exchange_segments() {
         clip_segment(segment.ends[0], segment.ends[1], of, into);
 }
 
-/// Whether a point lies between two others, both of them counted out.
-bool Overlay::on_segment(NodeId p, NodeId a, NodeId b) const {
+/// Whether a point lies between two others, both of them counted out, all of them on a triangle: in
+/// the view in which that has an area, nothing in its plane falls together.
+bool Overlay::on_segment(const Triangle& t, NodeId p, NodeId a, NodeId b) const {
     if (p == a || p == b) return false;
-    const Position &r = points_.rounded(p), &s = points_.rounded(a), &t = points_.rounded(b);
+    const Position &r = points_.rounded(p), &s = points_.rounded(a), &e = points_.rounded(b);
     for (std::size_t k = 0; k < 3; ++k) {
-        if (r[k] < std::min(s[k], t[k]) || r[k] > std::max(s[k], t[k])) return false;
+        if (r[k] < std::min(s[k], e[k]) || r[k] > std::max(s[k], e[k])) return false;
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (points_.turn(axis, a, b, p) != 0) return false;
-    }
+    if (!points_.was_made_on(p, a, b) && turn(t, a, b, p) != 0) return false;
     return points_.compare(a, p) * points_.compare(p, b) > 0;
 }
 
@@ -216,10 +215,10 @@ std::span<const NodeId> Overlay::points_between(const Triangle& t, NodeId a, Nod
 std::vector<NodeId> Overlay::nodes_on(const Triangle& t, NodeId a, NodeId b) const {
     std::vector<NodeId> found;
     for (const NodeId p : t.corners) {
-        if (on_segment(p, a, b)) found.push_back(p);
+        if (on_segment(t, p, a, b)) found.push_back(p);
     }
     for (const NodeId p : points_between(t, a, b)) {
-        if (on_segment(p, a, b) && std::find(found.begin(), found.end(), p) == found.end())
+        if (on_segment(t, p, a, b) && std::find(found.begin(), found.end(), p) == found.end())
             found.push_back(p);
     }
     const int way = points_.compare(a, b);

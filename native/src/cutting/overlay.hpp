@@ -72,7 +72,7 @@ private:
     void clip_edges(std::int32_t edges_of, std::int32_t into);
     void clip_segment(NodeId p, NodeId q, std::int32_t of, std::int32_t into);
     void exchange_segments();
-    bool on_segment(NodeId p, NodeId a, NodeId b) const;
+    bool on_segment(const Triangle& t, NodeId p, NodeId a, NodeId b) const;
     std::vector<NodeId> nodes_on(const Triangle& t, NodeId a, NodeId b) const;
     std::span<const NodeId> points_between(const Triangle& t, NodeId a, NodeId b) const;
     void spread_points(const Progress* progress);
