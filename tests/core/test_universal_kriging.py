@@ -110,7 +110,9 @@ def test_fits_that_mean_nothing_warn(method):
     trend = np.column_stack([x, own.random(60) * 100, 3 * x + own.normal(0, 1, 60)])
     assert any("beyond the extent" in w for w in interpolate(trend, NODES[:1]).warnings)
     well = np.column_stack([noise[:, :2], np.sin(noise[:, 0] / 5)])
-    assert interpolate(well, NODES[:1], method).warnings == ()
+    assert interpolate(well, [[50.0, 50.0]], method).warnings == ()
+    far = interpolate(well, NODES[:1], "universal_kriging").warnings
+    assert any("go far beyond those of its points" in w for w in far), "its drift goes on for kilometres"
 
 
 def test_semivariance_of_a_variogram():

@@ -2,7 +2,6 @@
 #include "interpolation/neighbour_search.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,11 +11,8 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr std::size_t looked_at = 64;  // times the points wanted, until octants may stay empty
-
-std::size_t octant(double dx, double dy) {
-    return (dx < 0 ? 4U : 0U) + (dy < 0 ? 2U : 0U) + (std::abs(dx) < std::abs(dy) ? 1U : 0U);
-}
+constexpr std::size_t looked_at = 64;       // times the points wanted, until octants may stay empty
+constexpr std::size_t most_in_order = 256;  // that the tree finds in their order in good time
 
 }  // namespace
 
@@ -44,6 +40,12 @@ NeighbourSearch::NeighbourSearch(const DataPoints& data, const spatial::NearestP
       squared_radius_(neighbourhood.radius > 0 ? neighbourhood.radius * neighbourhood.radius
                                                : std::numeric_limits<double>::infinity()) {
     limit_ = std::min(limit_, 8 * std::min(octant_limit_, data.local.size()));
+    const bool by_octants = octant_limit_ < limit_;
+    if (by_octants || (neighbourhood.radius > 0 && limit_ > most_in_order)) {
+        const std::size_t count = by_octants ? looked_at * limit_ + 1 : data.local.size();
+        rings_.emplace(data.local,
+                       OctantSearch::Wanted{octant_limit_, limit_, count, squared_radius_});
+    }
 }
 
 bool NeighbourSearch::find(const Place& place, std::vector<spatial::Neighbour>& found,
@@ -52,38 +54,22 @@ bool NeighbourSearch::find(const Place& place, std::vector<spatial::Neighbour>& 
         tree_.find(place, limit_, found);
         return true;
     }
-    const std::size_t most = looked_at * limit_ + 1;
-    // Octants leave out many of the nearest; otherwise only the point left out is one too many.
-    std::size_t count = (octant_limit_ < limit_ ? 2 * limit_ : limit_) + 1;
-    while (true) {
-        tree_.find(place, count, candidates_);
-        const bool complete = choose(place, left_out, found);
-        if (complete || count >= data_.local.size() || count >= most) break;
-        count *= 2;
+    if (rings_) {
+        rings_->find(place, left_out, found);
+    } else {
+        tree_.find(place, limit_ + 1, candidates_);  // the one left out is one too many
+        found.clear();
+        for (const spatial::Neighbour& candidate : candidates_) {
+            if (candidate.squared_distance > squared_radius_ || found.size() == limit_) break;
+            if (candidate.point != left_out) found.push_back(candidate);
+        }
     }
     if (!found.empty()) return true;
+    tree_.find(place, 2, candidates_);
     for (const spatial::Neighbour& candidate : candidates_) {
         if (candidate.point == left_out) continue;
         found.push_back(candidate);
         break;
-    }
-    return false;
-}
-
-/// Whether farther points could add nothing.
-bool NeighbourSearch::choose(const Place& place, std::int32_t left_out,
-                             std::vector<spatial::Neighbour>& found) {
-    found.clear();
-    std::array<std::size_t, 8> taken{};
-    for (const spatial::Neighbour& candidate : candidates_) {
-        if (candidate.point == left_out) continue;
-        if (candidate.squared_distance > squared_radius_) return true;
-        const Place& there = data_.local[static_cast<std::size_t>(candidate.point)];
-        std::size_t& here = taken[octant(there[0] - place[0], there[1] - place[1])];
-        if (here == octant_limit_) continue;
-        ++here;
-        found.push_back(candidate);
-        if (found.size() == limit_) return true;
     }
     return false;
 }

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "interpolation/data_points.hpp"
+#include "interpolation/octant_search.hpp"
 #include "realmodel/spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
@@ -38,14 +40,13 @@ public:
               std::int32_t left_out = nobody);
 
 private:
-    bool choose(const Place& place, std::int32_t left_out, std::vector<spatial::Neighbour>& found);
-
     const DataPoints& data_;
     const spatial::NearestPoints& tree_;
     bool plain_;
     std::size_t limit_, octant_limit_;
     double squared_radius_;
     std::vector<spatial::Neighbour> candidates_;
+    std::optional<OctantSearch> rings_;  // where the tree would be slow
 };
 
 }  // namespace realmodel::interpolation

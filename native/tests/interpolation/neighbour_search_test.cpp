@@ -80,6 +80,44 @@ TEST(NeighbourSearch, AsLookingAtEveryPoint) {
     }
 }
 
+TEST(NeighbourSearch, OctantsAlongMeasuredLinesAndFarOutside) {
+    Points points;
+    for (int i = 0; i < 600; ++i)  // six lines, points close together along them; ties
+        points.push_back({4e5 + 200.0 * (i % 6), 5e6 + 2.0 * (i / 6), 0});
+    const DataPoints data = prepare_points(points);
+    for (const Place& place : {Place{4e5 + 301.37, 5e6 + 77.91},
+                               {4e5 + 200.13, 5e6 + 90.77},
+                               {4e5 - 700.29, 5e6 + 3.11},
+                               {4e5 + 5000.7, 5e6 - 9000.3},
+                               {4e5 + 1e7, 5e6 + 0.1}}) {
+        for (const Neighbourhood& n :
+             {Neighbourhood{16, 2, 0}, {8, 1, 0}, {32, 4, 500}, {0, 3, 0}}) {
+            const Place local = data.to_local(place);
+            const auto want = expected(data, local, n, NeighbourSearch::nobody);
+            const Searched got = search(data, local, n);
+            if (want.empty()) {
+                EXPECT_FALSE(got.within);
+            } else {
+                EXPECT_EQ(got.points, want) << place[0] << " " << place[1] << " " << n.octants;
+            }
+        }
+    }
+}
+
+TEST(NeighbourSearch, OctantsOfPointsInOneLineOrAtOnePlace) {
+    Points line;
+    for (int i = 0; i < 300; ++i)
+        line.push_back({0, 3.0 * i, 0});
+    for (const Points& points : {line, Points{{7, 7, 1}}}) {
+        const DataPoints data = prepare_points(points);
+        for (const Place& place : {Place{1.3, 100.7}, {-50.1, 900.4}, {3.2, -4.9}}) {
+            const Place local = data.to_local(place);
+            EXPECT_EQ(search(data, local, {8, 1, 0}).points,
+                      expected(data, local, {8, 1, 0}, NeighbourSearch::nobody));
+        }
+    }
+}
+
 TEST(NeighbourSearch, NoPointWithinTheRadiusGivesTheNearest) {
     const DataPoints data = prepare_points(Points{{0, 0, 1}, {10, 0, 2}});
     const Searched far = search(data, {6, 0}, {16, 0, 3});
