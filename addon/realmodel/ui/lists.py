@@ -60,17 +60,23 @@ class REALMODEL_UL_library(bpy.types.UIList):
         number.label(text=str(item.id))
 
 
+def result_columns(layout):
+    """The columns of the table of blocks: name, volume, share, parts. The usual sidebar has room for them."""
+    split = layout.split(factor=0.33)
+    name, rest = split.row(), split.split(factor=0.62)
+    volume, figures = rest.row(), rest.split(factor=0.55)
+    return name, volume, figures.row(), figures.row()
+
+
 class REALMODEL_UL_results(YoungestOnTop, bpy.types.UIList):
     """Blocks, the youngest on top."""
 
     def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_name):
-        split = layout.split(factor=0.42)
-        split.label(text=item.name, icon="MESH_CUBE" if item.object else "X")
-        right = split.split(factor=0.55)
-        right.label(text=units.volume_text(context.scene, item) if item.volume else "none left")
-        figures = right.split(factor=0.6)
-        figures.label(text=f"{item.share:.1f} %")
-        figures.label(text=str(item.components) if item.components else "")
+        name, volume, share, parts = result_columns(layout)
+        name.label(text=item.name)
+        volume.label(text=units.volume_text(context.scene, item) if item.volume else "none left")
+        share.label(text=f"{item.share:.0f}" if item.share >= 1.0 or not item.volume else "< 1")
+        parts.label(text=str(item.components) if item.components else "")
 
 
 CLASSES = (REALMODEL_UL_rocks, REALMODEL_UL_surfaces, REALMODEL_UL_library, REALMODEL_UL_results)

@@ -4,6 +4,7 @@
 import bpy
 
 from ..bl import units
+from .lists import result_columns
 from .panel import TabPanel, hint
 
 
@@ -16,13 +17,8 @@ class REALMODEL_PT_results(TabPanel, bpy.types.Panel):
         if not len(group.results):
             hint(layout, "Build the model first; its blocks and their volumes are listed here.")
             return
-        heading = layout.split(factor=0.42)
-        heading.label(text="Block")
-        right = heading.split(factor=0.55)
-        right.label(text="Volume")
-        figures = right.split(factor=0.6)
-        figures.label(text="Share")
-        figures.label(text="Parts")
+        for column, heading in zip(result_columns(layout), ("Block", "Volume", "%", "Parts"), strict=True):
+            column.label(text=heading)
         layout.template_list("REALMODEL_UL_results", "", group, "results", group, "active_result", rows=4)
         layout.label(text=f"Together {units.total_volume_text(context.scene)}")
         layout.operator("realmodel.copy_table", icon="COPYDOWN")

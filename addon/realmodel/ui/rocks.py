@@ -28,7 +28,7 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
         if rock.region is None:
             layout.prop(rock, "region_file", text="or file")
             if rock.region_stored and not rock.region_file:
-                hint(layout, "Its outline is kept in this file.")
+                hint(layout, "Its outline is kept in the .blend.")
         if method_settings.interpolates(rock):
             _draw_density(layout, rock)
         base = layout.row(heading="Base")

@@ -27,11 +27,11 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
         if group.color_by == "UNCERTAINTY":
             text = "Dark blue: certain; yellow: the largest deviation of each surface, told in Surfaces."
             hint(layout, text if group.display == "SURFACES" else "Choose Surfaces to see it.")
-        layout.prop(group, "stage", slider=True)
         last = settings.last_stage(context.scene)
+        layout.prop(group, "stage", text=f"Stage of {last}")
         rows = [surface for _, surface in settings.surface_rows(context.scene)]
         if group.stage < last and len(group.rocks) == 1 and group.stage < len(rows):
-            hint(layout, f"of {last}: just after {rows[group.stage].name}")
+            hint(layout, f"just after {rows[group.stage].name}")
         if preparing.is_working(context.scene):
             hint(layout, "being made ...")
         column = layout.column(align=True)
