@@ -122,8 +122,20 @@ void PlanGeometry::freeze_vertices() {
     space_table_ = {};
     constexpr int kNone = 100000;
     plan_exponent_ = height_exponent_ = kNone;
+    PlanReach& r = reach_;
     for (const Point& p : points_) {
         plan_exponent_ = finest_exponent(p.y, finest_exponent(p.x, plan_exponent_));
+        r.low_x = std::min(r.low_x, p.x);
+        r.low_y = std::min(r.low_y, p.y);
+        r.high_x = std::max(r.high_x, p.x);
+        r.high_y = std::max(r.high_y, p.y);
+    }
+    if (!points_.empty()) {
+        r.width = (r.high_x - r.low_x) * (1 + kEpsilon);
+        r.height = (r.high_y - r.low_y) * (1 + kEpsilon);
+        const double largest = std::max(
+            {std::abs(r.low_x), std::abs(r.high_x), std::abs(r.low_y), std::abs(r.high_y)});
+        r.point_error = largest * 0x1p-53 + 1e-300;
     }
     for (const SpaceVertex& s : space_)
         height_exponent_ = finest_exponent(s.z, height_exponent_);

@@ -11,31 +11,14 @@ namespace {
 
 constexpr double kEpsilon = 0x1p-52;
 
-/// The value of a line at a place, and the least that it must differ from 0 by for its sign to be
-/// certain; as Scope::filtered_side.
-struct Filtered {
-    double value, error;
-};
-
-[[gnu::always_inline]] inline Filtered filtered(double a, double b, double c, double error_a,
-                                                double error_b, double error_c, double dx,
-                                                double dy, double point_error) {
-    const double u = a * dx, v = b * dy;
-    const double reach_x = point_error + kEpsilon * std::abs(dx);
-    const double reach_y = point_error + kEpsilon * std::abs(dy);
-    return {u + v + c, (std::abs(a) + error_a) * reach_x + (std::abs(b) + error_b) * reach_y +
-                           error_a * std::abs(dx) + error_b * std::abs(dy) + error_c +
-                           4 * kEpsilon * (std::abs(u) + std::abs(v) + std::abs(c)) + 1e-290};
-}
-
 /// The signs that are certain, and which are not.
 struct CertainSides {
     Sides sides;
     std::uint32_t open = 0;
 
-    [[gnu::always_inline]] inline void add(std::size_t i, const Filtered& at) {
-        const std::uint32_t left = at.value > at.error ? 1U : 0U;
-        const std::uint32_t right = at.value < -at.error ? 1U : 0U;
+    [[gnu::always_inline]] inline void add(std::size_t i, double value, double bound) {
+        const std::uint32_t left = value > bound ? 1U : 0U;
+        const std::uint32_t right = value < -bound ? 1U : 0U;
         sides.left |= left << i;
         sides.right |= right << i;
         open |= (1U ^ (left | right)) << i;
@@ -56,14 +39,26 @@ Sides completed(const CertainSides& known, std::size_t size, const Ask& ask) {
     return sides;
 }
 
+/// One bound of the error for all points within reach: that of Scope::filtered_side at the farthest
+/// of them. Most signs are certain far beyond it, and it costs nothing for each point.
+double bound_within(const LineFilter& f, const PlanReach& reach) {
+    const double a = std::abs(f.a), b = std::abs(f.b);
+    const double error_x = reach.point_error + kEpsilon * reach.width;
+    const double error_y = reach.point_error + kEpsilon * reach.height;
+    return ((a + f.error_a) * error_x + (b + f.error_b) * error_y + f.error_a * reach.width +
+            f.error_b * reach.height + f.error_c +
+            4 * kEpsilon * (a * reach.width + b * reach.height + std::abs(f.c)) + 1e-290) *
+           (1 + 0x1p-40);
+}
+
 }  // namespace
 
 void Scope::add_to(PointRow& row, PointId id) const {
     const Point& p = point(id);
+    row.within = row.within && shared_.reach().has(p.x, p.y);
     row.point[row.size] = id;
     row.x[row.size] = p.x;
     row.y[row.size] = p.y;
-    row.error[row.size] = p.error();
     ++row.size;
 }
 
@@ -75,9 +70,7 @@ void Scope::add_to(LineRow& row, DirectedLine directed_line) const {
     row.a[i] = sign * f.a;
     row.b[i] = sign * f.b;
     row.c[i] = sign * f.c;
-    row.error_a[i] = f.error_a;
-    row.error_b[i] = f.error_b;
-    row.error_c[i] = f.error_c;
+    row.bound[i] = bound_within(f, shared_.reach());
     row.x0[i] = f.x0;
     row.y0[i] = f.y0;
     ++row.size;
@@ -87,11 +80,10 @@ Sides Scope::sides(DirectedLine directed_line, const PointRow& points) {
     const LineFilter f = filter(line_of(directed_line));
     const double sign = is_reversed(directed_line) ? -1.0 : 1.0;
     const double a = sign * f.a, b = sign * f.b, c = sign * f.c;
+    const double bound = points.within ? bound_within(f, shared_.reach()) : HUGE_VAL;
     CertainSides known;
-    for (std::size_t i = 0; i < points.size; ++i) {
-        known.add(i, filtered(a, b, c, f.error_a, f.error_b, f.error_c, points.x[i] - f.x0,
-                              points.y[i] - f.y0, points.error[i]));
-    }
+    for (std::size_t i = 0; i < points.size; ++i)
+        known.add(i, a * (points.x[i] - f.x0) + b * (points.y[i] - f.y0) + c, bound);
     decisions_ += points.size;
     return completed(known, points.size,
                      [&](std::size_t i) { return side(directed_line, points.point[i]); });
@@ -99,12 +91,12 @@ Sides Scope::sides(DirectedLine directed_line, const PointRow& points) {
 
 Sides Scope::sides(const LineRow& lines, PointId id) {
     const Point& p = point(id);
-    const double error = p.error();
+    const bool within = shared_.reach().has(p.x, p.y);
     CertainSides known;
     for (std::size_t i = 0; i < lines.size; ++i) {
         known.add(i,
-                  filtered(lines.a[i], lines.b[i], lines.c[i], lines.error_a[i], lines.error_b[i],
-                           lines.error_c[i], p.x - lines.x0[i], p.y - lines.y0[i], error));
+                  lines.a[i] * (p.x - lines.x0[i]) + lines.b[i] * (p.y - lines.y0[i]) + lines.c[i],
+                  within ? lines.bound[i] : HUGE_VAL);
     }
     decisions_ += lines.size;
     return completed(known, lines.size, [&](std::size_t i) { return side(lines.line[i], id); });

@@ -16,7 +16,8 @@ bool bit(std::uint32_t bits, std::size_t i) {
 void FacetClipper::begin(PolygonView facet) {
     facet_ = facet;
     ++number_;
-    corners_.size = lines_.size = 0;
+    corners_.clear();
+    lines_.clear();
     if (facet.size() > exact::kRowLength) return;
     for (const Corner& corner : facet) {
         scope_.add_to(corners_, corner.point);

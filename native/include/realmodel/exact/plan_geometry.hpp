@@ -158,6 +158,16 @@ struct Plane {
     }
 };
 
+/// The box of all plan vertices, and a bound on the errors of points in it.
+struct PlanReach {
+    double low_x = HUGE_VAL, low_y = HUGE_VAL, high_x = -HUGE_VAL, high_y = -HUGE_VAL;
+    double width = 0, height = 0, point_error = 0;
+
+    bool has(double x, double y) const {
+        return x >= low_x && x <= high_x && y >= low_y && y <= high_y;
+    }
+};
+
 /// The exact geometry that a whole stack is decided on: input vertices, planes, and the lines and
 /// points that follow from them. Filling it is for one thread; reading it for any number.
 class PlanGeometry {
@@ -241,6 +251,8 @@ public:
     LineFilter edge_filter(VertexId from, VertexId to) const;
     LineFilter trace_filter(PlaneId first, PlaneId second) const;
 
+    const PlanReach& reach() const { return reach_; }
+
     /// Binary exponents that make every x and y, and every z, a whole number.
     int plan_exponent() const { return plan_exponent_; }
     int height_exponent() const { return height_exponent_; }
@@ -266,6 +278,7 @@ private:
     KeyTable vertex_table_, space_table_, line_table_, point_table_;
     bool names_forgotten_ = false;
     std::size_t vertex_count_ = 0;
+    PlanReach reach_;
     int plan_exponent_ = 0, height_exponent_ = 0;
     mutable std::atomic<std::uint64_t> exact_decisions_{0}, all_decisions_{0};
 };

@@ -18,18 +18,27 @@ struct Sides {
     std::uint32_t left = 0, right = 0;
 };
 
-/// Points by their numbers, with their positions and bounds on the errors of these.
+/// Points by their numbers, with their positions.
 struct PointRow {
     std::size_t size = 0;
+    bool within = true;  ///< the reach of the input vertices
     std::array<std::int32_t, kRowLength> point;
-    std::array<double, kRowLength> x, y, error;
+    std::array<double, kRowLength> x, y;
+
+    void clear() {
+        size = 0;
+        within = true;
+    }
 };
 
-/// Directed lines, with their filters.
+/// Directed lines: the value of each at (x, y) is a (x - x0) + b (y - y0) + c, and no further from
+/// the true one than its bound where the point is within the reach of the input vertices.
 struct LineRow {
     std::size_t size = 0;
     std::array<std::int32_t, kRowLength> line;
-    std::array<double, kRowLength> a, b, c, error_a, error_b, error_c, x0, y0;
+    std::array<double, kRowLength> a, b, c, bound, x0, y0;
+
+    void clear() { size = 0; }
 };
 
 }  // namespace realmodel::exact
