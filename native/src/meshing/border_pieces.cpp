@@ -115,10 +115,6 @@ std::vector<double> cuts(const PlanPoint& a, const PlanPoint& b, double begin, d
     return shares;
 }
 
-}  // namespace
-
-namespace {
-
 /// Cuts edges at the shares of their length that `shares_of(edge)` gives.
 template <class SharesOf>
 BorderPieces cut_edges(const RegionGraph& graph, const Check& check, SharesOf&& shares_of) {

@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <string>
 
-#include "meshing/constrained_delaunay.hpp"
 #include "meshing/plan_predicates.hpp"
 #include "meshing/ring_graph.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/base/progress.hpp"
 
 namespace realmodel::meshing {
 
@@ -37,12 +35,7 @@ public:
 
     /// Refuses rings of one polygon that share a stretch, the first such one.
     void require_apart() const {
-        if (same_ == none) return;
-        const CoveredEdge& edge = edges_[same_];
-        const PlanPoint &a = graph_.points[edge.from], &b = graph_.points[edge.to];
-        const PlanPoint middle{a[0] + 0.5 * (b[0] - a[0]), a[1] + 0.5 * (b[1] - a[1])};
-        refuse_edges(graph_, edges_[same_ - 1].segment, edge.segment, "outline_overlaps",
-                     "runs along", middle);
+        if (same_ != none) refuse_overlap(graph_, edges_[same_ - 1], edges_[same_]);
     }
 
     /// Calls visit(ring) for each ring along the edge between two points.
@@ -199,22 +192,9 @@ std::vector<Ring> checked_region(std::span<const RegionRing> rings, const Progre
     given.reserve(rings.size());
     for (const RegionRing& ring : rings)
         given.push_back(ring.corners);
-    const RingGraph graph = ring_graph(given);
-    const Check check = [progress](double) {
-        if (progress != nullptr) progress->check();
-    };
-    Cdt cdt;
-    const std::vector<Cdt::Vertex_handle> vertices = insert_points(cdt, graph.points, check);
-    try {
-        insert_segments(cdt, vertices, graph.segments, check);
-    } catch (const InputError& error) {
-        if (error.kind != "crossing") throw;
-        refuse_edges(graph, error.items[0], error.items[1], "outline_crosses", "crosses",
-                     {(*error.place)[0], (*error.place)[1]});
-    }
-    const RingsOfEdges edges(graph, rings, covered_edges(cdt, vertices, graph.segments));
+    const auto [graph, covered, mesh] = constrained_rings(given, progress);
+    const RingsOfEdges edges(graph, rings, covered);
     edges.require_apart();
-    const ConstrainedTriangulation mesh = numbered_triangles(cdt);
     const Nesting nesting = nesting_of(mesh, edges, rings.size());
     require_holes_inside(rings, nesting);
     if (std::none_of(nesting.inside.begin(), nesting.inside.end(), [](bool in) { return in; })) {

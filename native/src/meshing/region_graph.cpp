@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "meshing/constrained_delaunay.hpp"
 #include "meshing/plan_predicates.hpp"
+#include "meshing/ring_graph.hpp"
 #include "meshing/segment_crossings.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
@@ -45,16 +45,8 @@ public:
 
     /// Numbers of many places at once.
     std::vector<std::int32_t> number(std::span<const PlanPoint> places) {
-        std::vector<std::int32_t> order(places.size()), numbers(places.size());
-        std::iota(order.begin(), order.end(), 0);
-        std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-            return places[a] != places[b] ? places[a] < places[b] : a < b;
-        });
-        std::vector<std::int32_t> first(places.size());
-        for (std::size_t i = 0; i < order.size(); ++i) {
-            const bool same = i > 0 && places[order[i]] == places[order[i - 1]];
-            first[order[i]] = same ? first[order[i - 1]] : order[i];
-        }
+        const std::vector<std::int32_t> first = first_equal(places);
+        std::vector<std::int32_t> numbers(places.size());
         const std::size_t before = known_.size();
         for (std::size_t i = 0; i < places.size(); ++i) {
             if (first[i] != static_cast<std::int32_t>(i)) {
@@ -87,39 +79,6 @@ void require_finite(const PlanPoint& p, std::size_t line, std::size_t corner, co
                          (line == static_cast<std::size_t>(-1) ? "" : " " + std::to_string(line)) +
                          " is not a finite number",
                      -1, {static_cast<std::int64_t>(line), static_cast<std::int64_t>(corner)});
-}
-
-/// Which triangles lie inside an odd number of rings, where only some constrained sides are theirs.
-std::vector<bool> inside_rings(const ConstrainedTriangulation& mesh,
-                               const std::vector<Segment>& ring_edges) {
-    const auto is_ring = [&](std::int32_t a, std::int32_t b) {
-        const auto [low, high] = std::minmax(a, b);
-        return std::binary_search(ring_edges.begin(), ring_edges.end(), Segment{low, high});
-    };
-    constexpr signed char unknown = -1;
-    std::vector<signed char> parity(mesh.triangles.size(), unknown);
-    std::vector<std::int32_t> open;
-    for (std::size_t start = 0; start < mesh.triangles.size(); ++start) {
-        for (int i = 0; i < 3 && parity[start] == unknown; ++i) {
-            if (mesh.neighbours[start][i] >= 0) continue;
-            const auto& t = mesh.triangles[start];
-            parity[start] = is_ring(t[i], t[(i + 1) % 3]) ? 1 : 0;
-            open.push_back(static_cast<std::int32_t>(start));
-        }
-        while (!open.empty()) {
-            const std::int32_t from = open.back();
-            open.pop_back();
-            for (int i = 0; i < 3; ++i) {
-                const std::int32_t to = mesh.neighbours[from][i];
-                if (to < 0 || parity[to] != unknown) continue;
-                const auto& t = mesh.triangles[from];
-                const bool across = mesh.constrained[from][i] && is_ring(t[i], t[(i + 1) % 3]);
-                parity[to] = static_cast<signed char>(across ? 1 - parity[from] : parity[from]);
-                open.push_back(to);
-            }
-        }
-    }
-    return {parity.begin(), parity.end()};
 }
 
 void sort_out_repeats(std::vector<Segment>& segments) {
@@ -218,7 +177,11 @@ RegionGraph region_graph(std::span<const Ring> rings, const Constraints& constra
     ring_edges = chain(ring_edges);
     inner_edges = chain(inner_edges);
     const ConstrainedTriangulation mesh = numbered_triangles(cdt);
-    const std::vector<bool> inside = inside_rings(mesh, ring_edges);
+    const std::vector<bool> inside = inside_rings(mesh, [&](std::int32_t t, int i) {
+        const auto [low, high] = std::minmax(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]);
+        return mesh.constrained[t][i] &&
+               std::binary_search(ring_edges.begin(), ring_edges.end(), Segment{low, high});
+    });
     take_region(graph, mesh, inside);
 
     std::vector<bool> within(graph.points.size(), false), ended(graph.points.size(), false);

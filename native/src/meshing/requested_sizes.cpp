@@ -127,6 +127,7 @@ std::vector<double> lattice_lengths(const MeshRequest& request, const SizeField&
 
 double triangles_in(const RegionGraph& graph, const SizeField& size, const Check& check) {
     constexpr double equilateral = std::numbers::sqrt3 / 4;  // the area at side 1
+    constexpr double next_to_nothing = 0.25 * equilateral;
     if (size.is_uniform()) return graph.area / (equilateral * size.largest() * size.largest());
     Ticker tick(check);
     double triangles = 0;
@@ -139,8 +140,13 @@ double triangles_in(const RegionGraph& graph, const SizeField& size, const Check
                      ca = squared_distance(c, a);
         const double wanted = size.at({(a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3});
         const double longest = std::max({ab, bc, ca});
-        if (longest <= 9 * wanted * wanted) {
-            triangles += 0.5 * twice_area(a, b, c) / (equilateral * wanted * wanted);
+        const double area = 0.5 * twice_area(a, b, c);
+        // Slivers, of which combs have many, are not cut as long as they hold next to nothing: all
+        // of one lies within two thirds of its longest side from its centre.
+        const double finest =
+            std::max(size.smallest(), wanted - gradation * 2 / 3 * std::sqrt(longest));
+        if (longest <= 9 * wanted * wanted || area <= next_to_nothing * finest * finest) {
+            triangles += area / (equilateral * wanted * wanted);
         } else if (longest == ab) {
             const PlanPoint m = middle(a, b);
             open.push_back({a, m, c});

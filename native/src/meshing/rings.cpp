@@ -8,6 +8,7 @@
 
 #include "meshing/constrained_delaunay.hpp"
 #include "meshing/plan_predicates.hpp"
+#include "meshing/point_insertion.hpp"
 #include "meshing/ring_graph.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
@@ -65,24 +66,14 @@ void require_area(const std::vector<Corner>& corners, std::int64_t ring_number) 
 /// Makes corners at one place one point, numbered in order of appearance.
 std::vector<std::int32_t> number_places(const std::vector<PlanPoint>& corners,
                                         std::vector<PlanPoint>& points) {
-    std::vector<std::int32_t> order(corners.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-        return corners[a] != corners[b] ? corners[a] < corners[b] : a < b;
-    });
-    std::vector<std::int32_t> first_at(corners.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const bool same = i > 0 && corners[order[i]] == corners[order[i - 1]];
-        first_at[order[i]] = same ? first_at[order[i - 1]] : order[i];
-    }
+    const std::vector<std::int32_t> first = first_equal(corners);
     std::vector<std::int32_t> number(corners.size());
     for (std::size_t i = 0; i < corners.size(); ++i) {
-        const auto first = static_cast<std::size_t>(first_at[i]);
-        if (first == i) {
+        if (first[i] == static_cast<std::int32_t>(i)) {
             number[i] = static_cast<std::int32_t>(points.size());
             points.push_back(corners[i]);
         } else {
-            number[i] = number[first];
+            number[i] = number[first[i]];
         }
     }
     return number;
@@ -90,47 +81,28 @@ std::vector<std::int32_t> number_places(const std::vector<PlanPoint>& corners,
 
 void refuse_overlaps(const RingGraph& graph, const std::vector<CoveredEdge>& edges) {
     const CoveredEdge* worst = nullptr;
-    const CoveredEdge* partner = nullptr;
     for (std::size_t i = 1; i < edges.size(); ++i) {
         if (edges[i].from != edges[i - 1].from || edges[i].to != edges[i - 1].to) continue;
-        if (worst != nullptr && worst->segment <= edges[i].segment) continue;
-        worst = &edges[i];
-        partner = &edges[i - 1];
+        if (worst == nullptr || edges[i].segment < worst->segment) worst = &edges[i];
     }
-    if (worst == nullptr) return;
-    const PlanPoint& a = graph.points[worst->from];
-    const PlanPoint& b = graph.points[worst->to];
-    const PlanPoint middle{a[0] + 0.5 * (b[0] - a[0]), a[1] + 0.5 * (b[1] - a[1])};
-    refuse_edges(graph, partner->segment, worst->segment, "outline_overlaps", "runs along", middle);
+    if (worst != nullptr) refuse_overlap(graph, *(worst - 1), *worst);
 }
 
-/// Which triangles lie inside an odd number of rings: crossing an outline changes it.
-std::vector<bool> inside_rings(const ConstrainedTriangulation& mesh) {
-    constexpr signed char unknown = -1;
-    std::vector<signed char> parity(mesh.triangles.size(), unknown);
-    std::vector<std::int32_t> open;
-    const auto reach = [&](std::int32_t triangle, signed char value) {
-        if (parity[triangle] != unknown) return;
-        parity[triangle] = value;
-        open.push_back(triangle);
+/// Refuses two edges of the graph, given by their segments.
+[[noreturn]] void refuse_edges(const RingGraph& graph, std::int64_t first, std::int64_t second,
+                               const std::string& kind, const std::string& verb,
+                               const PlanPoint& place) {
+    const auto [first_ring, first_corner] = graph.origin[first];
+    const auto [second_ring, second_corner] = graph.origin[second];
+    const auto edge = [](std::int64_t ring, std::int64_t corner) {
+        return "the edge after corner " + std::to_string(corner) + " of outline " +
+               std::to_string(ring);
     };
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (int i = 0; i < 3; ++i) {
-            if (mesh.neighbours[t][i] >= 0) continue;
-            reach(static_cast<std::int32_t>(t), mesh.constrained[t][i] ? 1 : 0);
-        }
-        while (!open.empty()) {
-            const std::int32_t from = open.back();
-            open.pop_back();
-            for (int i = 0; i < 3; ++i) {
-                if (mesh.neighbours[from][i] < 0) continue;
-                const bool across = mesh.constrained[from][i];
-                reach(mesh.neighbours[from][i],
-                      static_cast<signed char>(across ? 1 - parity[from] : parity[from]));
-            }
-        }
-    }
-    return {parity.begin(), parity.end()};
+    throw InputError(kind,
+                     edge(first_ring, first_corner) + " " + verb + " " +
+                         edge(second_ring, second_corner) + " at " + text_of(place),
+                     -1, {first_ring, first_corner, second_ring, second_corner},
+                     std::array{place[0], place[1], 0.0});
 }
 
 }  // namespace
@@ -160,23 +132,27 @@ RingGraph ring_graph(std::span<const Ring> rings) {
     return graph;
 }
 
-void refuse_edges(const RingGraph& graph, std::int64_t first, std::int64_t second,
-                  const std::string& kind, const std::string& verb, const PlanPoint& place) {
-    const auto [first_ring, first_corner] = graph.origin[first];
-    const auto [second_ring, second_corner] = graph.origin[second];
-    const auto edge = [](std::int64_t ring, std::int64_t corner) {
-        return "the edge after corner " + std::to_string(corner) + " of outline " +
-               std::to_string(ring);
-    };
-    throw InputError(kind,
-                     edge(first_ring, first_corner) + " " + verb + " " +
-                         edge(second_ring, second_corner) + " at " + text_of(place),
-                     -1, {first_ring, first_corner, second_ring, second_corner},
-                     std::array{place[0], place[1], 0.0});
+std::vector<std::int32_t> first_equal(std::span<const PlanPoint> places) {
+    std::vector<std::int32_t> order(places.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+        return places[a] != places[b] ? places[a] < places[b] : a < b;
+    });
+    std::vector<std::int32_t> first(places.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const bool same = i > 0 && places[order[i]] == places[order[i - 1]];
+        first[order[i]] = same ? first[order[i - 1]] : order[i];
+    }
+    return first;
 }
 
-RingTriangulation triangulate_region(std::span<const Ring> rings, const Progress* progress) {
-    RingTriangulation out{ring_graph(rings), {}, {}};
+void refuse_overlap(const RingGraph& graph, const CoveredEdge& first, const CoveredEdge& second) {
+    refuse_edges(graph, first.segment, second.segment, "outline_overlaps", "runs along",
+                 middle(graph.points[first.from], graph.points[first.to]));
+}
+
+ConstrainedRings constrained_rings(std::span<const Ring> rings, const Progress* progress) {
+    ConstrainedRings out{ring_graph(rings), {}, {}};
     const RingGraph& graph = out.graph;
     const Check check = [progress](double) {
         if (progress != nullptr) progress->check();
@@ -190,9 +166,18 @@ RingTriangulation triangulate_region(std::span<const Ring> rings, const Progress
         refuse_edges(graph, error.items[0], error.items[1], "outline_crosses", "crosses",
                      {(*error.place)[0], (*error.place)[1]});
     }
-    refuse_overlaps(graph, covered_edges(cdt, vertices, graph.segments));
+    out.edges = covered_edges(cdt, vertices, graph.segments);
     out.triangulation = numbered_triangles(cdt);
-    out.inside = inside_rings(out.triangulation);
+    return out;
+}
+
+RingTriangulation triangulate_region(std::span<const Ring> rings, const Progress* progress) {
+    ConstrainedRings all = constrained_rings(rings, progress);
+    refuse_overlaps(all.graph, all.edges);
+    RingTriangulation out{std::move(all.graph), std::move(all.triangulation), {}};
+    const auto& constrained = out.triangulation.constrained;
+    out.inside =
+        inside_rings(out.triangulation, [&](std::int32_t t, int i) { return constrained[t][i]; });
     return out;
 }
 

@@ -161,7 +161,6 @@ private:
 
     int strain(std::int32_t vertex, int more) const {
         const int off = triangles_[vertex] + more - wanted_[vertex];
-        // A missing triangle on a line makes a flat one.
         return off * off;
     }
 
@@ -237,7 +236,7 @@ private:
                     (!is_fixed_[d] && triangles_[d] <= 4)) {
                     continue;
                 }
-                if (!can_collapse(v, u)) continue;
+                if (!can_collapse_to(u)) continue;
                 best = side;
                 best_gain = gain;
             }
@@ -245,8 +244,9 @@ private:
         }
     }
 
-    /// Whether no triangle turns over or gets too long or thin if v goes to where u is.
-    bool can_collapse(std::int32_t v, std::int32_t u) {
+    /// Whether no triangle turns over or gets too long or thin if the vertex that `sides_` leave
+    /// goes to where u is.
+    bool can_collapse_to(std::int32_t u) const {
         const PlanPoint& to = mesh_.points[u];
         const double longest = longest_after_collapse * size_.at(to);
         for (const Side side : sides_) {
@@ -257,7 +257,6 @@ private:
             if (mean_ratio(p, q, to) < least_ratio_of_flips) return false;
             if (squared_distance(p, to) > longest * longest) return false;
         }
-        (void)v;
         return true;
     }
 

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "meshing/flat_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "plan_mesh_checks.hpp"
+
+namespace realmodel::meshing {
+namespace {
+
+/// Two triangles that fill the unit square; its border is fixed.
+FlatMesh square() {
+    FlatMesh mesh;
+    mesh.points = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    mesh.add_triangle({0, 1, 2});
+    mesh.add_triangle({0, 2, 3});
+    mesh.join({0, 2}, {1, 0});
+    for (const Side side : {Side(0, 0), Side(0, 1), Side(1, 1), Side(1, 2)})
+        mesh.fix(side);
+    return mesh;
+}
+
+/// Neighbours name one another, share their ends, and agree on what is fixed; returns the area.
+double checked_area(const FlatMesh& mesh) {
+    PlanarMesh plain{mesh.points, {}};
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.corners.size()); ++t) {
+        if (mesh.is_dead(t)) continue;
+        plain.triangles.push_back(mesh.corners[t]);
+        EXPECT_GT(side_of_line(mesh.points[mesh.corners[t][0]], mesh.points[mesh.corners[t][1]],
+                               mesh.points[mesh.corners[t][2]]),
+                  0);
+        for (int i = 0; i < 3; ++i) {
+            const Side side(t, i), other = mesh.behind(side);
+            if (other.is_outside()) continue;
+            EXPECT_EQ(mesh.behind(other), side);
+            EXPECT_EQ(mesh.from(side), mesh.to(other));
+            EXPECT_EQ(mesh.to(side), mesh.from(other));
+            EXPECT_EQ(mesh.is_fixed(side), mesh.is_fixed(other));
+        }
+    }
+    return area_of(plain);
+}
+
+std::int32_t triangle_around(const FlatMesh& mesh, const PlanPoint& p) {
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.corners.size()); ++t) {
+        const auto [a, b, c] = mesh.corners[t];
+        if (side_of_line(mesh.points[a], mesh.points[b], p) > 0 &&
+            side_of_line(mesh.points[b], mesh.points[c], p) > 0 &&
+            side_of_line(mesh.points[c], mesh.points[a], p) > 0) {
+            return t;
+        }
+    }
+    return -1;
+}
+
+bool is_delaunay(const FlatMesh& mesh) {
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.corners.size()); ++t)
+        for (int i = 0; i < 3; ++i)
+            if (!mesh.is_dead(t) && mesh.should_flip({t, i})) return false;
+    return true;
+}
+
+FlatMesh filled(int count) {
+    FlatMesh mesh = square();
+    std::mt19937 random(8);
+    while (static_cast<int>(mesh.points.size()) < count) {
+        const PlanPoint p{static_cast<double>(random()) / 4294967296.0,
+                          static_cast<double>(random()) / 4294967296.0};
+        const std::int32_t t = triangle_around(mesh, p);
+        if (t >= 0) mesh.insert_inside(t, p);
+    }
+    return mesh;
+}
+
+TEST(FlatMesh, FlippingTwiceTurnsADiagonalRound) {
+    FlatMesh mesh = square();
+    const Side other = mesh.flip({0, 2});
+    EXPECT_EQ(std::minmax(mesh.from(other), mesh.to(other)), std::minmax(1, 3));
+    EXPECT_DOUBLE_EQ(checked_area(mesh), 1);
+    EXPECT_TRUE(mesh.is_fixed(other.next()));
+    const Side again = mesh.flip(other);
+    EXPECT_EQ(std::minmax(mesh.from(again), mesh.to(again)), std::minmax(0, 2));
+    EXPECT_DOUBLE_EQ(checked_area(mesh), 1);
+}
+
+TEST(FlatMesh, VerticesAreAddedAndTheMeshStaysDelaunay) {
+    const FlatMesh mesh = filled(200);
+    EXPECT_NEAR(checked_area(mesh), 1, 1e-12);
+    EXPECT_TRUE(is_delaunay(mesh));
+    EXPECT_EQ(mesh.corners.size(), 2 * 200U - 4 - 2);
+}
+
+TEST(FlatMesh, VerticesOnSidesKeepThemFixed) {
+    FlatMesh mesh = square();
+    const Side leaving = mesh.insert_on({0, 0}, {0.5, 0});
+    EXPECT_EQ(mesh.from(leaving), 4);
+    int on_border = 0;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.corners.size()); ++t)
+        for (int i = 0; i < 3; ++i)
+            on_border += mesh.is_border({t, i}) && mesh.is_fixed({t, i});
+    EXPECT_EQ(on_border, 5);
+    const std::int32_t t = triangle_around(mesh, {0.6, 0.55});
+    for (int i = 0; i < 3; ++i) {
+        if (mesh.is_border({t, i})) continue;
+        const PlanPoint &a = mesh.point_from({t, i}), &b = mesh.point_to({t, i});
+        mesh.insert_on({t, i}, {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])});
+        break;
+    }
+    EXPECT_NEAR(checked_area(mesh), 1, 1e-12);
+    EXPECT_TRUE(is_delaunay(mesh));
+}
+
+TEST(FlatMesh, CollapsedVerticesLeaveAMeshThatCanBeCompacted) {
+    FlatMesh mesh = filled(60);
+    int collapsed = 0;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.corners.size()); ++t) {
+        for (int i = 0; i < 3 && !mesh.is_dead(t); ++i) {
+            const Side side(t, i);
+            const std::int32_t v = mesh.from(side);
+            if (v < 4 || mesh.is_fixed(side)) continue;
+            // Nothing turns over where the star of the vertex sees the other end.
+            bool fits = true;
+            Side around = side;
+            do {
+                const std::int32_t a = mesh.to(around), b = mesh.apex(around), u = mesh.to(side);
+                fits = fits && (a == u || b == u ||
+                                side_of_line(mesh.points[a], mesh.points[b], mesh.points[u]) > 0);
+                around = mesh.turn_left(around);
+            } while (around != side);
+            if (!fits) continue;
+            mesh.collapse(side);
+            ++collapsed;
+            ASSERT_NEAR(checked_area(mesh), 1, 1e-12);
+            break;
+        }
+    }
+    EXPECT_GT(collapsed, 10);
+    mesh.compact(0);
+    EXPECT_EQ(mesh.corners.size(), 2 * (60U - collapsed) - 4 - 2);
+    EXPECT_NEAR(checked_area(mesh), 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace realmodel::meshing

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a MeshRequest asks for beside one edge length: meshers, local lengths, numbers, constraints.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "plan_mesh_checks.hpp"
+#include "realmodel/meshing/region_mesh.hpp"
+
+namespace realmodel::meshing {
+namespace {
+
+const std::vector<Ring> with_hole{rectangle(0, 0, 100, 100), rectangle(40, 30, 60, 50)};
+
+MeshRequest by(Mesher mesher, double edge_length = 0) {
+    MeshRequest request;
+    request.mesher = mesher;
+    request.edge_length = edge_length;
+    return request;
+}
+
+double length_of(const PlanarMesh& mesh, const std::array<std::int32_t, 3>& t, int i) {
+    const PlanPoint &a = mesh.vertices[t[i]], &b = mesh.vertices[t[(i + 1) % 3]];
+    return std::hypot(b[0] - a[0], b[1] - a[1]);
+}
+
+double mean_ratio(const PlanarMesh& mesh) {
+    double sum = 0;
+    for (const auto& t : mesh.triangles) {
+        double squares = 0;
+        for (int i = 0; i < 3; ++i)
+            squares += length_of(mesh, t, i) * length_of(mesh, t, i);
+        const PlanPoint &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]],
+                        &c = mesh.vertices[t[2]];
+        const double twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        sum += 2 * std::numbers::sqrt3 * twice / squares;
+    }
+    return sum / static_cast<double>(mesh.triangles.size());
+}
+
+/// Mean edge of the triangles whose centre lies within a distance of a place.
+double mean_edge_near(const PlanarMesh& mesh, const PlanPoint& place, double distance) {
+    double sum = 0;
+    int count = 0;
+    for (const auto& t : mesh.triangles) {
+        PlanPoint centre{};
+        for (const std::int32_t v : t)
+            for (int k = 0; k < 2; ++k)
+                centre[k] += mesh.vertices[v][k] / 3;
+        if (std::hypot(centre[0] - place[0], centre[1] - place[1]) > distance) continue;
+        for (int i = 0; i < 3; ++i)
+            sum += length_of(mesh, t, i);
+        count += 3;
+    }
+    return sum / count;
+}
+
+PlanarMesh made(const MeshRequest& request, const std::vector<Ring>& rings = with_hole) {
+    PlanarMesh mesh = mesh_region(rings, request);
+    expect_valid(mesh);
+    EXPECT_NEAR(area_of(mesh), area_of(triangulate_rings(rings)), 1e-8);
+    return mesh;
+}
+
+bool has_vertex(const PlanarMesh& mesh, const PlanPoint& p) {
+    return std::find(mesh.vertices.begin(), mesh.vertices.end(), p) != mesh.vertices.end();
+}
+
+TEST(Meshers, FrontalIsBetterThanDelaunay) {
+    const std::vector<Ring> rings{{{0, 0}, {100, 7}, {120, 60}, {60, 110}, {-10, 70}}};
+    MeshRequest request;
+    request.edge_length = 3;
+    const double plain = mean_ratio(made(request, rings));
+    request.mesher = Mesher::frontal;
+    const double better = mean_ratio(made(request, rings));
+    EXPECT_GT(better, plain);
+    EXPECT_GT(better, 0.98);
+}
+
+TEST(Meshers, FrontalGradesToDetailOfTheBorder) {
+    Ring coast{{100, 60}, {0, 60}};
+    for (int i = 0; i < 100; ++i)
+        coast.push_back({1.0 * i, i % 2 == 0 ? 0 : 0.8});
+    MeshRequest request = by(Mesher::frontal, 8);
+    EXPECT_GT(mean_ratio(made(request, {coast})), 0.93);
+}
+
+TEST(Meshers, CombsOfManyTeethAreFollowed) {
+    Ring comb{{0, -1}};
+    for (int i = 0; i < 2000; ++i) {
+        const double x = i;
+        comb.insert(comb.end(), {{x, 0}, {x + 0.25, 2}, {x + 0.5, 0}});
+    }
+    comb.insert(comb.end(), {{2000, 0}, {2000, -1}});
+    for (const Mesher mesher : {Mesher::delaunay, Mesher::frontal}) {
+        const PlanarMesh mesh = made(by(mesher, 3), {comb});
+        EXPECT_LT(mesh.triangles.size(), 60'000U);
+    }
+}
+
+TEST(Meshers, TenThousandHoles) {
+    std::vector<Ring> rings{rectangle(0, 0, 1000, 1000)};
+    for (int i = 0; i < 100; ++i)
+        for (int k = 0; k < 100; ++k)
+            rings.push_back(rectangle(10 * i + 3, 10 * k + 3, 10 * i + 8, 10 * k + 7));
+    for (const Mesher mesher : {Mesher::delaunay, Mesher::frontal, Mesher::grid}) {
+        const PlanarMesh mesh = made(by(mesher, 8), rings);
+        EXPECT_GT(mesh.triangles.size(), 40'000U);
+        EXPECT_LT(mesh.triangles.size(), 400'000U);
+    }
+}
+
+TEST(Meshers, AGridHasItsNodesAndNothingElseInside) {
+    MeshRequest request = by(Mesher::grid, 5);
+    const PlanarMesh mesh = made(request);
+    EXPECT_EQ(mesh.vertices.size(), 21U * 21 - 3 * 3);
+    for (const PlanPoint& p : mesh.vertices)
+        for (int k = 0; k < 2; ++k)
+            EXPECT_NEAR(p[k] / 5, std::round(p[k] / 5), 1e-12);
+    EXPECT_EQ(mesh.triangles.size(), 2U * (20 * 20 - 4 * 4));
+}
+
+TEST(Meshers, AGridHasOneLength) {
+    MeshRequest request = by(Mesher::grid, 5);
+    request.sizes = {{{}, 1, 1}};
+    EXPECT_EQ(refusal([&] { mesh_region(with_hole, request); }).kind, "size");
+}
+
+TEST(Meshers, LocalLengthsAtPlacesLinesAndTheOutline) {
+    for (const Mesher mesher : {Mesher::delaunay, Mesher::frontal}) {
+        MeshRequest request = by(mesher, 10);
+        request.sizes = {{{{80, 80}}, 0.5, 3}, {{{10, 70}, {40, 90}}, 1, 2}};
+        const PlanarMesh mesh = made(request);
+        EXPECT_NEAR(mean_edge_near(mesh, {80, 80}, 2), 0.5, 0.1);
+        EXPECT_NEAR(mean_edge_near(mesh, {25, 80}, 1), 1, 0.2);
+        EXPECT_GT(mean_edge_near(mesh, {80, 15}, 15), 6);
+        request.sizes = {{{}, 1, 0}};
+        EXPECT_NEAR(mean_edge_near(made(request), {50, 0}, 1), 1, 0.3);
+        EXPECT_GT(mean_edge_near(made(request), {20, 50}, 5), 3);
+    }
+}
+
+TEST(Meshers, RefusesLengthsThatAreNone) {
+    MeshRequest request = by(Mesher::delaunay, 10);
+    for (const LocalLength& bad : {LocalLength{{}, 0, 1}, LocalLength{{}, 1, -1},
+                                   LocalLength{{}, 10, 0}, LocalLength{{{0, NAN}}, 1, 0}}) {
+        request.sizes = {{{}, 1, 1}, bad};
+        const InputError error = refusal([&] { mesh_region(with_hole, request); });
+        EXPECT_EQ(error.kind, "size");
+        EXPECT_EQ(error.items, std::vector<std::int64_t>{1});
+    }
+}
+
+TEST(Meshers, DensityOfPointsGivesTheLength) {
+    MeshRequest request;
+    for (int i = 0; i < 30; ++i)
+        for (int k = 0; k < 30; ++k)
+            request.density.push_back({50.0 + i, 60.0 + k});
+    request.density.insert(request.density.end(), {{10, 10}, {90, 10}, {10, 90}, {30, 50}});
+    const PlanarMesh mesh = made(request);
+    EXPECT_NEAR(mean_edge_near(mesh, {65, 75}, 5), 0.5, 0.12);
+    EXPECT_GT(mean_edge_near(mesh, {15, 15}, 5), 2);
+    request.density = {{1, 1}, {1, 1}};
+    EXPECT_EQ(refusal([&] { mesh_region(with_hole, request); }).kind, "density");
+}
+
+TEST(Meshers, NumbersOfTriangles) {
+    for (const Mesher mesher : {Mesher::delaunay, Mesher::frontal, Mesher::grid}) {
+        MeshRequest request = by(mesher);
+        request.triangles = 3000;
+        EXPECT_NEAR(static_cast<double>(made(request).triangles.size()), 3000, 150);
+    }
+    MeshRequest few;
+    few.triangles = 3;  // with eight corners there are eight at least
+    EXPECT_EQ(refusal([&] { mesh_region(with_hole, few); }).kind, "triangles");
+}
+
+TEST(Meshers, ConstraintsAreInTheMesh) {
+    for (const Mesher mesher : {Mesher::delaunay, Mesher::frontal, Mesher::grid}) {
+        MeshRequest request = by(mesher, 6);
+        request.constraints.lines = {{{-10, 75}, {110, 75}}, {{20, 60}, {20, 90}}};
+        request.constraints.points = {{81.25, 20.5}, {10, 75}};
+        const PlanarMesh mesh = made(request);
+        for (const PlanPoint& p : {PlanPoint{81.25, 20.5}, {10, 75}, {20, 75}, {0, 75}, {100, 75}})
+            EXPECT_TRUE(has_vertex(mesh, p)) << p[0] << ", " << p[1];
+        for (const auto& t : mesh.triangles) {
+            double lowest = 100, highest = 0;
+            for (const std::int32_t v : t) {
+                lowest = std::min(lowest, mesh.vertices[v][1]);
+                highest = std::max(highest, mesh.vertices[v][1]);
+            }
+            EXPECT_FALSE(lowest < 75 - 1e-9 && highest > 75 + 1e-9) << "a triangle lies across";
+        }
+    }
+    MeshRequest request = by(Mesher::delaunay, 6);
+    request.constraints.points = {{1, 1}, {50, 40}};  // in the hole
+    const InputError error = refusal([&] { mesh_region(with_hole, request); });
+    EXPECT_EQ(error.kind, "constraint_outside");
+    EXPECT_EQ(error.items, std::vector<std::int64_t>{1});
+}
+
+TEST(Meshers, SameBytesEveryTime) {
+    for (const Mesher mesher : {Mesher::frontal, Mesher::grid}) {
+        const MeshRequest request = by(mesher, 2.5);
+        const PlanarMesh first = mesh_region(with_hole, request),
+                         second = mesh_region(with_hole, request);
+        EXPECT_EQ(first.vertices, second.vertices);
+        EXPECT_EQ(first.triangles, second.triangles);
+    }
+}
+
+TEST(Meshers, EstimatesAreNearWhatIsMade) {
+    for (const Mesher mesher : {Mesher::delaunay, Mesher::frontal}) {
+        MeshRequest request = by(mesher, 8);
+        request.sizes = {{{{80, 80}}, 0.4, 5}};
+        const MeshEstimate told = estimate_region_mesh(with_hole, request);
+        const auto count = static_cast<double>(made(request).triangles.size());
+        EXPECT_NEAR(told.triangles, count, 0.2 * count);
+        EXPECT_GT(told.bytes, 60 * count);
+    }
+}
+
+}  // namespace
+}  // namespace realmodel::meshing
