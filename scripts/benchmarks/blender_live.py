@@ -54,7 +54,6 @@ def edits(item, rounds):
     """One vertex is raised, and Blender told; the hand rests; again."""
     seconds = []
     for _ in range(rounds + 1):
-        live.measured.clear()
         item.data.vertices[len(item.data.vertices) // 2].co.z += 0.5
         item.data.update()
         bpy.context.view_layer.update()
