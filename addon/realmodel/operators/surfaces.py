@@ -33,7 +33,10 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
     empty: BoolProperty(
         name="Empty", description="Choose the source afterwards", options={"SKIP_SAVE", "HIDDEN"}
     )
-    filter_glob: StringProperty(default="*.off;*.csv;*.xyz;*.txt;*.dat", options={"HIDDEN"})
+    filter_glob: StringProperty(
+        default="*.off;*.csv;*.xyz;*.txt;*.dat;*.tsv;*.asc;*.tif;*.tiff;*.geojson;*.json;*.gpkg;*.shp;*.wkt",
+        options={"HIDDEN"},
+    )
     filename_ext = ""
 
     def act(self, context):
