@@ -30,8 +30,7 @@ void check_neighbourhood(const Neighbourhood& neighbourhood) {
 
 NeighbourSearch::NeighbourSearch(const DataPoints& data, const spatial::NearestPoints& tree,
                                  const Neighbourhood& neighbourhood)
-    : data_(data),
-      tree_(tree),
+    : tree_(tree),
       plain_(neighbourhood.plain()),
       limit_(neighbourhood.neighbours > 0 ? static_cast<std::size_t>(neighbourhood.neighbours)
                                           : data.local.size()),

@@ -40,7 +40,6 @@ public:
               std::int32_t left_out = nobody);
 
 private:
-    const DataPoints& data_;
     const spatial::NearestPoints& tree_;
     bool plain_;
     std::size_t limit_, octant_limit_;
