@@ -119,6 +119,18 @@ class Surfaces(PanelCase):
         ops.surface_add(name="first")  # makes the rock mass that is missing
         self.assertEqual(self.names(), ["first"])
 
+    def test_shapes_whose_heights_are_chosen_later(self):
+        """Contour lines know their height by an attribute, which the panel offers once they are there."""
+        lines = self.folder / "lines.geojson"
+        line = {"type": "LineString", "coordinates": [[0, 0], [50, 80], [100, 100]]}
+        feature = {"type": "Feature", "properties": {"ELEV": 4.0}, "geometry": line}
+        lines.write_text(json.dumps({"type": "FeatureCollection", "features": [feature]}))
+        ops.surface_add(filepath=str(lines))
+        self.assertEqual(self.names(), ["lines"])
+        lines.write_text('{"type": "FeatureCollection", "features": [')
+        self.refused(ops.surface_add, "lines.geojson", filepath=str(lines))
+        self.assertEqual(self.names(), ["lines"])
+
     def test_every_source_gives_the_same(self):
         """The same surface from a points file, a points object, a mesh file, a mesh object and its
         modifier."""

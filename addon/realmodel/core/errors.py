@@ -72,6 +72,10 @@ class InputRefused(RealModelError):
         )
 
 
+class HeightsMissing(InputRefused):
+    """Points are there, but no heights where they were looked for; another choice may find them."""
+
+
 class OutputFailed(RealModelError):
     """A result could not be written: no folder, no right to write, disk full."""
 

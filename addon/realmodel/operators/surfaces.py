@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The list of surfaces of the active rock mass."""
 
+import contextlib
 from pathlib import Path
 
 import bpy
@@ -9,6 +10,7 @@ from bpy_extras.io_utils import ImportHelper
 
 from ..bl import built_scene, live, project_settings, settings
 from ..core import InputRefused, PointFile
+from ..core.errors import HeightsMissing
 from ..core.readers import read_off, read_point_file
 from .reporting import Reporting, needed_surface
 from .rocks import add_rock
@@ -72,13 +74,15 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
 
 
 def _check_file(path: Path):
-    """Raises InputRefused for a file that cannot be read as what its ending says."""
+    """Raises InputRefused for a file that cannot be read as what its ending says, however it is looked at:
+    what holds the heights of shapes may be chosen once the surface is there."""
     if not path.is_file():
         raise InputRefused(f"there is no file {path}", advice="check the path")
     if path.suffix.lower() in _MESH_ENDINGS:
         read_off(path)
     else:
-        read_point_file(PointFile(path))
+        with contextlib.suppress(HeightsMissing):
+            read_point_file(PointFile(path))
 
 
 class REALMODEL_OT_surface_remove(Reporting, bpy.types.Operator):

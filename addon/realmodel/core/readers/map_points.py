@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InputRefused
+from ..errors import HeightsMissing, InputRefused
 from ..map_layer import MapLayer
 from ..point_file import PointFile
 from .map_input import read_shapes
@@ -33,7 +33,7 @@ def read_map_points(given: PointFile, step: Step = no_step) -> tuple[np.ndarray,
         if given.height is not None:
             what = f"attribute '{given.height}' holds no height"
         advice = 'say which attribute holds it: height = "ELEVATION"'
-        raise InputRefused(what, file=file, advice=advice if given.height is None else None)
+        raise HeightsMissing(what, file=file, advice=advice if given.height is None else None)
     left_out = int(len(points) - known.sum())
     warnings = [f"{file}: {left_out} points without a value are left out"] if left_out else []
     return points[known], warnings
