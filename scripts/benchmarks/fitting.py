@@ -131,12 +131,12 @@ def pace(cases: list[dict]) -> list[list[float]]:
 
 
 def scale(cases: list[dict]) -> dict[str, float]:
-    """How much longer a whole build takes than its sample: `pace` times a power of the ratio of corners,
-    such that no case is missed by more than it has to be."""
+    """How much longer a whole build takes than its sample: `pace` times a power of the ratio of corners, as
+    many as the sample tells, such that no case is missed by more than it has to be."""
     sampled = [case for case in cases if not case["sample"]["whole"]]
     if not sampled:
         return {"pace": 1.0, "growth": 1.0}
-    work = np.log([case["corners"] / case["sample"]["built"] for case in sampled])
+    work = np.log([case["sample"]["corners"] / case["sample"]["built"] for case in sampled])
     slower = np.log([case["seconds"] / case["sample"]["seconds"] for case in sampled])
     # a busy machine makes the slope of few cases a matter of luck: it is near 1, and never below
     growth = float(np.clip(np.polyfit(work, slower, 1)[0], 1.0, _STEEPEST)) if len(sampled) > 2 else 1.0
