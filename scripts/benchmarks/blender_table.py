@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import os
 import statistics
 from collections.abc import Callable
 
@@ -46,7 +47,7 @@ def _upload(command: list, memory: float) -> dict:
     try:
         out, _, _ = run_apart(command, 300.0, int(memory))
     except FileNotFoundError as error:
-        raise Skipped(f"{error.filename} is not there") from error
+        raise Skipped(f"{os.path.relpath(error.filename, ROOT)} is not there") from error
     told = [line for line in out.splitlines() if line.startswith("{")]
     if not told:
         raise Skipped("Blender did not tell its times")
