@@ -12,8 +12,6 @@ namespace realmodel::exact {
 
 namespace {
 
-constexpr double kEpsilon = 0x1p-52;
-
 /// Instead of a shared id.
 constexpr std::int32_t kKept = -1, kAsked = -2;
 
@@ -30,15 +28,8 @@ VertexId origin_of(const Scope& scope, PointId id) {
 // Not decided by floating point: returns 2.
 int Scope::filtered_side(const LineFilter& line, const Point& point) const {
     const double dx = point.x - line.x0, dy = point.y - line.y0;
-    const double u = line.a * dx, v = line.b * dy;
-    const double value = u + v + line.c;
-    const double point_error = point.error();
-    const double reach_x = point_error + kEpsilon * std::abs(dx);
-    const double reach_y = point_error + kEpsilon * std::abs(dy);
-    const double error = (std::abs(line.a) + line.error_a) * reach_x +
-                         (std::abs(line.b) + line.error_b) * reach_y + line.error_a * std::abs(dx) +
-                         line.error_b * std::abs(dy) + line.error_c +
-                         4 * kEpsilon * (std::abs(u) + std::abs(v) + std::abs(line.c)) + 1e-290;
+    const double value = line.a * dx + line.b * dy + line.c;
+    const double error = line.error_at(dx, dy, point.error());
     if (value > error) return 1;
     if (value < -error) return -1;
     return 2;

@@ -9,8 +9,6 @@ namespace realmodel::exact {
 
 namespace {
 
-constexpr double kEpsilon = 0x1p-52;
-
 /// The signs that are certain, and which are not.
 struct CertainSides {
     Sides sides;
@@ -42,13 +40,7 @@ Sides completed(const CertainSides& known, std::size_t size, const Ask& ask) {
 /// One bound of the error for all points within reach: that of Scope::filtered_side at the farthest
 /// of them. Most signs are certain far beyond it, and it costs nothing for each point.
 double bound_within(const LineFilter& f, const PlanReach& reach) {
-    const double a = std::abs(f.a), b = std::abs(f.b);
-    const double error_x = reach.point_error + kEpsilon * reach.width;
-    const double error_y = reach.point_error + kEpsilon * reach.height;
-    return ((a + f.error_a) * error_x + (b + f.error_b) * error_y + f.error_a * reach.width +
-            f.error_b * reach.height + f.error_c +
-            4 * kEpsilon * (a * reach.width + b * reach.height + std::abs(f.c)) + 1e-290) *
-           (1 + 0x1p-40);
+    return f.error_at(reach.width, reach.height, reach.point_error) * (1 + 0x1p-40);
 }
 
 }  // namespace

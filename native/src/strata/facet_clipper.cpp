@@ -126,7 +126,7 @@ PolygonView FacetClipper::cut_by_lines(PolygonView window) {
         for (const Left& at : left_) {
             int side;
             if (at.of_facet < 0) {
-                side = scope_.side(line, at.corner.point);
+                side = scope_.side(line, at.point);
             } else {
                 const auto i = static_cast<std::size_t>(at.of_facet);
                 side = bit(known.left, i) ? 1 : (bit(known.right, i) ? -1 : 0);
@@ -138,24 +138,10 @@ PolygonView FacetClipper::cut_by_lines(PolygonView window) {
         if (!any_left) return {};
         if (!any_right) continue;
         next_left_.clear();
-        for (std::size_t i = 0; i < left_.size(); ++i) {
-            const int here = sides_[i], there = sides_[i + 1 < left_.size() ? i + 1 : 0];
-            const Left& at = left_[i];
-            if (here >= 0) {
-                const DirectedLine leaving = here == 0 && there < 0 ? line : at.corner.line;
-                next_left_.push_back({{at.corner.point, leaving}, at.of_facet});
-            }
-            if (here * there < 0) {
-                const PointId crossing =
-                    scope_.crossing(exact::line_of(at.corner.line), exact::line_of(line));
-                next_left_.push_back({{crossing, here > 0 ? line : at.corner.line}, -1});
-            }
-        }
+        keep_left(scope_, left_, line, sides_, next_left_);
         std::swap(left_, next_left_);
     }
-    result_.clear();
-    for (const Left& at : left_)
-        result_.push_back(at.corner);
+    result_.assign(left_.begin(), left_.end());
     return result_;
 }
 

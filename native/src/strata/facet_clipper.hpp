@@ -60,9 +60,8 @@ private:
     std::array<exact::Sides, exact::kRowLength> window_corners_;
     Polygon result_;
     /// A corner of what lines have left of the facet.
-    struct Left {
-        Corner corner;
-        std::int32_t of_facet;  ///< which corner of the facet it is, -1: a new one
+    struct Left : Corner {
+        std::int32_t of_facet = -1;  ///< which corner of the facet it is, -1: a new one
     };
     std::vector<Left> left_, next_left_;
     std::vector<int> sides_;

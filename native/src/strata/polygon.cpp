@@ -21,16 +21,7 @@ void clip(Scope& scope, PolygonView polygon, DirectedLine line, std::vector<int>
         result.assign(polygon.begin(), polygon.end());
         return;
     }
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const int here = sides[i], there = sides[i + 1 < polygon.size() ? i + 1 : 0];
-        const Corner& corner = polygon[i];
-        if (here >= 0)
-            result.push_back({corner.point, here == 0 && there < 0 ? line : corner.line});
-        if (here * there < 0) {
-            const PointId at = scope.crossing(exact::line_of(corner.line), exact::line_of(line));
-            result.push_back({at, here > 0 ? line : corner.line});
-        }
-    }
+    keep_left(scope, polygon, line, sides, result);
 }
 
 PolygonView Clipper::intersect(PolygonView subject, PolygonView window) {

@@ -46,6 +46,28 @@ struct PolygonPool {
 void clip(Scope& scope, PolygonView polygon, DirectedLine line, std::vector<int>& sides,
           Polygon& result);
 
+/// Appends what lies to the left of a line of a convex polygon's corners (a Corner, or what has one
+/// as its base), whose sides are known; crossings with the line are new corners.
+template <class Corners, class Result>
+void keep_left(Scope& scope, const Corners& corners, DirectedLine line,
+               const std::vector<int>& sides, Result& result) {
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const int here = sides[i], there = sides[i + 1 < corners.size() ? i + 1 : 0];
+        const auto& corner = corners[i];
+        if (here >= 0) {
+            result.push_back(corner);
+            if (here == 0 && there < 0) result.back().line = line;
+        }
+        if (here * there < 0) {
+            const PointId at = scope.crossing(exact::line_of(corner.line), exact::line_of(line));
+            const DirectedLine leaving = here > 0 ? line : corner.line;
+            auto& made = result.emplace_back();
+            made.point = at;
+            made.line = leaving;
+        }
+    }
+}
+
 /// Clips by every edge of a convex polygon in turn.
 class Clipper {
 public:

@@ -63,6 +63,18 @@ struct LineFilter {
     double a = 0, b = 0, c = 0;
     double error_a = 0, error_b = 0, error_c = 0;
     double x0 = 0, y0 = 0;
+
+    /// Bound on the error of the value at a point that is up to (dx, dy) from (x0, y0), and whose
+    /// coordinates err by up to point_error.
+    double error_at(double dx, double dy, double point_error) const {
+        constexpr double kEpsilon = 0x1p-52;
+        const double way_x = std::abs(dx), way_y = std::abs(dy);
+        const double slope_x = std::abs(a), slope_y = std::abs(b);
+        return (slope_x + error_a) * (point_error + kEpsilon * way_x) +
+               (slope_y + error_b) * (point_error + kEpsilon * way_y) + error_a * way_x +
+               error_b * way_y + error_c +
+               4 * kEpsilon * (slope_x * way_x + slope_y * way_y + std::abs(c)) + 1e-290;
+    }
 };
 
 /// A plan point: an input vertex, or the crossing of two lines.
