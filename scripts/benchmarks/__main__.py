@@ -34,59 +34,46 @@ def main() -> int:
     )
     machine = page.machine()
     print(machine, flush=True)
-    lines: dict[str, list[str]] = {}
+    tables: dict[str, list[list[str]]] = {}
     parts = given.only or PARTS
     if "stacks" in parts:
         rows = StackRows(limits, lambda row: print(" | ".join(_cells(row)), flush=True)).all()
-        lines["stacks"] = [machine, "", *page.table(_HEADINGS, [_cells(row) for row in rows], 2)]
+        tables["stacks"] = [page.table(_HEADINGS, [_cells(row) for row in rows], 2)]
     if "fit" in parts:
         rows = fitting.fit_and_check(given.quick, memory, _say, write=given.fit or not given.quick)
-        lines["estimates"] = [machine, "", *page.table(fitting.HEADINGS, rows, 2)]
+        tables["estimates"] = [page.table(fitting.HEADINGS, rows, 2)]
     if "watch" in parts:
         progress, cancels = watching_table.measure(limits, _say)
-        lines["progress"] = [
-            machine,
-            "",
-            *page.table(watching_table.PROGRESS, progress, 2),
-            "",
-            *page.table(watching_table.CANCELS, cancels, 2),
+        tables["progress"] = [
+            page.table(watching_table.PROGRESS, progress, 2),
+            page.table(watching_table.CANCELS, cancels, 2),
         ]
     if "blender" in parts:
         rows = blender_table.measure(given.quick, memory, _say)
         live, still = window_table.measure(given.quick, memory, _say)
         frames = display_table.measure(given.quick, memory, _say)
-        lines["blender"] = [
-            machine,
-            "",
-            *page.table(blender_table.UPLOADS, rows),
-            "",
-            *page.table(window_table.LIVE, live),
-            "",
-            *page.table(window_table.STILL, still),
-            "",
-            *page.table(display_table.FRAMES, frames),
+        tables["blender"] = [
+            page.table(blender_table.UPLOADS, rows),
+            page.table(window_table.LIVE, live),
+            page.table(window_table.STILL, still),
+            page.table(display_table.FRAMES, frames),
         ]
     if "heights" in parts:
         speed, accuracy = heights_table.measure(given.quick, memory, _say)
-        lines["heights"] = [
-            machine,
-            "",
-            *page.table(heights_table.SPEED, speed, 3),
-            "",
-            *page.table(heights_table.ACCURACY, accuracy),
+        tables["heights"] = [
+            page.table(heights_table.SPEED, speed, 3),
+            page.table(heights_table.ACCURACY, accuracy),
         ]
     if "meshing" in parts:
         meshes, polygons = meshing_table.measure(given.quick, memory, _say)
-        lines["meshing"] = [
-            machine,
-            "",
-            *page.table(meshing_table.MESHES, meshes, 2),
-            "",
-            *page.table(meshing_table.POLYGONS, polygons),
+        tables["meshing"] = [
+            page.table(meshing_table.MESHES, meshes, 2),
+            page.table(meshing_table.POLYGONS, polygons),
         ]
     if given.write:
-        for name, part in lines.items():
-            page.write_part(given.write, f"benchmark.sh {name}", part)
+        for name, of_part in tables.items():
+            lines = [machine, *(line for table in of_part for line in ("", *table))]
+            page.write_part(given.write, f"benchmark.sh {name}", lines)
         print(f"written into {given.write}", flush=True)
     return 0
 

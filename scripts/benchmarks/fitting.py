@@ -17,7 +17,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .made_stacks import StackSpec
-from .process import ROOT, Skipped, alone, resident
+from .process import ROOT, Skipped, alone, peak_resident, resident
 
 TARGET = ROOT / "addon" / "realmodel" / "core" / "measured_costs.py"
 CELLS = ("columns", "blocks")
@@ -43,8 +43,6 @@ _BOUND = 1.5  # how far memory by triangles alone lies above the dearest case
 
 def build_measured(spec: dict, cells: str, threads: int) -> dict:
     """One build: seconds, bytes taken, what came out, and what the native part counted when."""
-    import resource
-
     from realmodel.core import build
     from realmodel.core.expected_costs import expected_shares
 
@@ -66,7 +64,7 @@ def build_measured(spec: dict, cells: str, threads: int) -> dict:
     seconds = time.perf_counter() - began
     return {
         "seconds": seconds,
-        "bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before,
+        "bytes": peak_resident() - before,
         "triangles": len(model.surface_triangles),
         "vertices": len(model.vertices),
         "faces": len(model.face_cells),
