@@ -29,10 +29,15 @@ def quads(size):
 
 
 def ours(coordinates, offsets, corners, surfaces):
-    """As the blocks come in: flat shaded, with edges, and each face knows its surface."""
+    """As the blocks come in: flat shaded, with edges, and each face knows its surface. The edges, which are
+    found in the thread that builds, count here too."""
     from realmodel.bl import meshes
+    from realmodel.core.polygon_mesh import PolygonMesh
+    from realmodel.core.work import native_module
 
-    return meshes.new_mesh("ours", coordinates, offsets, corners, surfaces)
+    edges, corner_edges = native_module().polygon_edges(offsets, corners, len(coordinates))
+    shape = PolygonMesh(coordinates, offsets, corners, surfaces, edges, corner_edges)
+    return meshes.new_mesh("ours", shape)
 
 
 def bare_arrays(coordinates, offsets, corners, _surfaces):

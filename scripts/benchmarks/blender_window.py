@@ -4,8 +4,8 @@
     xvfb-run -a -s "-screen 0 1280x800x24" blender --factory-startup -P blender_window.py -- QUADS
 
 QUADS: along a side of each of the 4 surfaces of the model. Prints one line of JSON: by what goes on (seconds
-without a sign of life of the main thread, at most; seconds in which Blender was given the meshes; seconds
-that drawing the window once takes; polygons).
+without a sign of life of the main thread, at most; the most of them without those of drawing; seconds in
+which Blender was given the meshes; seconds that drawing the window once takes; polygons).
 """
 
 import json
@@ -29,39 +29,48 @@ PATIENCE = 300.0
 
 
 class Watch:
-    """Longest time between two calls of a timer of Blender, and what was spent in giving meshes to it."""
+    """Longest time between two calls of a timer of Blender, with and without what drawing takes of it, and
+    what was spent in giving meshes to it.
+
+    Blender's loop calls timers, does what is to be done, draws, and begins anew; so what follows the
+    beginning of drawing, until the next call, is drawing and bringing the picture onto the screen.
+    """
 
     def __init__(self):
         from realmodel.bl import build_job, display
 
-        self.longest = self.upload = 0.0
-        self._last = None
         build_job.BuildJob._put = self._timed(build_job.BuildJob._put)
         display._show = self._timed(display._show)
+        bpy.types.SpaceView3D.draw_handler_add(self._drawing, (), "WINDOW", "PRE_VIEW")
+        self.begin()
 
     def _timed(self, function):
-        """What is done within counts as upload, and not as standing still."""
-
         def timed(*arguments, **options):
-            self.tick()
             began = time.perf_counter()
+            self._within += 1
             try:
                 return function(*arguments, **options)
             finally:
-                self.upload += time.perf_counter() - began
-                self._last = None
+                self._within -= 1
+                if not self._within:  # one calls the other
+                    self.upload += time.perf_counter() - began
 
         return timed
 
+    def _drawing(self):
+        if self._draws is None:
+            self._draws = time.perf_counter()
+
     def begin(self):
-        self.longest = self.upload = 0.0
+        self.longest = self.beside_drawing = self.upload = 0.0
+        self._within, self._draws = 0, None
         self._last = time.perf_counter()
 
     def tick(self):
         now = time.perf_counter()
-        if self._last is not None:
-            self.longest = max(self.longest, now - self._last)
-        self._last = now
+        self.longest = max(self.longest, now - self._last)
+        self.beside_drawing = max(self.beside_drawing, (self._draws or now) - self._last)
+        self._last, self._draws = now, None
 
 
 watch = None
@@ -107,7 +116,7 @@ def still(quads):
         else:
             scene().realmodel.display = "POLYHEDRA"
         yield idle
-        found = [watch.longest, watch.upload]
+        found = [watch.longest, watch.beside_drawing, watch.upload]
         with bpy.context.temp_override(
             window=bpy.context.window_manager.windows[0], area=area, region=region
         ):

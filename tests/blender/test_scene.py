@@ -4,6 +4,7 @@
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import bpy
 import numpy as np
@@ -230,16 +231,15 @@ class Rebuild(unittest.TestCase):
         scene.write_model(self.scene, build(one_rock()))
         before = inventory()
         model = build(two_rocks())
-        last = max(n for n, b in enumerate(model.blocks) if b.cells)
-        whole = model.block_boundary
+        last = [block.name for block in model.blocks if block.cells][-1]
+        whole = meshes.new_mesh
 
-        def fails_at_last(number):
-            if number == last:
+        def fails_at_last(name, shape):
+            if name == last:
                 raise MemoryError("no room")
-            return whole(number)
+            return whole(name, shape)
 
-        model.block_boundary = fails_at_last
-        with self.assertRaises(MemoryError):
+        with mock.patch.object(meshes, "new_mesh", fails_at_last), self.assertRaises(MemoryError):
             scene.write_model(self.scene, model)
         self.assertEqual(inventory(), before)
 

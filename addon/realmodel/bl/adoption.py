@@ -50,7 +50,7 @@ def _point_to_interface(surface, item):
     surface.interface = item
     if surface.source != "MESH_OBJECT":
         surface.object = item
-        triangles, _ = shapes.mesh_triangles(item.data)
+        triangles = shapes.mesh_triangles(item.data)
         surface.interface_digest = shapes.digest(shapes.offsets(item, item.data), triangles)
 
 

@@ -42,14 +42,17 @@ class BuildJob:
         self._job = ThreadJob("build", self._work)
 
     def _work(self, job):
+        def cancel():
+            return job.cancelled
+
         model = build(
             self.composed.project,
             cells=self.cells,
             threads=self._threads,
             progress=job.tell,
-            cancel=lambda: job.cancelled,
+            cancel=cancel,
         )
-        return built_scene.prepare(model, self.composed, self._stage)
+        return built_scene.prepare(model, self.composed, self._stage, self._threads, cancel)
 
     @property
     def done(self):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
-from ..core import BuildFailed
+from ..core import BuildFailed, polygon_mesh
 from ..core.build import build_stage
 from . import (
     block_shapes,
@@ -36,8 +36,8 @@ from .stored_project import KEY as PROJECT_KEY
 class Prepared:
     """A model as Blender takes it: all that can be made without touching Blender.
 
-    interfaces: by (rock, surface) numbers (offsets (V, 3) float32, triangles, digest). blocks: for each block
-    of the model its arrays as `block_shapes` has them, and their bounds. stored: by (rock, surface or None
+    interfaces: by (rock, surface) numbers (PolygonMesh, digest). blocks: for each block of the model its
+    PolygonMesh or None; bounds: of them all. stored: by (rock, surface or None
     for the region) the text that its row is to keep of its file, and the stamp of the file. figures: for each
     surface what surface_figures says of it. told: by (rock, surface) numbers what is known of an interface's
     vertices (Model.surface_attributes). stage: what `shown_models.remember_stage` takes, or None.
@@ -54,9 +54,9 @@ class Prepared:
     stage: tuple | None = None
 
 
-def prepare(model, composed, stage=None):
+def prepare(model, composed, stage=None, threads=0, cancel=None):
     """Prepared arrays of a model; may run in a thread of its own. stage: the one that will be shown, where it
-    is not the whole."""
+    is not the whole. threads, cancel: as for `build`."""
     origin = composed.origin
     if composed.origin_is_free:
         origin = choose_origin(model.surface_vertices)
@@ -68,11 +68,13 @@ def prepare(model, composed, stage=None):
                 vertices, triangles = model.surface(surface)
                 given = offsets_from(origin, vertices)
                 triangles = meshes.without_repeated_corners(triangles)
-                prepared.interfaces[r, s] = (given, triangles, shapes.digest(given, triangles))
+                digest = shapes.digest(given, triangles)
+                shape = polygon_mesh.of_triangles(given, triangles, smooth=True)
+                prepared.interfaces[r, s] = (shape, digest)
                 prepared.told[r, s] = model.surface_attributes(surface)
             surface += 1
-    prepared.blocks = block_shapes.of_model(model, origin)
-    prepared.bounds = block_shapes.bounds(prepared.blocks)
+    prepared.blocks = polygon_mesh.of_blocks(model, origin, threads, cancel)
+    prepared.bounds = block_shapes.bounds([s.coordinates for s in prepared.blocks if s is not None])
     for (r, s), stamp in composed.read.items():
         rock = model.project.rocks[r]
         text = (
@@ -83,8 +85,8 @@ def prepare(model, composed, stage=None):
         prepared.stored[r, s] = (project_settings.packed(model.project.rocks[r].surfaces[s]), "")
     prepared.figures = surface_figures.of_model(model)
     if stage is not None:
-        at_stage = build_stage(model, stage, cells="blocks")
-        found = block_shapes.by_name(at_stage, block_shapes.of_model(at_stage, origin))
+        at_stage = build_stage(model, stage, cells="blocks", cancel=cancel)
+        found = block_shapes.by_name(at_stage, polygon_mesh.of_blocks(at_stage, origin, threads, cancel))
         prepared.stage = (stage, at_stage, found)
     return prepared
 
@@ -169,10 +171,10 @@ def _new_interfaces(current, prepared, composed, created):
             if composed.from_object(r, s):
                 found[r, s] = (own, None, "")
                 continue
-            given, triangles, digest = prepared.interfaces[r, s]
+            shape, digest = prepared.interfaces[r, s]
             mesh = None
             if own is None or digest != row.interface_digest:
-                mesh = meshes.surface_mesh(row.name, given, triangles)
+                mesh = meshes.new_mesh(row.name, shape)
                 created.meshes.append(mesh)
                 uncertainty.add_attributes(mesh, prepared.told[r, s])
             if own is None:
@@ -195,8 +197,8 @@ def _new_blocks(current, prepared, created, in_place):
     """For each block of the model (object, new mesh or None to be filled in place), None for absent ones."""
     known = {(row.rock, row.name): row.object for row in current.realmodel.results}
     model, found = prepared.model, []
-    for block, arrays in zip(model.blocks, prepared.blocks, strict=True):
-        if arrays is None:
+    for block, shape in zip(model.blocks, prepared.blocks, strict=True):
+        if shape is None:
             found.append(None)
             continue
         item = known.get((model.project.rocks[block.rock].name, block.name))
@@ -205,7 +207,7 @@ def _new_blocks(current, prepared, created, in_place):
         if item is not None and in_place and item.mode == "OBJECT" and item.data.users == 1:
             found.append((item, None))
             continue
-        mesh = meshes.new_mesh(block.name, *arrays)
+        mesh = meshes.new_mesh(block.name, shape)
         created.meshes.append(mesh)
         if item is None:
             item = bpy.data.objects.new(block.name, mesh)
@@ -276,14 +278,14 @@ def _place_blocks(current, prepared, tree, blocks, palette):
     model = prepared.model
     before = [row.object for row in current.realmodel.results]
     kept = []
-    for block, made, arrays in zip(model.blocks, blocks, prepared.blocks, strict=True):
+    for block, made, shape in zip(model.blocks, blocks, prepared.blocks, strict=True):
         if made is None:
             kept.append(None)
             continue
         item, mesh = made
         if mesh is None:
-            if not meshes.holds(item.data, arrays[0], arrays[2]):
-                meshes.refill(item.data, *arrays)
+            if not meshes.holds(item.data, shape):
+                meshes.refill(item.data, shape)
         elif item.data != mesh:
             _change_mesh(item, mesh)
         _give_material(item, palette[int(block.property)])

@@ -4,48 +4,39 @@
 import bpy
 import numpy as np
 
+from ..core.polygon_mesh import PolygonMesh
 from . import versions
 
 # Face attribute: global index of the surface a face lies on; -1 a vertical wall, -2 the flat base
 FACE_SURFACE = "realmodel_surface"
 
-_corners = {}  # by the name of a mesh: the corners that it was given last, where asking Blender takes long
 
+def new_mesh(name, shape):
+    """A new mesh datablock, bpy.types.Mesh, of a realmodel.core.polygon_mesh.PolygonMesh, whose coordinates
+    are offsets from the model origin. The surface that each polygon lies on becomes the face attribute
+    `realmodel_surface`.
 
-def new_mesh(name, coordinates, offsets, corners, face_surface=None):
-    """A new mesh datablock.
-
-    coordinates: (V, 3) float32, offsets from the model origin.
-    offsets, corners: (F+1,) and (sum,) integers, polygons as in the cell complex.
-    face_surface: (F,) int32 or None, stored as the face attribute `realmodel_surface`.
-
-    Returns bpy.types.Mesh. float32 and int32 go to Blender without conversion, a million quads
-    in about 0.4 s, of which the edges are half.
+    Arrays go to Blender as they are: a million quads, with their edges, in less than a tenth of a second.
     """
     mesh = bpy.data.meshes.new(name)
     try:
-        _fill(mesh, coordinates, offsets, corners, face_surface)
+        _fill(mesh, shape)
     except BaseException:
         bpy.data.meshes.remove(mesh)
         raise
     return mesh
 
 
-def triangle_mesh(name, coordinates, triangles):
+def triangle_mesh(name, coordinates, triangles, smooth=False):
     """A new mesh datablock of triangles; (V, 3) float32, (T, 3) integers.
 
     Triangles that repeat a corner are left out: they have no area, the model leaves them out too,
     and Blender's edge tables take harm from them.
     """
     triangles = without_repeated_corners(triangles)
-    return new_mesh(name, coordinates, np.arange(0, 3 * len(triangles) + 1, 3), triangles.ravel())
-
-
-def surface_mesh(name, coordinates, triangles):
-    """A new mesh datablock of a surface: `triangle_mesh`, shaded smooth."""
-    mesh = triangle_mesh(name, coordinates, triangles)
-    versions.shade_smooth(mesh)
-    return mesh
+    offsets = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.int32)
+    coordinates = np.ascontiguousarray(coordinates, np.float32)
+    return new_mesh(name, PolygonMesh(coordinates, offsets, triangles.ravel(), smooth=smooth))
 
 
 def without_repeated_corners(triangles):
@@ -59,47 +50,29 @@ def without_repeated_corners(triangles):
     return triangles[~repeated]
 
 
-def refill(mesh, coordinates, offsets, corners, face_surface=None):
+def refill(mesh, shape):
     """Gives a mesh other vertices and polygons in the place of those that it has; its materials stay.
 
-    The arrays are those of `new_mesh`. The datablock stays the same, so nothing that points to it has to
-    know.
+    The datablock stays the same, so nothing that points to it has to know.
     """
     mesh.clear_geometry()
-    _fill(mesh, coordinates, offsets, corners, face_surface)
+    _fill(mesh, shape)
 
 
-def holds(mesh, coordinates, corners):
-    """Whether a mesh has these vertices and corners of polygons already: to look is a third of the work of
-    filling it."""
-    if len(mesh.vertices) != len(coordinates) or len(mesh.loops) != len(corners):
+def holds(mesh, shape):
+    """Whether a mesh has these vertices and corners of polygons already."""
+    if len(mesh.vertices) != len(shape.coordinates) or len(mesh.loops) != len(shape.corners):
         return False
-    if not np.array_equal(mesh_coordinates(mesh), coordinates):
-        return False
-    found = _corners.get(mesh.name_full)
-    if found is None or len(found) != len(mesh.loops):
-        found = versions.corner_vertices(mesh)
-    return np.array_equal(found, corners)
-
-
-def forget():
-    """What is known of meshes may no longer be so: Blender has undone something or opened a file."""
-    _corners.clear()
-
-
-def _fill(mesh, coordinates, offsets, corners, face_surface):
-    corners = np.ascontiguousarray(corners, np.int32)
-    versions.fill_mesh(
-        mesh,
-        np.ascontiguousarray(coordinates, np.float32),
-        np.ascontiguousarray(offsets, np.int32),
-        corners,
+    return np.array_equal(mesh_coordinates(mesh), shape.coordinates) and np.array_equal(
+        versions.corner_vertices(mesh), shape.corners
     )
-    if versions.READS_CORNERS_SLOWLY:
-        _corners[mesh.name_full] = corners
-    if face_surface is not None:
+
+
+def _fill(mesh, shape):
+    versions.fill_mesh(mesh, shape)
+    if shape.face_surface is not None:
         attribute = mesh.attributes.new(FACE_SURFACE, "INT", "FACE")
-        attribute.data.foreach_set("value", np.ascontiguousarray(face_surface, np.int32))
+        attribute.data.foreach_set("value", shape.face_surface)
 
 
 def mesh_coordinates(mesh):

@@ -52,7 +52,7 @@ def show(context):
     _open_eyes(context.view_layer.layer_collection, item)
     depsgraph = context.evaluated_depsgraph_get()
     with shapes.evaluated_mesh(item, depsgraph) as mesh:
-        corners, polygons = shapes.mesh_triangles(mesh)
+        corners, polygons = shapes.mesh_triangles(mesh), shapes.triangle_polygons(mesh)
         bad = np.array([t for t in triangles if t < len(corners)], np.int64)
         places = shapes.offsets(item, mesh)[np.unique(corners[bad])]
         same = len(mesh.polygons) == len(item.data.polygons)

@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
+from ..core import polygon_mesh
 from . import materials, meshes, origin, stored_project, uncertainty, versions
 
 TAG = "realmodel"
@@ -169,6 +170,7 @@ def _materials(scene, model, created):
 def _rock_objects(model, model_origin, palette, created):
     """New objects of every rock mass, not yet in any collection."""
     rocks = []
+    shapes = polygon_mesh.of_blocks(model, model_origin)
     surface = 0  # global index
     for rock in model.project.rocks:
         made = _RockObjects(rock.name)
@@ -179,13 +181,14 @@ def _rock_objects(model, model_origin, palette, created):
     for number, block in enumerate(model.blocks):
         if block.cells:
             rock = rocks[block.rock]
-            rock.blocks.append(_block(model, number, rock.name, model_origin, palette, created))
+            rock.blocks.append(_block(model, number, rock.name, shapes[number], palette, created))
     return rocks
 
 
 def _interface(model, surface, rock, given, model_origin, created):
     vertices, triangles = model.surface(surface)
-    mesh = meshes.surface_mesh(given.name, origin.offsets_from(model_origin, vertices), triangles)
+    offsets = origin.offsets_from(model_origin, vertices)
+    mesh = meshes.triangle_mesh(given.name, offsets, triangles, smooth=True)
     made = _object(mesh, given.name, created)
     uncertainty.add_attributes(mesh, model.surface_attributes(surface))
     made[TAG] = "interface"
@@ -195,13 +198,9 @@ def _interface(model, surface, rock, given, model_origin, created):
     return made, given.name
 
 
-def _block(model, number, rock_name, model_origin, palette, created):
+def _block(model, number, rock_name, shape, palette, created):
     block = model.blocks[number]
-    shell = model.block_boundary(number)
-    coordinates = origin.offsets_from(model_origin, shell.vertices)
-    mesh = meshes.new_mesh(
-        block.name, coordinates, shell.face_offsets, shell.face_vertices, shell.face_surface
-    )
+    mesh = meshes.new_mesh(block.name, shape)
     made = _object(mesh, block.name, created)
     mesh.materials.append(palette[int(block.property)])
     made[TAG] = "block"

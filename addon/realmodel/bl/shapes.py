@@ -11,7 +11,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from ..core import InputRefused
-from . import meshes
+from . import meshes, versions
 
 
 @contextmanager
@@ -19,9 +19,10 @@ def evaluated_mesh(item, depsgraph):
     """The mesh of an object as the viewport shows it, with its modifiers."""
     if item.mode == "EDIT":
         item.update_from_editmode()
-        if not item.modifiers and item.type == "MESH":
-            yield item.data
-            return
+    is_plain = item.type == "MESH" and not item.modifiers and item.data.shape_keys is None
+    if is_plain and item.mode in ("EDIT", "OBJECT"):
+        yield item.data  # there is nothing to evaluate
+        return
     evaluated = item.evaluated_get(depsgraph)
     mesh = evaluated.to_mesh(preserve_all_data_layers=False, depsgraph=depsgraph)
     try:
@@ -40,19 +41,28 @@ def offsets(item, mesh):
 
 
 def mesh_triangles(mesh):
-    """(T, 3) int32 triangles of a mesh and (T,) int32 the polygon that each is of."""
+    """(T, 3) int32 triangles of a mesh."""
+    if len(mesh.loops) == 3 * len(mesh.polygons):  # all are triangles: ten times as fast as Blender's way
+        corners, starts = versions.corner_vertices(mesh), versions.polygon_starts(mesh)
+        return corners[starts[:, None] + np.arange(3, dtype=np.int32)]
     mesh.calc_loop_triangles()
     corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
     mesh.loop_triangles.foreach_get("vertices", corners)
+    return corners.reshape(-1, 3)
+
+
+def triangle_polygons(mesh):
+    """(T,) int32: the polygon that each of `mesh_triangles` is of."""
+    mesh.calc_loop_triangles()
     polygons = np.empty(len(mesh.loop_triangles), np.int32)
     mesh.loop_triangles.foreach_get("polygon_index", polygons)
-    return corners.reshape(-1, 3), polygons
+    return polygons
 
 
 def triangulation(item, depsgraph):
     """(V, 3) float64 offsets from the origin and (T, 3) int32 triangles of a mesh object."""
     with evaluated_mesh(item, depsgraph) as mesh:
-        return offsets(item, mesh), mesh_triangles(mesh)[0]
+        return offsets(item, mesh), mesh_triangles(mesh)
 
 
 def points(item, depsgraph):
@@ -104,9 +114,7 @@ def plan_lines(item, depsgraph):
     point (1, 2), as float64 offsets from the origin. Raises InputRefused where it has neither."""
     with evaluated_mesh(item, depsgraph) as mesh:
         plan = offsets(item, mesh)[:, :2]
-        edges = np.empty(2 * len(mesh.edges), np.int32)
-        mesh.edges.foreach_get("vertices", edges)
-    edges = edges.reshape(-1, 2)
+        edges = versions.edge_vertices(mesh)
     loose = np.setdiff1d(np.arange(len(plan)), edges)
     found = [line for line in plan[edges] if (line[0] != line[1]).any()]
     found += list(plan[loose][:, None])
@@ -119,9 +127,7 @@ def plan_lines(item, depsgraph):
 
 def _bounding_edges(mesh):
     """(E, 2) the edges that only one face uses; all edges of a mesh that has no faces."""
-    edges = np.empty(2 * len(mesh.edges), np.int32)
-    mesh.edges.foreach_get("vertices", edges)
-    edges = edges.reshape(-1, 2)
+    edges = versions.edge_vertices(mesh)
     if not len(mesh.polygons):
         return edges
     used = np.empty(len(mesh.loops), np.int32)
@@ -160,7 +166,7 @@ def _closed_chains(edges, count, where, plan):
 
 def enclosed_volume(mesh):
     """The volume inside a closed mesh, by the divergence theorem, in the object's own coordinates."""
-    triangles, _ = mesh_triangles(mesh)
+    triangles = mesh_triangles(mesh)
     if not len(triangles):
         return 0.0
     at = meshes.mesh_coordinates(mesh).astype(np.float64)

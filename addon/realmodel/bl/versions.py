@@ -7,48 +7,107 @@ The rest of the add-on asks this module and never looks at `bpy.app.version` its
 import bpy
 import numpy as np
 
+from . import mesh_memory
+
 OLDEST = (3, 4, 0)
 
 
-READS_CORNERS_SLOWLY = bpy.app.version < (3, 6, 0)  # one by one, not in one piece
-
-
-def fill_mesh(mesh, coordinates, offsets, corners):
+def fill_mesh(mesh, shape):
     """Give an empty mesh its vertices and polygons.
 
-    mesh: bpy.types.Mesh. coordinates: (V, 3) float32. offsets: (F+1,) int32, where each polygon's
-    corners begin in `corners`. corners: (sum,) int32, vertex indices, counter-clockwise seen from
-    outside.
+    mesh: bpy.types.Mesh. shape: realmodel.core.polygon_mesh.PolygonMesh; edges that it does not have are
+    found by Blender, which takes ten times as long as all the rest.
 
-    Polygons are flat shaded: strata break along their edges, and smooth shading, which is the
-    default from 4.1 on, would round them off.
+    Polygons are flat shaded unless the shape is smooth: strata break along their edges, and smooth shading,
+    which is the default from 4.1 on, would round them off.
     """
-    count = len(offsets) - 1
-    if not len(coordinates):
+    if not len(shape.coordinates):
         return  # nor would newer versions have the attributes then
-    mesh.vertices.add(len(coordinates))
-    mesh.loops.add(len(corners))
-    mesh.polygons.add(count)
-    if bpy.app.version < (3, 6, 0):
-        mesh.vertices.foreach_set("co", coordinates.ravel())
-        mesh.loops.foreach_set("vertex_index", corners)
-        mesh.polygons.foreach_set("loop_total", np.diff(offsets))  # read-only later: it follows
-    else:  # as attributes the arrays are copied in one piece, three times as fast
-        mesh.attributes["position"].data.foreach_set("vector", coordinates.ravel())
-        mesh.attributes[".corner_vert"].data.foreach_set("value", corners)
-    mesh.polygons.foreach_set("loop_start", np.ascontiguousarray(offsets[:-1]))
+    with_edges = shape.edges is not None
+    mesh.vertices.add(len(shape.coordinates))
+    mesh.loops.add(len(shape.corners))
+    mesh.polygons.add(shape.polygons)
+    if with_edges:
+        mesh.edges.add(len(shape.edges))
+    if bpy.app.version >= (3, 6, 0):
+        _fill_attributes(mesh, shape)
+    elif mesh_memory.is_known():
+        _fill_memory(mesh, shape)
+    else:
+        _fill_slowly(mesh, shape)
+    mesh.update(calc_edges=not with_edges)
+
+
+def _fill_attributes(mesh, shape):
+    attributes = mesh.attributes
+    attributes["position"].data.foreach_set("vector", shape.coordinates.ravel())
+    attributes[".corner_vert"].data.foreach_set("value", shape.corners)
+    mesh.polygons.foreach_set("loop_start", shape.offsets[:-1])  # what it lacks, loop_total, follows
+    if shape.edges is not None:
+        attributes[".edge_verts"].data.foreach_set("value", shape.edges.ravel())
+        attributes[".corner_edge"].data.foreach_set("value", shape.corner_edges)
     if bpy.app.version >= (4, 1, 0):
-        mesh.attributes.new("sharp_face", "BOOLEAN", "FACE").data.foreach_set("value", np.ones(count, bool))
-    mesh.update(calc_edges=True)
+        if not shape.smooth:
+            sharp = attributes.new("sharp_face", "BOOLEAN", "FACE")
+            sharp.data.foreach_set("value", np.ones(shape.polygons, bool))
+    elif shape.smooth:
+        mesh.polygons.foreach_set("use_smooth", np.ones(shape.polygons, bool))
+
+
+def _fill_memory(mesh, shape):
+    mesh.vertices.foreach_set("co", shape.coordinates.ravel())
+    corners, polygons = mesh_memory.corners(mesh), mesh_memory.polygons(mesh)
+    corners["vertex"] = shape.corners
+    polygons["start"], polygons["count"] = shape.offsets[:-1], np.diff(shape.offsets)
+    if shape.smooth:
+        polygons["flag"] |= mesh_memory.SMOOTH
+    if shape.edges is not None:
+        edges = mesh_memory.edges(mesh)
+        edges["vertices"], edges["flag"] = shape.edges, mesh_memory.DRAWN
+        corners["edge"] = shape.corner_edges
+
+
+def _fill_slowly(mesh, shape):
+    mesh.vertices.foreach_set("co", shape.coordinates.ravel())
+    mesh.loops.foreach_set("vertex_index", shape.corners)
+    mesh.polygons.foreach_set("loop_start", shape.offsets[:-1])
+    mesh.polygons.foreach_set("loop_total", np.diff(shape.offsets))
+    mesh.polygons.foreach_set("use_smooth", np.full(shape.polygons, shape.smooth))
+    if shape.edges is not None:
+        mesh.edges.foreach_set("vertices", shape.edges.ravel())
+        mesh.loops.foreach_set("edge_index", shape.corner_edges)
 
 
 def corner_vertices(mesh):
-    """(C,) int32: the vertex of each corner of a mesh's polygons, one polygon after the other."""
+    """(C,) int32: the vertex of each corner of a mesh's polygons, as the mesh keeps them."""
+    if mesh_memory.is_known():
+        return np.array(mesh_memory.corners(mesh)["vertex"])
     found = np.empty(len(mesh.loops), np.int32)
-    if READS_CORNERS_SLOWLY:
+    if bpy.app.version < (3, 6, 0):
         mesh.loops.foreach_get("vertex_index", found)
     elif len(found):
         mesh.attributes[".corner_vert"].data.foreach_get("value", found)
+    return found
+
+
+def edge_vertices(mesh):
+    """(E, 2) int32 edges of a mesh."""
+    if mesh_memory.is_known():
+        return np.array(mesh_memory.edges(mesh)["vertices"])
+    found = np.empty(2 * len(mesh.edges), np.int32)
+    if bpy.app.version < (3, 6, 0):
+        mesh.edges.foreach_get("vertices", found)
+    elif len(found):
+        mesh.attributes[".edge_verts"].data.foreach_get("value", found)
+    return found.reshape(-1, 2)
+
+
+def polygon_starts(mesh):
+    """(F,) int32: where the corners of each polygon of a mesh begin."""
+    if mesh_memory.is_known():
+        return np.array(mesh_memory.polygons(mesh)["start"])
+    found = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_start", found)
     return found
 
 
@@ -60,15 +119,6 @@ def layer_collections(view_layer):
     if view_layer.layer_collection is None:
         view_layer.update()
     return view_layer.layer_collection
-
-
-def shade_smooth(mesh):
-    """Shade all polygons of a mesh smooth, as a surface without breaks."""
-    if bpy.app.version < (4, 1, 0):
-        mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
-    elif "sharp_face" in mesh.attributes:
-        mesh.attributes.remove(mesh.attributes["sharp_face"])
-    mesh.update()
 
 
 def make_matt(principled):

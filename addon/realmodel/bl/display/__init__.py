@@ -59,10 +59,7 @@ def register():
 
 def unregister():
     """Called when the add-on is disabled: no handler of drawing may stay."""
-    from .. import meshes
     from . import cuts, drawing, preparing, replacing, shown_models, viewpoints
-
-    meshes.forget()
 
     drawing.unregister()
     cuts.stop()
@@ -74,13 +71,11 @@ def unregister():
 
 def forget():
     """Another file was opened."""
-    from .. import meshes
     from . import cuts, preparing, replacing, shown_models, viewpoints
 
     cuts.stop()
     preparing.stop()
     replacing.stop()
-    meshes.forget()
     forget_meshes()
     shown_models.forget()
     viewpoints.forget()
@@ -233,10 +228,8 @@ def undone():
     """Blender has undone or redone something: what was read from meshes may be of others now."""
     import bpy
 
-    from .. import meshes
     from . import cuts
 
-    meshes.forget()
     forget_meshes()
     for scene in bpy.data.scenes:
         if cuts.is_on(scene):

@@ -26,19 +26,18 @@ def _listed(current, kind):
 def put(current, kind, shapes):
     """Makes the bodies of a kind, in place of those that are there.
 
-    shapes: for each block that has one (block object, coordinates (V, 3) float32, offsets, corners,
-    face_surface or None).
+    shapes: for each block that has one (block object, PolygonMesh).
     """
     known = of_kind(current, kind)
-    wanted = {block for block, *_ in shapes}
+    wanted = {block for block, _ in shapes}
     remove(current, kind, [item for item in _listed(current, kind) if item.parent not in wanted])
     collection = view_collection(current)
-    for block, *arrays in shapes:
+    for block, shape in shapes:
         item = known.get(block)
         if item is not None and item.data.users == 1:
-            replacing.give_shape(item, arrays)
+            replacing.give_shape(item, shape)
         else:
-            item = _new(collection, kind, block, meshes.new_mesh(f"{block.name} {kind}", *arrays))
+            item = _new(collection, kind, block, meshes.new_mesh(f"{block.name} {kind}", shape))
         _take_material(item, block)
 
 

@@ -8,7 +8,7 @@ from mathutils import Matrix
 
 from ...core import InputRefused, OutputFailed
 from ...core.atomic import Outputs
-from .. import batch, meshes, picture, scene, settings, viewports
+from .. import batch, meshes, picture, scene, settings, versions, viewports
 from . import bodies, colours, drawing, marks, modes, render_marks, viewpoints
 
 LARGEST = 16384  # pixels along a side
@@ -133,12 +133,13 @@ def _put_bodies(stage, current, size, space):
                 made.materials.clear()
                 made.materials.append(_plain(stage, colour))
         if mode == "POINTS":
-            arrays = marks.points(coordinates, render_marks.POINT_RADIUS * pixel)
+            shape = marks.points(coordinates, render_marks.POINT_RADIUS * pixel)
         elif mode in ("LINES", "AREAS"):
-            arrays = marks.lines(coordinates, marks.edges(mesh), render_marks.LINE_RADIUS * pixel)
+            edges = versions.edge_vertices(mesh)
+            shape = marks.lines(coordinates, edges, render_marks.LINE_RADIUS * pixel)
         else:
             continue
-        made = stage.keep(bpy.data.meshes, meshes.new_mesh("marks", *arrays))
+        made = stage.keep(bpy.data.meshes, meshes.new_mesh("marks", shape))
         made.materials.append(_glowing(stage, _DARK if mode == "AREAS" else colour))
         stage.add("marks", made)
     return np.concatenate(corners) if corners else np.empty((0, 3))

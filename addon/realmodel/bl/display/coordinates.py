@@ -129,7 +129,7 @@ def _soup(mesh):
     if key not in _soups:
         while len(_soups) >= _MOST_SOUPS:
             _soups.pop(next(iter(_soups)))
-        triangles, _ = shapes.mesh_triangles(mesh)
+        triangles = shapes.mesh_triangles(mesh)
         _soups[key] = meshes.mesh_coordinates(mesh)[triangles]
     return _soups[key]
 

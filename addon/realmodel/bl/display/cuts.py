@@ -10,7 +10,8 @@ import json
 import bpy
 import numpy as np
 
-from ...core import Cancelled, InputRefused, RealModelError
+from ...core import Cancelled, InputRefused, RealModelError, polygon_mesh
+from ...core.polygon_mesh import PolygonMesh
 from .. import block_shapes, meshes, project_settings, scene, settings, viewports
 from ..rested_work import RestedWork
 from ..thread_job import ThreadJob, threads
@@ -52,8 +53,7 @@ def add_plane(current):
     """A plane through the middle of the model, upright, looking south; returns its object."""
     low, high = explosion.bounds(current)
     middle, size = (low + high) / 2, 0.6 * float(np.linalg.norm(high - low))
-    corners = size * np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
-    mesh = meshes.new_mesh("Section plane", corners, np.array([0, 4]), np.arange(4))
+    mesh = meshes.new_mesh("Section plane", _square(size))
     item = bpy.data.objects.new("Section plane", mesh)
     item[scene.TAG] = "view"
     item[bodies.KIND] = bodies.PLANE
@@ -63,6 +63,11 @@ def add_plane(current):
     item.rotation_euler = (np.pi / 2, 0.0, 0.0)  # its Z axis to the south, where the standard front is
     bodies.view_collection(current).objects.link(item)
     return item
+
+
+def _square(size):
+    corners = size * np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
+    return PolygonMesh(corners, np.array([0, 4], np.int32), np.arange(4, dtype=np.int32))
 
 
 def remove_plane(current):
@@ -135,7 +140,7 @@ def _wanted_cells(current):
 
 def _put(current, shapes, state):
     rows = {(row.rock, row.name): row.object for row in current.realmodel.results}
-    wanted = [(rows[key], *arrays) for key, arrays in shapes.items() if rows.get(key) is not None]
+    wanted = [(rows[key], shape) for key, shape in shapes.items() if rows.get(key) is not None]
     bodies.put(current, bodies.CUT, wanted)
     current.realmodel.view.cut = state
 
@@ -165,7 +170,7 @@ def _begun(current, state):
         model = half
         if model is None:
             model = recipe.make(cancel).cut_by_plane(point, normal, threads(), cancel=cancel).below
-        shapes = block_shapes.by_name(model, block_shapes.of_model(model, origin))
+        shapes = block_shapes.by_name(model, polygon_mesh.of_blocks(model, origin, threads(), cancel))
         return state, model, shapes, recipe
 
     return ThreadJob("section", task)

@@ -6,7 +6,6 @@ arrays go to the card when they are first drawn, and again when a mesh has chang
 """
 
 import bpy
-import numpy as np
 
 from .. import meshes, versions
 from . import colours, modes
@@ -78,9 +77,7 @@ def _new_batch(mesh, mode):
     vertices.attr_fill("pos", meshes.mesh_coordinates(mesh))
     if mode == "POINTS":
         return gpu.types.GPUBatch(type="POINTS", buf=vertices)
-    edges = np.empty(2 * len(mesh.edges), np.int32)
-    mesh.edges.foreach_get("vertices", edges)
-    indices = gpu.types.GPUIndexBuf(type="LINES", seq=edges.reshape(-1, 2))
+    indices = gpu.types.GPUIndexBuf(type="LINES", seq=versions.edge_vertices(mesh))
     return gpu.types.GPUBatch(type="LINES", buf=vertices, elem=indices)
 
 

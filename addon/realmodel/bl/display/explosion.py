@@ -65,7 +65,7 @@ def bounds(scene):
     view = scene.realmodel.view
     if tuple(view.bounds_low) == tuple(view.bounds_high):  # it was built by another version, or in batch
         items = [row.object for row in scene.realmodel.results if _has_mesh(row)]
-        return block_shapes.bounds([(meshes.mesh_coordinates(item.data),) for item in items])
+        return block_shapes.bounds([meshes.mesh_coordinates(item.data) for item in items])
     return np.array(view.bounds_low, np.float64), np.array(view.bounds_high, np.float64)
 
 

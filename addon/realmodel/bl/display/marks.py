@@ -3,20 +3,22 @@
 
 import numpy as np
 
+from ...core.polygon_mesh import PolygonMesh
+
 _OCTAHEDRON = np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float32)
 _FACES = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]])
 _SIDES = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [2, 0, 3, 5]])
 
 
 def points(places, radius):
-    """An octahedron around each place, (N, 3), as (coordinates (6 N, 3) float32, offsets, corners)."""
+    """An octahedron around each place, (N, 3), as a PolygonMesh."""
     coordinates = (places[:, None].astype(np.float32) + radius * _OCTAHEDRON).reshape(-1, 3)
-    return coordinates, *_repeated(_FACES, len(places), 6)
+    return PolygonMesh(coordinates, *_repeated(_FACES, len(places), 6))
 
 
 def lines(places, pairs, radius):
-    """A three-sided bar along each pair (E, 2) of places (V, 3); as `points`, of 6 E coordinates. Pairs at
-    one place have none."""
+    """A three-sided bar along each pair (E, 2) of places (V, 3), as `points`. Pairs at one
+    place have none."""
     begin, end = places[pairs[:, 0]].astype(np.float64), places[pairs[:, 1]].astype(np.float64)
     along = end - begin
     length = np.linalg.norm(along, axis=1)
@@ -30,17 +32,11 @@ def lines(places, pairs, radius):
         np.cos(angles)[None, :, None] * side[:, None] + np.sin(angles)[None, :, None] * other[:, None]
     )
     coordinates = np.concatenate([begin[:, None] + ring, end[:, None] + ring], axis=1)
-    return coordinates.reshape(-1, 3).astype(np.float32), *_repeated(_SIDES, len(begin), 6)
+    coordinates = coordinates.reshape(-1, 3).astype(np.float32)
+    return PolygonMesh(coordinates, *_repeated(_SIDES, len(begin), 6))
 
 
 def _repeated(faces, count, vertices):
     """(offsets, corners) int32 of a body that is there so many times."""
     corners = (np.arange(count, dtype=np.int32)[:, None, None] * vertices + faces).astype(np.int32)
     return np.arange(0, corners.size + 1, faces.shape[1], dtype=np.int32), corners.ravel()
-
-
-def edges(mesh):
-    """(E, 2) int32 edges of a mesh."""
-    found = np.empty(2 * len(mesh.edges), np.int32)
-    mesh.edges.foreach_get("vertices", found)
-    return found.reshape(-1, 2)

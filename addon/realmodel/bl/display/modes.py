@@ -138,7 +138,7 @@ def _make_cells(scene, stage):
         return
     shapes = cells.of_scene(scene, stage)
     rows = {(row.rock, row.name): row.object for row in group.results}
-    bodies.put(scene, bodies.CELLS, [(rows[key], *arrays) for key, arrays in shapes.items() if rows.get(key)])
+    bodies.put(scene, bodies.CELLS, [(rows[key], shape) for key, shape in shapes.items() if rows.get(key)])
     group.view.cells_of = made_of
     cells.forget()
 

@@ -4,7 +4,7 @@ beside it, as thick as points and lines are on the screen."""
 
 import numpy as np
 
-from .. import meshes
+from .. import meshes, versions
 from . import bodies, marks, modes, viewpoints
 
 POINT_RADIUS, LINE_RADIUS = 2.0, 0.8  # pixels
@@ -20,9 +20,11 @@ def put(scene, mode):
     for item in modes.drawn(scene, mode):
         coordinates = meshes.mesh_coordinates(item.data)
         if mode == "POINTS":
-            shapes.append((item, *marks.points(coordinates, POINT_RADIUS * pixel)))
+            shapes.append((item, marks.points(coordinates, POINT_RADIUS * pixel)))
         else:
-            shapes.append((item, *marks.lines(coordinates, marks.edges(item.data), LINE_RADIUS * pixel)))
+            shapes.append(
+                (item, marks.lines(coordinates, versions.edge_vertices(item.data), LINE_RADIUS * pixel))
+            )
     bodies.put(scene, bodies.MARKS, shapes)
 
 

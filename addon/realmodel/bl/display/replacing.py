@@ -39,13 +39,13 @@ def nobody_waits():
     return bpy.app.background or _rendering
 
 
-def give_shape(item, arrays):
-    """Gives an object's mesh other contents; arrays as `meshes.new_mesh` takes them."""
+def give_shape(item, shape):
+    """Gives an object's mesh other contents; shape: PolygonMesh."""
     if not _rendering:
-        meshes.refill(item.data, *arrays)
+        meshes.refill(item.data, shape)
         return
     old = item.data
-    mesh = meshes.new_mesh(old.name, *arrays)
+    mesh = meshes.new_mesh(old.name, shape)
     for material in old.materials:
         mesh.materials.append(material)
     slots = [(slot.link, slot.material) for slot in item.material_slots]

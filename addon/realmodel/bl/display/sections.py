@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 
 from ...core import InputRefused
+from ...core.polygon_mesh import PolygonMesh
 from .. import library_rows, materials, meshes, project_settings, scene
 from ..origin import offsets_from
 from . import bodies, shown_models
@@ -29,7 +30,10 @@ def add(current, location, normal):
             "the plane does not meet the model", advice="move it to where there are blocks, or turn it"
         )
     used, corners = np.unique(found.polygon_vertices, return_inverse=True)
-    mesh = meshes.new_mesh("Section", offsets_from(origin, found.vertices[used]), found.offsets, corners)
+    shape = PolygonMesh(
+        offsets_from(origin, found.vertices[used]), found.offsets.astype(np.int32), corners.astype(np.int32)
+    )
+    mesh = meshes.new_mesh("Section", shape)
     ids = np.unique(found.property)
     for property_id in ids.tolist():
         mesh.materials.append(_material(current, property_id))

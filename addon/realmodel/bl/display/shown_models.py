@@ -5,14 +5,14 @@ A stage costs about as much as building the surfaces up to it anew with whole bl
 only the blocks that differ go to Blender.
 """
 
-from ...core import build
+from ...core import build, polygon_mesh
 from ...core.build import build_stage
 from .. import block_shapes, built_models, project_settings, settings
 from ..thread_job import threads
 
 _MOST_CORNERS = 20_000_000  # of the faces of all stages that are kept: about 0.6 GB with their shapes
 _stages = {}  # (stamp, stage, cells) -> realmodel.core.Model, the one that was used last at the end
-_shapes = {}  # (stamp, stage) -> {(rock mass, block): arrays} as `block_shapes` has them
+_shapes = {}  # (stamp, stage) -> {(rock mass, block): PolygonMesh}
 
 
 class Recipe:
@@ -53,11 +53,11 @@ class Recipe:
         return self.model
 
     def make_shapes(self, cancel=None):
-        """{(rock mass, block): arrays} of the model's blocks."""
+        """{(rock mass, block): PolygonMesh} of the model's blocks."""
         found = _shapes.get((self.stamp, self.stage))
         if found is None:
             model = self.make(cancel)
-            found = block_shapes.by_name(model, block_shapes.of_model(model, self.origin))
+            found = block_shapes.by_name(model, polygon_mesh.of_blocks(model, self.origin, threads(), cancel))
         return found
 
     def keep(self, shapes=None):
@@ -89,7 +89,7 @@ def at_stage(scene, stage, cells=None):
 
 
 def shapes_at_stage(scene, stage):
-    """{(rock mass, block): arrays} of the blocks at a stage, made in this thread. Raises as `at_stage`."""
+    """{(rock mass, block): PolygonMesh} at a stage, made in this thread. Raises as `at_stage`."""
     recipe = Recipe(scene, stage)
     shapes = recipe.make_shapes()
     recipe.keep(shapes)

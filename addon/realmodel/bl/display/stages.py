@@ -8,11 +8,12 @@ has an empty mesh; one that was eroded away later gets an object for as long as 
 import bpy
 import numpy as np
 
+from ...core.polygon_mesh import PolygonMesh
 from .. import library_rows, materials, meshes, scene
 from . import replacing, shown_models
 
 STAGE_ONLY = "realmodel_stage_only"  # on an object: its block is not in the whole model
-_EMPTY = (np.empty((0, 3), np.float32), np.zeros(1, np.int32), np.empty(0, np.int32), np.empty(0, np.int32))
+_EMPTY = PolygonMesh(np.empty((0, 3), np.float32), np.zeros(1, np.int32), np.empty(0, np.int32))
 
 
 def show(current, stage):
@@ -27,26 +28,26 @@ def present(row):
     return row.object is not None and row.object.type == "MESH" and len(row.object.data.polygons) > 0
 
 
-def _give_shape(current, row, arrays):
+def _give_shape(current, row, shape):
     item = row.object
     if item is not None and (item.type != "MESH" or item.library is not None or item.mode != "OBJECT"):
         return
     if item is None:
-        if arrays is not None:
-            _new(current, row, arrays)
-    elif arrays is None and STAGE_ONLY in item:
+        if shape is not None:
+            _new(current, row, shape)
+    elif shape is None and STAGE_ONLY in item:
         row.object = None
         replacing.remove(item)
-    elif not meshes.holds(item.data, *(arrays or _EMPTY)[:3:2]):
-        replacing.give_shape(item, arrays or _EMPTY)
+    elif not meshes.holds(item.data, shape or _EMPTY):
+        replacing.give_shape(item, shape or _EMPTY)
 
 
-def _new(current, row, arrays):
+def _new(current, row, shape):
     """An object for a block that was eroded away later."""
     rock = next((rock for rock in current.realmodel.rocks if rock.name == row.rock), None)
     if rock is None or rock.blocks is None:
         return
-    item = bpy.data.objects.new(row.name, meshes.new_mesh(row.name, *arrays))
+    item = bpy.data.objects.new(row.name, meshes.new_mesh(row.name, shape))
     known = library_rows.scene_materials(current, row.property_id)
     name, colour = materials.name_and_colour(library_rows.library_of(current), row.property_id)
     item.data.materials.append(known[0] if known else materials.new_material(name, row.property_id, colour))

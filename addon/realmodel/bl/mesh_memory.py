@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The corners, polygons and edges of a mesh in one piece, in Blender 3.4 and 3.5.
+
+There, and only there, Python reaches them number by number (`foreach_set`, 30 ns each), which for a large
+model means that the window stands still for a second. Newer versions have them as attributes that go in one
+piece. So in these two, whose records are what they are for good, the memory that `as_pointer` tells of is
+looked at as an array. Whether it is as expected is tried once on a small mesh; if not, nothing is done here
+and the slow way is taken.
+
+Only what belongs to a mesh of `bpy.data`, or to an evaluated one that is at hand, may be given here, and an
+array may not outlive the next change of the mesh. Only arrays that were just added may be written to.
+"""
+
+import ctypes
+from functools import cache
+
+import bpy
+import numpy as np
+
+_CORNER = np.dtype([("vertex", "<i4"), ("edge", "<i4")])
+_POLYGON = np.dtype(
+    [("start", "<i4"), ("count", "<i4"), ("unused", "<i2"), ("flag", "i1"), ("padding", "i1")]
+)
+_EDGE = np.dtype([("vertices", "<i4", 2), ("crease", "i1"), ("bevel", "i1"), ("flag", "<i2")])
+SMOOTH = 1  # in a polygon's flag
+DRAWN = 2 | 32  # in an edge's flag: in the viewport and in renders
+
+
+def corners(mesh):
+    """Records "vertex" and "edge", one for each corner."""
+    return _records(mesh.loops, _CORNER)
+
+
+def polygons(mesh):
+    """Records "start", "count" and "flag", one for each polygon."""
+    return _records(mesh.polygons, _POLYGON)
+
+
+def edges(mesh):
+    """Records "vertices" (2,) and "flag", one for each edge."""
+    return _records(mesh.edges, _EDGE)
+
+
+def _records(collection, dtype):
+    if not len(collection):
+        return np.empty(0, dtype)
+    memory = (ctypes.c_char * (len(collection) * dtype.itemsize)).from_address(collection[0].as_pointer())
+    return np.frombuffer(memory, dtype)
+
+
+@cache
+def is_known():
+    """Whether this Blender keeps meshes as expected here."""
+    if bpy.app.version >= (3, 6, 0):
+        return False
+    mesh = bpy.data.meshes.new("realmodel")
+    try:
+        mesh.from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2), (2, 3, 0)])
+        mesh.polygons[1].use_smooth = True
+        return all(
+            _is_as_told(records, kind, collection, names)
+            for records, kind, collection, names in (
+                (corners(mesh), _CORNER, mesh.loops, {"vertex": "vertex_index", "edge": "edge_index"}),
+                (polygons(mesh), _POLYGON, mesh.polygons, {"start": "loop_start", "count": "loop_total"}),
+                (edges(mesh), _EDGE, mesh.edges, {"vertices": "vertices"}),
+            )
+        ) and (polygons(mesh)["flag"] & SMOOTH).tolist() == [0, SMOOTH]
+    finally:
+        bpy.data.meshes.remove(mesh)
+
+
+def _is_as_told(records, kind, collection, names):
+    """Whether records lie as far apart as Blender says, and hold what it tells."""
+    apart = collection[1].as_pointer() - collection[0].as_pointer()
+    return apart == kind.itemsize and all(
+        np.array_equal(records[own], np.array([getattr(item, told) for item in collection]))
+        for own, told in names.items()
+    )

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "realmodel/base/errors.hpp"
+#include "realmodel/shells/shells.hpp"
+
+namespace realmodel::shells {
+
+namespace {
+
+/// One use of an edge, listed with its lower vertex.
+struct Use {
+    std::int32_t upper;
+    std::int32_t corner;
+};
+
+constexpr std::size_t kFewUses = 24;  // so few are compared one by one
+
+void require_in_range(std::span<const std::int32_t> offsets, std::span<const std::int32_t> corners,
+                      std::size_t vertices) {
+    const auto refuse = [](std::size_t polygon, const char* what) {
+        throw InputError("bad_index", "polygon " + std::to_string(polygon) + " " + what, -1,
+                         {static_cast<std::int64_t>(polygon)});
+    };
+    if (offsets.empty() || offsets[0] != 0) refuse(0, "does not begin with the first corner");
+    for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
+        if (offsets[f + 1] < offsets[f] || std::cmp_greater(offsets[f + 1], corners.size()))
+            refuse(f, "has corners that are not there");
+        for (auto c = offsets[f]; c < offsets[f + 1]; ++c) {
+            const std::int32_t v = corners[static_cast<std::size_t>(c)];
+            if (v < 0 || std::cmp_greater_equal(v, vertices))
+                refuse(f, "names a vertex that is not there");
+        }
+    }
+    if (std::cmp_not_equal(offsets.back(), corners.size()))
+        refuse(offsets.size() - 1, "has corners beyond the last");
+}
+
+/// Calls use(corner, lower, upper) for each corner and the next of its polygon.
+template <class Use>
+void for_each_side(std::span<const std::int32_t> offsets, std::span<const std::int32_t> corners,
+                   const Use& use) {
+    for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
+        const auto begin = static_cast<std::size_t>(offsets[f]);
+        const auto end = static_cast<std::size_t>(offsets[f + 1]);
+        for (std::size_t c = begin; c < end; ++c) {
+            const std::int32_t a = corners[c], b = corners[c + 1 < end ? c + 1 : begin];
+            use(c, std::min(a, b), std::max(a, b));
+        }
+    }
+}
+
+}  // namespace
+
+PolygonEdges polygon_edges(std::span<const std::int32_t> offsets,
+                           std::span<const std::int32_t> corners, std::size_t vertices) {
+    require_in_range(offsets, corners, vertices);
+    std::vector<std::int32_t> begins(vertices + 1, 0);  // of the uses of each lower vertex
+    for_each_side(offsets, corners, [&](std::size_t, std::int32_t lower, std::int32_t) {
+        ++begins[static_cast<std::size_t>(lower) + 1];
+    });
+    for (std::size_t v = 0; v < vertices; ++v)
+        begins[v + 1] += begins[v];
+    std::vector<Use> uses(corners.size());
+    {
+        std::vector<std::int32_t> next(begins.begin(), begins.end() - 1);
+        for_each_side(
+            offsets, corners, [&](std::size_t corner, std::int32_t lower, std::int32_t upper) {
+                auto& at = next[static_cast<std::size_t>(lower)];
+                uses[static_cast<std::size_t>(at++)] = {upper, static_cast<std::int32_t>(corner)};
+            });
+    }
+    PolygonEdges found;
+    found.edges.reserve(corners.size() / 2 + 1);
+    found.of_corner.resize(corners.size());
+    for (std::size_t v = 0; v < vertices; ++v) {
+        const std::span<Use> some(uses.data() + begins[v], uses.data() + begins[v + 1]);
+        const bool sorted = some.size() > kFewUses;
+        if (sorted) std::ranges::stable_sort(some, {}, &Use::upper);
+        const std::size_t first = found.edges.size();
+        for (const Use& use : some) {
+            std::size_t edge =
+                sorted && found.edges.size() > first ? found.edges.size() - 1 : first;
+            while (edge < found.edges.size() && found.edges[edge][1] != use.upper)
+                ++edge;
+            if (edge == found.edges.size())
+                found.edges.push_back({static_cast<std::int32_t>(v), use.upper});
+            found.of_corner[static_cast<std::size_t>(use.corner)] = static_cast<std::int32_t>(edge);
+        }
+    }
+    return found;
+}
+
+}  // namespace realmodel::shells

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/shells/shells.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "realmodel/base/errors.hpp"
+#include "strata/parallel_chunks.hpp"
+
+namespace realmodel::shells {
+
+namespace {
+
+using Position = std::array<double, 3>;
+
+/// A face of the complex as one side sees it.
+struct Side {
+    std::int32_t face;
+    std::int32_t cell;
+    bool turned;  ///< the cell is the face's second
+};
+
+std::span<const std::int32_t> corners_of(const Complex& complex, std::int32_t face) {
+    const auto f = static_cast<std::size_t>(face);
+    const auto begin = static_cast<std::size_t>(complex.face_offsets[f]);
+    return complex.face_vertices.subspan(
+        begin, static_cast<std::size_t>(complex.face_offsets[f + 1]) - begin);
+}
+
+void require_in_range(const Complex& complex, std::size_t blocks, const Progress* progress) {
+    const auto refuse = [](std::size_t face, const char* what) {
+        throw InputError("bad_index", "face " + std::to_string(face) + " " + what, -1,
+                         {static_cast<std::int64_t>(face)});
+    };
+    const std::size_t faces = complex.face_cells.size();
+    if (complex.face_offsets.size() != faces + 1) refuse(faces, "has no offset, or one too many");
+    for (std::size_t f = 0; f < faces; ++f) {
+        strata::poll(progress, f);
+        const auto begin = complex.face_offsets[f], end = complex.face_offsets[f + 1];
+        if (begin < 0 || begin > end || std::cmp_greater(end, complex.face_vertices.size()))
+            refuse(f, "has corners that are not there");
+        for (const std::int32_t v : corners_of(complex, static_cast<std::int32_t>(f))) {
+            if (v < 0 || std::cmp_greater_equal(v, complex.vertices.size()))
+                refuse(f, "names a vertex that is not there");
+        }
+        const auto [first, second] = complex.face_cells[f];
+        for (const std::int32_t cell : {first, second}) {
+            if (cell < -1 || std::cmp_greater_equal(cell, complex.cell_block.size()))
+                refuse(f, "names a cell that is not there");
+        }
+    }
+    for (const std::int32_t block : complex.cell_block) {
+        if (block < 0 || std::cmp_greater_equal(block, blocks))
+            throw InputError("bad_index", "a cell names a block that is not there", -1, {});
+    }
+}
+
+/// The sides of all faces by the block of their cell, in the order of the faces.
+/// @param between_blocks  leave out faces that have one block on both sides
+std::vector<std::vector<Side>> sides_by_block(const Complex& complex, std::size_t blocks,
+                                              bool between_blocks, const Progress* progress) {
+    std::vector<std::vector<Side>> found(blocks);
+    const auto block_of = [&](std::int32_t cell) {
+        return cell < 0 ? -1 : complex.cell_block[static_cast<std::size_t>(cell)];
+    };
+    for (std::size_t f = 0; f < complex.face_cells.size(); ++f) {
+        strata::poll(progress, f);
+        const auto& cells = complex.face_cells[f];
+        if (between_blocks && block_of(cells[0]) == block_of(cells[1])) continue;
+        for (const bool turned : {false, true}) {
+            const std::int32_t cell = cells[turned ? 1 : 0];
+            if (cell < 0) continue;
+            found[static_cast<std::size_t>(block_of(cell))].push_back(
+                {static_cast<std::int32_t>(f), cell, turned});
+        }
+    }
+    return found;
+}
+
+/// The numbers of the vertices that some polygons use, in rising order.
+class Numbering {
+public:
+    explicit Numbering(std::size_t vertices)
+        : words_((vertices + 63) / 64), before_(words_.size()) {}
+
+    void use(std::int32_t vertex) { words_[static_cast<std::size_t>(vertex) / 64] |= bit(vertex); }
+    /// Counts what is used; returns how many there are.
+    std::size_t count() {
+        std::int32_t sum = 0;
+        for (std::size_t w = 0; w < words_.size(); ++w) {
+            before_[w] = sum;
+            sum += std::popcount(words_[w]);
+        }
+        return static_cast<std::size_t>(sum);
+    }
+    std::int32_t operator()(std::int32_t vertex) const {
+        const auto w = static_cast<std::size_t>(vertex) / 64;
+        return before_[w] + std::popcount(words_[w] & (bit(vertex) - 1));
+    }
+
+private:
+    static std::uint64_t bit(std::int32_t vertex) {
+        return std::uint64_t{1} << (static_cast<std::uint32_t>(vertex) % 64);
+    }
+    std::vector<std::uint64_t> words_;
+    std::vector<std::int32_t> before_;
+};
+
+/// Adds a face's corners, as numbers of the complex, and its row.
+void add_polygon(const Complex& complex, const Side& side, Shell& shell) {
+    const auto corners = corners_of(complex, side.face);
+    if (side.turned) {
+        shell.corners.insert(shell.corners.end(), corners.rbegin(), corners.rend());
+    } else {
+        shell.corners.insert(shell.corners.end(), corners.begin(), corners.end());
+    }
+    shell.offsets.push_back(static_cast<std::int32_t>(shell.corners.size()));
+    shell.faces.push_back(side.face);
+}
+
+Shell begun(const Complex& complex, std::span<const Side> sides) {
+    std::size_t corners = 0;
+    for (const Side& side : sides)
+        corners += corners_of(complex, side.face).size();
+    if (std::cmp_greater(corners, std::numeric_limits<std::int32_t>::max()))
+        throw InputError("too_large", "a block has more than 2^31 corners of faces", -1, {});
+    Shell shell;
+    shell.corners.reserve(corners);
+    shell.offsets.reserve(sides.size() + 1);
+    shell.faces.reserve(sides.size());
+    shell.offsets.push_back(0);
+    return shell;
+}
+
+std::array<float, 3> offset_from(const Position& origin, const Position& at) {
+    return {static_cast<float>(at[0] - origin[0]), static_cast<float>(at[1] - origin[1]),
+            static_cast<float>(at[2] - origin[2])};
+}
+
+Shell block_shell(const Complex& complex, std::span<const Side> sides, const Position& origin) {
+    Shell shell = begun(complex, sides);
+    if (sides.empty()) return shell;
+    Numbering number(complex.vertices.size());
+    for (const Side& side : sides) {
+        add_polygon(complex, side, shell);
+        for (const std::int32_t v : corners_of(complex, side.face))
+            number.use(v);
+    }
+    shell.coordinates.resize(number.count());
+    for (std::int32_t& corner : shell.corners) {
+        const std::int32_t vertex = corner;
+        corner = number(vertex);
+        shell.coordinates[static_cast<std::size_t>(corner)] =
+            offset_from(origin, complex.vertices[static_cast<std::size_t>(vertex)]);
+    }
+    shell.edges = polygon_edges(shell.offsets, shell.corners, shell.coordinates.size());
+    return shell;
+}
+
+/// Gives the corners of a cell, from `begin` on, vertices of their own.
+void separate(const Complex& complex, std::size_t begin, double shrink, const Position& origin,
+              std::vector<std::int32_t>& used, Shell& shell) {
+    const std::span<std::int32_t> corners(
+        shell.corners.begin() + static_cast<std::ptrdiff_t>(begin), shell.corners.end());
+    used.assign(corners.begin(), corners.end());
+    std::ranges::sort(used);
+    used.erase(std::ranges::unique(used).begin(), used.end());
+    Position mean{};
+    for (const std::int32_t v : used) {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            mean[axis] += complex.vertices[static_cast<std::size_t>(v)][axis] - origin[axis];
+    }
+    const auto first = static_cast<std::int32_t>(shell.coordinates.size());
+    for (const std::int32_t v : used) {
+        std::array<float, 3> at{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double centre = mean[axis] / static_cast<double>(used.size());
+            const double here = complex.vertices[static_cast<std::size_t>(v)][axis] - origin[axis];
+            at[axis] = static_cast<float>(centre + shrink * (here - centre));
+        }
+        shell.coordinates.push_back(at);
+    }
+    for (std::int32_t& corner : corners)
+        corner = first +
+                 static_cast<std::int32_t>(std::ranges::lower_bound(used, corner) - used.begin());
+}
+
+Shell shell_of_cells(const Complex& complex, std::vector<Side>& sides, double shrink,
+                     const Position& origin, const Progress* progress) {
+    std::ranges::stable_sort(sides, {}, &Side::cell);
+    Shell shell = begun(complex, sides);
+    shell.coordinates.reserve(shell.corners.capacity() / 3);
+    std::vector<std::int32_t> used;
+    for (std::size_t at = 0; at < sides.size();) {
+        const std::size_t begin = shell.corners.size();
+        const std::int32_t cell = sides[at].cell;
+        for (; at < sides.size() && sides[at].cell == cell; ++at) {
+            if (progress != nullptr && (at & 0x3fff) == 0) progress->check();
+            add_polygon(complex, sides[at], shell);
+        }
+        separate(complex, begin, shrink, origin, used, shell);
+    }
+    shell.edges = polygon_edges(shell.offsets, shell.corners, shell.coordinates.size());
+    return shell;
+}
+
+}  // namespace
+
+std::vector<Shell> block_shells(const Complex& complex, std::size_t blocks, const Position& origin,
+                                int threads, const Progress* progress) {
+    require_in_range(complex, blocks, progress);
+    const auto sides = sides_by_block(complex, blocks, true, progress);
+    std::vector<Shell> shells(blocks);
+    strata::parallel_chunks(blocks, threads, progress, [&](std::size_t block) {
+        shells[block] = block_shell(complex, sides[block], origin);
+    });
+    return shells;
+}
+
+std::vector<Shell> cell_shells(const Complex& complex, std::size_t blocks, double shrink,
+                               const Position& origin, int threads, const Progress* progress) {
+    require_in_range(complex, blocks, progress);
+    auto sides = sides_by_block(complex, blocks, false, progress);
+    std::vector<Shell> shells(blocks);
+    strata::parallel_chunks(blocks, threads, progress, [&](std::size_t block) {
+        shells[block] = shell_of_cells(complex, sides[block], shrink, origin, progress);
+        sides[block] = {};
+    });
+    return shells;
+}
+
+}  // namespace realmodel::shells
