@@ -80,15 +80,15 @@ class Live(PanelCase):
         self.assertEqual(bpy.context.view_layer.objects.active, self.block())
 
     def test_a_refusal_is_told_and_mended(self):
-        co = self.items[1].data.vertices[6].co
-        co.x += 60.0
+        vertices = self.items[1].data.vertices
+        vertices[6].co.x += 60.0
         raise_by(self.items[1], 0.0)
         self.live_is_done()
         activity = bpy.context.window_manager.realmodel
         self.assertIn("overlap in plan", activity.problem)
         self.assertEqual(activity.problem_object, "S1")
         self.assertAlmostEqual(volume(self.block().data), 1e5, delta=1.0)
-        co.x -= 60.0
+        vertices[6].co.x -= 60.0
         raise_by(self.items[1], 1.0)
         self.live_is_done()
         self.assertEqual(activity.problem, "")

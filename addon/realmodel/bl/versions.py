@@ -83,10 +83,10 @@ def corner_vertices(mesh):
     if mesh_memory.is_known():
         return np.array(mesh_memory.corners(mesh)["vertex"])
     found = np.empty(len(mesh.loops), np.int32)
-    if bpy.app.version < (3, 6, 0):
-        mesh.loops.foreach_get("vertex_index", found)
-    elif len(found):
+    if ".corner_vert" in mesh.attributes:  # neither before 3.6 nor in edit mode
         mesh.attributes[".corner_vert"].data.foreach_get("value", found)
+    else:
+        mesh.loops.foreach_get("vertex_index", found)
     return found
 
 
@@ -95,10 +95,10 @@ def edge_vertices(mesh):
     if mesh_memory.is_known():
         return np.array(mesh_memory.edges(mesh)["vertices"])
     found = np.empty(2 * len(mesh.edges), np.int32)
-    if bpy.app.version < (3, 6, 0):
-        mesh.edges.foreach_get("vertices", found)
-    elif len(found):
+    if ".edge_verts" in mesh.attributes:
         mesh.attributes[".edge_verts"].data.foreach_get("value", found)
+    else:
+        mesh.edges.foreach_get("vertices", found)
     return found.reshape(-1, 2)
 
 
