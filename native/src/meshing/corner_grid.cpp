@@ -5,34 +5,34 @@ namespace realmodel::meshing {
 
 namespace {
 
-constexpr std::uint8_t most_in_cell = 16;
-constexpr double cells_along = 16;
+constexpr std::int32_t most_in_cell = 24;
 constexpr int deepest = 24;
 
 }  // namespace
 
-CornerGrid::CornerGrid(std::span<const PlanPoint> places, std::span<const std::int32_t> members)
-    : places_(places),
-      before_(places.size(), empty),
-      after_(places.size(), empty),
-      cell_(places.size(), empty),
-      level_of_(places.size(), empty) {
-    std::vector<std::int32_t> all(members.begin(), members.end());
-    if (!all.empty()) add_level(all, empty, 0);
+CornerGrid::CornerGrid(std::vector<Member> members, std::size_t numbers) : whereabouts_(numbers) {
+    members_.reserve(members.size());
+    if (!members.empty()) add_level(members, none, none, 0);
 }
 
-std::int32_t CornerGrid::add_level(std::span<std::int32_t> members, std::int32_t cell, int depth) {
+std::int32_t CornerGrid::add_level(std::span<Member> members, std::int32_t above,
+                                   std::int32_t cell_above, int depth) {
     Level level{};
-    level.low = level.high = places_[members[0]];
-    level.cell = cell;
-    for (const std::int32_t m : members) {
+    level.low = level.high = members[0].place;
+    level.above = above;
+    level.cell_above = cell_above;
+    for (const Member& member : members) {
         for (int k = 0; k < 2; ++k) {
-            level.low[k] = std::min(level.low[k], places_[m][k]);
-            level.high[k] = std::max(level.high[k], places_[m][k]);
+            level.low[k] = std::min(level.low[k], member.place[k]);
+            level.high[k] = std::max(level.high[k], member.place[k]);
         }
     }
     const double width = level.high[0] - level.low[0], height = level.high[1] - level.low[1];
-    const double side = std::max(width, height) / cells_along;
+    // Outlines are lines: with a tenth of its members along each way, a cell that they pass has a
+    // few of them, and levels take memory in proportion to what they hold.
+    const double along =
+        std::clamp(static_cast<double>(members.size()) / 10, 2.0, most_along - 1.0);
+    const double side = std::max(width, height) / along;
     level.columns = level.rows = 1;
     if (side > 0 && std::isfinite(1 / side)) {
         level.side = side;
@@ -40,67 +40,77 @@ std::int32_t CornerGrid::add_level(std::span<std::int32_t> members, std::int32_t
         level.columns = static_cast<std::int32_t>(width / side) + 1;
         level.rows = static_cast<std::int32_t>(height / side) + 1;
     }
-    const auto number = static_cast<std::int32_t>(levels_.size());
     level.first = static_cast<std::int32_t>(cells_.size());
-    levels_.push_back(level);
-    cells_.resize(cells_.size() + static_cast<std::size_t>(level.columns) * level.rows, empty);
+    const auto number = static_cast<std::int32_t>(levels_.size());
+    const std::int32_t cell_count = level.columns * level.rows;
+    cells_.resize(cells_.size() + cell_count);
 
-    const auto cell_of = [&](std::int32_t m) {
-        return level.first +
-               cell_along(places_[m][1] - level.low[1], level, level.rows) * level.columns +
-               cell_along(places_[m][0] - level.low[0], level, level.columns);
-    };
-    std::vector<std::uint8_t> held(cells_.size() - level.first, 0);
-    for (const std::int32_t m : members) {
-        cell_[m] = cell_of(m);
-        std::uint8_t& here = held[cell_[m] - level.first];
-        if (here <= most_in_cell) ++here;
+    std::array<std::int32_t, most_along * most_along + 1> begin{};
+    for (const Member& member : members) {
+        const std::int32_t cell = cell_at(member.place, level);
+        whereabouts_[member.number].cell = cell;
+        ++begin[cell - level.first + 1];
     }
-    std::vector<std::int32_t> crowded;
-    for (const std::int32_t m : members) {
-        const bool is_crowded = held[cell_[m] - level.first] > most_in_cell;
-        if (is_crowded && depth < deepest && level.cells_per_unit > 0) {
-            crowded.push_back(m);
+    for (std::int32_t k = 0; k < cell_count; ++k) {
+        if (begin[k + 1] > 0) set_used(level, level.first + k, true);
+        begin[k + 1] += begin[k];
+    }
+    levels_.push_back(level);
+    std::vector<Member> sorted(members.size());
+    for (auto next = begin; const Member& member : members)
+        sorted[next[whereabouts_[member.number].cell - level.first]++] = member;
+
+    for (std::int32_t k = 0; k < cell_count; ++k) {
+        const std::int32_t cell = level.first + k;
+        const std::span here(sorted.data() + begin[k], sorted.data() + begin[k + 1]);
+        const auto count = static_cast<std::int32_t>(here.size());
+        if (count > most_in_cell && depth < deepest && level.cells_per_unit > 0) {
+            const std::int32_t below = add_level(here, number, cell, depth + 1);
+            cells_[cell] = {below, is_level};
             continue;
         }
-        std::int32_t& head = cells_[cell_[m]];
-        if (head == empty) ++levels_[number].used;
-        level_of_[m] = number;
-        after_[m] = head;
-        if (head >= 0) before_[head] = m;
-        head = m;
-    }
-    std::stable_sort(crowded.begin(), crowded.end(),
-                     [&](std::int32_t m, std::int32_t n) { return cell_[m] < cell_[n]; });
-    for (std::size_t begin = 0, end = 0; begin < crowded.size(); begin = end) {
-        const std::int32_t shared = cell_[crowded[begin]];
-        for (end = begin; end < crowded.size() && cell_[crowded[end]] == shared;)
-            ++end;
-        const std::int32_t below =
-            add_level(std::span(crowded).subspan(begin, end - begin), shared, depth + 1);
-        levels_[below].above = number;
-        cells_[shared] = empty - 1 - below;
-        ++levels_[number].used;
+        cells_[cell] = {static_cast<std::int32_t>(members_.size()), count};
+        for (const Member& member : here) {
+            whereabouts_[member.number] = {static_cast<std::int32_t>(members_.size()), cell,
+                                           number};
+            members_.push_back(member);
+        }
     }
     return number;
 }
 
-void CornerGrid::remove(std::int32_t member) {
-    if (level_of_[member] == empty) return;
-    const std::int32_t before = before_[member], after = after_[member];
-    if (after >= 0) before_[after] = before;
-    if (before >= 0) {
-        after_[before] = after;
-    } else {
-        cells_[cell_[member]] = after;
-        // A level that nothing is left in is passed over from now on.
-        std::int32_t level = after == empty ? level_of_[member] : empty;
-        while (level != empty && --levels_[level].used == 0 && levels_[level].above != empty) {
-            cells_[levels_[level].cell] = empty;
-            level = levels_[level].above;
-        }
+void CornerGrid::set_used(Level& level, std::int32_t cell, bool is_used) {
+    const std::int32_t within = cell - level.first;
+    const std::int32_t row = within / level.columns;
+    const std::uint32_t column = 1U << within % level.columns;
+    std::uint32_t& used = level.used[row];
+    used = is_used ? used | column : used & ~column;
+    level.used_rows &= ~(1U << row);
+    if (used != 0) level.used_rows |= 1U << row;
+}
+
+/// A cell that nothing is left in is passed over from now on, and so is a level.
+void CornerGrid::clear(std::int32_t number, std::int32_t cell) {
+    while (number != none) {
+        Level& level = levels_[number];
+        cells_[cell] = {};
+        set_used(level, cell, false);
+        if (level.used_rows != 0) return;
+        cell = level.cell_above;
+        number = level.above;
     }
-    level_of_[member] = empty;
+}
+
+void CornerGrid::remove(std::int32_t number) {
+    auto& [member, at, level] = whereabouts_[number];
+    if (member == none) return;
+    Cell& cell = cells_[at];
+    --cell.count;
+    const Member& last = members_[cell.first + cell.count];
+    members_[member] = last;
+    whereabouts_[last.number].member = member;
+    member = none;
+    if (cell.count == 0) clear(level, at);
 }
 
 }  // namespace realmodel::meshing

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -17,59 +18,84 @@ namespace realmodel::meshing {
 /// that clusters cost no more than what is evenly spread. Points leave one by one.
 class CornerGrid {
 public:
-    /// Takes those of the places that `members` names.
-    CornerGrid(std::span<const PlanPoint> places, std::span<const std::int32_t> members);
+    struct Member {
+        PlanPoint place;
+        std::int32_t number;
+    };
+
+    /// Numbers are from 0 on and below `numbers`, each used once at most.
+    CornerGrid(std::vector<Member> members, std::size_t numbers);
 
     /// Forgets a member; nothing where it has gone already.
-    void remove(std::int32_t member);
+    void remove(std::int32_t number);
 
-    /// Whether `wanted` is true of a member: asked of all in the triangle a-b-c, and of others
-    /// nearby, until it is. (Cells are found by rounded coordinates: of members within rounding of
-    /// the triangle's border some may be passed over.)
+    /// Whether `wanted` is true of a member: asked of all in the triangle a-b-c, and of others in
+    /// the box around it, until it is. (Cells are found by rounded coordinates: of
+    /// members within rounding of the triangle's border some may be passed over.) Searches near
+    /// one another are fast one after another: each begins in the grid where the last one was.
     template <class Wanted>
     bool any_in_triangle(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
-                         Wanted&& wanted) const {
-        return !levels_.empty() && search({a, b, c}, 0, wanted);
-    }
-
-    /// The same of the few members around a place: those in its cell and in the cells beside it.
-    template <class Wanted>
-    bool any_beside(const PlanPoint& p, Wanted&& wanted) const;
+                         Wanted&& wanted);
 
 private:
-    using Triangle = std::array<PlanPoint, 3>;
-    /// What a cell holds: a member, the first of a list; `empty`; or, below that, a level.
-    static constexpr std::int32_t empty = -1;
-    static std::int32_t level_in(std::int32_t held) { return empty - 1 - held; }
+    static constexpr std::int32_t none = -1;
+    static constexpr std::int32_t most_along = 17;  ///< columns or rows of a level
+
+    /// `count` members from `first` on; or, where `count` is `is_level`, the level `first`.
+    struct Cell {
+        std::int32_t first = 0, count = 0;
+    };
+    static constexpr std::int32_t is_level = -1;
     struct Level {
         PlanPoint low, high;
         double cells_per_unit, side;
         std::int32_t columns, rows;
-        std::int32_t first;                        ///< of its cells
-        std::int32_t used;                         ///< cells that hold something
-        std::int32_t above = empty, cell = empty;  ///< the level that it is in, and the cell there
+        std::int32_t first;                            ///< of its cells
+        std::uint32_t used_rows;                       ///< bits of rows that hold something
+        std::array<std::uint32_t, most_along> used;    ///< of each row: columns that hold something
+        std::int32_t above = none, cell_above = none;  ///< the level that it is in, the cell there
+    };
+    struct Triangle {
+        PlanPoint a, b, c;
+        PlanPoint low, high;  ///< of the box around it
     };
 
-    std::int32_t add_level(std::span<std::int32_t> members, std::int32_t cell, int depth);
+    std::int32_t add_level(std::span<Member> members, std::int32_t above, std::int32_t cell_above,
+                           int depth);
+    void set_used(Level& level, std::int32_t cell, bool is_used);
+    void clear(std::int32_t level, std::int32_t cell);
+
     static std::int32_t cell_along(double offset, const Level& level, std::int32_t count) {
         return static_cast<std::int32_t>(
             std::clamp(offset * level.cells_per_unit, 0.0, static_cast<double>(count - 1)));
     }
+    static std::int32_t row_at(double y, const Level& level) {
+        return cell_along(y - level.low[1], level, level.rows);
+    }
+    static std::int32_t column_at(double x, const Level& level) {
+        return cell_along(x - level.low[0], level, level.columns);
+    }
+    /// The cell of a level that a place is in, or the one nearest to it.
+    static std::int32_t cell_at(const PlanPoint& p, const Level& level) {
+        return level.first + row_at(p[1], level) * level.columns + column_at(p[0], level);
+    }
+    /// Bits of columns, or of rows.
+    static std::uint32_t bits_between(std::int32_t first, std::int32_t last) {
+        return last < first ? 0 : ((2U << (last - first)) - 1) << first;
+    }
+    std::int32_t innermost(const Triangle& triangle) const;
     template <class Wanted>
     bool search(const Triangle& triangle, std::int32_t level, Wanted& wanted) const;
-    template <class Wanted>
-    bool any_in_list(std::int32_t head, Wanted& wanted) const {
-        for (std::int32_t m = head; m >= 0; m = after_[m])
-            if (wanted(m)) return true;
-        return false;
-    }
 
-    std::span<const PlanPoint> places_;
     std::vector<Level> levels_;
-    std::vector<std::int32_t> cells_;
-    // Of each place: the members before and after it in its cell's list, the cell, and its level;
-    // no level if it is no member.
-    std::vector<std::int32_t> before_, after_, cell_, level_of_;
+    std::vector<Cell> cells_;
+    std::vector<Member> members_;  ///< those of a cell side by side
+    /// Of each number: where its member is, none if there is none; the cell, and its level.
+    struct Whereabouts {
+        std::int32_t member = none, cell, level;
+    };
+    std::vector<Whereabouts> whereabouts_;
+    std::int32_t last_ = 0;  ///< the level where the last search was
 };
 
 /// Takes in the part of the segment ab between the lines y = bottom and y = top.
@@ -84,23 +110,58 @@ inline void widen_by_band(double& low, double& high, const PlanPoint& a, const P
     }
 }
 
+/// The smallest level that holds all members in a triangle, found from that of the last search.
+inline std::int32_t CornerGrid::innermost(const Triangle& triangle) const {
+    const auto lies_in = [&](const Level& level, std::int32_t cell) {
+        return cell_at(triangle.low, level) == cell && cell_at(triangle.high, level) == cell;
+    };
+    std::int32_t number = last_;
+    while (levels_[number].above != none &&
+           !lies_in(levels_[levels_[number].above], levels_[number].cell_above)) {
+        number = levels_[number].above;
+    }
+    while (true) {
+        const Level& level = levels_[number];
+        const std::int32_t cell = cell_at(triangle.low, level);
+        if (cells_[cell].count != is_level || cell_at(triangle.high, level) != cell) return number;
+        number = cells_[cell].first;
+    }
+}
+
+template <class Wanted>
+bool CornerGrid::any_in_triangle(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
+                                 Wanted&& wanted) {
+    if (levels_.empty()) return false;
+    const Triangle triangle{a,
+                            b,
+                            c,
+                            {std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})},
+                            {std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})}};
+    last_ = innermost(triangle);
+    return search(triangle, last_, wanted);
+}
+
 template <class Wanted>
 bool CornerGrid::search(const Triangle& triangle, std::int32_t number, Wanted& wanted) const {
     const Level& level = levels_[number];
-    const auto& [a, b, c] = triangle;
-    const double left = std::min({a[0], b[0], c[0]}), right = std::max({a[0], b[0], c[0]});
-    const double bottom = std::min({a[1], b[1], c[1]}), top = std::max({a[1], b[1], c[1]});
+    const auto& [a, b, c, box_low, box_high] = triangle;
+    const auto [left, bottom] = box_low;
+    const auto [right, top] = box_high;
     if (left > level.high[0] || right < level.low[0] || bottom > level.high[1] ||
         top < level.low[1]) {
         return false;
     }
-    const std::int32_t first_row = cell_along(bottom - level.low[1], level, level.rows),
-                       last_row = cell_along(top - level.low[1], level, level.rows);
-    const std::int32_t first = cell_along(left - level.low[0], level, level.columns),
-                       last = cell_along(right - level.low[0], level, level.columns);
-    for (std::int32_t row = first_row; row <= last_row; ++row) {
-        std::int32_t from = first, to = last;
-        if (last_row - first_row > 1 && last - first > 1) {
+    const std::int32_t first_row = row_at(bottom, level), last_row = row_at(top, level);
+    const std::int32_t first = column_at(left, level), last = column_at(right, level);
+    const std::uint32_t between = bits_between(first, last);
+    // Of large triangles the corners of the box are left out.
+    const bool is_large = last_row - first_row > 1 && last - first > 1;
+    std::uint32_t rows = level.used_rows & bits_between(first_row, last_row);
+    for (; rows != 0; rows &= rows - 1) {
+        const int row = std::countr_zero(rows);
+        std::uint32_t used = level.used[row] & between;
+        if (used == 0) continue;
+        if (is_large) {
             double low = right, high = left;
             const double below = row == 0 ? bottom : level.low[1] + row * level.side;
             const double above =
@@ -108,45 +169,26 @@ bool CornerGrid::search(const Triangle& triangle, std::int32_t number, Wanted& w
             widen_by_band(low, high, a, b, below, above);
             widen_by_band(low, high, b, c, below, above);
             widen_by_band(low, high, c, a, below, above);
-            from = cell_along(low - level.low[0], level, level.columns);
-            to = cell_along(high - level.low[0], level, level.columns);
+            used &= bits_between(column_at(low, level), column_at(high, level));
         }
-        const std::int32_t* cell = &cells_[level.first + row * level.columns];
-        for (std::int32_t column = from; column <= to; ++column) {
-            const std::int32_t held = cell[column];
-            if (held == empty) continue;
-            if (held > empty ? any_in_list(held, wanted)
-                             : search(triangle, level_in(held), wanted)) {
-                return true;
+        const Cell* cells = &cells_[level.first + row * level.columns];
+        for (; used != 0; used &= used - 1) {
+            const Cell& cell = cells[std::countr_zero(used)];
+            if (cell.count == is_level) {
+                if (search(triangle, cell.first, wanted)) return true;
+                continue;
+            }
+            const Member* member = &members_[cell.first];
+            for (const Member* end = member + cell.count; member != end; ++member) {
+                const auto [x, y] = member->place;
+                // One branch instead of four: most are outside, but no one side tells which.
+                const bool is_in_box = static_cast<int>(x >= left) & static_cast<int>(x <= right) &
+                                       static_cast<int>(y >= bottom) & static_cast<int>(y <= top);
+                if (is_in_box && wanted(*member)) return true;
             }
         }
     }
     return false;
-}
-
-template <class Wanted>
-bool CornerGrid::any_beside(const PlanPoint& p, Wanted&& wanted) const {
-    constexpr std::int32_t reach = 1;
-    if (levels_.empty()) return false;
-    for (std::int32_t number = 0;;) {
-        const Level& level = levels_[number];
-        const std::int32_t row = cell_along(p[1] - level.low[1], level, level.rows),
-                           column = cell_along(p[0] - level.low[0], level, level.columns);
-        const std::int32_t held = cells_[level.first + row * level.columns + column];
-        if (held < empty) {
-            number = level_in(held);
-            continue;
-        }
-        for (std::int32_t r = std::max(0, row - reach); r <= std::min(level.rows - 1, row + reach);
-             ++r) {
-            const std::int32_t* cell = &cells_[level.first + r * level.columns];
-            for (std::int32_t k = std::max(0, column - reach);
-                 k <= std::min(level.columns - 1, column + reach); ++k) {
-                if (cell[k] > empty && any_in_list(cell[k], wanted)) return true;
-            }
-        }
-        return false;
-    }
 }
 
 }  // namespace realmodel::meshing

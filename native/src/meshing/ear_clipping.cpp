@@ -18,18 +18,19 @@ namespace {
 
 using Triangles = std::vector<std::array<std::int32_t, 3>>;
 
+std::vector<PlanPoint> corners_of(std::span<const Ring> rings) {
+    std::vector<PlanPoint> corners;
+    for (const Ring& ring : rings)
+        corners.insert(corners.end(), ring.begin(), ring.end());
+    return corners;
+}
+
 /// Cuts ears off a ring until a triangle is left.
 class Clipping {
 public:
-    Clipping(EarRing& ring, std::span<const PlanPoint> corners, const Check& check)
-        : ring_(ring),
-          check_(check),
-          places_(ring.nodes.size()),
-          turns_(ring.nodes.size(), 0),
-          entry_(ring.nodes.size(), none),
-          blocker_(ring.nodes.size(), none),
-          waiting_(ring.nodes.size()) {
-        mesh_.points.assign(corners.begin(), corners.end());
+    Clipping(EarRing& ring, std::vector<PlanPoint> corners, const Check& check)
+        : ring_(ring), check_(check), tips_(ring.nodes.size()) {
+        mesh_.points = std::move(corners);
         mesh_.corners.reserve(ring.nodes.size());
         mesh_.across.reserve(ring.nodes.size());
         mesh_.fixed.reserve(ring.nodes.size());
@@ -49,7 +50,7 @@ public:
             } while (tip != begin);
             tip = cut_ears(grid, is_choosy, begin);
         }
-        if (left_ > 3 || turns_[tip] <= 0) return false;
+        if (left_ > 3 || tips_[tip].turn <= 0) return false;
         const EarNode& node = ring_.nodes[tip];
         const std::int32_t t = add(node.previous, tip, node.next);
         place({t, 2}, node.next);
@@ -60,16 +61,17 @@ public:
         Ticker tick(check_);
         std::vector<Side> doubtful;
         const auto count = static_cast<std::int32_t>(mesh_.corners.size());
-        for (std::int32_t t = 0; t < count; ++t) {
-            for (int i = 0; i < 3; ++i)
-                if (mesh_.is_border({t, i})) mesh_.fix({t, i});
-        }
+        // All are asked before the first is flipped: then no answer waits for another.
         for (std::int32_t t = 0; t < count; ++t) {
             tick(0);
-            for (int i = 0; i < 3; ++i)
-                if (mesh_.behind({t, i}).triangle() > t) doubtful.push_back({t, i});
-            mesh_.legalise(doubtful);
+            for (int i = 0; i < 3; ++i) {
+                const Side side(t, i);
+                if (mesh_.behind(side).triangle() > t && mesh_.should_flip(side)) {
+                    doubtful.push_back(side);
+                }
+            }
         }
+        mesh_.legalise(doubtful);
         return std::move(mesh_.corners);
     }
 
@@ -78,23 +80,21 @@ private:
 
     int turn_at(std::int32_t node) const {
         const EarNode& n = ring_.nodes[node];
-        return side_of_line(places_[n.previous], places_[node], places_[n.next]);
+        return side_of_line(ring_.place(n.previous), n.place, ring_.place(n.next));
     }
 
     /// Only corners that do not turn left can hide in an ear: of those that lie in it, the one
     /// farthest from its diagonal turns right or not at all.
     CornerGrid take_corners() {
-        for (std::size_t n = 0; n < places_.size(); ++n)
-            places_[n] = ring_.place(static_cast<std::int32_t>(n));
-        std::vector<std::int32_t> hiding;
+        std::vector<CornerGrid::Member> hiding;
         std::int32_t node = ring_.first();
         do {
-            turns_[node] = static_cast<std::int8_t>(turn_at(node));
-            if (turns_[node] <= 0) hiding.push_back(node);
+            tips_[node].turn = static_cast<std::int8_t>(turn_at(node));
+            if (tips_[node].turn <= 0) hiding.push_back({ring_.place(node), node});
             ++left_;
             node = ring_.nodes[node].next;
         } while (node != ring_.first());
-        return {places_, hiding};
+        return {std::move(hiding), ring_.nodes.size()};
     }
 
     /// Cuts the ears in the queue and those that come of it; returns a corner that is left.
@@ -102,8 +102,9 @@ private:
         for (std::size_t i = 0; i < queue_.size() && left_ > 3; ++i) {
             if (i % 1024 == 0) check_(0);
             const std::int32_t tip = queue_[i];
-            if (entry_[tip] != static_cast<std::int32_t>(i)) continue;  // it comes again, or is cut
-            entry_[tip] = none;
+            if (tips_[tip].entry != static_cast<std::int32_t>(i))
+                continue;  // it comes again, or is cut
+            tips_[tip].entry = none;
             const std::int32_t a = ring_.nodes[tip].previous, c = ring_.nodes[tip].next;
             const std::int32_t blocker = blocker_of(tip, grid, is_choosy);
             if (blocker != none) {
@@ -115,11 +116,11 @@ private:
             if (left_over == tip) left_over = c;
             for (const std::int32_t n : {a, c}) {
                 const int turn = turn_at(n);
-                if (turns_[n] <= 0 && turn > 0) {
+                if (tips_[n].turn <= 0 && turn > 0) {
                     grid.remove(n);
                     wake(n);
                 }
-                turns_[n] = static_cast<std::int8_t>(turn);
+                tips_[n].turn = static_cast<std::int8_t>(turn);
                 enqueue(n);
             }
         }
@@ -130,9 +131,9 @@ private:
     /// slivers that flips must mend.
     void enqueue(std::int32_t tip) {
         stop_waiting(tip);
-        entry_[tip] = none;
-        if (turns_[tip] <= 0) return;
-        entry_[tip] = static_cast<std::int32_t>(queue_.size());
+        tips_[tip].entry = none;
+        if (tips_[tip].turn <= 0) return;
+        tips_[tip].entry = static_cast<std::int32_t>(queue_.size());
         queue_.push_back(tip);
     }
 
@@ -140,36 +141,37 @@ private:
     // left and hides in no ear any more.
 
     void wait(std::int32_t tip, std::int32_t blocker) {
-        Waiting& first = waiting_[blocker];
-        blocker_[tip] = blocker;
-        waiting_[tip].before = none;
-        waiting_[tip].after = first.head;
-        if (first.head != none) waiting_[first.head].before = tip;
+        Tip& first = tips_[blocker];
+        tips_[tip].blocker = blocker;
+        tips_[tip].before = none;
+        tips_[tip].after = first.head;
+        if (first.head != none) tips_[first.head].before = tip;
         first.head = tip;
     }
 
     void stop_waiting(std::int32_t tip) {
-        if (blocker_[tip] == none) return;
-        const auto [head, before, after] = waiting_[tip];
+        auto& [entry, blocker, head, before, after, turn] = tips_[tip];
+        if (blocker == none) return;
         if (before != none) {
-            waiting_[before].after = after;
+            tips_[before].after = after;
         } else {
-            waiting_[blocker_[tip]].head = after;
+            tips_[blocker].head = after;
         }
-        if (after != none) waiting_[after].before = before;
-        blocker_[tip] = none;
+        if (after != none) tips_[after].before = before;
+        blocker = none;
     }
 
     void wake(std::int32_t blocker) {
-        while (waiting_[blocker].head != none)
-            enqueue(waiting_[blocker].head);
+        while (tips_[blocker].head != none)
+            enqueue(tips_[blocker].head);
     }
 
     /// What keeps a corner that turns left from being cut off, or none. Who is choosy takes only
     /// triangles that hardly need flips: with none of a few corners nearby in their circle.
-    std::int32_t blocker_of(std::int32_t tip, const CornerGrid& grid, bool is_choosy) const {
+    std::int32_t blocker_of(std::int32_t tip, CornerGrid& grid, bool is_choosy) const {
         const EarNode& node = ring_.nodes[tip];
-        const PlanPoint &a = places_[node.previous], &b = places_[tip], &c = places_[node.next];
+        const PlanPoint &a = ring_.place(node.previous), &b = node.place,
+                        &c = ring_.place(node.next);
         std::int32_t blocker = none;
         if (is_choosy) {
             // Rounded: it decides how good the triangle is, not whether it is one.
@@ -179,29 +181,25 @@ private:
             const double x = (v2 * uy - u2 * vy) / twice, y = (u2 * vx - v2 * ux) / twice;
             const double radius2 = (1 - 1e-9) * (x * x + y * y);
             const auto is_within = [&](std::int32_t n) {
-                const PlanPoint& p = places_[n];
+                const PlanPoint& p = ring_.place(n);
                 const double dx = p[0] - b[0] - x, dy = p[1] - b[1] - y;
                 if (dx * dx + dy * dy >= radius2 || twice_area(c, p, a) <= 0) return false;
                 blocker = n;
                 return true;
             };
             if (is_within(ring_.nodes[node.previous].previous) ||
-                is_within(ring_.nodes[node.next].next) ||
-                grid.any_beside(middle(a, c), is_within)) {
+                is_within(ring_.nodes[node.next].next)) {
                 return blocker;
             }
         }
-        const PlanPoint low{std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})},
-            high{std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})};
-        grid.any_in_triangle(a, b, c, [&](std::int32_t n) {
-            const PlanPoint& p = places_[n];
-            if (p[0] < low[0] || p[0] > high[0] || p[1] < low[1] || p[1] > high[1]) return false;
+        grid.any_in_triangle(a, b, c, [&](const CornerGrid::Member& member) {
+            const PlanPoint& p = member.place;
             if (p == a || p == b || p == c) return false;
             if (side_of_line(a, b, p) < 0 || side_of_line(b, c, p) < 0 ||
                 side_of_line(c, a, p) < 0) {
                 return false;
             }
-            blocker = n;
+            blocker = member.number;
             return true;
         });
         return blocker;
@@ -250,27 +248,26 @@ private:
         other.behind = placed;
     }
 
-    struct Waiting {
-        std::int32_t head = none;                  ///< the first that waits for this corner
+    /// What is known of a node as the tip of an ear.
+    struct Tip {
+        std::int32_t entry = none;                 ///< where it stands in the queue
+        std::int32_t blocker = none;               ///< what it waits for
+        std::int32_t head = none;                  ///< the first that waits for it
         std::int32_t before = none, after = none;  ///< others that wait for the same as this one
+        std::int8_t turn = 0;                      ///< 1 left, 0 straight on or back, -1 right
     };
 
     EarRing& ring_;
     const Check& check_;
     FlatMesh mesh_;
-    // Of each node:
-    std::vector<PlanPoint> places_;
-    std::vector<std::int8_t> turns_;     ///< 1 left, 0 straight on or back, -1 right
-    std::vector<std::int32_t> entry_;    ///< where it stands in the queue
-    std::vector<std::int32_t> blocker_;  ///< what it waits for
-    std::vector<Waiting> waiting_;
+    std::vector<Tip> tips_;  ///< of each node
     std::vector<std::int32_t> queue_;
     std::int32_t left_ = 0;
 };
 
 /// The same by constrained Delaunay triangulation, corners named by their first appearance.
-Triangles by_region(std::span<const Ring> rings, std::span<const PlanPoint> corners,
-                    const Progress* progress) {
+Triangles by_region(std::span<const Ring> rings, const Progress* progress) {
+    const std::vector<PlanPoint> corners = corners_of(rings);
     const RingTriangulation region = triangulate_region(rings, progress);
     std::vector<std::int32_t> order(corners.size());
     for (std::size_t i = 0; i < order.size(); ++i)
@@ -317,17 +314,14 @@ Triangles triangulate_polygon(std::span<const Ring> rings, const Progress* progr
     const Check check = [progress](double) {
         if (progress != nullptr) progress->check();
     };
-    std::vector<PlanPoint> corners;
-    for (const Ring& ring : rings)
-        corners.insert(corners.end(), ring.begin(), ring.end());
     if (is_plain(rings)) {
-        EarRing ring(rings, corners);
+        EarRing ring(rings);
         if (ring.join_holes()) {
-            Clipping clipping(ring, corners, check);
+            Clipping clipping(ring, corners_of(rings), check);
             if (clipping.run()) return clipping.swapped();
         }
     }
-    return by_region(rings, corners, progress);
+    return by_region(rings, progress);
 }
 
 }  // namespace realmodel::meshing

@@ -11,9 +11,11 @@
 
 namespace realmodel::meshing {
 
-EarRing::EarRing(std::span<const Ring> rings, std::span<const PlanPoint> corners)
-    : corners_(corners) {
-    nodes.reserve(corners.size() + 2 * rings.size());
+EarRing::EarRing(std::span<const Ring> rings) {
+    std::size_t corners = 0;
+    for (const Ring& ring : rings)
+        corners += ring.size();
+    nodes.reserve(corners + 2 * rings.size());
     std::int32_t first_corner = 0;
     for (std::size_t r = 0; r < rings.size(); ++r) {
         const std::int32_t node = add_ring(rings[r], first_corner, r == 0);
@@ -35,10 +37,10 @@ std::int32_t EarRing::add_ring(const Ring& ring, std::int32_t first_corner, bool
     const auto begin = static_cast<std::int32_t>(nodes.size());
     const auto count = static_cast<std::int32_t>(ring.size());
     for (std::int32_t i = 0; i < count; ++i) {
-        const std::int32_t corner = first_corner + (turns ? count - 1 - i : i);
+        const std::int32_t corner = turns ? count - 1 - i : i;
         const auto here = static_cast<std::int32_t>(nodes.size());
-        if (here > begin && place(here - 1) == corners_[corner]) continue;
-        nodes.push_back({corner, here - 1, here + 1});
+        if (here > begin && place(here - 1) == ring[corner]) continue;
+        nodes.push_back({ring[corner], first_corner + corner, here - 1, here + 1});
     }
     while (static_cast<std::int32_t>(nodes.size()) > begin + 1 &&
            place(static_cast<std::int32_t>(nodes.size()) - 1) == place(begin)) {

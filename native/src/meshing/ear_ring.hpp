@@ -12,6 +12,7 @@ namespace realmodel::meshing {
 
 /// A corner in a ring, and the edge from it to the next.
 struct EarNode {
+    PlanPoint place;
     std::int32_t corner;
     std::int32_t previous, next;
     std::int32_t twin = -1;         ///< for a bridge: the node whose edge runs the other way
@@ -22,8 +23,8 @@ struct EarNode {
 /// The rings of a polygon, the outline counter-clockwise and holes clockwise, joined into one.
 class EarRing {
 public:
-    /// Corners are numbered through the rings; `corners` are their places.
-    EarRing(std::span<const Ring> rings, std::span<const PlanPoint> corners);
+    /// Corners are numbered through the rings.
+    explicit EarRing(std::span<const Ring> rings);
 
     /// Joins the holes to the outline. False where a bridge cannot be told from the rounding of
     /// what it has to pass.
@@ -31,7 +32,7 @@ public:
 
     std::vector<EarNode> nodes;
     std::int32_t first() const { return outline_; }
-    const PlanPoint& place(std::int32_t node) const { return corners_[nodes[node].corner]; }
+    const PlanPoint& place(std::int32_t node) const { return nodes[node].place; }
     /// Whether the way from a node towards a place begins inside of the ring. Exact.
     bool opens_towards(std::int32_t node, const PlanPoint& p) const;
 
@@ -42,7 +43,6 @@ private:
     void enter_rows(std::int32_t node);
     std::size_t row_of(double y) const;
 
-    std::span<const PlanPoint> corners_;
     std::int32_t outline_ = -1;
     std::vector<std::int32_t> holes_;  ///< a leftmost node of each
     // Nodes by the rows of the plan that their edges pass.

@@ -18,6 +18,8 @@ Point exact_point(const PlanPoint& p) {
 }  // namespace
 
 int side_of_line_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
+    // The commonest cases by far, that need no arithmetic: p is an end, or all lie along an axis.
+    if ((a[0] == p[0] || b[1] == p[1]) && (a[1] == p[1] || b[0] == p[0])) return 0;
     return static_cast<int>(CGAL::orientation(exact_point(a), exact_point(b), exact_point(p)));
 }
 
