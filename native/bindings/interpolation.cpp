@@ -134,19 +134,29 @@ Array<double> nearest_distance(const Array<double>& points, const Array<double>&
 }
 
 py::dict fit_variogram(const Array<double>& points, double ratio, double azimuth,
-                       const std::string& drift, int neighbours, int threads, Progress* control) {
+                       bool finds_anisotropy, const std::string& drift, int neighbours, int threads,
+                       Progress* control) {
     const auto from = rows<3>(points, "points");
-    const interpolation::FitOptions options{drift_of(drift), neighbours, threads};
+    const interpolation::FitOptions options{drift_of(drift), neighbours, threads, finds_anisotropy};
     interpolation::FittedVariogram fitted;
     {
         const py::gil_scoped_release unlocked;
         fitted = interpolation::fit_variogram(from, {ratio, azimuth}, control, options);
     }
+    const interpolation::Variogram& variogram = fitted.variogram;
+    std::vector<NestedTuple> further;
+    for (const interpolation::NestedStructure& part : variogram.further) {
+        further.emplace_back(std::string(name_of(part.model)), part.range, part.sill,
+                             part.anisotropy.ratio, part.anisotropy.azimuth);
+    }
     py::dict out;
-    out["model"] = py::str(std::string(name_of(fitted.variogram.model)));
-    out["range"] = fitted.variogram.range;
-    out["sill"] = fitted.variogram.sill;
-    out["nugget"] = fitted.variogram.nugget;
+    out["model"] = py::str(std::string(name_of(variogram.model)));
+    out["range"] = variogram.range;
+    out["sill"] = variogram.sill;
+    out["nugget"] = variogram.nugget;
+    out["anisotropy_ratio"] = variogram.anisotropy.ratio;
+    out["anisotropy_azimuth"] = variogram.anisotropy.azimuth;
+    out["further"] = further;
     out["lags"] = to_array(std::move(fitted.experimental.lags));
     out["gamma"] = to_array(std::move(fitted.experimental.gamma));
     out["pairs"] = to_array(std::move(fitted.experimental.pairs));
@@ -223,15 +233,17 @@ Returns z (N,) float64. Raises InputError as krige does; Cancelled.)");
 
 Returns (N,) float64. Raises InputError: kind "no_points", "not_finite"; Cancelled.)");
     module.def("fit_variogram", &fit_variogram, arg("points"), arg("anisotropy_ratio") = 1.0,
-               arg("anisotropy_azimuth") = 0.0, arg("drift") = "constant", arg("neighbours") = 32,
-               arg("threads") = 0, arg("control") = py::none(),
+               arg("anisotropy_azimuth") = 0.0, arg("finds_anisotropy") = false,
+               arg("drift") = "constant", arg("neighbours") = 32, arg("threads") = 0,
+               arg("control") = py::none(),
                R"(Fits a variogram to points (P, 3) float64, or to what a drift leaves of them.
 
-neighbours  with which points that are left out are told, at most 64
-threads     0: as many as there are; the result does not depend on it
+finds_anisotropy  instead of taking the one that is given
+neighbours        with which points that are left out are told, at most 64
+threads           0: as many as there are; the result does not depend on it
 
-Returns a dict: model, range, sill, nugget as krige takes them, the experimental values lags (L,),
-gamma (L,) float64 and pairs (L,) int64.
+Returns a dict: model, range, sill, nugget, anisotropy_ratio, anisotropy_azimuth and further as
+krige takes them, the experimental values lags (L,), gamma (L,) float64 and pairs (L,) int64.
 Raises InputError: kind "no_points", "not_finite", "contradicting_points", "anisotropy", "option";
 Cancelled.)");
 }

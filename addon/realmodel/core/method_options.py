@@ -11,8 +11,6 @@ import numpy as np
 from .errors import InputRefused, UsageError
 from .variogram import VARIOGRAM_MODELS
 
-NO_ANISOTROPY = {"ratio": 1.0, "azimuth": 0.0}
-
 
 class OptionRefused(InputRefused):
     """An option of a method is not as it must be; `option` is its name, for the line in a file."""
@@ -211,9 +209,10 @@ def _nested(option: str, value: Mapping) -> dict:
     return {"nugget": nugget, "structures": structures}
 
 
-def anisotropy(option: str, value) -> dict:
+def anisotropy(option: str, value) -> dict | None:
+    """{ratio, azimuth}. None: found with a variogram that is fitted, and none with one that is given."""
     if value is None:
-        return dict(NO_ANISOTROPY)
+        return None
     parts = _table(option, value, ("ratio", "azimuth"), ())
     return {
         "ratio": positive(f"{option}.ratio", parts["ratio"]),

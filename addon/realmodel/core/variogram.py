@@ -18,6 +18,7 @@ _SHAPES = {
     "matern52": lambda t: 1 - (1 + _B * t + (_B * t) ** 2 / 3) * np.exp(-_B * t),
 }
 VARIOGRAM_MODELS = tuple(_SHAPES)
+NO_ANISOTROPY = {"ratio": 1.0, "azimuth": 0.0}
 
 # A fit means nothing where neighbouring points differ as much as any, or the range is beyond what they show.
 _PURE_NUGGET = 0.75
@@ -46,8 +47,10 @@ class Variogram:
     `model` is spherical, exponential, gaussian, cubic, matern32 or matern52; `range` is the practical range
     in model units, `sill` and `nugget` are in units of height squared. A nested variogram has `structures`,
     whose parts are added to the nugget; then `model` is "nested", `range` the longest range and `sill` the
-    whole. Where it was fitted to points, `lags` (L,), `gamma` (L,) and `pairs` (L,) are the experimental
-    semivariogram; else they are None.
+    whole. `anisotropy` is {ratio, azimuth} where one was found with a fit, `range` then the one along the
+    azimuth; else None: that of the interpolation. Where it was fitted to points, `lags` (L,), `gamma` (L,)
+    and `pairs` (L,) are the experimental semivariogram, with distances under the anisotropy; else they are
+    None.
     """
 
     model: str
@@ -55,6 +58,7 @@ class Variogram:
     sill: float
     nugget: float = 0.0
     structures: tuple[Structure, ...] = ()
+    anisotropy: dict | None = None
     lags: np.ndarray | None = field(default=None, compare=False, repr=False)
     gamma: np.ndarray | None = field(default=None, compare=False, repr=False)
     pairs: np.ndarray | None = field(default=None, compare=False, repr=False)
@@ -69,6 +73,22 @@ class Variogram:
         sill = nugget + sum(part.sill for part in structures)
         return cls("nested", max(part.range for part in structures), sill, nugget, structures)
 
+    @classmethod
+    def from_fit(cls, fit: dict, finds_anisotropy: bool) -> Variogram:
+        """Of what the native fit returns; with the anisotropy that it found, if it was to find one."""
+        found = None
+        if finds_anisotropy and fit["anisotropy_ratio"] != 1.0:
+            found = {"ratio": fit["anisotropy_ratio"], "azimuth": fit["anisotropy_azimuth"]}
+        nugget, sill = fit["nugget"], fit["sill"]
+        experimental = {name: fit[name] for name in ("lags", "gamma", "pairs")}
+        if not fit["further"]:
+            return cls(fit["model"], fit["range"], sill, nugget, anisotropy=found, **experimental)
+        further = [Structure(model, range_, part, found) for model, range_, part, *_ in fit["further"]]
+        first = sill - nugget - sum(part.sill for part in further)
+        structures = (Structure(fit["model"], fit["range"], first, found), *further)
+        longest = max(part.range for part in structures)
+        return cls("nested", longest, sill, nugget, structures, found, **experimental)
+
     @property
     def fitted(self) -> bool:
         return self.lags is not None
@@ -77,19 +97,25 @@ class Variogram:
         """gamma at distances, in the direction of the longest range; to draw it beside `lags` and `gamma`."""
         distance = np.asarray(distance, np.float64)
         gamma = np.full(distance.shape, self.nugget)
-        for part in self.structures or (Structure(self.model, self.range, self.sill - self.nugget),):
+        for part in self._parts():
             gamma = gamma + part.sill * _SHAPES[part.model](distance / part.range)
         return np.where(distance > 0, gamma, 0.0)
 
     def settings(self) -> dict:
         """As a project file writes it."""
-        if self.structures:
-            return {"nugget": self.nugget, "structures": [part.settings() for part in self.structures]}
+        if self.structures or self.anisotropy:
+            return {"nugget": self.nugget, "structures": [part.settings() for part in self._parts()]}
         return {"model": self.model, "range": self.range, "sill": self.sill, "nugget": self.nugget}
 
-    def native(self, anisotropy: dict) -> dict:
-        """The arguments of the native kriging functions."""
-        first, *further = self.structures or (Structure(self.model, self.range, self.sill),)
+    def _parts(self) -> tuple[Structure, ...]:
+        """Those of a sum, or the one there is."""
+        own = Structure(self.model, self.range, self.sill - self.nugget, self.anisotropy)
+        return self.structures or (own,)
+
+    def native(self, anisotropy: dict | None) -> dict:
+        """The arguments of the native kriging functions. anisotropy: of parts that have none of their own."""
+        first, *further = self._parts()
+        anisotropy = anisotropy or NO_ANISOTROPY
         own = first.anisotropy or anisotropy
         return {
             "model": first.model,

@@ -14,10 +14,10 @@ constexpr int ranges_tried = 48;
 struct Sums {
     double w1 = 0, wf = 0, wff = 0, wg = 0, wfg = 0;
 
-    Sums(const ExperimentalVariogram& e, VariogramModel model, double range) {
+    Sums(const ExperimentalVariogram& e, const Curve& curve) {
         for (std::size_t i = 0; i < e.lags.size(); ++i) {
             const double weight = static_cast<double>(e.pairs[i]) / (e.lags[i] * e.lags[i]);
-            const double f = structure(model, e.lags[i] / range);
+            const double f = curve(e.lags[i]);
             w1 += weight;
             wf += weight * f;
             wff += weight * f * f;
@@ -31,7 +31,7 @@ void measure(const ExperimentalVariogram& e, CurveFit& fit) {
     fit.misfit = 0;
     for (std::size_t i = 0; i < e.lags.size(); ++i) {
         const double weight = static_cast<double>(e.pairs[i]) / (e.lags[i] * e.lags[i]);
-        const double f = structure(fit.model, e.lags[i] / fit.range);
+        const double f = fit.curve(e.lags[i]);
         const double off = e.gamma[i] - fit.nugget - fit.partial_sill * f;
         fit.misfit += weight * off * off;
     }
@@ -40,10 +40,10 @@ void measure(const ExperimentalVariogram& e, CurveFit& fit) {
 /// Both not negative: a linear problem.
 CurveFit fit_for_range(const ExperimentalVariogram& e, VariogramModel model, double range,
                        bool with_nugget) {
-    const Sums s(e, model, range);
     CurveFit fit;
-    fit.model = model;
-    fit.range = range;
+    fit.curve.model = model;
+    fit.curve.range = range;
+    const Sums s(e, fit.curve);
     const double determinant = s.w1 * s.wff - s.wf * s.wf;
     fit.nugget = with_nugget && determinant > 1e-12 * s.w1 * s.wff
                      ? (s.wff * s.wg - s.wf * s.wfg) / determinant
@@ -60,12 +60,10 @@ CurveFit fit_for_range(const ExperimentalVariogram& e, VariogramModel model, dou
 
 }  // namespace
 
-CurveFit fit_sill(const ExperimentalVariogram& e, VariogramModel model, double range,
-                  double nugget) {
-    const Sums s(e, model, range);
+CurveFit fit_sill(const ExperimentalVariogram& e, const Curve& curve, double nugget) {
+    const Sums s(e, curve);
     CurveFit fit;
-    fit.model = model;
-    fit.range = range;
+    fit.curve = curve;
     fit.nugget = nugget;
     fit.partial_sill = s.wff > 0 ? std::max((s.wfg - nugget * s.wf) / s.wff, 0.0) : 0;
     measure(e, fit);
@@ -83,20 +81,30 @@ CurveFit fit_curve(const ExperimentalVariogram& e, VariogramModel model, bool wi
         if (fit.misfit < best.misfit) best = fit;
     }
     constexpr double golden = 0.6180339887498949;
-    double low = best.range / step, high = std::min(best.range * step, longest);
+    double low = best.curve.range / step, high = std::min(best.curve.range * step, longest);
     for (int i = 0; i < 40; ++i) {
         const double span = golden * (high - low);
         const CurveFit a = at(high - span), b = at(low + span);
         if (a.misfit < b.misfit) {
-            high = b.range;
+            high = b.curve.range;
         } else {
-            low = a.range;
+            low = a.curve.range;
         }
         for (const CurveFit& fit : {a, b}) {
             if (fit.misfit < best.misfit) best = fit;
         }
     }
     return best;
+}
+
+Variogram variogram_of(const CurveFit& fit, const Anisotropy& anisotropy) {
+    const Curve& curve = fit.curve;
+    Variogram out{curve.model, curve.range, fit.sill(), fit.nugget, anisotropy, {}};
+    if (curve.rough_share > 0) {
+        out.further.push_back({curve.rougher, curve.range * curve.rough_range,
+                               curve.rough_share * fit.partial_sill, anisotropy});
+    }
+    return out;
 }
 
 }  // namespace realmodel::interpolation

@@ -14,11 +14,21 @@ namespace {
 /// One draw of a normal field with a given variogram at scattered places.
 Points drawn_field(const Variogram& v, int count, double size, unsigned seed) {
     Points points = hills(count, size, {3e5, 4e6}, seed);
+    std::vector<Variogram> parts{v};
+    parts[0].sill = v.first_sill() + v.nugget;
+    for (const NestedStructure& part : v.further)
+        parts.push_back({part.model, part.range, part.sill, 0, part.anisotropy, {}});
+    const auto gamma = [&](double dx, double dy) {
+        double sum = 0;
+        for (const Variogram& part : parts)
+            sum += dense_gamma(part, dx, dy);
+        return sum;
+    };
     Eigen::MatrixXd covariance(count, count);
     for (int i = 0; i < count; ++i) {
         for (int j = 0; j < count; ++j) {
             covariance(i, j) =
-                v.sill - dense_gamma(v, points[i][0] - points[j][0], points[i][1] - points[j][1]);
+                v.sill - gamma(points[i][0] - points[j][0], points[i][1] - points[j][1]);
         }
     }
     const Eigen::MatrixXd factor = covariance.llt().matrixL();
@@ -164,6 +174,59 @@ TEST(VariogramFit, VariancesAreHonest) {
         EXPECT_LT(within, 0.975 * 900);
         EXPECT_NEAR(v.sill, 9, 7);  // and far from points too
     }
+}
+
+TEST(VariogramFit, FindsAnAnisotropyWhereThereIsOne) {
+    const Variogram truth{VariogramModel::matern32, 60, 4, 0, {2.5, 120}};
+    const Points points = drawn_field(truth, 900, 200, 3);
+    FitOptions options;
+    options.finds_anisotropy = true;
+    // What is given beside it does not count.
+    const FittedVariogram fitted = fit_variogram(points, {3, 10}, nullptr, options);
+    expect_usable(fitted);
+    const Anisotropy& found = fitted.variogram.anisotropy;
+    EXPECT_NEAR(found.ratio, 2.5, 0.8);
+    EXPECT_NEAR(found.azimuth, 120, 15);
+    for (const NestedStructure& part : fitted.variogram.further)
+        EXPECT_EQ(part.anisotropy.ratio, found.ratio);
+    // Distances of the experimental values are those under it.
+    EXPECT_EQ(fitted.experimental.gamma, experimental_variogram(points, found).gamma);
+    const auto square = [&](const Variogram& v) {
+        const Kriged told = krige_left_out(points, v, {32, 0});
+        double sum = 0;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            sum += std::pow(told.z[i] - points[i][2], 2);
+        return sum;
+    };
+    EXPECT_LT(square(fitted.variogram), 0.97 * square(fit_variogram(points, {}).variogram));
+}
+
+TEST(VariogramFit, FindsNoAnisotropyWhereThereIsNone) {
+    FitOptions options;
+    options.finds_anisotropy = true;
+    Points line;
+    for (int i = 0; i < 200; ++i)
+        line.push_back({1.0 * i, 3.0 * i + 1e-3 * (i % 7), std::sin(0.3 * i)});
+    for (const Points& points : {drawn_field({VariogramModel::matern32, 60, 4, 0, {}}, 900, 200, 3),
+                                 hills(20, 100), line}) {
+        const FittedVariogram found = fit_variogram(points, {}, nullptr, options);
+        const FittedVariogram plain = fit_variogram(points, {});
+        EXPECT_EQ(found.variogram.anisotropy.ratio, 1);
+        EXPECT_EQ(found.variogram.range, plain.variogram.range);
+        EXPECT_EQ(found.variogram.sill, plain.variogram.sill);
+    }
+}
+
+TEST(VariogramFit, ARougherPartWhereItTellsPointsBetter) {
+    // Smooth from afar and rough from near: no single model is both.
+    const Variogram truth{
+        VariogramModel::matern52, 300, 20.6, 0, {}, {{VariogramModel::exponential, 300, 0.6, {}}}};
+    const Points points = drawn_field(truth, 1000, 200, 11);
+    const FittedVariogram fitted = fit_variogram(points, {});
+    expect_usable(fitted);
+    ASSERT_EQ(fitted.variogram.further.size(), 1U);
+    for (const double h : {3.0, 8.0, 20.0})
+        EXPECT_NEAR(fitted.variogram.gamma(h), truth.gamma(h), 0.4 * truth.gamma(h));
 }
 
 TEST(VariogramFit, SameForAnyNumberOfThreadsAndRefusesNoNeighbours) {

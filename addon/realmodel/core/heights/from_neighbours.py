@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..methods import DEFAULT_NEIGHBOURS, NEIGHBOURS_OF_FITTED
-from ..variogram import Variogram, fit_warnings
+from ..variogram import NO_ANISOTROPY, Variogram, fit_warnings
 from ..work import native_module
 from .interpolation import Result, Task
 
@@ -36,16 +36,19 @@ def structure(task: Task) -> Structure:
     asked, given = settings["neighbours"], settings["variogram"]
     if given is not None:
         return Structure(Variogram.from_settings(given), DEFAULT_NEIGHBOURS if asked is None else asked)
+    anisotropy = settings["anisotropy"] or NO_ANISOTROPY
+    finds = settings["anisotropy"] is None
     fitted = task.run(
         native_module().fit_variogram,
         task.points,
         drift=settings.get("drift", "constant"),
-        anisotropy_ratio=settings["anisotropy"]["ratio"],
-        anisotropy_azimuth=settings["anisotropy"]["azimuth"],
+        anisotropy_ratio=anisotropy["ratio"],
+        anisotropy_azimuth=anisotropy["azimuth"],
+        finds_anisotropy=finds,
         neighbours=min(asked or NEIGHBOURS_OF_FITTED, NEIGHBOURS_OF_FITTED),
     )
     neighbours = NEIGHBOURS_OF_FITTED if asked is None else asked
-    variogram = Variogram(**fitted)
+    variogram = Variogram.from_fit(fitted, finds)
     return Structure(variogram, neighbours, tuple(fit_warnings(variogram, task.points)))
 
 
