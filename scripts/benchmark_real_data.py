@@ -12,7 +12,6 @@ cells and number of threads; the least of N times is given. Needs NumPy and a bu
 import argparse
 import json
 import random
-import resource
 import subprocess
 import sys
 import tempfile
@@ -22,7 +21,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / folder) for folder in ("addon", "scripts", "tests/core")]
 
-from benchmarks import page  # noqa: E402
+from benchmarks import page, process  # noqa: E402
 from stacks import places, project_files, real_data  # noqa: E402
 from stacks.generate import sine_surface  # noqa: E402
 
@@ -76,7 +75,7 @@ def build_once(project_path, cells, threads, exported):
     start = time.perf_counter()
     model = build(project, cells=cells, threads=threads)
     seconds = time.perf_counter() - start
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    peak = process.peak_resident() / 2**20
     model.save(exported)
     return {
         "surface_triangles": len(model.surface_triangles),

@@ -69,12 +69,38 @@ def test_minimum_thickness_and_points_on_the_wrong_side():
     assert not [w for w in plain.warnings if w.kind in ("wrong_side", "minimum_thickness")]
 
 
+def wrong_sides(*surfaces):
+    return [(w.surface, w.items) for w in build(rock(*surfaces)).warnings if w.kind == "wrong_side"]
+
+
+@pytest.mark.parametrize("low_rule", ["erosional", "conformable", "base", "discontinuous"])
 @pytest.mark.parametrize("rule", ["erosional", "conformable", "base", "discontinuous"])
-def test_points_below_what_a_surface_does_not_cut_are_listed(rule):
-    low = Surface("low", points=points(0, 0, 6, 6), method="tin")
+def test_points_below_what_a_surface_does_not_cut_are_listed(low_rule, rule):
+    """Those of the older surface above it are not: there the younger one ends, or has cut."""
+    low = Surface("low", points=points(0, 0, 6, 6), method="tin", rule=low_rule)
     high = Surface("high", points=points(2, 2, 4, 8), method="tin", rule=rule)
-    told = [(w.surface, w.items) for w in build(rock(low, high)).warnings if w.kind == "wrong_side"]
-    assert told == ([("high", (2,)), ("low", (2,))] if rule in ("conformable", "base") else [])
+    ends = rule in ("conformable", "base") or low_rule in ("base", "discontinuous")
+    assert wrong_sides(low, high) == ([("high", (2,))] if ends else [])
+
+
+def test_a_fill_that_ends_against_the_rock_is_no_error():
+    rock_head = Surface("rock", points=points(0, 0, 8, 8), method="tin", rule="base")
+    fill = Surface("fill", points=points(3, 3, 3, 3)[:2], method="constant", rule="conformable")
+    assert wrong_sides(rock_head, fill) == []
+
+
+def test_points_below_a_surface_that_is_not_the_one_before_are_listed():
+    """What counts is the top that is there: an erosion lowers it, unless what it met protects itself."""
+    ground = Surface("ground", points=points(5, 5, 5, 5), method="tin")
+    deep = Surface("deep", points=points(1, 1, 1, 1), method="tin")
+    fill = Surface("fill", points=points(3, 3, 3, 3), method="tin", rule="conformable")
+    assert wrong_sides(ground, deep, fill) == []
+    ground.rule = "base"
+    all_points = (0, 1, 2, 3)
+    assert wrong_sides(ground, deep, fill) == [("deep", all_points), ("fill", all_points)]
+    deep.points = points(1, 1, 7, 1)
+    text = [str(w) for w in build(rock(ground, deep, fill)).warnings if w.surface == "fill"]
+    assert "4 of its 4 points lie below 'ground' and 'deep', the farthest by 4: point 2" in text[0]
 
 
 def test_minimum_thickness_above_a_ready_mesh_of_part_of_the_region():

@@ -20,6 +20,7 @@ from .readers import Picks, read_boreholes, read_off, read_point_file
 from .readers.text import no_step
 from .surface_heights import Triangulation, give_heights, interpolation_order, named_surfaces
 from .work import Work, run
+from .wrong_sides import points_too_low
 
 _EDGE_LENGTH_KINDS = (
     "edge_length",
@@ -304,3 +305,5 @@ def interpolate_rock(
         begin, finish = (start + (end - start) * part / len(waiting) for part in (at, at + 1))
         with work.phase(begin, finish, f"interpolating {entry.rock.surfaces[number].name}"):
             give_heights(work, entry, number, threads)
+    for number in sorted(waiting):
+        entry.warnings += points_too_low(work, entry, number, threads)

@@ -11,8 +11,7 @@ from .heights import Interpolation, heights
 from .methods import SURFACE_OPTIONS, checked_options
 from .project import Rock, surface_item
 from .work import Work, native_module
-
-Triangulation = tuple[np.ndarray, np.ndarray]
+from .wrong_sides import Triangulation, heights_at, listed
 
 
 def used_vertices(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -85,10 +84,8 @@ def give_heights(work: Work, entry, number: int, threads: int) -> None:
         shape = where_known(nodes, triangles, result.z)
         told_of_vertices = told_of(work, surface.points, result, entry.region, threads)
         warnings = [BuildWarning(text, "points", rock.name, surface.name) for text in result.warnings]
-        keeps_order = surface.minimum_thickness is not None or surface.rule in _KEEP_WHAT_IS_OLDER
-        if keeps_order and number > 0 and entry.surfaces[number - 1] is not None:
-            warnings += _wrong_sides(work, entry, number, shape, threads)
         if surface.minimum_thickness is not None:
+            warnings += _older_points_above(work, rock, number, shape, threads)
             shape, told = _above_older(work, entry, number, shape, threads)
             warnings += told
     except InputRefused as error:
@@ -100,18 +97,17 @@ def give_heights(work: Work, entry, number: int, threads: int) -> None:
     entry.warnings += warnings
 
 
-def _wrong_sides(work: Work, entry, number: int, shape: Triangulation, threads: int) -> list[BuildWarning]:
-    """The points of a surface and of the older one that lie on the wrong side of the other."""
-    rock = entry.rock
-    names = rock.surfaces[number - 1].name, rock.surfaces[number].name
-    return [
-        *_on_wrong_side(work, rock, number, entry.surfaces[number - 1], names[0], "below", threads),
-        *_on_wrong_side(work, rock, number - 1, shape, names[1], "above", threads),
-    ]
+def _older_points_above(
+    work: Work, rock: Rock, number: int, shape: Triangulation, threads: int
+) -> list[BuildWarning]:
+    """The points of the older surface above one that is to keep off it, before this is raised."""
+    points = rock.surfaces[number - 1].points
+    if points is None or not len(points):
+        return []
+    z = heights_at(work, shape, points[:, :2], threads)
+    return listed(rock, number - 1, points[:, 2] - z, "above", number)
 
 
-# A surface of these rules cuts nothing: its own points below the older one are usually errors in the data.
-_KEEP_WHAT_IS_OLDER = ("conformable", "base")
 # Local methods give on a part of the nodes what they give on all, and cheap ones cost nothing.
 _SAMPLED_METHODS = ("kriging", "universal_kriging", "idw", "constant", "plane")
 _STAND_IN = "idw"
@@ -123,7 +119,7 @@ def rough_heights(work: Work, entry, number: int, nodes: np.ndarray, threads: in
     entry = entry.whole or entry
     rock, surface = entry.rock, entry.rock.surfaces[number]
     if entry.surfaces[number] is not None:
-        return _heights_at(work, entry.surfaces[number], nodes, threads)
+        return heights_at(work, entry.surfaces[number], nodes, threads)
     method, settings = surface.method_options()
     if method == "parallel" and settings["thickness"] is not None:
         below = named_surfaces(rock, number).get(settings["to"]) if isinstance(settings["to"], str) else None
@@ -166,7 +162,7 @@ def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: 
     if np.array_equal(older_vertices[:, :2], vertices[:, :2]):
         least = older_vertices[:, 2] + surface.minimum_thickness
     else:
-        least = _heights_at(work, entry.surfaces[number - 1], vertices[:, :2], threads)
+        least = heights_at(work, entry.surfaces[number - 1], vertices[:, :2], threads)
         least += surface.minimum_thickness
     lift = np.where(np.isfinite(least), least - vertices[:, 2], 0.0)
     raised = lift > 0
@@ -180,30 +176,3 @@ def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: 
     vertices = vertices.copy()
     vertices[raised, 2] = least[raised]
     return (vertices, triangles), [BuildWarning(text, "minimum_thickness", rock.name, surface.name)]
-
-
-def _heights_at(work: Work, shape: Triangulation, plan: np.ndarray, threads: int) -> np.ndarray:
-    surface_heights = native_module().surface_heights
-    return work.native(surface_heights, *shape, np.ascontiguousarray(plan), threads=threads)
-
-
-def _on_wrong_side(
-    work: Work, rock: Rock, number: int, shape: Triangulation, name: str, side: str, threads: int
-) -> list[BuildWarning]:
-    """Points of a surface that lie below the older one, or above the younger one: usually errors in data."""
-    surface = rock.surfaces[number]
-    points = surface.points
-    if points is None or not len(points):
-        return []
-    z = _heights_at(work, shape, points[:, :2], threads)
-    beyond = z - points[:, 2] if side == "below" else points[:, 2] - z
-    beyond[~(beyond > 0)] = 0.0  # NaN, where the other surface has no height, too
-    wrong = np.flatnonzero(beyond)
-    if not len(wrong):
-        return []
-    worst = int(beyond.argmax())
-    text = (
-        f"{len(wrong)} of its {len(points)} points lie {side} '{name}', the farthest by {beyond[worst]:.4g}: "
-        f"point {worst} at {place_text(points[worst])}"
-    )
-    return [BuildWarning(text, "wrong_side", rock.name, surface.name, tuple(int(i) for i in wrong))]

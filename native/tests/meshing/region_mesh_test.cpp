@@ -5,7 +5,6 @@
 #include <omp.h>
 
 #include <atomic>
-#include <chrono>
 #include <numbers>
 #include <random>
 #include <thread>
@@ -247,17 +246,18 @@ TEST(RegionMesh, StopsSoonAfterCancel) {
     const std::vector<Ring> rings{rectangle(0, 0, 1000, 1000)};
     for (const double reached : {0.0, 0.02, 0.1, 0.2}) {
         Progress progress;
-        using Clock = std::chrono::steady_clock;
-        std::atomic<Clock::time_point> asked{};
+        std::atomic<double> asked{};
         std::jthread watcher([&] {
             while (progress.fraction() < reached)
                 std::this_thread::yield();
-            asked = Clock::now();
             progress.cancel();
+            asked = progress.fraction();
         });
         EXPECT_THROW(mesh_region(rings, 0.6, &progress), Cancelled);
-        EXPECT_LT(std::chrono::duration<double>(Clock::now() - asked.load()).count(), 2)
-            << "0.2 s where nothing else runs; sanitizers and a busy machine slow it down";
+        watcher.join();
+        // The step in hand may be told as done, which the fraction takes for up to a tenth; the
+        // rest is left, however long that takes.
+        EXPECT_LT(progress.fraction() - asked.load(), 0.15);
     }
 }
 
