@@ -36,6 +36,11 @@ if "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/be
 else
     echo "benchmark.sh: Triangle, Gmsh and earcut could not be installed; measuring without them" >&2
 fi
+if [[ " $* " != *" --only "* || " $* " == *" blender "* ]] &&
+    ! { "$root/scripts/install_dependencies.sh" bpy &&
+        "$root/scripts/python_environment.sh" "$root/build/venv-bpy" "$root/scripts/requirements/bpy.txt" "$python"; }; then
+    echo "benchmark.sh: the module bpy could not be installed; measuring without it" >&2
+fi
 if [[ " $* " != *" --only "* || " $* " == *" heights "* ]] && ! "$root/scripts/install_dependencies.sh" heights; then
     echo "benchmark.sh: GMT and gstat could not be installed; measuring without them" >&2
 fi

@@ -17,7 +17,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import props_rock, props_surface, props_view
+from . import props_rock, props_stage, props_surface, props_view
 from .bl import changes, display, library_rows, results, units
 from .core.units import MODEL_UNIT
 
@@ -130,6 +130,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
         min=0,
         update=changes.stage,
     )
+    stage_slider: PointerProperty(type=props_stage.RealModelStage)
     display: EnumProperty(
         name="Display",
         description="How the model is drawn",
@@ -214,6 +215,7 @@ _CLASSES = (
     *props_surface.CLASSES,
     *props_rock.CLASSES,
     *props_view.CLASSES,
+    *props_stage.CLASSES,
     RealModelProperty,
     RealModelBlock,
     RealModelSettings,

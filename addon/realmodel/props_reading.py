@@ -38,7 +38,7 @@ class ReadingSettings:
     )
     where: _text(
         "where",
-        "Only rows where",
+        "Only rows",
         "Only rows whose columns hold this count, such as horizon = top clay; year = 2019, 2020. Text in "
         "quotes is taken as it is",
     )
@@ -53,11 +53,9 @@ class ReadingSettings:
     nodata: _text("nodata", "No value", "What stands for no value, such as -9999; such points are left out")
     height_attribute: _text(
         "height",
-        "Height attribute",
+        "Height is",
         "Of contour lines and the like: the attribute that holds their height; empty: z of the positions",
     )
     layer: _text("layer", "Layer", "The layer of a GeoPackage that has several")
-    plan_unit: _choice(
-        "xy", reading_text.UNITS, "Unit of x and y", "Unit of the coordinates in plan in the file"
-    )
-    height_unit: _choice("z", reading_text.UNITS, "Unit of heights", "Unit of the heights in the file")
+    plan_unit: _choice("xy", reading_text.UNITS, "x, y in", "Unit of the coordinates in plan in the file")
+    height_unit: _choice("z", reading_text.UNITS, "Heights in", "Unit of the heights in the file")

@@ -170,12 +170,12 @@ class RealModelSurface(props_reading.ReadingSettings, bpy.types.PropertyGroup):
         update=changes.hide,
     )
     use_minimum_thickness: BoolProperty(
-        name="Minimum thickness",
+        name="Thinnest",
         description="Keep the surface at least so far above the next older one",
         update=changes.setting,
     )
     minimum_thickness: FloatProperty(
-        name="Minimum thickness",
+        name="Thinnest",
         description="Least distance above the next older surface",
         min=0.0,
         subtype="DISTANCE",
@@ -347,7 +347,7 @@ class RealModelSurface(props_reading.ReadingSettings, bpy.types.PropertyGroup):
         update=changes.setting,
     )
     extrapolate: EnumProperty(
-        name="Outside the points",
+        name="Outside",
         description="What happens beyond the points",
         items=_items(EXTRAPOLATE, _EXTRAPOLATE),
         update=changes.setting,

@@ -80,10 +80,12 @@ class Registration(unittest.TestCase):
     def test_every_setting_and_choice_says_what_it_does(self):
         realmodel.register()
         self.addCleanup(realmodel.unregister)
-        from realmodel import operators, props_rock, props_surface, props_view
+        from realmodel import operators, props_rock, props_stage, props_surface, props_view
 
         found = [
-            (cls.__name__, cls.bl_rna) for m in (props_rock, props_surface, props_view) for cls in m.CLASSES
+            (cls.__name__, cls.bl_rna)
+            for m in (props_rock, props_stage, props_surface, props_view)
+            for cls in m.CLASSES
         ]
         found.append(("scene.realmodel", bpy.context.scene.realmodel.bl_rna))
         for group in operators.by_module():

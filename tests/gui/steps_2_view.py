@@ -125,7 +125,7 @@ def hidden(walk):
 
 def stage_and_explode(walk):
     scene = bpy.context.scene
-    scene.realmodel.stage = 1
+    scene.realmodel.stage_slider.of_2 = 1
     yield walk.redrawn(3)
     shown = viewport(walk, walk.shot("stage"))
     assert share(shown, 3) < 0.001, share(shown, 3)

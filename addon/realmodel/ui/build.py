@@ -7,6 +7,7 @@ from ..bl import settings
 from .panel import TabPanel, hint, wrapped
 
 _MOST_WARNINGS = 4
+_ICON = 5  # letters that are as wide as an icon and the border of a box
 
 
 class REALMODEL_PT_build(TabPanel, bpy.types.Panel):
@@ -50,7 +51,7 @@ def _draw_progress(layout, activity):
 def _draw_warnings(box, warnings):
     for warning in warnings[:_MOST_WARNINGS]:
         column = box.column(align=True)
-        for number, line in enumerate(wrapped(warning)):
+        for number, line in enumerate(wrapped(warning, taken=_ICON)):
             column.label(text=line, icon="INFO" if number == 0 else "BLANK1")
     if len(warnings) > _MOST_WARNINGS:
         box.label(text=f"and {len(warnings) - _MOST_WARNINGS} more: see the report")

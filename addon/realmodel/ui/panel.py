@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What all panels of the tab share."""
 
+import re
+
 import bpy
 
 
@@ -34,11 +36,15 @@ def _letters():
     return max(16, int((region.width / bpy.context.preferences.system.ui_scale - 60) / 5.9))
 
 
-def wrapped(text, width=None):
-    """The lines of a text, none longer than about the width of the sidebar (or `width` letters)."""
-    width = width or _letters()
+_UNIT = re.compile(r"(?<=\d) (?=(?:[mck]?m[²³]?|%|ft|mi|yd|in)(?!\w))")  # between a number and its unit
+
+
+def wrapped(text, taken=0):
+    """The lines of a text, none longer than about the width of the sidebar, of which something else has
+    `taken` so many letters; a number stays with its unit."""
+    width = max(_letters() - taken, 12)
     lines, line = [], ""
-    for word in text.split():
+    for word in _UNIT.sub("\u00a0", text).split(" "):
         if line and len(line) + 1 + len(word) > width:
             lines.append(line)
             line = word

@@ -3,6 +3,7 @@
 
 import bpy
 
+from .. import props_stage
 from ..bl import library_rows, settings, units
 from ..bl.display import coordinates, cuts, modes, preparing
 from .panel import TabPanel, hint, wrapped
@@ -27,11 +28,7 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
         if group.color_by == "UNCERTAINTY":
             text = "Dark blue: certain; yellow: the largest deviation of each surface, told in Surfaces."
             hint(layout, text if group.display == "SURFACES" else "Choose Surfaces to see it.")
-        last = settings.last_stage(context.scene)
-        layout.prop(group, "stage", text=f"Stage of {last}")
-        rows = [surface for _, surface in settings.surface_rows(context.scene)]
-        if group.stage < last and len(group.rocks) == 1 and group.stage < len(rows):
-            hint(layout, f"just after {rows[group.stage].name}")
+        _stage(layout, context.scene)
         if preparing.is_working(context.scene):
             hint(layout, "being made ...")
         column = layout.column(align=True)
@@ -43,6 +40,23 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
             box.alert = True
             for line in wrapped(group.view.message):
                 box.label(text=line)
+
+
+def _stage(layout, scene):
+    """The slider of the stage, the number that can be keyframed beside it, and what the number means."""
+    group, last = scene.realmodel, settings.last_stage(scene)
+    slider = props_stage.name_of(last)
+    if slider is None:
+        layout.prop(group, "stage", text=f"Stage of {last}")
+    else:
+        row = layout.row(align=True)
+        row.prop(group.stage_slider, slider, text=f"Stage of {last}", slider=True)
+        number = row.row(align=True)
+        number.scale_x = 0.4
+        number.prop(group, "stage", text="")
+    rows = [surface for _, surface in settings.surface_rows(scene)]
+    if group.stage < last and len(group.rocks) == 1 and group.stage < len(rows):
+        hint(layout, f"just after {rows[group.stage].name}")
 
 
 class _OfABuiltModel:
@@ -120,8 +134,8 @@ class REALMODEL_PT_view_camera(TabPanel, bpy.types.Panel):
         for direction in ("FRONT", "LEFT", "TOP", "BACK", "RIGHT", "BOTTOM"):
             grid.operator("realmodel.view", text=direction.capitalize()).direction = direction
         row = layout.row(align=True)
-        row.operator("realmodel.view_previous", text="Previous", icon="LOOP_BACK")
-        row.operator("realmodel.view_next", text="Next", icon="LOOP_FORWARDS")
+        row.operator("realmodel.view_previous", text="", icon="LOOP_BACK")
+        row.operator("realmodel.view_next", text="", icon="LOOP_FORWARDS")
         row.operator("realmodel.view_all", text="Frame", icon="ZOOM_ALL")
         layout.operator("realmodel.capture", text="Capture...", icon="RENDER_STILL")
 
@@ -133,9 +147,9 @@ class REALMODEL_PT_view_coordinates(_OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, _group):
-        row = layout.row(align=True)
-        row.operator("realmodel.coordinates", text="Under the Mouse", icon="EYEDROPPER")
-        at_cursor = row.row(align=True)
+        column = layout.column(align=True)
+        column.operator("realmodel.coordinates", text="Under the Mouse", icon="EYEDROPPER")
+        at_cursor = column.column(align=True)
         at_cursor.operator_context = "EXEC_DEFAULT"
         at_cursor.operator("realmodel.coordinates", text="At 3D Cursor", icon="PIVOT_CURSOR")
         place = coordinates.last(context.scene)
