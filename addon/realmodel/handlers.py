@@ -1,12 +1,44 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What RealModel does when Blender opens, saves or undoes: registered once, and all taken out again."""
 
+import functools
+import sys
+import threading
+import time
+
 import bpy
 from bpy.app.handlers import persistent
 
 from . import versioning
 from .bl import built_models, display, live, project_settings, region_size, stored_arrays, stored_project
 from .core import RealModelError
+
+_PATIENCE = 5.0  # seconds that a render may wait for the window
+_WHILE_DRAWING = "Writing to ID classes in this context is not allowed"
+
+
+def _patient(handler):
+    """Has a handler of renders wait for the window. While Blender draws a panel in Python nobody may write,
+    not even the thread of a render, whose handlers run beside the window."""
+
+    @functools.wraps(handler)
+    def patient(scene, *arguments):
+        if threading.current_thread() is threading.main_thread():
+            return handler(scene, *arguments)
+        until, interval = time.monotonic() + _PATIENCE, sys.getswitchinterval()
+        while True:
+            sys.setswitchinterval(_PATIENCE)  # a panel that is begun now would get in between
+            try:
+                scene.realmodel.view.message = scene.realmodel.view.message
+                return handler(scene, *arguments)
+            except AttributeError as error:
+                if _WHILE_DRAWING not in str(error) or time.monotonic() > until:
+                    raise
+            finally:
+                sys.setswitchinterval(interval)
+            time.sleep(0.002)
+
+    return patient
 
 
 @persistent
@@ -57,6 +89,7 @@ def _changed(scene, depsgraph):
 
 
 @persistent
+@_patient
 def _frame_changed(scene, depsgraph=None, *_arguments):
     display.frame_changed(scene, depsgraph)
 
@@ -71,11 +104,13 @@ def migrate_all():
 
 
 @persistent
+@_patient
 def _render_begins(scene, *_arguments):
     display.render_begins(scene)
 
 
 @persistent
+@_patient
 def _render_ends(scene, *_arguments):
     display.render_ends(scene)
 
