@@ -12,6 +12,15 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 python=/usr/bin/python3
 
+# Whether one of these parts is to be measured: all are where none is named.
+wanted() {
+    [[ " ${asked[*]} " != *" --only "* && " ${asked[*]} " != *" --fit "* ]] && return
+    local part
+    for part; do [[ " ${asked[*]} " == *" --only $part "* ]] && return; done
+    return 1
+}
+asked=("$@")
+
 "$root/scripts/install_dependencies.sh" build benchmark
 "$root/scripts/build.sh" "$python"
 environment=$root/build/benchmark_environment
@@ -20,28 +29,32 @@ if ! "$root/scripts/python_environment.sh" "$environment" "$root/scripts/require
     echo "benchmark.sh: manifold3d could not be fetched; measuring without it" >&2
     runs=$python
 fi
-if ! { (cd "$root" && cmake --preset release -DREALMODEL_BUILD_BENCHMARKS=ON --log-level=WARNING) &&
+if wanted stacks && ! { (cd "$root" && cmake --preset release -DREALMODEL_BUILD_BENCHMARKS=ON --log-level=WARNING) &&
     cmake --build "$root/build/release" --target cgal_corefinement; }; then
     echo "benchmark.sh: the program of CGAL's corefinement could not be built; measuring without it" >&2
 fi
 peers=$root/build/heights_environment
-if "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/benchmark_heights.txt" "$python"; then
+if ! wanted heights; then
+    :
+elif "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/benchmark_heights.txt" "$python"; then
     export REALMODEL_HEIGHTS_PYTHON=$peers/bin/python
 else
     echo "benchmark.sh: SciPy and PyKrige could not be installed; measuring without them" >&2
 fi
 peers=$root/build/meshing_environment
-if "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/benchmark_meshing.txt" "$python"; then
+if ! wanted meshing; then
+    :
+elif "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/benchmark_meshing.txt" "$python"; then
     export REALMODEL_MESHING_PYTHON=$peers/bin/python
 else
     echo "benchmark.sh: Triangle, Gmsh and earcut could not be installed; measuring without them" >&2
 fi
-if [[ " $* " != *" --only "* || " $* " == *" blender "* ]] &&
+if wanted blender &&
     ! { "$root/scripts/install_dependencies.sh" bpy &&
         "$root/scripts/python_environment.sh" "$root/build/venv-bpy" "$root/scripts/requirements/bpy.txt" "$python"; }; then
     echo "benchmark.sh: the module bpy could not be installed; measuring without it" >&2
 fi
-if [[ " $* " != *" --only "* || " $* " == *" heights "* ]] && ! "$root/scripts/install_dependencies.sh" heights; then
+if wanted heights && ! "$root/scripts/install_dependencies.sh" heights; then
     echo "benchmark.sh: GMT and gstat could not be installed; measuring without them" >&2
 fi
 cd "$root/scripts"

@@ -15,7 +15,8 @@ from .heights_programs import gmt_surface, gstat
 from .process import ROOT, Skipped
 
 _DATA = ROOT.parent / "shared" / "data"
-SETS = {"claudius": 4768, "drogon": 20_000}  # points that heights are made from
+SETS = {"claudius": 4768, "drogon": 20_000, "drogon 02": 20_000, "hamersley": 20_000}  # points known
+TIMED = ("claudius", "drogon")
 LEFT_OUT = 500
 _SPHERICAL = {"model": "spherical", "range": 2000.0, "sill": 5000.0, "nugget": 0.0}
 _MATERN_RANGE = 2000.0
@@ -29,6 +30,15 @@ def horizon(name: str) -> np.ndarray:
         points = np.array([[float(r[k]) for k in "XYZ"] for r in rows])
     elif name == "drogon" and (_DATA / "drogon").is_dir():
         points = np.loadtxt(_DATA / "drogon" / "drogon_01_topvolantis.xyz")[:, :3]
+    elif name == "drogon 02" and (_DATA / "drogon").is_dir():
+        points = np.loadtxt(_DATA / "drogon" / "drogon_02_toptherys.xyz")[:, :3]
+    elif name == "hamersley" and (_DATA / "hamersley").is_dir():
+        from realmodel.core import PointFile
+        from realmodel.core.readers import read_point_file
+
+        points, _ = read_point_file(PointFile(_DATA / "hamersley" / "dtm_rp.tif"))
+    elif name not in TIMED:
+        raise Skipped("../shared/data is not there")
     else:
         own = np.random.default_rng(7)
         plan = own.random((2 * SETS[name], 2)) * 6000
@@ -89,9 +99,10 @@ def _scipy_thin_plate(neighbours):
         except ImportError as error:
             raise Skipped(f"SciPy is not there: {error}") from error
         middle = points.mean(axis=0)
-        known = (points - middle)[:, :2] / 50
+        spacing = np.sqrt(np.prod(np.ptp(points[:, :2], axis=0)) / len(points))
+        known = (points - middle)[:, :2] / spacing
         spline = RBFInterpolator(known, points[:, 2], neighbors=neighbours, kernel="thin_plate_spline")
-        return spline((nodes - middle[:2]) / 50), None
+        return spline((nodes - middle[:2]) / spacing), None
 
     return run
 

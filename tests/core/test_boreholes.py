@@ -64,6 +64,29 @@ def test_tables(write, collars, picks, keys):
         assert any("no surface was met in B5" in text for text in met.warnings)
 
 
+@pytest.mark.parametrize("entry", ["-", "NA", "n/a", "NR", "NaN", "null"])
+def test_words_for_a_surface_that_was_not_reached(write, entry):
+    files = {
+        "picks": write("p.csv", PICKS.replace("B3,sand,", f"B3,sand,{entry}")),
+        "collars": write("c.csv", COLLARS),
+    }
+    met = read_boreholes(Boreholes(**files))
+    assert met.points["sand"].tolist() == SAND
+    assert any("1 picks without a depth" in text for text in met.warnings)
+
+
+def test_inclined_holes_are_told(write):
+    lines = COLLARS.split()
+    angles = ["Dip", "-90", "-60", "90", "", "-75"]
+    collars = "\n".join(f"{line},{angle}" for line, angle in zip(lines, angles, strict=True))
+    met = read_boreholes(Boreholes(picks=write("p.csv", PICKS), collars=write("c.csv", collars)))
+    assert met.points["clay"].tolist() == CLAY
+    assert [text for text in met.warnings if "B2 and B5 are not vertical" in text]
+    # Elevations need no direction.
+    rows = "hole,x,y,elevation,surface,dip\nB1,0,0,6,clay,-60\nB2,4,0,6,clay,-60\n"
+    assert not read_boreholes(Boreholes(picks=write("q.csv", rows))).warnings
+
+
 def test_units(write):
     files = {"picks": write("p.csv", PICKS), "collars": write("c.csv", COLLARS)}
     met = read_boreholes(Boreholes(**files, units={"z": "ft"}))
@@ -89,7 +112,7 @@ def test_units(write):
         (COLLARS, PICKS.replace("depth", "deep"), "p.csv", 2, "neither a column depth nor"),
         (None, PICKS, "p.csv", 2, "no column x"),
         (COLLARS, "hole,surface,depth\n", "p.csv", None, "no picks"),
-        (COLLARS, "hole,surface,depth\nB1,clay,nan\n", "p.csv", 2, "not a finite"),
+        (COLLARS, "hole,surface,depth\nB1,clay,inf\n", "p.csv", 2, "not a finite"),
     ],
 )
 def test_tables_refused(write, collars, picks, file, line, words):

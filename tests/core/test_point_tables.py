@@ -220,3 +220,49 @@ def test_points_without_a_value_are_told(write):
     write("p.xyz", "0 0 1\n4 0 1\n4 4 1\n0 4 1\n2 2 -9999\n")
     warnings = build(load_project(write("p.toml", text))).warnings
     assert any("1 points without a value are left out" in str(warning) for warning in warnings)
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "POINT_Y,POINT_Z,POINT_X",
+        "Hochwert;Höhe (m);Rechtswert",
+        "Norte;Cota;Este",
+        "NORTHING;RL;EASTING",
+    ],
+)
+def test_other_usual_names_of_columns(write, header):
+    mark = ";" if ";" in header else ","
+    file = write("p.csv", header + "\n" + "2.25,3.125,1.5\n5,-6,4\n".replace(",", mark))
+    points, warnings = read_point_file(PointFile(file))
+    assert points.tolist() == POINTS
+    assert not warnings
+
+
+def test_names_that_say_nothing_of_coordinates_are_told(write):
+    body = "1.5,2.25,3.125\n4,5,-6\n"
+    points, warnings = read_point_file(PointFile(write("p.csv", "first,second,third\n" + body)))
+    assert points.tolist() == POINTS
+    assert "the first three, 'first', 'second', 'third', are taken" in warnings[0]
+    for text in ("My three wells\n" + body, body, "# first,second,third\n" + body, "x,y,z\n" + body):
+        assert not read_point_file(PointFile(write("p.csv", text)))[1]
+    file = write("p.csv", "first,second,third\n" + body)
+    assert not read_point_file(PointFile(file, columns=["first", "second", "third"]))[1]
+
+
+@pytest.mark.parametrize(
+    ("heights", "words"),
+    [
+        ((100, 120, -9999, -9999), "2 points have the height -9999, far from all others"),
+        ((100, 120, 1e30), "1 point has the height 1e+30"),
+        ((-3000, -2950, -999.25), "1 point has the height -999.25"),
+        ((9990, 9999, 10010), None),  # among the others
+        ((-1400, -200, -999), None),
+        ((-9999, -9999), None),  # there is no other
+    ],
+)
+def test_heights_that_often_stand_for_none_are_told(write, heights, words):
+    rows = "".join(f"{k},{2 * k},{z}\n" for k, z in enumerate(heights))
+    points, warnings = read_point_file(PointFile(write("p.csv", rows)))
+    assert len(points) == len(heights)
+    assert [words in text for text in warnings] == ([] if words is None else [True])

@@ -25,6 +25,11 @@ _ALIASES = {
     "depth": ("depth", "md", "tvd", "from"),
     "elevation": ("elevation", "elev", "z", "altitude", "rl", "height"),
 }
+# What stands in the column of depths where a hole did not reach a surface; in small letters.
+_NO_DEPTH = frozenset(("", "-", "--", "na", "n/a", "nan", "nr", "null", "none", "absent", "?"))
+# Columns that say that a hole is not vertical.
+_INCLINED = ("dip", "inclination", "incl", "plunge", "deviation")
+_VERTICAL = (0.0, 90.0, -90.0)  # by one convention or another
 _KNOWN = frozenset(alias for aliases in _ALIASES.values() for alias in aliases)
 _STEP = 5000  # rows
 
@@ -40,17 +45,21 @@ class Picks:
 def read_boreholes(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = no_step) -> Picks:
     """The points of every surface that the picks name, in the model's unit and the order of the table.
 
-    Holes are vertical. Rows without a depth are left out, and told: the hole did not reach the surface.
+    Holes are vertical; those of which the table says otherwise are told. Rows without a depth are left out,
+    and told: the hole did not reach the surface.
     Raises InputRefused naming file and line.
     """
     unit = given.units if isinstance(given.units, Mapping) else {"xy": given.units, "z": given.units}
     scale = np.array([factor(unit.get(axis), model_unit) for axis in ("xy", "xy", "z")])
-    collars = None if given.collars is None else _read_collars(given)
+    inclined: dict[str, None] = {}
+    collars = None if given.collars is None else _read_collars(given, inclined)
     found: dict[str, list] = {}
     missing, unused = 0, set(collars or ())
     for row in _rows(given, Path(given.picks), ("hole", "surface"), step):
         place = _place(given, row, collars)
         unused.discard(row.text("hole"))
+        if "depth" in row.columns and row.is_inclined():
+            inclined[row.text("hole")] = None
         name = row.text("surface")
         if not name:
             raise row.refuse("the surface has no name")
@@ -64,6 +73,11 @@ def read_boreholes(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = 
     picks = Picks({name: np.array(places) * scale for name, places in found.items()})
     if missing:
         picks.warnings.append(f"{given.picks}: {missing} picks without a depth are left out")
+    if inclined:
+        picks.warnings.append(
+            f"{given.collars or given.picks}: {number_list(list(inclined))} are not vertical, but depths are "
+            "taken as if: give x, y and elevation where they met the surfaces instead"
+        )
     if unused:
         picks.warnings.append(f"{given.collars}: no surface was met in {number_list(sorted(unused))}")
     return picks
@@ -85,6 +99,14 @@ class _Row:
         if at >= len(self.entries):
             raise self.refuse(f"{at + 1} values are needed, there are {len(self.entries)}")
         return self.entries[at]
+
+    def is_inclined(self) -> bool:
+        """Whether a column says that the hole is not vertical."""
+        for at, name in enumerate(self.table.layout.names or ()):
+            if plain_name(name) in _INCLINED and at < len(self.entries):
+                entry = self.entries[at].replace(",", ".")
+                return is_number(entry) and float(entry) not in _VERTICAL
+        return False
 
     def number(self, column: str) -> float:
         entry = self.text(column)
@@ -154,13 +176,16 @@ def _columns(given: Boreholes, table: Table, needed: tuple[str, ...]) -> dict[st
     return columns
 
 
-def _read_collars(given: Boreholes) -> dict[str, tuple[float, float, float]]:
+def _read_collars(given: Boreholes, inclined: dict[str, None]) -> dict[str, tuple[float, float, float]]:
+    """Where holes begin, by their names. inclined: gets those that are not vertical."""
     collars: dict[str, tuple[float, float, float]] = {}
     for row in _rows(given, Path(given.collars), ("hole", "x", "y", "z"), no_step):
         hole = row.text("hole")
         place = (row.number("x"), row.number("y"), row.number("z"))
         if collars.setdefault(hole, place) != place:
             raise row.refuse(f"hole '{hole}' has another collar further up", "give each hole one")
+        if row.is_inclined():
+            inclined[hole] = None
     if not collars:
         raise InputRefused("there are no holes in it", file=given.collars)
     return collars
@@ -184,7 +209,7 @@ def _place(given: Boreholes, row: _Row, collars: Mapping | None) -> tuple[float,
 def _height(given: Boreholes, row: _Row, place) -> float | None:
     """The height at which a surface was met; None where the row says none."""
     if "depth" in row.columns:
-        if not row.text("depth"):
+        if row.text("depth").lower() in _NO_DEPTH:
             return None
         if np.isnan(place[2]):
             raise row.refuse("a depth needs the collar's height", "give a column z, or a table of collars")
@@ -192,4 +217,4 @@ def _height(given: Boreholes, row: _Row, place) -> float | None:
     column = "elevation" if "elevation" in row.columns else "z" if "z" in row.columns else None
     if column is None:
         raise row.refuse("the table has neither a column depth nor one of elevation")
-    return row.number(column) if row.text(column) else None
+    return None if row.text(column).lower() in _NO_DEPTH else row.number(column)

@@ -19,6 +19,20 @@ from .raster import Raster
 from .text import Step, no_step
 
 _HEAD = 512
+# What grids and tables of many programs have for "no height".
+_OFTEN_NO_VALUE = (
+    -9999.0,
+    -99999.0,
+    -999.0,
+    -999.25,
+    -32768.0,
+    9999.0,
+    99999.0,
+    999.25,
+    9999900.0,
+    1e30,
+    -1e30,
+)
 
 
 def read_point_file(
@@ -41,12 +55,40 @@ def read_point_file(
             file, given.columns, given.where, given.separator, given.decimal, given.nodata_values, step
         )
         points, warnings = rows.points, []
+        if rows.taken_for_xyz:
+            names = ", ".join(f"'{name}'" for name in rows.taken_for_xyz)
+            warnings.append(
+                f"{file}: no column is named x, y or z: the first three, {names}, are taken for them; "
+                'say which they are: columns = ["X", "Y", "Z"]'
+            )
         if rows.missing:
             warnings.append(f"{file}: {rows.missing} points without a value are left out")
+    warnings += [f"{file}: {text}" for text in _like_no_value(points[:, 2])]
     for columns, unit in ((slice(0, 2), given.plan_unit), (slice(2, 3), given.height_unit)):
         if (scale := factor(unit, model_unit)) != 1.0:
             points[:, columns] *= scale
     return np.ascontiguousarray(points), warnings
+
+
+def _like_no_value(z: np.ndarray) -> list[str]:
+    """Heights that programs write for none, where no other height is near: told, not left out, as they may be
+    meant."""
+    said = []
+    for value in _OFTEN_NO_VALUE:
+        count = int((z == value).sum())
+        if not count or count == len(z):
+            continue
+        others = z[(z != value) & ~np.isin(z, _OFTEN_NO_VALUE)]
+        if not len(others):
+            continue
+        low, high = float(others.min()), float(others.max())
+        if min(abs(value - low), abs(value - high)) > max(high - low, 0.5 * abs(value)):
+            number = "1 point has" if count == 1 else f"{count} points have"
+            said.append(
+                f"{number} the height {value:g}, far from all others, which often means none: if so, say "
+                f"nodata = {value:g}"
+            )
+    return said
 
 
 def _refuse_keys(file: Path, what: str, keys: list[str]) -> None:

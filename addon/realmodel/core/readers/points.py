@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -29,9 +29,18 @@ from .text import Step, no_step, read_bytes, require_text
 BYTES_AT_ONCE = 1 << 19  # between two steps: a few milliseconds
 _MOST_THREADS = 8
 _AXES = {
-    "x": ("x", "easting", "east", "x_coord", "xcoord", "coord_x", "utm_x", "x_utm"),
-    "y": ("y", "northing", "north", "y_coord", "ycoord", "coord_y", "utm_y", "y_utm"),
-    "z": ("z", "elevation", "elev", "altitude", "height", "z_coord", "zcoord", "coord_z"),
+    "x": (
+        *("x", "easting", "east", "x_coord", "xcoord", "coord_x", "utm_x", "x_utm", "point_x"),
+        *("rechtswert", "este"),
+    ),
+    "y": (
+        *("y", "northing", "north", "y_coord", "ycoord", "coord_y", "utm_y", "y_utm", "point_y"),
+        *("hochwert", "norte"),
+    ),
+    "z": (
+        *("z", "elevation", "elev", "altitude", "height", "z_coord", "zcoord", "coord_z", "point_z"),
+        *("höhe", "hoehe", "cota", "rl"),
+    ),
 }
 KNOWN = frozenset(name for names in _AXES.values() for name in names)
 
@@ -39,11 +48,13 @@ KNOWN = frozenset(name for names in _AXES.values() for name in names)
 @dataclass(frozen=True)
 class PointRows:
     """points (P, 3) float64 in the order of the file; how many rows had no value, and how many did not
-    hold what was asked for."""
+    hold what was asked for; the names of the columns that were taken for x, y and z although they say
+    nothing of the kind."""
 
     points: np.ndarray
     missing: int = 0
     filtered: int = 0
+    taken_for_xyz: tuple[str, ...] = ()
 
 
 def read_points(file: str | Path, step: Step = no_step) -> np.ndarray:
@@ -77,7 +88,8 @@ def read_point_rows(
     ]
     rows = read_rows(table, wanted, ("x", "y", "z"), filters, decimal, list(nodata), step)
     if len(rows.points):
-        return rows
+        guessed = () if columns is not None else _guessed_names(table)
+        return replace(rows, taken_for_xyz=guessed)
     if rows.filtered:
         raise _nothing_matches(table, where)
     what = "all its points are without a value" if rows.missing else "there are no points in it"
@@ -156,6 +168,18 @@ def _wanted_columns(table: Table, columns: Sequence[str | int] | None) -> list[i
     return [names.index(alias) for alias in found.values()]
 
 
+def _guessed_names(table: Table) -> tuple[str, ...]:
+    """The names of the first three columns where the header names the columns of the table, and none of them
+    as a coordinate."""
+    names = table.layout.names or ()
+    first_row = _head_rows(table, 1)
+    if len(names) < 3 or not first_row or len(names) != len(first_row[0]):
+        return ()
+    if KNOWN.intersection(plain_name(name) for name in names) or any(is_number(name) for name in names):
+        return ()
+    return tuple(names[:3])
+
+
 def _values(values: Sequence, encoding: str) -> tuple[list[float], list[bytes]]:
     """What native code compares entries with: numbers as numbers, text as it stands in the file."""
     numbers = [float(value) for value in values if not isinstance(value, str)]
@@ -224,9 +248,12 @@ def _pieces(native, table, columns, filters, decimal, missing, step) -> PointRow
 
 def _head_entries(table: Table, columns: Sequence[int], most: int = 2000) -> list[str]:
     """The entries of some columns in the first rows."""
+    return [row[column] for row in _head_rows(table, most) for column in columns if column < len(row)]
+
+
+def _head_rows(table: Table, most: int) -> list[list[str]]:
     body = table.raw[table.layout.body : table.layout.body + (1 << 18)].decode(table.encoding, "replace")
-    rows = [fields(line, table.layout.separator) for line in body.split("\n")[:most] if line.strip()]
-    return [row[column] for row in rows for column in columns if column < len(row)]
+    return [fields(line, table.layout.separator) for line in body.split("\n")[:most] if line.strip()]
 
 
 def _has_decimal_commas(table: Table, columns: Sequence[int], error) -> bool:
