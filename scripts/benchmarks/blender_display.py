@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Inside Blender's window: how long the viewport takes to draw a model in each display mode, beside the same
-blocks as plain meshes without RealModel.
+blocks as plain meshes without RealModel, and beside what the mode shows as plain meshes.
 
     xvfb-run -a -s "-screen 0 1280x800x24" blender --factory-startup -P blender_display.py -- S N FRAMES
 
 The model has S surfaces of N x N squares. Prints one line of JSON: the seconds per frame of each mode, those
-of the plain meshes before and after, and the polygons of each.
+of what it shows as plain meshes (with wires over them for AREAS, as wires for LINES; there is nothing like
+POINTS), those of the plain blocks before and after, and the polygons of each.
 """
 
 import json
@@ -13,6 +14,7 @@ import os
 import sys
 import time
 import traceback
+from contextlib import contextmanager
 from pathlib import Path
 
 import bpy
@@ -65,20 +67,32 @@ def seconds_per_frame(area, frames):
         return (time.perf_counter() - began) / frames
 
 
+def in_sight():
+    return [o for o in bpy.context.scene.objects if o.type == "MESH" and o.visible_get()]
+
+
 def polygons():
-    return sum(
-        len(o.data.polygons) for o in bpy.context.scene.objects if o.type == "MESH" and o.visible_get()
-    )
+    return sum(len(o.data.polygons) for o in in_sight())
 
 
-def plain(blocks):
-    """The same blocks as a user would have them from any importer, the model out of sight."""
-    made = []
-    for block in blocks:
-        mesh = block.data.copy()
-        made.append(bpy.data.objects.new("plain", mesh))
+@contextmanager
+def plain(items, mode):
+    """The same meshes as a user would have them from any importer, the model out of sight."""
+    shown, made = in_sight(), []
+    for item in items:
+        made.append(bpy.data.objects.new("plain", item.data.copy()))
+        made[-1].show_wire = made[-1].show_all_edges = mode == "AREAS"
+        made[-1].display_type = "WIRE" if mode == "LINES" else "TEXTURED"
         bpy.context.scene.collection.objects.link(made[-1])
-    return made
+    for item in shown:
+        item.hide_set(True)
+    yield
+    for item in made:
+        mesh = item.data
+        bpy.data.objects.remove(item)
+        bpy.data.meshes.remove(mesh)
+    for item in shown:
+        item.hide_set(False)
 
 
 def measure():
@@ -92,21 +106,13 @@ def measure():
     area = next(a for a in bpy.context.window_manager.windows[0].screen.areas if a.type == "VIEW_3D")
     area.spaces.active.region_3d.view_rotation = Quaternion((0.82, 0.45, 0.17, 0.31))
     bpy.ops.realmodel.view_all()
-    told = {"blender": bpy.app.version_string, "seconds": {}, "polygons": {}, "switch": {}}
+    told = {"blender": bpy.app.version_string, "seconds": {}, "alike": {}, "polygons": {}, "switch": {}}
     blocks = [row.object for row in scene.realmodel.results if row.object is not None]
 
     def measure_plain(name):
-        copies = plain(blocks)
-        for block in blocks:
-            block.hide_set(True)
-        told["polygons"][name] = polygons()
-        told["seconds"][name] = seconds_per_frame(area, frames)
-        for copy in copies:
-            mesh = copy.data
-            bpy.data.objects.remove(copy)
-            bpy.data.meshes.remove(mesh)
-        for block in blocks:
-            block.hide_set(False)
+        with plain(blocks, "BLOCKS"):
+            told["polygons"][name] = polygons()
+            told["seconds"][name] = seconds_per_frame(area, frames)
 
     measure_plain("plain")
     for mode in MODES:
@@ -118,6 +124,11 @@ def measure():
         told["switch"][mode] = time.perf_counter() - began
         told["polygons"][mode] = polygons()
         told["seconds"][mode] = seconds_per_frame(area, frames)
+        if mode == "LINES":
+            scene.realmodel.display = "BLOCKS"  # nothing is drawn over the viewport then
+        if mode != "POINTS":
+            with plain(in_sight(), mode):
+                told["alike"][mode] = seconds_per_frame(area, frames)
     measure_plain("plain again")
     print(json.dumps(told), flush=True)
 

@@ -9,7 +9,16 @@ from collections.abc import Callable
 
 from .process import ROOT, Skipped, run_apart
 
-FRAMES = ("display mode", "polygons", "frames/s", "time / plain meshes", "to switch to it, s", "")
+FRAMES = (
+    "display mode",
+    "polygons",
+    "frames/s",
+    "time / plain meshes",
+    "per polygon",
+    "time / what it shows as plain meshes",
+    "to switch to it, s",
+    "",
+)
 _SCRIPT = ROOT / "scripts" / "benchmarks" / "blender_display.py"
 _SURFACES, _SIDE, _QUICK_SIDE = 4, 290, 90  # three blocks of a million polygons; a tenth of that
 
@@ -41,15 +50,18 @@ def _drawn(side: int, frames: int, memory: float) -> dict:
 def _rows(told: dict) -> list[list[str]]:
     seconds, polygons = told["seconds"], told["polygons"]
     plain = (seconds["plain"] + seconds["plain again"]) / 2  # before and after the modes
-    rows = [["plain meshes", f"{polygons['plain']:,}", f"{1 / plain:.1f}", "1", "-", ""]]
+    rows = [["plain meshes", f"{polygons['plain']:,}", f"{1 / plain:.1f}", "1", "1", "1", "-", ""]]
     for mode, switch in told["switch"].items():
         shown = polygons[mode] or polygons["plain"]  # points and lines are those of the blocks
+        ratio, alike = seconds[mode] / plain, told["alike"].get(mode)
         rows.append(
             [
                 mode,
                 f"{shown:,}",
                 f"{1 / seconds[mode]:.1f}",
-                f"**{seconds[mode] / plain:.2f}**",
+                f"**{ratio:.2f}**",
+                f"{ratio * polygons['plain'] / shown:.2f}",
+                "-" if alike is None else f"**{seconds[mode] / alike:.2f}**",
                 f"{switch:.2f}",
                 "",
             ]
