@@ -32,8 +32,8 @@ class Watch:
     """Longest time between two calls of a timer of Blender, with and without what drawing takes of it, and
     what was spent in giving meshes to it.
 
-    Blender's loop calls timers, does what is to be done, draws, and begins anew; so what follows the
-    beginning of drawing, until the next call, is drawing and bringing the picture onto the screen.
+    Blender's loop calls timers, does what is to be done, evaluates what has changed, draws, and begins anew;
+    so what follows the beginning of that evaluation, until the next call, is taking the meshes to the screen.
     """
 
     def __init__(self):
@@ -42,6 +42,7 @@ class Watch:
         build_job.BuildJob._put = self._timed(build_job.BuildJob._put)
         display._show = self._timed(display._show)
         bpy.types.SpaceView3D.draw_handler_add(self._drawing, (), "WINDOW", "PRE_VIEW")
+        bpy.app.handlers.depsgraph_update_pre.append(self._drawing)
         self.begin()
 
     def _timed(self, function):
@@ -57,8 +58,8 @@ class Watch:
 
         return timed
 
-    def _drawing(self):
-        if self._draws is None:
+    def _drawing(self, *_arguments):
+        if self._draws is None and not self._within:
             self._draws = time.perf_counter()
 
     def begin(self):

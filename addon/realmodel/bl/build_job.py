@@ -7,7 +7,7 @@ import bpy
 
 from ..core import BuildFailed, InputRefused, RealModelError, build
 from ..core.project import surface_item
-from . import built_models, built_scene, display, project_settings, settings
+from . import built_models, built_scene, display, meshes, project_settings, settings
 from .thread_job import ThreadJob, threads
 
 
@@ -29,7 +29,7 @@ class BuildJob:
         group = current.realmodel
         is_stage = len(group.results) and group.stage < settings.last_stage(current)
         self._stage = group.stage if is_stage else None  # what is shown of the model afterwards
-        self._job = None
+        self._job = self._slices = None
 
     def run(self, progress=None):
         """Builds in this thread and puts the model into the scene."""
@@ -69,10 +69,34 @@ class BuildJob:
         """Waits for the thread."""
         self._job.wait()
 
+    def hand_over(self, seconds):
+        """Once the thread is done: gives Blender some of the meshes that the scene will need, for about so
+        many seconds, while the scene stays as it is. Returns whether `finish` may be called."""
+        current = bpy.data.scenes.get(self.scene_name)
+        if current is None or not self._job.succeeded:
+            return True  # finish tells
+        if self._slices is None:
+            shapes = built_scene.shapes_to_come(current, self._job.result(), self.composed)
+            self._slices = meshes.slices(shapes)
+        try:
+            return self._slices.make(seconds)
+        except BaseException:
+            self.leave()
+            raise
+
+    def leave(self):
+        """Takes back what was handed over; the scene never had it."""
+        if self._slices is not None:
+            self._slices.clear()
+            self._slices = None
+
     def finish(self, in_place=False):
         """Puts the model that the thread has built into the scene; returns it. Raises Cancelled, and what the
         build has raised."""
-        return self._put(self._job.result(), in_place)
+        try:
+            return self._put(self._job.result(), in_place)
+        finally:
+            self.leave()
 
     def _put(self, prepared, in_place=False):
         current = bpy.data.scenes.get(self.scene_name)

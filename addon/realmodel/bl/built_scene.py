@@ -91,6 +91,18 @@ def prepare(model, composed, stage=None, threads=0, cancel=None):
     return prepared
 
 
+def shapes_to_come(current, prepared, composed):
+    """(name, PolygonMesh) of each mesh that `put` will make, as the scene stands."""
+    for r, rock in enumerate(current.realmodel.rocks):
+        for s, row in enumerate(rock.surfaces):
+            shape, digest = prepared.interfaces.get((r, s), (None, ""))
+            if shape is not None and (_interface(row) is None or digest != row.interface_digest):
+                yield row.name, shape
+    for block, shape in zip(prepared.model.blocks, prepared.blocks, strict=True):
+        if shape is not None:
+            yield block.name, shape
+
+
 def check_rows(current, project):
     """Raises BuildFailed where the lists of a scene are no longer those that a project was made from."""
     now = [(row.name, [s.name for s in row.surfaces]) for row in current.realmodel.rocks]
@@ -161,13 +173,18 @@ def _palette(current, model, created):
     return palette, updates
 
 
+def _interface(row):
+    """The object that is a surface's interface, or None."""
+    return row.object if row.source == "MESH_OBJECT" else row.interface
+
+
 def _new_interfaces(current, prepared, composed, created):
     """By (rock, surface) the object that is to be the interface, with another mesh where it needs one:
     (object, mesh or None, digest)."""
     found = {}
     for r, rock in enumerate(current.realmodel.rocks):
         for s, row in enumerate(rock.surfaces):
-            own = row.object if row.source == "MESH_OBJECT" else row.interface
+            own = _interface(row)
             if composed.from_object(r, s):
                 found[r, s] = (own, None, "")
                 continue

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 
 from ..core.polygon_mesh import PolygonMesh
-from . import versions
+from . import meshes_ahead, versions
 
 # Face attribute: global index of the surface a face lies on; -1 a vertical wall, -2 the flat base
 FACE_SURFACE = "realmodel_surface"
@@ -17,7 +17,17 @@ def new_mesh(name, shape):
     `realmodel_surface`.
 
     Arrays go to Blender as they are: a million quads, with their edges, in less than a tenth of a second.
+    A mesh that was made ahead is there already.
     """
+    return meshes_ahead.take(shape) or _made_now(name, shape)
+
+
+def slices(shapes):
+    """The meshes of shapes - (name, PolygonMesh) each - to be made ahead: meshes_ahead.Slices."""
+    return meshes_ahead.Slices(shapes, _made_now)
+
+
+def _made_now(name, shape):
     mesh = bpy.data.meshes.new(name)
     try:
         _fill(mesh, shape)

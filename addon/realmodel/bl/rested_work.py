@@ -14,11 +14,13 @@ class RestedWork:
 
     rest: seconds without a change. begin(name, changed_at) returns a job (as ThreadJob: done, cancel, wait)
     for the scene of that name, or None. finish(name, job, changed_at) takes what it has done. may_begin():
-    whether nothing else is in the way.
+    whether nothing else is in the way. hand_over(name, job): called once the job is done, again and again
+    until it returns True: what can be done in slices before `finish`.
     """
 
-    def __init__(self, rest, begin, finish, may_begin=lambda: True):
+    def __init__(self, rest, begin, finish, may_begin=lambda: True, hand_over=lambda name, job: True):
         self._rest, self._begin, self._finish, self._may_begin = rest, begin, finish, may_begin
+        self._hand_over = hand_over
         self._changed_at = {}  # by the name of a scene: when something changed that has no job yet
         self._jobs = {}  # by the name of a scene: (job, when its last change was)
         self._timer = self.look  # Blender knows timers by the object
@@ -64,7 +66,7 @@ class RestedWork:
             job, changed_at = self._jobs[name]
             if name in self._changed_at:
                 job.cancel()  # it is made from what is no longer so
-            if job.done:
+            if job.done and (name in self._changed_at or self._hand_over(name, job)):
                 del self._jobs[name]
                 self._finish(name, job, changed_at)
         for name, changed_at in list(self._changed_at.items()):

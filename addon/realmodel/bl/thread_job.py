@@ -47,6 +47,11 @@ class ThreadJob:
     def done(self):
         return self._ended.is_set()
 
+    @property
+    def succeeded(self):
+        """Whether the task has ended, and `result` will return what it has returned."""
+        return self.done and not self.cancelled and self._error is None
+
     def cancel(self):
         self.cancelled = True
 

@@ -8,6 +8,7 @@ from ..core import Cancelled, RealModelError
 from .reporting import Reporting, needed_model
 
 _STEP = 0.05  # seconds between two looks at the work
+_SLICE = 0.05  # seconds in which Blender is given meshes, before the window is looked after again
 
 
 class REALMODEL_OT_build(Reporting, bpy.types.Operator):
@@ -60,13 +61,16 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
         if not self._job.done:
             self._show_progress(context)
             return {"PASS_THROUGH"}
-        self._leave(context)
         try:
+            if not self._job.hand_over(_SLICE):
+                return {"PASS_THROUGH"}
+            self._leave(context)
             self._tell_done(self._job.finish())
         except Cancelled:
             self.report({"WARNING"}, "Cancelled: the scene is as it was")
             return {"CANCELLED"}
         except Exception as error:
+            self._leave(context)
             return self._refused(context, error)
         viewports.redraw()
         return {"FINISHED"}
@@ -74,6 +78,7 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
     def cancel(self, context):
         """Blender ends the operator: another file is opened, or the window is closed."""
         self._job.cancel()
+        self._job.leave()
         self._leave(context)
 
     def _show_progress(self, context):
@@ -86,8 +91,10 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
         viewports.redraw_sidebars()
 
     def _leave(self, context):
-        if self._job in running:
-            running.remove(self._job)
+        """The build is over, whichever way; more than once does no harm."""
+        if self._job not in running:
+            return
+        running.remove(self._job)
         manager = context.window_manager
         manager.realmodel.running = False
         manager.progress_end()
@@ -168,4 +175,5 @@ def unregister():
     for job in list(running):
         job.cancel()
         job.wait()
+        job.leave()
     running.clear()

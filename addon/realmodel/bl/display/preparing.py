@@ -5,7 +5,7 @@ the cells of a large model. Then the view is asked again, and finds it at hand."
 import bpy
 
 from ...core import Cancelled, RealModelError
-from .. import viewports
+from .. import meshes, viewports
 from ..rested_work import RestedWork
 from ..thread_job import ThreadJob
 from . import cells, modes, replacing, shown_models
@@ -55,7 +55,29 @@ def _begin(name, _changed_at):
     return ThreadJob("view", task)
 
 
-def _finish(name, job, _changed_at):
+def _hand_over(name, job):
+    """Gives Blender some of the meshes of cells that will be shown; whether all are there. (The blocks' own
+    meshes take the shapes of a stage in place, for the sake of what points to them.)"""
+    scene = bpy.data.scenes.get(name)
+    if scene is None or not job.succeeded:
+        return True
+    if name not in _slices:
+        _, _, wanted = job.result()
+        coming = {} if wanted is None else wanted.shapes
+        _slices[name] = meshes.slices((f"{block} cells", shape) for (_, block), shape in coming.items())
+    return _slices[name].make(_SLICE)
+
+
+def _finish(name, job, changed_at):
+    try:
+        _show(name, job)
+    finally:
+        slices = _slices.pop(name, None)
+        if slices is not None:
+            slices.clear()
+
+
+def _show(name, job):
     scene = bpy.data.scenes.get(name)
     if scene is None or not len(scene.realmodel.results):
         return
@@ -86,6 +108,11 @@ def stop():
     """Ends what is under way."""
     _work.stop()
     cells.forget()
+    for slices in _slices.values():
+        slices.clear()
+    _slices.clear()
 
 
-_work = RestedWork(0.0, _begin, _finish)
+_SLICE = 0.05  # seconds in which Blender is given meshes, before the window is looked after again
+_slices = {}  # by the name of a scene: the meshes that are being made for it
+_work = RestedWork(0.0, _begin, _finish, hand_over=_hand_over)

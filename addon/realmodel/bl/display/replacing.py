@@ -7,7 +7,7 @@ meshes are then exchanged instead of filled anew, and what is left over is remov
 
 import bpy
 
-from .. import meshes, scene
+from .. import meshes, meshes_ahead, scene
 
 _rendering = False
 _left_meshes = []  # names
@@ -41,7 +41,7 @@ def nobody_waits():
 
 def give_shape(item, shape):
     """Gives an object's mesh other contents; shape: PolygonMesh."""
-    if not _rendering:
+    if not _rendering and not meshes_ahead.has(shape):
         meshes.refill(item.data, shape)
         return
     old = item.data
@@ -54,6 +54,10 @@ def give_shape(item, shape):
         if link == "OBJECT":
             slot.link, slot.material = link, material
     _left_meshes.append(old.name)
+    if not _rendering:
+        name = old.name
+        tidy()
+        scene.give_name(bpy.data.meshes, mesh, name)
 
 
 def remove(item):

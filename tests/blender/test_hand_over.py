@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A built model comes into the scene in slices; whatever happens in between, the scene stays as it was or has
+the whole model."""
+
+from unittest import mock
+
+import bpy
+import numpy as np
+from blender_state import inventory, volume
+from panel_case import PanelCase, ops, raise_by, select, stack
+from realmodel.bl import meshes, meshes_ahead
+from realmodel.bl.build_job import BuildJob
+from realmodel.core import Cancelled
+from realmodel.core.polygon_mesh import of_triangles
+
+
+class HandOver(PanelCase):
+    def setUp(self):
+        super().setUp()
+        stack(0.0, 10.0, 20.0)
+        ops.build()
+        raise_by(bpy.data.objects["S2"], 3.0)
+        self.before = inventory()
+        self.job = BuildJob(self.scene, bpy.context.evaluated_depsgraph_get())
+        self.job.start()
+        self.job.wait()
+
+    def assert_built(self):
+        self.assertAlmostEqual(self.volumes()["S2 block"], 13e4, delta=1.0)
+        self.assertAlmostEqual(volume(bpy.data.objects["S2 block"].data), 13e4, delta=1.0)
+        self.assertEqual(bpy.data.objects["S2 block"].data.name, "S2 block")
+        self.assertFalse([m.name for m in bpy.data.meshes if not m.users or meshes_ahead._MARK in m])
+        self.assertFalse(meshes_ahead._made)
+
+    def test_one_mesh_after_the_other(self):
+        self.assertFalse(self.job.hand_over(0.0), "there is a second block")
+        self.assertTrue(self.job.hand_over(0.0))
+        self.assertAlmostEqual(volume(bpy.data.objects["S2 block"].data), 1e5, delta=1.0)
+        with mock.patch.object(meshes, "_made_now", side_effect=AssertionError("it is there already")):
+            self.job.finish()
+        self.assert_built()
+
+    def test_all_at_once(self):
+        self.assertTrue(self.job.hand_over(60.0))
+        self.job.finish()
+        self.assert_built()
+
+    def test_cancelled_in_between(self):
+        self.job.hand_over(0.0)
+        self.job.cancel()
+        self.assertTrue(self.job.hand_over(0.0), "there is nothing to wait for")
+        with self.assertRaises(Cancelled):
+            self.job.finish()
+        self.assertEqual(inventory(), self.before)
+        self.assertFalse(meshes_ahead._made)
+
+    def test_no_memory_in_between(self):
+        self.job.hand_over(0.0)
+        with (
+            mock.patch.object(self.job._slices, "_new_mesh", side_effect=MemoryError("on purpose")),
+            self.assertRaisesRegex(MemoryError, "on purpose"),
+        ):
+            self.job.hand_over(0.0)
+        self.assertEqual(inventory(), self.before)
+
+    def test_the_window_is_closed_in_between(self):
+        self.job.hand_over(0.0)
+        self.job.cancel()
+        self.job.leave()
+        self.assertEqual(inventory(), self.before)
+
+    def test_the_lists_change_in_between(self):
+        self.job.hand_over(60.0)
+        self.model.rocks[0].surfaces[2].name = "Renamed"
+        with self.assertRaisesRegex(Exception, "lists were changed"):
+            self.job.finish()
+        self.model.rocks[0].surfaces[2].name = "S2"
+        self.assertEqual(inventory(), self.before)
+
+    def test_what_has_no_users_is_cleared_in_between(self):
+        self.job.hand_over(60.0)
+        for mesh in [mesh for mesh in bpy.data.meshes if not mesh.users]:
+            bpy.data.meshes.remove(mesh)
+        self.job.finish()
+        self.assert_built()
+
+    def test_the_scene_is_saved_and_opened_in_between(self):
+        self.job.hand_over(60.0)
+        self.save_and_open()
+        self.job.finish()
+        self.assert_built()
+
+    def test_another_mesh_of_the_same_name_is_left_alone(self):
+        self.job.hand_over(60.0)
+        for mesh in [mesh for mesh in bpy.data.meshes if not mesh.users]:
+            name = mesh.name
+            bpy.data.meshes.remove(mesh)
+            bpy.data.meshes.new(name)["mine"] = True
+        self.job.finish()
+        self.assertAlmostEqual(volume(bpy.data.objects["S2 block"].data), 13e4, delta=1.0)
+        self.assertEqual(len([mesh for mesh in bpy.data.meshes if "mine" in mesh]), 2)
+
+    def test_undo_in_between(self):
+        if bpy.app.background and not bpy.ops.ed.undo_push.poll():
+            self.skipTest("this Blender has no undo in background")
+        bpy.ops.ed.undo_push(message="one")
+        select(bpy.data.objects["S1"])
+        bpy.ops.ed.undo_push(message="two")
+        self.job.hand_over(60.0)
+        bpy.ops.ed.undo()
+        self.job.finish()
+        self.assert_built()
+
+
+class Arrays(PanelCase):
+    def test_a_mesh_is_the_same_however_it_is_filled(self):
+        """With edges that are given and with those that Blender finds, in one piece and number by number."""
+        x, y = (part.ravel() for part in np.meshgrid(np.arange(5.0), np.arange(4.0)))
+        at = np.column_stack([x, y, np.sin(x + y)]).astype(np.float32)
+        corner = (np.arange(3)[:, None] * 5 + np.arange(4)).ravel()
+        triangles = np.concatenate(
+            [
+                np.stack([corner, corner + 1, corner + 6], axis=1),
+                np.stack([corner, corner + 6, corner + 5], axis=1),
+            ]
+        ).astype(np.int32)
+        shape = of_triangles(at, triangles, smooth=True)
+        given = meshes.new_mesh("given", shape)
+        found = meshes.triangle_mesh("found", at, triangles, smooth=True)
+        with mock.patch("realmodel.bl.mesh_memory.is_known", lambda: False):
+            slow = meshes.new_mesh("slow", shape)
+            self.assertTrue(meshes.holds(given, shape))
+        for mesh in (given, found, slow):
+            self.assertFalse(mesh.validate(), "Blender has nothing to mend")
+            self.assertTrue(meshes.holds(mesh, shape))
+            self.assertEqual(
+                [tuple(p.vertices) for p in mesh.polygons], [tuple(t) for t in triangles.tolist()]
+            )
+            self.assertTrue(all(p.use_smooth for p in mesh.polygons))
+            edges = {tuple(sorted(edge.vertices)) for edge in mesh.edges}
+            self.assertEqual(edges, {tuple(edge) for edge in shape.edges.tolist()})
+            ends = [set(mesh.edges[loop.edge_index].vertices) for loop in mesh.loops]
+            self.assertEqual(ends, [set(edge) for edge in shape.edges[shape.corner_edges].tolist()])
+            self.assertFalse(any(edge.is_loose for edge in mesh.edges))
