@@ -151,8 +151,11 @@ def built(scene, bounds, stage=None):
     shapes)."""
     from . import explosion, shown_models
 
+    made = [row.object for row in scene.realmodel.results]
+    made += [surface.interface for _, surface in settings.surface_rows(scene)]
     for layer in scene.view_layers:
-        layer.update()  # or it would not know the new objects, and show them all when it learns of them
+        if any(item is not None and item.name not in layer.objects for item in made):
+            layer.update()  # or it would show all new objects when it learns of them
     forget_meshes()
     shown_models.forget()
     if stage is not None:
