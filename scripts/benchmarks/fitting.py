@@ -38,6 +38,7 @@ CASES = [
 _KNOTS = 25
 _STEEPEST = 1.1
 _QUICK = 1_000_000  # triangles in all
+_LARGE = 1_000_000  # the same, of which a stack's pace is that of large ones
 _BOUND = 1.5  # how far memory by triangles alone lies above the dearest case
 
 
@@ -113,8 +114,22 @@ def least_squares(rows: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     return best
 
 
-def pace(cases: list[dict]) -> list[list[float]]:
-    """Knots [fraction counted, share of the time], the mean of some builds; both rise from 0 to 1."""
+def pace(cases: list[dict]) -> list[dict]:
+    """Knots [fraction counted, share of the time] of small stacks and of large ones, by rising `triangles`:
+    of large ones less is cut for each triangle, and other steps take a larger share."""
+    stacks = [StackSpec(**case["spec"]) for case in cases]
+    sizes = [stack.triangles * stack.surfaces for stack in stacks]
+    curves = []
+    for is_large in (False, True):
+        chosen = [k for k, size in enumerate(sizes) if (size > _LARGE) is is_large]
+        if chosen:
+            middle = float(np.exp(np.mean(np.log([sizes[k] for k in chosen]))))
+            curves.append({"triangles": round(middle), "knots": knots([cases[k] for k in chosen])})
+    return curves
+
+
+def knots(cases: list[dict]) -> list[list[float]]:
+    """[fraction counted, share of the time], the mean of some builds; both rise from 0 to 1."""
     fractions = np.linspace(0.0, 1.0, _KNOTS)
     shares = []
     for case in cases:
@@ -268,6 +283,8 @@ def literal(value, indent: str = "") -> str:
     if isinstance(value, dict):
         lines = [f'{inner}"{name}": {literal(entry, inner)},' for name, entry in value.items()]
         return "\n".join(["{", *lines, indent + "}"])
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        return "\n".join(["[", *(f"{inner}{literal(entry, inner)}," for entry in value), indent + "]"])
     if isinstance(value, list) and value and isinstance(value[0], list):
         return "\n".join(["[", *(f"{inner}{pair}," for pair in value), indent + "]"])
     return repr(value)

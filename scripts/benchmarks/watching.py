@@ -28,7 +28,7 @@ def project(spec: StackSpec) -> Project:
 @contextmanager
 def counting_plainly():
     """Builds within tell what the native part counted, not what was made of it."""
-    whole = [[0.0, 0.0], [1.0, 1.0]]
+    whole = [{"triangles": 1, "knots": [[0.0, 0.0], [1.0, 1.0]]}]
     kept = copy.deepcopy(COSTS)
     for cells in ("columns", "blocks"):
         COSTS[cells].update(pace_own=whole, pace_shared=whole)

@@ -98,7 +98,7 @@ def test_the_fit_finds_what_was_put_in():
 
 def test_a_pace_rises_where_counting_jumps_and_stands_still():
     told = [[0.0, 0.0], [0.2, 0.5], [0.4, 0.5], [0.6, 0.5], [0.9, 0.6], [1.0, 1.0]]
-    knots = fitting.pace([{"told": told}])
+    knots = fitting.knots([{"told": told}])
     shares = [share for _, share in knots]
     assert knots[0] == [0.0, 0.0]
     assert knots[-1] == [1.0, 1.0]
@@ -107,8 +107,19 @@ def test_a_pace_rises_where_counting_jumps_and_stands_still():
     assert 0.2 <= middle <= 0.6
 
 
+def test_small_and_large_stacks_have_a_pace_each():
+    slow, fast = [[0.0, 0.0], [0.5, 0.2], [1.0, 1.0]], [[0.0, 0.0], [0.5, 0.8], [1.0, 1.0]]
+    small = {"spec": {"surfaces": 10, "quads": 100}, "told": slow}
+    large = {"spec": {"surfaces": 10, "quads": 700}, "told": fast}
+    curves = fitting.pace([large, small])
+    assert [curve["triangles"] for curve in curves] == [200_000, 9_800_000]
+    assert curves[0]["knots"] == fitting.knots([small])
+    assert len(fitting.pace([small])) == 1
+
+
 def test_constants_are_written_as_python_that_reads_back():
-    costs = {"read": 1.5e-08, "columns": {"bytes": {"faces": 3.0}, "pace_own": [[0.0, 0.0], [1.0, 1.0]]}}
+    costs = {"read": 1.5e-08, "columns": {"bytes": {"faces": 3.0}, "pace_own": []}}
+    costs["columns"]["pace_own"] = [{"triangles": 7, "knots": [[0.0, 0.0], [1.0, 1.0]]}]
     assert ast.literal_eval(fitting.literal(costs)) == costs
 
 

@@ -42,8 +42,21 @@ def test_the_pace_rises_from_nothing_to_all(cells, own):
     assert told[0] == 0.0
     assert told[-1] == 1.0
     assert told == sorted(told)
-    knots = COSTS[cells]["pace_own" if own else "pace_shared"]
+    knots = COSTS[cells]["pace_own" if own else "pace_shared"][0]["knots"]
     assert [pace(fraction) for fraction, _ in knots] == pytest.approx([share for _, share in knots])
+
+
+def test_the_pace_lies_between_those_of_smaller_and_larger_stacks(monkeypatch):
+    given = inputs(waves(2, 10, True))
+    triangles = sum(len(made) for _, made in given[0].surfaces)
+    curves = [
+        {"triangles": triangles // 2, "knots": [[0.0, 0.0], [0.5, 0.2], [1.0, 1.0]]},
+        {"triangles": triangles * 2, "knots": [[0.0, 0.0], [0.5, 0.6], [1.0, 1.0]]},
+    ]
+    monkeypatch.setitem(COSTS["blocks"], "pace_own", curves)
+    assert stack_pace(given, "blocks")(0.5) == pytest.approx(0.4)
+    assert stack_pace(inputs(waves(2, 2, True)), "blocks")(0.5) == pytest.approx(0.2)
+    assert stack_pace(inputs(waves(2, 40, True)), "blocks")(0.5) == pytest.approx(0.6)
 
 
 def test_shares_of_arrays_leave_nothing_to_read():

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -129,15 +128,17 @@ def _rings(rock: Rock) -> Sequence[np.ndarray]:
 
 
 def stack_pace(inputs: Sequence[RockInput], cells: str) -> Callable[[float], float]:
-    """From the fraction that the stack builder counts to the share of its time."""
+    """From the fraction that the stack builder counts to the share of its time: between what was measured of
+    small stacks and of large ones, as the logarithm of the number of triangles lies between theirs."""
     shared = all(on_one_plan(entry.surfaces) for entry in inputs)
-    counted, passed = zip(*COSTS[cells]["pace_shared" if shared else "pace_own"], strict=True)
+    measured = COSTS[cells]["pace_shared" if shared else "pace_own"]
+    triangles = sum(len(made) for entry in inputs for _, made in entry.surfaces)
+    sizes = np.log([entry["triangles"] for entry in measured])
+    curves = [np.array(entry["knots"]).T for entry in measured]
 
     def pace(fraction: float) -> float:
-        at = min(max(bisect_right(counted, fraction), 1), len(counted) - 1)
-        run = counted[at] - counted[at - 1]
-        share = (fraction - counted[at - 1]) / run if run > 0 else 1.0
-        return passed[at - 1] + (passed[at] - passed[at - 1]) * min(max(share, 0.0), 1.0)
+        shares = [np.interp(fraction, counted, passed) for counted, passed in curves]
+        return float(np.interp(np.log(max(triangles, 1)), sizes, shares))
 
     return pace
 

@@ -8,6 +8,7 @@
 namespace realmodel::strata {
 
 using exact::PlanGeometry;
+using exact::VertexId;
 
 namespace {
 
@@ -18,10 +19,47 @@ std::int32_t merged_label(std::int32_t a, std::int32_t b) {
     return b == kNoLabel ? a : kSeveral;
 }
 
-/// What a pair of planes is to each other over a box.
-enum class Standing { kBelow, kAbove, kUnclear };
+/// What a pair of triangles is to each other where they share a place in plan, for certain.
+enum class Standing { kBelow, kAbove, kApart, kUnclear };
 
-/// Where plane `lower` stands against plane `upper` all over the common part of two boxes.
+/// The same all over a triangle, from the difference of two planes at its corners.
+Standing compare_at(const PlanGeometry& geometry, const exact::LineFilter& difference,
+                    const PlanTriangle& triangle, double margin) {
+    bool below = true, above = true;
+    for (const VertexId v : triangle) {
+        const exact::Point& p = geometry.point(v);
+        const double dx = p.x - difference.x0, dy = p.y - difference.y0;
+        const double value = difference.a * dx + difference.b * dy + difference.c;
+        const double room = difference.error_at(dx, dy, 0) + margin;
+        below &= value + room < 0;
+        above &= value - room > 0;
+    }
+    if (below) return Standing::kBelow;
+    return above ? Standing::kAbove : Standing::kUnclear;
+}
+
+/// Whether an edge of one triangle has all of the other beyond it, for certain: they share no place
+/// in plan, not even a corner.
+bool is_beyond(const PlanGeometry& geometry, const PlanTriangle& triangle,
+               const PlanTriangle& other) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const exact::LineFilter edge =
+            geometry.edge_filter(triangle[i], triangle[i + 1 < 3 ? i + 1 : 0]);
+        if (std::all_of(other.begin(), other.end(), [&](VertexId v) {
+                const exact::Point& p = geometry.point(v);
+                const double dx = p.x - edge.x0, dy = p.y - edge.y0;
+                return edge.a * dx + edge.b * dy < -edge.error_at(dx, dy, 0);
+            }))
+            return true;
+    }
+    return false;
+}
+bool are_apart(const PlanGeometry& geometry, const PlanTriangle& a, const PlanTriangle& b) {
+    return is_beyond(geometry, a, b) || is_beyond(geometry, b, a);
+}
+
+/// Where triangle `lower` stands against triangle `upper`, of which at least what lies in two boxes
+/// counts: their difference over the common part of the boxes tells, or over either triangle.
 Standing compare_over(const PlanGeometry& geometry, PlaneId lower, PlaneId upper, const PlanBox& a,
                       const PlanBox& b, double margin) {
     const exact::LineFilter d = geometry.trace_filter(lower, upper);  // lower less upper
@@ -37,7 +75,13 @@ Standing compare_over(const PlanGeometry& geometry, PlaneId lower, PlaneId upper
     const double room = std::abs(d.a) * half_x + std::abs(d.b) * half_y + error + margin;
     if (middle + room < 0) return Standing::kBelow;
     if (middle - room > 0) return Standing::kAbove;
-    return Standing::kUnclear;
+    const Standing over_lower = compare_at(geometry, d, geometry.plane(lower).plan, margin);
+    if (over_lower != Standing::kUnclear) return over_lower;
+    const Standing over_upper = compare_at(geometry, d, geometry.plane(upper).plan, margin);
+    if (over_upper != Standing::kUnclear) return over_upper;
+    return are_apart(geometry, geometry.plane(lower).plan, geometry.plane(upper).plan)
+               ? Standing::kApart
+               : Standing::kUnclear;
 }
 
 /// Numbers of things by the tiles that their boxes meet.
@@ -242,6 +286,7 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
                         if (!box.meets(facet_box)) return true;
                         const Standing standing =
                             compare_over(geometry_, plane, facet, box, facet_box, margin_);
+                        if (standing == Standing::kApart) return true;
                         below &= standing == Standing::kBelow;
                         above &= standing == Standing::kAbove;
                         return below || above;
@@ -322,9 +367,12 @@ void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
                 const PlaneId plane = layer.first_plane + t;
                 const PlanBox& other = surface_at_[static_cast<std::size_t>(t)].bounds.box;
                 if (!box.meets(other)) return true;
-                if (c.surface[static_cast<std::size_t>(t)] == Classified::kUnclear) return false;
+                if (c.surface[static_cast<std::size_t>(t)] == Classified::kUnclear)
+                    return are_apart(geometry_, geometry_.plane(plane).plan,
+                                     geometry_.plane(facet).plan);
                 const Standing standing =
                     compare_over(geometry_, plane, facet, box, other, margin_);
+                if (standing == Standing::kApart) return true;
                 below &= standing == Standing::kBelow;
                 above &= standing == Standing::kAbove;
                 return below || above;

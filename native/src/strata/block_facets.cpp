@@ -38,7 +38,7 @@ public:
             keep(facet, in.pending[facet]);
             return;
         }
-        const Pieces& pieces = finder_.find(in.outlines[facet], plane);
+        const Pieces& pieces = finder_.find_for_split(in.outlines[facet], plane);
         std::size_t below = 0, not_below = 0;
         for (const Piece& piece : pieces.list) {
             below += piece.side == Side::kBelow;

@@ -15,8 +15,8 @@ using exact::VertexId;
 
 namespace {
 
-/// So many triangles of a surface in a tile, on average.
-constexpr std::size_t kTrianglesInTile = 2;
+/// So many triangles of a surface in a tile, on average. Fewer tell more apart and cost more.
+constexpr std::size_t kTrianglesInTile = 1;
 
 PlanBox box_of_edge(const PlanGeometry& geometry, VertexId from, VertexId to) {
     const auto &p = geometry.point(from), &q = geometry.point(to);

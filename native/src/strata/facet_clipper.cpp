@@ -44,26 +44,35 @@ FacetClipper::KnownLine& FacetClipper::known_line(LineId line) {
 }
 
 PolygonView FacetClipper::intersect(PolygonView window) {
-    if (facet_.size() > exact::kRowLength || window.size() > exact::kRowLength)
-        return clipper_.intersect(facet_, window);
+    if (!fits(window)) return clipper_.intersect(facet_, window);
+    if (!compare(window)) return {};
+    return on_line_ ? cut_by_lines(window) : follow(window);
+}
+
+bool FacetClipper::meets(PolygonView window) {
+    return fits(window) ? compare(window) : clipper_.overlap(facet_, window);
+}
+
+/// Finds where the corners of facet and window lie against the lines of the other; false where one
+/// of these lines has all of one to its left and nothing of the other.
+bool FacetClipper::compare(PolygonView window) {
     const std::uint32_t all = (1U << facet_.size()) - 1U;
-    bool on_line = false;
+    on_line_ = false;
     for (std::size_t j = 0; j < window.size(); ++j) {
         KnownLine& known = known_line(exact::line_of(window[j].line));
         Sides corners = known.sides;
         if (exact::is_reversed(window[j].line)) std::swap(corners.left, corners.right);
-        if (corners.left == 0) return {};
-        on_line |= (corners.left | corners.right) != all;
+        if (corners.left == 0) return false;
+        on_line_ |= (corners.left | corners.right) != all;
         edges_[j] = {&known, corners};
     }
     std::uint32_t reached = 0;
     for (std::size_t j = 0; j < window.size(); ++j) {
         window_corners_[j] = known_point(window[j].point).sides;
         reached |= window_corners_[j].left;
-        on_line |= (window_corners_[j].left | window_corners_[j].right) != all;
+        on_line_ |= (window_corners_[j].left | window_corners_[j].right) != all;
     }
-    if (reached != all) return {};  // all of the window lies right of one of the facet's lines
-    return on_line ? cut_by_lines(window) : follow(window);
+    return reached == all;
 }
 
 PointId FacetClipper::crossing(std::size_t i, std::size_t j, PolygonView window) {

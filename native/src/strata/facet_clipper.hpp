@@ -21,8 +21,14 @@ public:
     /// The common part of the facet and a convex polygon, valid until the next call; empty without
     /// area.
     PolygonView intersect(PolygonView window);
+    /// Whether the two share an area; makes no points.
+    bool meets(PolygonView window);
 
 private:
+    bool fits(PolygonView window) const {
+        return facet_.size() <= exact::kRowLength && window.size() <= exact::kRowLength;
+    }
+    bool compare(PolygonView window);
     /// Known things are looked up in the place that their number gives; who comes later stays.
     static constexpr std::size_t kKnown = 64;
     struct KnownPoint {
@@ -58,6 +64,7 @@ private:
     std::array<KnownLine, kKnown> known_lines_;
     std::array<Edge, exact::kRowLength> edges_;
     std::array<exact::Sides, exact::kRowLength> window_corners_;
+    bool on_line_ = false;  ///< whether a corner of one lies on a line of the other
     Polygon result_;
     /// A corner of what lines have left of the facet.
     struct Left : Corner {

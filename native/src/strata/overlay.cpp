@@ -66,7 +66,7 @@ public:
             keep(facet, envelope_.pending[facet]);
             return;
         }
-        const Pieces& pieces = finder_.find(outline, plane);
+        const Pieces& pieces = finder_.find_for_split(outline, plane);
         std::size_t below = 0, not_below = 0;
         for (const Piece& piece : pieces.list) {
             below += piece.side == Side::kBelow;

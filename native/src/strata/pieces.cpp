@@ -66,37 +66,79 @@ PieceFinder::HeightRange PieceFinder::heights_of(PlaneId plane) const {
 
 const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
     pieces_.clear();
-    const HeightRange facet = plane < 0 ? HeightRange{} : heights_of(plane);
+    const Facet facet = facet_of(outline, plane);
     if (find_candidates(outline)) {
-        add_common(candidates_.front(), outline, plane, facet);
+        add_common(candidates_.front(), outline, facet);
         return pieces_;
     }
     facet_clipper_.begin(outline);
-    for (const std::int32_t c : candidates_) {
-        const PolygonView common =
-            facet_clipper_.intersect(layer_.polygons[static_cast<std::size_t>(c)]);
-        if (!common.empty()) add_common(c, common, plane, facet);
-    }
+    for (const std::int32_t c : candidates_)
+        add_common(c, facet_clipper_.intersect(outline_of(c)), facet);
     return pieces_;
 }
 
-/// Adds what a facet, which lies between these heights, has in common with a polygon.
-void PieceFinder::add_common(std::int32_t polygon, PolygonView common, PlaneId plane,
-                             const HeightRange& facet) {
+const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
+    if (plane < 0) return find(outline, plane);
+    pieces_.clear();
+    const Facet facet = facet_of(outline, plane);
+    if (find_candidates(outline)) {
+        add_common(candidates_.front(), outline, facet);
+        return pieces_;
+    }
+    facet_clipper_.begin(outline);
+    // for as long as all is higher, it is only looked which polygons meet the facet
+    auto c = candidates_.begin();
+    higher_.clear();
+    for (; c != candidates_.end(); ++c) {
+        if (is_higher(*c, facet)) {
+            if (facet_clipper_.meets(outline_of(*c))) higher_.push_back(*c);
+        } else if (facet_clipper_.meets(outline_of(*c))) {
+            break;
+        }
+    }
+    if (c == candidates_.end()) {
+        for (const std::int32_t polygon : higher_)
+            add(polygon, Side::kNotBelow, {});
+        return pieces_;
+    }
+    for (const std::int32_t polygon : higher_)
+        add_common(polygon, facet_clipper_.intersect(outline_of(polygon)), facet);
+    for (; c != candidates_.end(); ++c)
+        add_common(*c, facet_clipper_.intersect(outline_of(*c)), facet);
+    return pieces_;
+}
+
+/// Whether a polygon of the layer is nowhere below the facet where they meet, as far as heights and
+/// floating point tell.
+bool PieceFinder::is_higher(std::int32_t polygon, const Facet& facet) const {
+    const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
+    if (surface < 0) return false;
+    const HeightRange heights = heights_of(surface);
+    if (heights.low >= facet.heights.high) return true;
+    if (heights.high < facet.heights.high) return false;  // most that are not higher
+    const auto trace = scope_.shared().trace_filter(surface, facet.plane);
+    return std::all_of(facet.outline.begin(), facet.outline.end(), [&](const Corner& corner) {
+        return scope_.is_left_for_certain(trace, corner.point);
+    });
+}
+
+/// Adds what a facet has in common with a polygon, which may be nothing.
+void PieceFinder::add_common(std::int32_t polygon, PolygonView common, const Facet& facet) {
+    if (common.empty()) return;
     const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
     if (surface < 0) {
         add(polygon, Side::kAbsent, common);
-    } else if (plane < 0) {
-        add(polygon, plane == kSky ? Side::kBelow : Side::kNotBelow, common);
+    } else if (facet.plane < 0) {
+        add(polygon, facet.plane == kSky ? Side::kBelow : Side::kNotBelow, common);
     } else {
         // both are parts of triangles, so most are told apart by the heights of the corners
         const HeightRange heights = heights_of(surface);
-        if (heights.high < facet.low) {
+        if (heights.high < facet.heights.low) {
             add(polygon, Side::kBelow, common);
-        } else if (heights.low >= facet.high) {
+        } else if (heights.low >= facet.heights.high) {
             add(polygon, Side::kNotBelow, common);
         } else {
-            classify(polygon, plane, common);
+            classify(polygon, facet.plane, common);
         }
     }
 }

@@ -51,6 +51,9 @@ public:
     /// Pieces of the facet with this outline and plane. All that there is lies below the sky, and
     /// none of it below a void.
     const Pieces& find(PolygonView outline, PlaneId plane);
+    /// The same, but pieces have no outlines where heights tell that the surface is nowhere below
+    /// the facet: it stays as it is.
+    const Pieces& find_for_split(PolygonView outline, PlaneId plane);
     /// Polygons of the layer that share an area with the outline.
     const std::vector<std::int32_t>& overlapping(PolygonView outline);
 
@@ -60,9 +63,21 @@ private:
         double low, high;
     };
     HeightRange heights_of(PlaneId plane) const;
+    /// A facet of the envelope.
+    struct Facet {
+        PolygonView outline;
+        PlaneId plane;
+        HeightRange heights;
+    };
+    Facet facet_of(PolygonView outline, PlaneId plane) const {
+        return {outline, plane, plane < 0 ? HeightRange{} : heights_of(plane)};
+    }
+    PolygonView outline_of(std::int32_t polygon) const {
+        return layer_.polygons[static_cast<std::size_t>(polygon)];
+    }
+    bool is_higher(std::int32_t polygon, const Facet& facet) const;
     bool find_candidates(PolygonView outline);
-    void add_common(std::int32_t polygon, PolygonView common, PlaneId plane,
-                    const HeightRange& facet);
+    void add_common(std::int32_t polygon, PolygonView common, const Facet& facet);
     void add(std::int32_t polygon, Side side, PolygonView outline);
     void add_touching(std::int32_t polygon, PolygonView outline, PlaneId lower, PlaneId upper);
     void classify(std::int32_t polygon, PlaneId facet_plane, PolygonView common);
@@ -73,7 +88,7 @@ private:
     const Layer& layer_;
     Pieces pieces_;
     std::vector<std::int8_t> signs_;  ///< of surface less facet at the corners of a piece
-    std::vector<std::int32_t> candidates_, overlapping_;
+    std::vector<std::int32_t> candidates_, overlapping_, higher_;
     std::size_t expected_ = 0;  ///< polygon after the last that was a facet: the next one's, often
 };
 

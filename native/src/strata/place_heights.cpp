@@ -78,7 +78,7 @@ void PlaceHeights::rank_levels(PointId point) {
     };
     order_.resize(levels_.size());
     std::iota(order_.begin(), order_.end(), 0);
-    std::stable_sort(order_.begin(), order_.end(), lower);
+    std::sort(order_.begin(), order_.end(), lower);  // equally high ones have one rank in any order
     heights_.clear();
     for (std::size_t i = 0; i < order_.size(); ++i) {
         if (i == 0 || lower(order_[i - 1], order_[i])) heights_.push_back(level(order_[i]).z);

@@ -2,7 +2,6 @@
 #include "volumes.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "parallel_counts.hpp"
@@ -56,46 +55,18 @@ Projection project(const CellComplex& complex, std::size_t face) {
     return sum;
 }
 
-/// The height of one corner of each cell: the first of its first face.
-FlatArray<double> anchor_heights(const CellComplex& complex, int threads,
-                                 const Progress* progress) {
-    const std::size_t cells = complex.cell_block.size();
-    FlatArray<std::int32_t> face(cells);
-    parallel_ranges(cells, 1 << 16, threads, progress, [&](std::size_t begin, std::size_t end) {
-        std::fill(face.begin() + begin, face.begin() + end, INT32_MAX);
-    });
-    parallel_ranges(complex.face_cells.size(), 1 << 14, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            for (const std::int32_t cell : complex.face_cells[f]) {
-                                if (cell < 0) continue;
-                                const auto own = static_cast<std::int32_t>(f);
-                                std::atomic_ref least(face[static_cast<std::size_t>(cell)]);
-                                std::int32_t known = least.load(std::memory_order_relaxed);
-                                while (own < known && !least.compare_exchange_weak(
-                                                          known, own, std::memory_order_relaxed)) {
-                                }
-                            }
-                        }
-                    });
-    FlatArray<double> heights(cells);
-    parallel_ranges(cells, 1 << 14, threads, progress, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c) {
-            const auto corner =
-                static_cast<std::size_t>(complex.face_offsets[static_cast<std::size_t>(face[c])]);
-            heights[c] =
-                complex.vertices[static_cast<std::size_t>(complex.face_vertices[corner])][2];
-        }
-    });
-    return heights;
+std::size_t block_of(const CellComplex& complex, std::int32_t cell) {
+    return static_cast<std::size_t>(complex.cell_block[static_cast<std::size_t>(cell)]);
 }
 
 }  // namespace
 
-// Walls count too: the rounded corners of one are in line in plan only up to rounding.
+// A face within a block adds to one cell what it takes from the other. Walls between blocks count
+// too: the rounded corners of one are in line in plan only up to rounding. Heights are seen from
+// one of the model's own, so terms err by no more than the rounding of its coordinates does.
 std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks, int threads,
                                   const Progress* progress) {
-    const FlatArray<double> anchor = anchor_heights(complex, threads, progress);
+    const double anchor = complex.vertices.empty() ? 0.0 : complex.vertices.front()[2];
     // Chunks depend on the input alone, and so do the sums.
     const std::size_t faces = complex.face_cells.size();
     const std::size_t chunk = std::max<std::size_t>(1 << 13, faces / 256 + 1);
@@ -104,16 +75,16 @@ std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks
         auto& of_chunk = sums[begin / chunk];
         of_chunk.resize(blocks);
         for (std::size_t f = begin; f < end; ++f) {
+            const auto [inside, outside] = complex.face_cells[f];
+            if (outside >= 0 && block_of(complex, inside) == block_of(complex, outside)) continue;
             const Projection below = project(complex, f);
-            const double height = complex.vertices[static_cast<std::size_t>(
-                complex.face_vertices[static_cast<std::size_t>(complex.face_offsets[f])])][2];
+            const auto first = static_cast<std::size_t>(complex.face_offsets[f]);
+            const double height =
+                complex.vertices[static_cast<std::size_t>(complex.face_vertices[first])][2];
+            const double volume = below.volume + below.area * (height - anchor);
             double sign = 1.0;
             for (const std::int32_t cell : complex.face_cells[f]) {
-                if (cell >= 0) {
-                    const auto c = static_cast<std::size_t>(cell);
-                    of_chunk[static_cast<std::size_t>(complex.cell_block[c])].add(
-                        sign * (below.volume + below.area * (height - anchor[c])));
-                }
+                if (cell >= 0) of_chunk[block_of(complex, cell)].add(sign * volume);
                 sign = -sign;
             }
         }

@@ -329,6 +329,11 @@ public:
     int compare_heights(PlaneId upper, PlaneId lower, PointId point);
     /// The same with the filter of their trace at hand; the trace itself need not exist.
     int compare_heights(PlaneId upper, PlaneId lower, const LineFilter& trace, PointId point);
+    /// Whether a point lies to the left of a line, or a trace, that need not exist; where floating
+    /// point does not tell, it says no.
+    bool is_left_for_certain(const LineFilter& line, PointId id) const {
+        return filtered_side(line, point(id)) == 1;
+    }
     /// Whether two points are in the same place.
     bool same_place(PointId a, PointId b);
     /// Whether two lines run through the same places.
