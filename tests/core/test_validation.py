@@ -117,7 +117,7 @@ def missing_side(m):
 
 def wrong_cell(m):
     cells = m.face_cells.copy()
-    cells[0, 0] = len(m.cell_block) - 1 if cells[0, 0] == 0 else 0
+    cells[0, 0] = next(c for c in range(len(m.cell_block)) if c not in cells[0])
     return {"face_cells": cells}
 
 

@@ -17,6 +17,8 @@ int turn(const std::array<double, 2>& a, const std::array<double, 2>& b,
     if (value > error) return 1;
     if (value < -error) return -1;
     if (a == b || b == c || a == c) return 0;
+    // a difference is 0 only where doubles are equal, as along borders parallel to an axis
+    if ((a[0] == b[0] || a[1] == c[1]) && (a[1] == b[1] || a[0] == c[0])) return 0;
     int unit = 0;
     for (const auto& p : {a, b, c})
         unit = finest_exponent(p[1], finest_exponent(p[0], unit));

@@ -2,6 +2,7 @@
 #include "block_cells.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <iterator>
 #include <set>
 
@@ -130,9 +131,8 @@ private:
             Tracks tracks = find_tracks(geometry_, faces, places, extra, threads_, progress_);
             loops_ = find_loops(geometry_, faces, places, tracks, threads_, progress_);
             place_vertices(places, loops_, threads_, progress_);
-            TrackContacts contacts =
-                find_contacts(geometry_, faces, made_.node_block, tracks, loops_, overlay_.tiles(),
-                              overlay_.on_border(), threads_, progress_);
+            TrackContacts contacts = find_contacts(geometry_, faces, made_.node_block, tracks,
+                                                   loops_, overlay_.borders(), threads_, progress_);
             if (!contacts.missing.empty()) {
                 extra.insert(extra.end(), contacts.missing.begin(), contacts.missing.end());
                 continue;
@@ -189,21 +189,25 @@ private:
         return node < 0 ? kOutsideCell : cell_of_node_[static_cast<std::size_t>(node)];
     }
 
+    /// Faces are seen from outside the cell below, or from below where there is none.
+    static void turn_outwards(std::int32_t* first, std::int32_t* last, std::int32_t& above,
+                              std::int32_t& below) {
+        if (below >= 0) return;
+        std::reverse(first, last);
+        std::swap(above, below);
+    }
+
     /// Ends a face whose vertices were added from `begin` on, counter-clockwise seen from above (a
     /// wall: from its right).
     void end_face(std::size_t begin, std::int32_t above, std::int32_t below, std::int32_t surface) {
         auto& loop = complex_.face_vertices;
-        if (below < 0) {
-            std::reverse(loop.begin() + static_cast<std::ptrdiff_t>(begin), loop.end());
-            std::swap(above, below);
-        }
+        turn_outwards(loop.begin() + begin, loop.end(), above, below);
         complex_.face_offsets.push_back(static_cast<std::int64_t>(loop.size()));
         complex_.face_cells.push_back({below, above});
         complex_.face_surface.push_back(surface);
     }
 
     void add_parts() {
-        complex_.face_offsets.push_back(0);
         number_.assign(is_needed_.size(), -1);
         for (std::size_t v = 0; v < is_needed_.size(); ++v) {
             if (is_needed_[v] == 0) continue;
@@ -211,14 +215,38 @@ private:
             complex_.vertices.push_back(loops_.positions[v]);
         }
         const FaceList& faces = made_.faces;
-        for (std::size_t f = 0; f < faces.size(); ++f) {
-            poll(progress_, f);
-            const std::size_t begin = complex_.face_vertices.size();
-            for (auto i = loops_.face_offsets[f]; i < loops_.face_offsets[f + 1]; ++i)
-                add_vertex(loops_.vertices[i]);
-            end_face(begin, faces.above[f], faces.below[f],
-                     surface_of_plane_[static_cast<std::size_t>(faces.plane[f])]);
-        }
+        const auto is_kept = [&](std::int32_t v) {
+            return number_[static_cast<std::size_t>(v)] >= 0;
+        };
+        const auto loop = loops_.vertices.begin();
+        std::vector<std::size_t> first((faces.size() + kTriangles - 1) / kTriangles);
+        parallel_ranges(
+            faces.size(), kTriangles, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+                first[begin / kTriangles] = static_cast<std::size_t>(std::count_if(
+                    loop + loops_.face_offsets[begin], loop + loops_.face_offsets[end], is_kept));
+            });
+        complex_.face_vertices.resize(count_before(first));
+        complex_.face_offsets.resize(faces.size() + 1);
+        complex_.face_offsets[0] = 0;
+        complex_.face_cells.resize(faces.size());
+        complex_.face_surface.resize(faces.size());
+        parallel_ranges(
+            faces.size(), kTriangles, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+                std::int32_t* next = complex_.face_vertices.begin() + first[begin / kTriangles];
+                for (std::size_t f = begin; f < end; ++f) {
+                    std::int32_t* const face = next;
+                    for (auto i = loops_.face_offsets[f]; i < loops_.face_offsets[f + 1]; ++i) {
+                        const std::int32_t v = loops_.vertices[i];
+                        if (is_kept(v)) *next++ = number_[static_cast<std::size_t>(v)];
+                    }
+                    std::int32_t above = faces.above[f], below = faces.below[f];
+                    turn_outwards(face, next, above, below);
+                    complex_.face_cells[f] = {below, above};
+                    complex_.face_surface[f] =
+                        surface_of_plane_[static_cast<std::size_t>(faces.plane[f])];
+                    complex_.face_offsets[f + 1] = next - complex_.face_vertices.begin();
+                }
+            });
     }
     void add_vertex(std::int32_t v) {
         const std::int32_t number = number_[static_cast<std::size_t>(v)];
@@ -240,22 +268,29 @@ private:
         std::vector<std::int32_t> of_base(
             base_ ? static_cast<std::size_t>(geometry_.vertex_count()) : 0, -1);
         const FaceList& faces = made_.faces;
-        for (std::size_t f = 0; f < faces.size(); ++f) {
-            const auto first = faces.polygons.offsets[f];
-            for (auto c = first; c < faces.polygons.offsets[f + 1]; ++c) {
-                const auto corner = static_cast<std::size_t>(c);
-                const PointId point = faces.polygons.corners[corner].point;
-                if (point >= geometry_.vertex_count()) continue;
-                const std::int32_t number =
-                    number_[static_cast<std::size_t>(loops_.vertices[loops_.edge_begin[corner]])];
-                if (base_ && faces.plane[f] == *base_) {
-                    of_base[static_cast<std::size_t>(point)] = number;
-                    continue;
+        // several threads may say so of one vertex at once; they all write the same
+        const auto set = [](std::int32_t& number, std::int32_t to) {
+            std::atomic_ref(number).store(to, std::memory_order_relaxed);
+        };
+        parallel_ranges(
+            faces.size(), kTriangles, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t f = begin; f < end; ++f) {
+                    const auto last = static_cast<std::size_t>(faces.polygons.offsets[f + 1]);
+                    for (auto corner = static_cast<std::size_t>(faces.polygons.offsets[f]);
+                         corner < last; ++corner) {
+                        const PointId point = faces.polygons.corners[corner].point;
+                        if (point >= geometry_.vertex_count()) continue;
+                        const auto v = loops_.vertices[loops_.edge_begin[corner]];
+                        const std::int32_t number = number_[static_cast<std::size_t>(v)];
+                        if (base_ && faces.plane[f] == *base_) {
+                            set(of_base[static_cast<std::size_t>(point)], number);
+                            continue;
+                        }
+                        const SpaceId s = geometry_.corner_above(faces.plane[f], point);
+                        if (s >= 0) set(of_space[static_cast<std::size_t>(s)], number);
+                    }
                 }
-                const SpaceId s = geometry_.corner_above(faces.plane[f], point);
-                if (s >= 0) of_space[static_cast<std::size_t>(s)] = number;
-            }
-        }
+            });
         number_vertices(of_space);
         add_rest(of_space);
         const auto vertex = [&](std::int32_t& number, const std::array<double, 3>& position) {
@@ -345,10 +380,7 @@ private:
                     });
                     std::int32_t above = cell(made_.whole[p].above),
                                  below = cell(made_.whole[p].below);
-                    if (below < 0) {
-                        std::reverse(loop, loop + 3);
-                        std::swap(above, below);
-                    }
+                    turn_outwards(loop, loop + 3, above, below);
                     complex_.face_cells[faces + next] = {below, above};
                     complex_.face_surface[faces + next] = surface_of_plane_[p];
                     ++next;

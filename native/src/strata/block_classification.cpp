@@ -222,7 +222,7 @@ void BlockOverlay::classify_surface(const BlockLayer& layer, const EnvelopeTiles
             double low = HUGE_VAL, high = -HUGE_VAL;
             std::int32_t label = kNoLabel;
             const bool mixed = tiles_.any(surface_at_[t].span, [&](std::size_t tile) {
-                if (on_border_[tile] != 0) return true;
+                if (borders_.in_tile(tile)) return true;
                 if (cover_[tile] == kOutsideOnly) {
                     low = -HUGE_VAL;
                     label = merged_label(label, kOutsideLabel);
@@ -310,7 +310,7 @@ void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& 
         double low = HUGE_VAL, high = -HUGE_VAL;
         bool any_empty = false, any_rock = false, near_unclear = false;
         const bool mixed = tiles_.any(at.span, [&](std::size_t tile) {
-            if (on_border_[tile] != 0) return true;
+            if (borders_.in_tile(tile)) return true;
             near_unclear |= is_unclear[tile] != 0;
             if (surface.is_empty[tile] != 0) {
                 any_empty = true;

@@ -21,8 +21,10 @@ constexpr std::size_t kChunk = 64;
 class FacetOverlay {
 public:
     FacetOverlay(const ExactFacets& exact, const Layer& layer, std::int32_t number,
-                 std::vector<std::uint8_t>& is_divided, OverlaidChunk& result)
+                 const BorderEdges& borders, std::vector<std::uint8_t>& is_divided,
+                 OverlaidChunk& result)
         : exact_(exact),
+          borders_(borders),
           number_(number),
           is_divided_(is_divided),
           result_(result),
@@ -52,8 +54,8 @@ public:
             split_sky(facet, pieces);
         } else if (below == 0 && not_below == pieces.list.size()) {
             keep(facet, number_);
-        } else if (below == pieces.list.size() && exact_.may_close[facet] != 0 &&
-                   is_strict(pieces, 0, pieces.touches.size())) {
+        } else if (below == pieces.list.size() && is_strict(pieces, 0, pieces.touches.size()) &&
+                   !borders_.divide(result_.scope, in.outlines[facet], exact_.span[facet])) {
             close(facet, pieces);
         } else {
             split(facet, pieces);
@@ -157,6 +159,7 @@ private:
     }
 
     const ExactFacets& exact_;
+    const BorderEdges& borders_;
     std::int32_t number_;
     std::vector<std::uint8_t>& is_divided_;
     OverlaidChunk& result_;
@@ -169,6 +172,7 @@ private:
 std::vector<std::unique_ptr<OverlaidChunk>> overlay_facets(PlanGeometry& geometry,
                                                            const ExactFacets& exact,
                                                            const Layer& layer, std::int32_t number,
+                                                           const BorderEdges& borders,
                                                            std::vector<std::uint8_t>& is_divided,
                                                            int threads, const Progress* progress) {
     const std::size_t count = exact.facets.size(), chunks = (count + kChunk - 1) / kChunk;
@@ -176,7 +180,7 @@ std::vector<std::unique_ptr<OverlaidChunk>> overlay_facets(PlanGeometry& geometr
     OrderedHandOver hand_over(geometry, chunks, count);
     parallel_chunks(chunks, threads, progress, [&](std::size_t c) {
         result[c] = std::make_unique<OverlaidChunk>(geometry);
-        FacetOverlay overlay(exact, layer, number, is_divided, *result[c]);
+        FacetOverlay overlay(exact, layer, number, borders, is_divided, *result[c]);
         for (std::size_t f = c * kChunk; f < std::min(count, (c + 1) * kChunk); ++f)
             overlay.process(f);
         for (const PolygonPool* pool : result[c]->pools())

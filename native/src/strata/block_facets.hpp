@@ -24,8 +24,7 @@ struct ExactFacets {
     /// Of each part: whether the layer has everything that it meets. Only the sky and the outside
     /// may lack what bounds tell about.
     std::vector<std::uint8_t> is_complete;
-    /// Of each facet: whether what lies under it may be one node, however the surface runs there.
-    std::vector<std::uint8_t> may_close;
+    std::vector<TileSpan> span;  ///< of each facet
 };
 
 /// What a chunk of facets became. Lines and points are the scope's, nodes are counted from 0.
@@ -52,10 +51,11 @@ struct OverlaidChunk {
 };
 
 /// Overlays facets with part of surface `number`; marks polygons of it that do not lie below as a
-/// whole.
+/// whole. What lies under a facet is one node where no border divides it.
 std::vector<std::unique_ptr<OverlaidChunk>> overlay_facets(exact::PlanGeometry& geometry,
                                                            const ExactFacets& exact,
                                                            const Layer& layer, std::int32_t number,
+                                                           const BorderEdges& borders,
                                                            std::vector<std::uint8_t>& is_divided,
                                                            int threads, const Progress* progress);
 

@@ -18,9 +18,9 @@ namespace {
 /// So many triangles of a surface in a tile, on average. Fewer tell more apart and cost more.
 constexpr std::size_t kTrianglesInTile = 1;
 
-PlanBox box_of_edge(const PlanGeometry& geometry, VertexId from, VertexId to) {
-    const auto &p = geometry.point(from), &q = geometry.point(to);
-    return {std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x), std::max(p.y, q.y)};
+PlanBox around(const PlanBox& a, const PlanBox& b) {
+    return {std::min(a.low_x, b.low_x), std::min(a.low_y, b.low_y), std::max(a.high_x, b.high_x),
+            std::max(a.high_y, b.high_y)};
 }
 
 }  // namespace
@@ -66,40 +66,43 @@ BlockRegion make_block_region(const PlanGeometry& geometry,
 BlockOverlay make_block_overlay(PlanGeometry& geometry, const std::vector<BlockLayer>& layers,
                                 const std::optional<BlockRegion>& region, int threads,
                                 const Progress* progress) {
-    PlanBox frame{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    double largest = 0;
-    std::size_t triangles = 0;
-    for (const BlockLayer& layer : layers) {
-        triangles = std::max(triangles, layer.size());
-        for (std::size_t t = 0; t < layer.size(); ++t) {
-            poll(progress, t);
-            const auto b = bounds_of(geometry, layer.first_plane + static_cast<PlaneId>(t));
-            frame = {std::min(frame.low_x, b.box.low_x), std::min(frame.low_y, b.box.low_y),
-                     std::max(frame.high_x, b.box.high_x), std::max(frame.high_y, b.box.high_y)};
-            largest = std::max({largest, std::abs(b.low), std::abs(b.high)});
-        }
-    }
-    const PlanTiles tiles(triangles > 0 ? frame : PlanBox{}, triangles / kTrianglesInTile);
-    std::vector<std::uint8_t> on_border(tiles.size(), 0);
-    const auto mark = [&](VertexId from, VertexId to) {
-        tiles.for_each(tiles.span(box_of_edge(geometry, from, to)),
-                       [&](std::size_t tile) { on_border[tile] = 1; });
+    struct Extent {
+        PlanBox frame{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+        double largest_height = 0;
+        std::vector<BorderEdges::Edge> border;
     };
-    for (const BlockLayer& layer : layers) {
+    std::vector<Extent> extents(layers.size());
+    parallel_chunks(layers.size(), threads, progress, [&](std::size_t k) {
+        const BlockLayer& layer = layers[k];
+        auto& [frame, largest, border] = extents[k];
         for (std::size_t t = 0; t < layer.size(); ++t) {
-            poll(progress, t);
-            const auto& corner = geometry.plane(layer.first_plane + static_cast<PlaneId>(t)).corner;
+            const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
+            const auto b = bounds_of(geometry, plane);
+            frame = around(frame, b.box);
+            largest = std::max({largest, std::abs(b.low), std::abs(b.high)});
+            const auto& corner = geometry.plane(plane).plan;
             for (std::size_t i = 0; i < 3; ++i) {
-                if (layer.neighbour[t][i] < 0)
-                    mark(geometry.space(corner[i]).plan, geometry.space(corner[(i + 1) % 3]).plan);
+                if (layer.neighbour[t][i] < 0) border.emplace_back(corner[i], corner[(i + 1) % 3]);
             }
         }
+    });
+    PlanBox frame = Extent{}.frame;
+    double largest = 0;
+    std::size_t triangles = 0;
+    std::vector<BorderEdges::Edge> edges;
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+        frame = around(frame, extents[k].frame);
+        largest = std::max(largest, extents[k].largest_height);
+        triangles = std::max(triangles, layers[k].size());
+        edges.insert(edges.end(), extents[k].border.begin(), extents[k].border.end());
     }
+    const PlanTiles tiles(triangles > 0 ? frame : PlanBox{}, triangles / kTrianglesInTile);
     if (region) {
         for (const BorderEdge& edge : region->border)
-            mark(edge.low, edge.high);
+            edges.emplace_back(edge.low, edge.high);
     }
-    BlockOverlay overlay(geometry, layers, tiles, std::move(on_border), largest, threads, progress);
+    BlockOverlay overlay(geometry, layers, BorderEdges(geometry, tiles, std::move(edges)), largest,
+                         threads, progress);
     if (region) overlay.start_region(region->inside, region->outside);
     return overlay;
 }

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "block_classification.hpp"
 #include "block_facets.hpp"
-#include "disjoint_parts.hpp"
 #include "parallel_counts.hpp"
 #include "shared_polygons.hpp"
 
@@ -17,12 +15,12 @@ using exact::PlanGeometry;
 using exact::VertexId;
 
 BlockOverlay::BlockOverlay(PlanGeometry& geometry, std::span<const BlockLayer> layers,
-                           PlanTiles tiles, std::vector<std::uint8_t> on_border,
-                           double largest_height, int threads, const Progress* progress)
+                           BorderEdges borders, double largest_height, int threads,
+                           const Progress* progress)
     : geometry_(geometry),
       layers_(layers),
-      tiles_(tiles),
-      on_border_(std::move(on_border)),
+      borders_(std::move(borders)),
+      tiles_(borders_.tiles()),
       // Well above what rounding moves vertices by: what bounds tell apart stays apart.
       margin_(largest_height * 0x1p-40),
       threads_(threads),
@@ -93,7 +91,7 @@ void BlockOverlay::start_sky(const BlockLayer& layer) {
         poll(progress_, t);
         const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
         made_.is_exact[static_cast<std::size_t>(plane)] =
-            beside_border(tiles_.span(bounds_of(geometry_, plane).box)) ? 1 : 0;
+            borders_.near(tiles_.span(bounds_of(geometry_, plane).box)) ? 1 : 0;
         whole_.push_back({plane, layer.number, kOutsideCell});
     }
 }
@@ -146,7 +144,7 @@ void BlockOverlay::overlay_exactly(const BlockLayer& layer, const Layer& part,
         exact.facets.add_facet(outlines[exact.facets.size()], facet.plane, layer_of(facet.plane),
                                facet.pending);
         exact.facets.add_face(outlines[exact.facets.size() - 1], facet.above);
-        exact.may_close.push_back(beside_border(whole_at_[f].span) ? 0 : 1);
+        exact.span.push_back(whole_at_[f].span);
     }
     exact.whole = exact.facets.size();
     for (std::size_t f = 0; f < parts_.size(); ++f) {
@@ -155,15 +153,15 @@ void BlockOverlay::overlay_exactly(const BlockLayer& layer, const Layer& part,
         bool complete = true;
         if (parts_.plane[f] < 0) {
             complete = !tiles_.any(part_at_[f].span, [&](std::size_t tile) {
-                return on_border_[tile] == 0 && surface.is_empty[tile] == 0;
+                return !borders_.in_tile(tile) && surface.is_empty[tile] == 0;
             });
         }
         exact.is_complete.push_back(complete ? 1 : 0);
-        exact.may_close.push_back(parts_.plane[f] >= 0 && !beside_border(part_at_[f].span) ? 1 : 0);
+        exact.span.push_back(part_at_[f].span);
     }
     c.is_divided.assign(part.plane.size(), 0);
-    const auto overlaid =
-        overlay_facets(geometry_, exact, part, layer.number, c.is_divided, threads_, progress_);
+    const auto overlaid = overlay_facets(geometry_, exact, part, layer.number, borders_,
+                                         c.is_divided, threads_, progress_);
     parallel_chunks(overlaid.size(), threads_, progress_, [&](std::size_t i) {
         for (PolygonPool* pool : overlaid[i]->pools())
             share(overlaid[i]->scope, *pool);
@@ -175,10 +173,9 @@ void BlockOverlay::overlay_exactly(const BlockLayer& layer, const Layer& part,
         };
         made_.node_block.insert(made_.node_block.end(), chunk->node_block.begin(),
                                 chunk->node_block.end());
-        for (std::size_t f = 0; f < chunk->faces.size(); ++f) {
-            made_.faces.add(chunk->faces.polygons[f], chunk->faces.plane[f], chunk->faces.layer[f],
-                            chunk->faces.above[f], shared_node(chunk->faces.below[f]));
-        }
+        std::transform(chunk->faces.below.begin(), chunk->faces.below.end(),
+                       chunk->faces.below.begin(), shared_node);
+        made_.faces.append(chunk->faces);
         for (const auto& closed : chunk->closed_whole) {
             made_.whole[static_cast<std::size_t>(closed.plane)] = {closed.above,
                                                                    shared_node(closed.below)};
@@ -186,14 +183,12 @@ void BlockOverlay::overlay_exactly(const BlockLayer& layer, const Layer& part,
         for (const PlaneId plane : chunk->divided_whole)
             made_.is_in_parts[static_cast<std::size_t>(plane)] = 1;
         next_whole_.insert(next_whole_.end(), chunk->kept_whole.begin(), chunk->kept_whole.end());
-        for (std::size_t i = 0; i < chunk->lowered.size(); ++i) {
-            LoweredPiece piece = chunk->lowered[i];
+        for (LoweredPiece piece : chunk->lowered) {
             piece.node = shared_node(piece.node);
             c.lowered.push_back(piece);
-            c.lowered_outlines.add(chunk->lowered_outlines[i]);
         }
-        for (std::size_t f = 0; f < chunk->kept.size(); ++f)
-            next_parts_.add_facet_of(chunk->kept, f, chunk->kept.pending[f]);
+        c.lowered_outlines.append(chunk->lowered_outlines);
+        next_parts_.append(chunk->kept);
     }
 }
 
@@ -229,6 +224,7 @@ void BlockOverlay::rest_facets(const BlockLayer& layer, Classified& c) {
 
 /// The surface's own facets.
 void BlockOverlay::add_surface(const BlockLayer& layer, const Layer& part, Classified& c) {
+    constexpr std::size_t kPolygons = 1 << 10;
     for (std::size_t t = 0; t < layer.size(); ++t) {
         poll(progress_, t);
         if (c.surface[t] != Classified::kBelow) continue;
@@ -249,6 +245,29 @@ void BlockOverlay::add_surface(const BlockLayer& layer, const Layer& part, Class
                 free[static_cast<std::size_t>(c.lowered[i].polygon)]++)] = i;
         }
     }
+    const auto block_above = [&](std::size_t i) {
+        const std::int32_t node = c.lowered[i].node;
+        return node < 0 ? kSkyLabel : made_.node_block[static_cast<std::size_t>(node)];
+    };
+    std::vector<std::uint8_t> is_whole(part.plane.size(), 0);
+    parallel_ranges(
+        part.plane.size(), kPolygons, threads_, progress_,
+        [&](std::size_t first, std::size_t last) {
+            Scope scope(geometry_);
+            for (std::size_t p = first; p < last; ++p) {
+                const auto begin = of_polygon.begin() + offsets[p],
+                           end = of_polygon.begin() + offsets[p + 1];
+                if (begin == end || c.is_divided[p] != 0 || part.plane[p] < 0) continue;
+                const bool alike = std::all_of(begin, end, [&](std::size_t i) {
+                    return c.lowered[i].is_strict && block_above(i) == block_above(*begin);
+                });
+                // Where a border divides it the pieces stay apart: what stands there has its foot
+                // here.
+                const auto t = static_cast<std::size_t>(part.plane[p] - layer.first_plane);
+                is_whole[p] =
+                    alike && !borders_.divide(scope, part.polygons[p], surface_at_[t].span) ? 1 : 0;
+            }
+        });
     for (std::size_t t = 0; t < layer.size(); ++t) {
         if (c.polygon[t] < 0) continue;
         const auto p = static_cast<std::size_t>(c.polygon[t]);
@@ -264,16 +283,7 @@ void BlockOverlay::add_surface(const BlockLayer& layer, const Layer& part, Class
         if (begin == end || c.surface[t] == Classified::kGone) continue;
         const PlaneId plane = part.plane[p];
         made_.is_exact[static_cast<std::size_t>(plane)] = 1;
-        const auto block_above = [&](std::size_t i) {
-            const std::int32_t node = c.lowered[i].node;
-            return node < 0 ? kSkyLabel : made_.node_block[static_cast<std::size_t>(node)];
-        };
-        // Beside a border the pieces stay apart, so that what stands there finds its foot.
-        const bool alike =
-            !beside_border(surface_at_[t].span) && std::all_of(begin, end, [&](std::size_t i) {
-                return c.lowered[i].is_strict && block_above(i) == block_above(*begin);
-            });
-        if (c.is_divided[p] == 0 && alike) {
+        if (is_whole[p] != 0) {
             const std::int32_t above = c.lowered[*begin].node;
             for (auto i = begin + 1; i != end && above >= 0; ++i)
                 made_.links.emplace_back(above, c.lowered[*i].node);
@@ -322,160 +332,6 @@ void BlockOverlay::add(std::int32_t number) {
     }
     std::swap(whole_, next_whole_);
     std::swap(parts_, next_parts_);
-}
-
-namespace {
-
-/// The middle of some corners, as rounding leaves it.
-template <class Corners, class PointOf>
-std::array<double, 2> middle_of(const Corners& corners, const PointOf& point_of) {
-    std::array<double, 2> middle{0, 0};
-    const double share = 1.0 / static_cast<double>(corners.size());
-    for (const auto& corner : corners) {
-        const exact::Point& p = point_of(corner);
-        middle[0] += p.x * share;
-        middle[1] += p.y * share;
-    }
-    return middle;
-}
-
-/// Where a place that rounding may have moved lies: 1 in a triangle for certain, -1 outside of it
-/// for certain, 0 near its border.
-int side_of_border(const PlanGeometry& geometry, const PlanTriangle& triangle,
-                   const std::array<double, 2>& place) {
-    constexpr double kRounding = 0x1p-44;  // of coordinates, far more than a middle has
-    const double error = kRounding * (std::abs(place[0]) + std::abs(place[1])) + 1e-290;
-    int side = 1;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const exact::LineFilter edge =
-            geometry.edge_filter(triangle[i], triangle[i + 1 < 3 ? i + 1 : 0]);
-        const double u = edge.a * (place[0] - edge.x0), v = edge.b * (place[1] - edge.y0);
-        const double least =
-            (std::abs(edge.a) + std::abs(edge.b)) * error + 0x1p-46 * (std::abs(u) + std::abs(v));
-        if (u + v < -least) return -1;
-        if (!(u + v > least)) side = 0;
-    }
-    return side;
-}
-
-}  // namespace
-
-/// Links closed facets with what closes them. Neighbouring whole facets hang together, and so do
-/// the triangles beneath them: one link for each connected part of them is enough.
-void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
-    const auto first_node = c.first_closed;
-    const auto whole_count = c.closed_whole.size();
-    DisjointParts sets(whole_count);
-    constexpr std::size_t kFacets = 4096, kTriangles = 4096;
-    parallel_ranges(
-        whole_count, kFacets, threads_, progress_, [&](std::size_t begin, std::size_t end) {
-            const BlockLayer* of_plane = nullptr;  // facets of one surface mostly follow each other
-            for (std::size_t i = begin; i < end; ++i) {
-                const PlaneId plane = c.closed_whole[i];
-                if (of_plane == nullptr || !of_plane->has(plane))
-                    of_plane = &layers_[static_cast<std::size_t>(layer_of(plane))];
-                for (const std::int32_t n :
-                     of_plane->neighbour[static_cast<std::size_t>(plane - of_plane->first_plane)]) {
-                    const PlaneId other = n + of_plane->first_plane;
-                    if (n < 0 || other <= plane) continue;
-                    const std::int32_t node = made_.whole[static_cast<std::size_t>(other)].below;
-                    const std::int32_t j = node - first_node;
-                    const bool closed_now = node >= first_node &&
-                                            j < static_cast<std::int32_t>(whole_count) &&
-                                            c.closed_whole[static_cast<std::size_t>(j)] == other;
-                    if (closed_now &&
-                        block_of(node) == block_of(first_node + static_cast<std::int32_t>(i)))
-                        sets.join(static_cast<std::int32_t>(i), j);
-                }
-            }
-        });
-    constexpr std::int32_t kNothing = -1;
-    struct Waiting {
-        std::size_t tile;
-        std::array<double, 2> middle;
-        std::int32_t node;
-        std::int32_t beneath;  ///< a triangle of the surface that lies there
-    };
-    std::vector<Waiting> waiting;
-    const auto wait = [&](const std::array<double, 2>& middle, std::int32_t node) {
-        const auto [x, y] = middle;
-        const TileSpan span = tiles_.span({x, y, x, y});
-        waiting.push_back({tiles_.tile(span.left, span.low), middle, node, kNothing});
-    };
-    const auto point = [&](PointId id) -> const exact::Point& { return geometry_.point(id); };
-    for (std::size_t i = 0; i < whole_count; ++i) {
-        const auto k = static_cast<std::int32_t>(i);
-        if (sets.find(k) == k)
-            wait(middle_of(geometry_.plane(c.closed_whole[i]).plan, point), first_node + k);
-    }
-    for (std::size_t i = 0; i < c.closed_parts.size(); ++i) {
-        wait(middle_of(
-                 parts_.outlines[c.closed_parts[i]],
-                 [&](const Corner& corner) -> const exact::Point& { return point(corner.point); }),
-             first_node + static_cast<std::int32_t>(whole_count + i));
-    }
-    if (waiting.empty()) return;
-    std::stable_sort(waiting.begin(), waiting.end(),
-                     [](const Waiting& a, const Waiting& b) { return a.tile < b.tile; });
-    struct InTile {
-        std::uint32_t first = 0, last = 0;  ///< of those that wait
-    };
-    std::vector<InTile> in_tile(tiles_.size());
-    for (std::size_t w = 0; w < waiting.size(); ++w) {
-        InTile& here = in_tile[waiting[w].tile];
-        if (here.last == 0) here.first = static_cast<std::uint32_t>(w);
-        here.last = static_cast<std::uint32_t>(w) + 1;
-    }
-    // The middle of a convex outline is inside it, so a triangle that it is in for certain shares
-    // an area with the outline. The exact test is for the few middles near an edge.
-    std::vector<std::vector<std::pair<std::uint32_t, std::int32_t>>> near(
-        (layer.size() + kTriangles - 1) / kTriangles);
-    parallel_ranges(
-        layer.size(), kTriangles, threads_, progress_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t t = begin; t < end; ++t) {
-                if (c.surface[t] != Classified::kBelow) continue;
-                const auto number = static_cast<std::int32_t>(t);
-                const auto& triangle = geometry_.plane(layer.first_plane + number).plan;
-                tiles_.for_each(surface_at_[t].span, [&](std::size_t tile) {
-                    for (auto w = in_tile[tile].first; w < in_tile[tile].last; ++w) {
-                        const int side = side_of_border(geometry_, triangle, waiting[w].middle);
-                        if (side == 0) near[begin / kTriangles].emplace_back(w, number);
-                        // a place is well inside one triangle at the most
-                        if (side > 0) waiting[w].beneath = number;
-                    }
-                });
-            }
-        });
-    Scope scope(geometry_);
-    Clipper clipper(scope);
-    const auto lies_over = [&](std::int32_t node, std::size_t triangle) {
-        const auto i = static_cast<std::size_t>(node - first_node);
-        Polygon outline;
-        if (i < whole_count) {
-            outline = outline_of(c.closed_whole[i]);
-        } else {
-            const PolygonView part = parts_.outlines[c.closed_parts[i - whole_count]];
-            outline.assign(part.begin(), part.end());
-        }
-        return clipper.overlap(outline,
-                               outline_of(layer.first_plane + static_cast<PlaneId>(triangle)));
-    };
-    for (const auto& pairs : near) {
-        for (const auto& [w, t] : pairs) {
-            if (waiting[w].beneath == kNothing &&
-                lies_over(waiting[w].node, static_cast<std::size_t>(t)))
-                waiting[w].beneath = t;
-        }
-    }
-    for (Waiting& w : waiting) {
-        // where rounding put a middle into a tile that nothing beneath it meets
-        for (std::size_t t = 0; t < layer.size() && w.beneath == kNothing; ++t) {
-            if (c.surface[t] == Classified::kBelow && lies_over(w.node, t))
-                w.beneath = static_cast<std::int32_t>(t);
-        }
-        if (w.beneath != kNothing)
-            made_.links.emplace_back(w.node, c.node[static_cast<std::size_t>(w.beneath)]);
-    }
 }
 
 void BlockOverlay::finish(std::optional<PlaneId> base) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "block_layers.hpp"
+#include "border_edges.hpp"
 #include "envelope.hpp"
 #include "layer.hpp"
 #include "plan_tiles.hpp"
@@ -62,10 +63,9 @@ struct BlockConstruction {
 /// height) are marked: there walls may stand, so everything is overlaid there.
 class BlockOverlay {
 public:
-    /// layers: oldest first, their planes one after another; on_border: of each tile.
-    BlockOverlay(exact::PlanGeometry& geometry, std::span<const BlockLayer> layers, PlanTiles tiles,
-                 std::vector<std::uint8_t> on_border, double largest_height, int threads,
-                 const Progress* progress);
+    /// layers: oldest first, their planes one after another.
+    BlockOverlay(exact::PlanGeometry& geometry, std::span<const BlockLayer> layers,
+                 BorderEdges borders, double largest_height, int threads, const Progress* progress);
 
     /// Begins under the sky over a region (in triangles), with `outside` around it.
     void start_region(const std::vector<PlanTriangle>& region,
@@ -87,8 +87,7 @@ public:
 
     std::span<const BlockLayer> layers() const { return layers_; }
     BlockConstruction& construction() { return made_; }
-    const PlanTiles& tiles() const { return tiles_; }
-    const std::vector<std::uint8_t>& on_border() const { return on_border_; }
+    const BorderEdges& borders() const { return borders_; }
 
 private:
     struct SurfaceTiles;
@@ -117,17 +116,14 @@ private:
     TileBounds located(const TriangleBounds& bounds) const {
         return {bounds, tiles_.span(bounds.box)};
     }
-    bool beside_border(const TileSpan& span) const {
-        return tiles_.any(span, [&](std::size_t tile) { return on_border_[tile] != 0; });
-    }
     std::int32_t block_of(std::int32_t node) const {
         return made_.node_block[static_cast<std::size_t>(node)];
     }
 
     exact::PlanGeometry& geometry_;
     std::span<const BlockLayer> layers_;
+    BorderEdges borders_;
     PlanTiles tiles_;
-    std::vector<std::uint8_t> on_border_;
     double margin_;
     int threads_;
     const Progress* progress_;

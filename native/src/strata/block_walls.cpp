@@ -24,12 +24,11 @@ struct ContactBatch {
 class TrackComparison {
 public:
     TrackComparison(const FaceList& faces, const std::vector<std::int32_t>& node_block,
-                    const Tracks& tracks, const Loops& loops, const PlanTiles& tiles,
-                    const std::vector<std::uint8_t>& on_border, ContactBatch& batch)
+                    const Tracks& tracks, const Loops& loops, const BorderEdges& borders,
+                    ContactBatch& batch)
         : node_block_(node_block),
           loops_(loops),
-          tiles_(tiles),
-          on_border_(on_border),
+          borders_(borders),
           curves_(faces, tracks, loops),
           batch_(batch) {}
 
@@ -65,8 +64,7 @@ private:
         const auto& q = loops_.positions[static_cast<std::size_t>(curve.end)];
         const PlanBox box{std::min(p[0], q[0]), std::min(p[1], q[1]), std::max(p[0], q[0]),
                           std::max(p[1], q[1])};
-        return tiles_.any(tiles_.span(box),
-                          [&](std::size_t tile) { return on_border_[tile] != 0; });
+        return borders_.near(borders_.tiles().span(box));
     }
 
     void link(std::int32_t a, std::int32_t b) {
@@ -117,8 +115,7 @@ private:
 
     const std::vector<std::int32_t>& node_block_;
     const Loops& loops_;
-    const PlanTiles& tiles_;
-    const std::vector<std::uint8_t>& on_border_;
+    const BorderEdges& borders_;
     TrackCurves curves_;
     ContactBatch& batch_;
 };
@@ -127,16 +124,14 @@ private:
 
 TrackContacts find_contacts(PlanGeometry& geometry, const FaceList& faces,
                             const std::vector<std::int32_t>& node_block, const Tracks& tracks,
-                            const Loops& loops, const PlanTiles& tiles,
-                            const std::vector<std::uint8_t>& on_border, int threads,
+                            const Loops& loops, const BorderEdges& borders, int threads,
                             const Progress* progress) {
     constexpr std::size_t kChunk = 2048;
     const std::size_t chunks = (tracks.size() + kChunk - 1) / kChunk;
     std::vector<std::unique_ptr<ContactBatch>> batches(chunks);
     parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
         batches[chunk] = std::make_unique<ContactBatch>(geometry);
-        TrackComparison comparison(faces, node_block, tracks, loops, tiles, on_border,
-                                   *batches[chunk]);
+        TrackComparison comparison(faces, node_block, tracks, loops, borders, *batches[chunk]);
         for (std::size_t t = chunk * kChunk; t < std::min(tracks.size(), (chunk + 1) * kChunk); ++t)
             comparison.process(t);
     });

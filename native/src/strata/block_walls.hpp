@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "border_edges.hpp"
 #include "conforming.hpp"
-#include "plan_tiles.hpp"
 
 namespace realmodel::strata {
 
@@ -31,8 +31,7 @@ struct TrackContacts {
 /// do the nodes above and below it.
 TrackContacts find_contacts(exact::PlanGeometry& geometry, const FaceList& faces,
                             const std::vector<std::int32_t>& node_block, const Tracks& tracks,
-                            const Loops& loops, const PlanTiles& tiles,
-                            const std::vector<std::uint8_t>& on_border, int threads,
+                            const Loops& loops, const BorderEdges& borders, int threads,
                             const Progress* progress);
 
 /// Walls between cells. Loops counter-clockwise seen from the right of their track.

@@ -30,6 +30,13 @@ struct FaceList {
         above.push_back(cell_above);
         below.push_back(cell_below);
     }
+    void append(const FaceList& other) {
+        polygons.append(other.polygons);
+        plane.append(other.plane.begin(), other.plane.end());
+        layer.append(other.layer.begin(), other.layer.end());
+        above.append(other.above.begin(), other.above.end());
+        below.append(other.below.begin(), other.below.end());
+    }
 };
 
 /// The lower envelope of the surfaces seen so far, youngest first: what survives of them, as convex
@@ -60,6 +67,18 @@ struct Envelope {
             const auto i = static_cast<std::size_t>(f);
             add_face(other.face_polygons[i], other.face_above[i]);
         }
+    }
+    /// Adds all facets of another envelope.
+    void append(const Envelope& other) {
+        const auto faces_before = face_offsets.back();
+        outlines.append(other.outlines);
+        plane.append(other.plane.begin(), other.plane.end());
+        layer.append(other.layer.begin(), other.layer.end());
+        pending.append(other.pending.begin(), other.pending.end());
+        for (std::size_t i = 1; i < other.face_offsets.size(); ++i)
+            face_offsets.push_back(faces_before + other.face_offsets[i]);
+        face_polygons.append(other.face_polygons);
+        face_above.append(other.face_above.begin(), other.face_above.end());
     }
     /// Adds a face to the facet added last.
     void add_face(PolygonView polygon, std::int32_t cell_above) {

@@ -55,48 +55,62 @@ Projection project(const CellComplex& complex, std::size_t face) {
     return sum;
 }
 
-std::size_t block_of(const CellComplex& complex, std::int32_t cell) {
-    return static_cast<std::size_t>(complex.cell_block[static_cast<std::size_t>(cell)]);
-}
+/// What some faces of a block add up to, seen from a height of one of them: terms are then no
+/// larger than the block is high, at whatever elevation it lies.
+struct BlockSum {
+    bool is_empty = true;
+    double anchor = 0;
+    Sum volume, area;
+
+    void add(const Projection& face, double height, double sign) {
+        if (is_empty) anchor = height;
+        is_empty = false;
+        volume.add(sign * (face.volume + face.area * (height - anchor)));
+        area.add(sign * face.area);
+    }
+    void add(const BlockSum& other) {
+        if (other.is_empty) return;
+        if (is_empty) anchor = other.anchor;
+        is_empty = false;
+        for (const double part : {other.volume.total, other.volume.correction,
+                                  other.area.value() * (other.anchor - anchor)})
+            volume.add(part);
+    }
+};
 
 }  // namespace
 
 // A face within a block adds to one cell what it takes from the other. Walls between blocks count
-// too: the rounded corners of one are in line in plan only up to rounding. Heights are seen from
-// one of the model's own, so terms err by no more than the rounding of its coordinates does.
+// too: the rounded corners of one are in line in plan only up to rounding.
 std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks, int threads,
                                   const Progress* progress) {
-    const double anchor = complex.vertices.empty() ? 0.0 : complex.vertices.front()[2];
+    const auto block_of = [&](std::int32_t cell) {
+        return static_cast<std::size_t>(complex.cell_block[static_cast<std::size_t>(cell)]);
+    };
     // Chunks depend on the input alone, and so do the sums.
     const std::size_t faces = complex.face_cells.size();
     const std::size_t chunk = std::max<std::size_t>(1 << 13, faces / 256 + 1);
-    std::vector<std::vector<Sum>> sums((faces + chunk - 1) / chunk);
+    std::vector<std::vector<BlockSum>> sums((faces + chunk - 1) / chunk);
     parallel_ranges(faces, chunk, threads, progress, [&](std::size_t begin, std::size_t end) {
         auto& of_chunk = sums[begin / chunk];
         of_chunk.resize(blocks);
         for (std::size_t f = begin; f < end; ++f) {
             const auto [inside, outside] = complex.face_cells[f];
-            if (outside >= 0 && block_of(complex, inside) == block_of(complex, outside)) continue;
+            if (outside >= 0 && block_of(inside) == block_of(outside)) continue;
             const Projection below = project(complex, f);
             const auto first = static_cast<std::size_t>(complex.face_offsets[f]);
             const double height =
                 complex.vertices[static_cast<std::size_t>(complex.face_vertices[first])][2];
-            const double volume = below.volume + below.area * (height - anchor);
-            double sign = 1.0;
-            for (const std::int32_t cell : complex.face_cells[f]) {
-                if (cell >= 0) of_chunk[block_of(complex, cell)].add(sign * volume);
-                sign = -sign;
-            }
+            of_chunk[block_of(inside)].add(below, height, 1.0);
+            if (outside >= 0) of_chunk[block_of(outside)].add(below, height, -1.0);
         }
     });
     std::vector<double> result;
     for (std::size_t b = 0; b < blocks; ++b) {
-        Sum sum;
-        for (const auto& of_chunk : sums) {
-            sum.add(of_chunk[b].total);
-            sum.add(of_chunk[b].correction);
-        }
-        result.push_back(sum.value());
+        BlockSum sum;
+        for (const auto& of_chunk : sums)
+            sum.add(of_chunk[b]);
+        result.push_back(sum.volume.value());
     }
     return result;
 }

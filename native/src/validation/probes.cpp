@@ -149,6 +149,8 @@ std::optional<WallSample> point_in_wall(const ComplexView& model, std::size_t fa
         sample.height = heights[i] + half;
     }
     if (sample.half_width <= 0) return std::nullopt;
+    for (const auto& corner : corners)
+        sample.highest = std::max(sample.highest, std::abs(corner[2]));
     return sample;
 }
 

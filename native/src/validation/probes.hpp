@@ -26,6 +26,7 @@ struct WallSample {
     PlanPosition from{}, to{};  ///< the stretch of the wall between two of its places
     double height = 0;          ///< of the point; in the middle of the wall there
     double half_width = 0;      ///< from there up and down to the wall's border
+    double highest = 0;         ///< largest height of its corners, without its sign
 };
 
 /// Lengths that rounding makes: steps in the last place of the largest plan coordinate. Rounding

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "chunked.hpp"
 #include "closed_form.hpp"
@@ -19,6 +20,13 @@ namespace {
 /// Rounding moves a height by this many units in its last place, or in that of the plan times the
 /// slope, at most; the larger part of it is what is done to the input before it is built.
 constexpr double kHeightSteps = 32;
+
+/// How far apart two heights may be that are moved on either side of a comparison, `highest` being
+/// the largest of what they come from.
+double rounding_of_heights(double highest) {
+    constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+    return 2 * kHeightSteps * std::max(highest * 0x1p-52, kLeast);
+}
 
 std::string figure(double value) {
     char text[32];
@@ -124,9 +132,7 @@ public:
         double highest = closed.highest;
         for (const Crossing& c : crossings)
             highest = std::max(highest, std::abs(c.height));
-        // a height may be moved on either side of the comparison
-        const double allowed =
-            2 * (kHeightSteps * highest * 0x1p-52 + closed.slope * rounding_.near);
+        const double allowed = rounding_of_heights(highest) + 2 * closed.slope * rounding_.near;
         compare(probe, column, closed, allowed, found.places);
         on_surfaces(probe, crossings, closed, allowed, found.surfaces);
         if (probes_.probes[probe].wall >= 0)
@@ -202,7 +208,8 @@ private:
         const WallSample& wall = probes_.walls[w];
         ++found.examined;
         // so far may the borders rise or fall on the way from the wall to here
-        const double margin = allowed + closed.slope * (rounding_.step + rounding_.near);
+        const double margin = std::max(allowed, rounding_of_heights(wall.highest)) +
+                              closed.slope * (rounding_.step + rounding_.near);
         bool at_border = wall.half_width <= margin || !column.broken.empty();
         std::int32_t have = -1;
         for (const Interval& i : column.intervals) {

@@ -343,6 +343,9 @@ TEST(Turn, IsExact) {
     EXPECT_EQ(turn({0.1, 0.1}, {0.2, 0.2}, {0.4, 0.4}), 0);
     EXPECT_EQ(turn({0.1, 0.1}, {0.2, 0.2}, {0.4, std::nextafter(0.4, 1)}), 1);
     EXPECT_EQ(turn({1e-300, 0}, {0, 1e-300}, {0, 0}), 1);
+    EXPECT_EQ(turn({0.1, 0.3}, {0.1, 0.7}, {0.1, 0.4}), 0);
+    EXPECT_EQ(turn({0.3, 0.1}, {0.7, 0.1}, {0.4, 0.1}), 0);
+    EXPECT_EQ(turn({0.3, 0.1}, {0.7, 0.1}, {0.4, std::nextafter(0.1, 1)}), 1);
 }
 
 }  // namespace

@@ -74,6 +74,7 @@ TEST_P(FacetClipperTest, AgreesWithTheClipperThatTakesLineByLine) {
             const std::vector<Corner> result(found.begin(), found.end());
             const PolygonView expected = reference.intersect(facet, triangles[j]);
             ASSERT_EQ(corners_of(result), corners_of(expected)) << i << ", " << j;
+            ASSERT_EQ(clipper.meets(triangles[j]), !expected.empty()) << i << ", " << j;
             for (std::size_t k = 0; k < result.size(); ++k) {
                 // each edge runs along its line
                 const PointId next = result[k + 1 < result.size() ? k + 1 : 0].point;

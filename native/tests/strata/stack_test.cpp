@@ -275,6 +275,45 @@ TEST(Stack, ACancelledBuildThrows) {
     EXPECT_THROW(build_stack(input, 1, &progress), Cancelled);
 }
 
+TEST(Stack, VolumesOfThinLayersHighUp) {
+    // All places are whole multiples of 2^-10, at an elevation of 2^20: seen from there, terms keep
+    // what a sum from height 0 would lose.
+    const double up = 0x1p20, thin = 0x1p-10;
+    const auto ground = [&](double x, double y) { return up + 0.25 * x + 0.5 * y; };
+    const auto top = [&](double x, double y) { return ground(x, y) + thin; };
+    for (const CellKind kind : {CellKind::kColumns, CellKind::kBlocks}) {
+        const OwnedSurface low = grid(8, 8, 0, 0, 8, 8, ground),
+                           high = grid(4, 4, 0, 0, 8, 8, top, true);
+        StackInput input;
+        input.surfaces = {low.view(), high.view()};
+        input.rules.assign(2, Rule::kErosional);
+        const auto c = build_stack(input, 1, nullptr, kind);
+        EXPECT_NEAR(c.volumes[1], 64 * thin, 64 * thin * 1e-13);
+    }
+}
+
+TEST(Stack, TrianglesBesideABorderStayWholeInBlocks) {
+    // Nothing meets, so nothing is cut, beside the border either; and a hole divides what is under
+    // it.
+    const auto level = [](double z) { return [z](double, double) { return z; }; };
+    const OwnedSurface low = grid(6, 6, 0, 0, 6, 6, level(0)),
+                       high = grid(4, 4, 0, 0, 6, 6, level(1), true);
+    const auto faces = [&](const OwnedSurface& top) {
+        StackInput input;
+        input.surfaces = {low.view(), top.view()};
+        input.rules.assign(2, Rule::kErosional);
+        const auto c = build_stack(input, 1, nullptr, CellKind::kBlocks);
+        EXPECT_EQ(c.cell_block.size(), 1u);
+        return std::count_if(c.face_surface.begin(), c.face_surface.end(),
+                             [](std::int32_t s) { return s >= 0; });
+    };
+    EXPECT_EQ(faces(high), 2 * 36 + 2 * 16);
+    OwnedSurface holed = high;
+    const auto hole = holed.triangles.begin() + 3 * 10;
+    holed.triangles.erase(hole, hole + 3);
+    EXPECT_GT(faces(holed), 2 * 36 + 2 * 16 - 1);
+}
+
 TEST(Stack, MergedColumnsHaveTheSameVolumes) {
     std::vector<OwnedSurface> surfaces;
     for (int k = 0; k < 4; ++k) {

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "block_classification.hpp"
+#include "block_overlay.hpp"
+#include "disjoint_parts.hpp"
+#include "parallel_counts.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanGeometry;
+
+namespace {
+
+/// The middle of some corners, as rounding leaves it.
+template <class Corners, class PointOf>
+std::array<double, 2> middle_of(const Corners& corners, const PointOf& point_of) {
+    std::array<double, 2> middle{0, 0};
+    const double share = 1.0 / static_cast<double>(corners.size());
+    for (const auto& corner : corners) {
+        const exact::Point& p = point_of(corner);
+        middle[0] += p.x * share;
+        middle[1] += p.y * share;
+    }
+    return middle;
+}
+
+/// Where a place that rounding may have moved lies: 1 in a triangle for certain, -1 outside of it
+/// for certain, 0 near its border.
+int side_of_border(const PlanGeometry& geometry, const PlanTriangle& triangle,
+                   const std::array<double, 2>& place) {
+    constexpr double kRounding = 0x1p-44;  // of coordinates, far more than a middle has
+    const double error = kRounding * (std::abs(place[0]) + std::abs(place[1])) + 1e-290;
+    int side = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const exact::LineFilter edge =
+            geometry.edge_filter(triangle[i], triangle[i + 1 < 3 ? i + 1 : 0]);
+        const double u = edge.a * (place[0] - edge.x0), v = edge.b * (place[1] - edge.y0);
+        const double least =
+            (std::abs(edge.a) + std::abs(edge.b)) * error + 0x1p-46 * (std::abs(u) + std::abs(v));
+        if (u + v < -least) return -1;
+        if (!(u + v > least)) side = 0;
+    }
+    return side;
+}
+
+}  // namespace
+
+/// Links closed facets with what closes them. Neighbouring whole facets hang together, and so do
+/// the triangles beneath them: one link for each connected part of them is enough.
+void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
+    const auto first_node = c.first_closed;
+    const auto whole_count = c.closed_whole.size();
+    DisjointParts sets(whole_count);
+    constexpr std::size_t kFacets = 4096, kTriangles = 4096;
+    parallel_ranges(
+        whole_count, kFacets, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+            const BlockLayer* of_plane = nullptr;  // facets of one surface mostly follow each other
+            for (std::size_t i = begin; i < end; ++i) {
+                const PlaneId plane = c.closed_whole[i];
+                if (of_plane == nullptr || !of_plane->has(plane))
+                    of_plane = &layers_[static_cast<std::size_t>(layer_of(plane))];
+                for (const std::int32_t n :
+                     of_plane->neighbour[static_cast<std::size_t>(plane - of_plane->first_plane)]) {
+                    const PlaneId other = n + of_plane->first_plane;
+                    if (n < 0 || other <= plane) continue;
+                    const std::int32_t node = made_.whole[static_cast<std::size_t>(other)].below;
+                    const std::int32_t j = node - first_node;
+                    const bool closed_now = node >= first_node &&
+                                            j < static_cast<std::int32_t>(whole_count) &&
+                                            c.closed_whole[static_cast<std::size_t>(j)] == other;
+                    if (closed_now &&
+                        block_of(node) == block_of(first_node + static_cast<std::int32_t>(i)))
+                        sets.join(static_cast<std::int32_t>(i), j);
+                }
+            }
+        });
+    constexpr std::int32_t kNothing = -1;
+    struct Waiting {
+        std::size_t tile;
+        std::array<double, 2> middle;
+        std::int32_t node;
+        std::int32_t beneath;  ///< a triangle of the surface that lies there
+    };
+    std::vector<Waiting> waiting;
+    const auto wait = [&](const std::array<double, 2>& middle, std::int32_t node) {
+        const auto [x, y] = middle;
+        const TileSpan span = tiles_.span({x, y, x, y});
+        waiting.push_back({tiles_.tile(span.left, span.low), middle, node, kNothing});
+    };
+    const auto point = [&](PointId id) -> const exact::Point& { return geometry_.point(id); };
+    for (std::size_t i = 0; i < whole_count; ++i) {
+        const auto k = static_cast<std::int32_t>(i);
+        if (sets.find(k) == k)
+            wait(middle_of(geometry_.plane(c.closed_whole[i]).plan, point), first_node + k);
+    }
+    for (std::size_t i = 0; i < c.closed_parts.size(); ++i) {
+        wait(middle_of(
+                 parts_.outlines[c.closed_parts[i]],
+                 [&](const Corner& corner) -> const exact::Point& { return point(corner.point); }),
+             first_node + static_cast<std::int32_t>(whole_count + i));
+    }
+    if (waiting.empty()) return;
+    std::stable_sort(waiting.begin(), waiting.end(),
+                     [](const Waiting& a, const Waiting& b) { return a.tile < b.tile; });
+    struct InTile {
+        std::uint32_t first = 0, last = 0;  ///< of those that wait
+    };
+    std::vector<InTile> in_tile(tiles_.size());
+    for (std::size_t w = 0; w < waiting.size(); ++w) {
+        InTile& here = in_tile[waiting[w].tile];
+        if (here.last == 0) here.first = static_cast<std::uint32_t>(w);
+        here.last = static_cast<std::uint32_t>(w) + 1;
+    }
+    // The middle of a convex outline is inside it, so a triangle that it is in for certain shares
+    // an area with the outline. The exact test is for the few middles near an edge.
+    std::vector<std::vector<std::pair<std::uint32_t, std::int32_t>>> near(
+        (layer.size() + kTriangles - 1) / kTriangles);
+    parallel_ranges(
+        layer.size(), kTriangles, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t) {
+                if (c.surface[t] != Classified::kBelow) continue;
+                const auto number = static_cast<std::int32_t>(t);
+                const auto& triangle = geometry_.plane(layer.first_plane + number).plan;
+                tiles_.for_each(surface_at_[t].span, [&](std::size_t tile) {
+                    for (auto w = in_tile[tile].first; w < in_tile[tile].last; ++w) {
+                        const int side = side_of_border(geometry_, triangle, waiting[w].middle);
+                        if (side == 0) near[begin / kTriangles].emplace_back(w, number);
+                        // a place is well inside one triangle at the most
+                        if (side > 0) waiting[w].beneath = number;
+                    }
+                });
+            }
+        });
+    Scope scope(geometry_);
+    Clipper clipper(scope);
+    const auto lies_over = [&](std::int32_t node, std::size_t triangle) {
+        const auto i = static_cast<std::size_t>(node - first_node);
+        Polygon outline;
+        if (i < whole_count) {
+            outline = outline_of(c.closed_whole[i]);
+        } else {
+            const PolygonView part = parts_.outlines[c.closed_parts[i - whole_count]];
+            outline.assign(part.begin(), part.end());
+        }
+        return clipper.overlap(outline,
+                               outline_of(layer.first_plane + static_cast<PlaneId>(triangle)));
+    };
+    for (const auto& pairs : near) {
+        for (const auto& [w, t] : pairs) {
+            if (waiting[w].beneath == kNothing &&
+                lies_over(waiting[w].node, static_cast<std::size_t>(t)))
+                waiting[w].beneath = t;
+        }
+    }
+    for (Waiting& w : waiting) {
+        // where rounding put a middle into a tile that nothing beneath it meets
+        for (std::size_t t = 0; t < layer.size() && w.beneath == kNothing; ++t) {
+            if (c.surface[t] == Classified::kBelow && lies_over(w.node, t))
+                w.beneath = static_cast<std::int32_t>(t);
+        }
+        if (w.beneath != kNothing)
+            made_.links.emplace_back(w.node, c.node[static_cast<std::size_t>(w.beneath)]);
+    }
+}
+
+}  // namespace realmodel::strata

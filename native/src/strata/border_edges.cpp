@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "border_edges.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace realmodel::strata {
+
+using exact::PlanGeometry;
+
+BorderEdges::BorderEdges(PlanGeometry& geometry, const PlanTiles& tiles, std::vector<Edge> edges)
+    : tiles_(tiles), offsets_(tiles.size() + 1, 0) {
+    for (auto& [from, to] : edges) {
+        if (from > to) std::swap(from, to);
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    segments_.reserve(edges.size());
+    for (const auto& [from, to] : edges)
+        segments_.push_back({from, to, exact::line_of(geometry.add_edge(from, to))});
+    const auto for_all = [&](const auto& visit) {
+        for (std::size_t s = 0; s < segments_.size(); ++s) {
+            const auto &p = geometry.point(segments_[s].from), &q = geometry.point(segments_[s].to);
+            const PlanBox box{std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x),
+                              std::max(p.y, q.y)};
+            tiles_.for_each(tiles_.span(box), [&](std::size_t tile) { visit(tile, s); });
+        }
+    };
+    for_all([&](std::size_t tile, std::size_t) { ++offsets_[tile + 1]; });
+    std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+    in_tiles_.resize(offsets_.back());
+    auto free = offsets_;
+    for_all([&](std::size_t tile, std::size_t s) {
+        in_tiles_[free[tile]++] = static_cast<std::uint32_t>(s);
+    });
+}
+
+bool BorderEdges::divide(Scope& scope, PolygonView polygon, const TileSpan& span) const {
+    return tiles_.any(span, [&](std::size_t tile) {
+        return std::any_of(in_tiles_.begin() + offsets_[tile],
+                           in_tiles_.begin() + offsets_[tile + 1],
+                           [&](std::uint32_t s) { return divides(scope, polygon, segments_[s]); });
+    });
+}
+
+// What is convex lies apart where a line along an edge of either separates the two.
+bool BorderEdges::divides(Scope& scope, PolygonView polygon, const Segment& segment) {
+    bool any_left = false, any_right = false;
+    for (const Corner& corner : polygon) {
+        const int side = scope.side(exact::directed(segment.line, false), corner.point);
+        any_left |= side > 0;
+        any_right |= side < 0;
+    }
+    if (!any_left || !any_right) return false;
+    return std::none_of(polygon.begin(), polygon.end(), [&](const Corner& corner) {
+        return scope.side(corner.line, segment.from) <= 0 &&
+               scope.side(corner.line, segment.to) <= 0;
+    });
+}
+
+}  // namespace realmodel::strata
