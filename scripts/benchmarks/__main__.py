@@ -65,9 +65,10 @@ def main() -> int:
             page.table(heights_table.ACCURACY, accuracy),
         ]
     if "meshing" in parts:
-        meshes, polygons = meshing_table.measure(given.quick, memory, _say)
+        meshes, outlines, polygons = meshing_table.measure(given.quick, memory, _say)
         tables["meshing"] = [
             page.table(meshing_table.MESHES, meshes, 2),
+            page.table(meshing_table.OUTLINES, outlines, 3),
             page.table(meshing_table.POLYGONS, polygons),
         ]
     if given.write:

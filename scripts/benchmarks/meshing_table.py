@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import os
 import statistics
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from .hard_outlines import CASES
 from .meshing import edge_for, graded_largest
 from .process import Skipped, alone
 
@@ -26,6 +28,18 @@ MESHES = (
     "memory, MB",
     "",
 )
+OUTLINES = (
+    "outline",
+    "edge length",
+    "mesher",
+    "triangles",
+    "seconds",
+    "least angle",
+    "mean ratio",
+    "asked",
+    "six neighbours",
+    "",
+)
 POLYGONS = ("polygon", "corners", "ours, s", "earcut, s", "ours / earcut", "asked", "")
 # How long a triangle may take of Triangle's time for one, the mean ratio at least, and bytes at most.
 _ASKED = {"delaunay": (1.0, None), "frontal": (3.0, 0.99), "grid": (None, None)}
@@ -36,7 +50,9 @@ _KINDS = {
     "bristles": "rays of random length",
     "holes": "1,024 round holes",
 }
-_SECONDS = 600.0
+_LEAST_RATIO = 0.95  # of frontal where an outline has much detail
+_SECONDS = 240.0  # for one mesh
+_ALL_SECONDS = 590.0  # for everything: what is not done by then is SKIPPED
 
 
 @dataclass(frozen=True)
@@ -49,23 +65,27 @@ class _Case:
 
 def measure(
     quick: bool, memory: float, say: Callable[[str], None]
-) -> tuple[list[list[str]], list[list[str]]]:
-    """Rows for MESHES and POLYGONS; what could not be measured is SKIPPED, and why."""
+) -> tuple[list[list[str]], list[list[str]], list[list[str]]]:
+    """Rows for MESHES, OUTLINES and POLYGONS; what could not be measured is SKIPPED, and why."""
     python = os.environ.get("REALMODEL_MESHING_PYTHON")
     rounds = 1 if quick else 3
+    end = time.monotonic() + _ALL_SECONDS
 
     def told(function: str, *arguments) -> dict:
-        return alone(f"meshing.{function}", *arguments, seconds=_SECONDS, memory=memory, python=python)
+        left = end - time.monotonic()
+        if left < 1:
+            raise Skipped(f"the {_ALL_SECONDS:.0f} s that all this may take are over")
+        return alone(function, *arguments, seconds=min(_SECONDS, left), memory=memory, python=python)
 
-    meshes, polygons = [], []
-    for case in _cases(quick):
-        for row in _meshes(told, case, rounds):
-            meshes.append(row)
+    def say_all(rows: list[list[str]]) -> list[list[str]]:
+        for row in rows:
             say("meshing: " + " | ".join(row))
-    for kind, name in _KINDS.items():
-        polygons.append(_polygons(told, kind, name, rounds))
-        say("meshing: " + " | ".join(polygons[-1]))
-    return meshes, polygons
+        return rows
+
+    polygons = [row for kind in _KINDS for row in say_all([_polygons(told, kind, rounds)])]
+    outlines = [row for kind in CASES for row in say_all(_outlines(told, kind))]
+    meshes = [row for case in _cases(quick) for row in say_all(_meshes(told, case, rounds))]
+    return meshes, outlines, polygons
 
 
 def _cases(quick: bool) -> list[_Case]:
@@ -86,7 +106,7 @@ def _meshes(told, case: _Case, rounds: int) -> list[list[str]]:
             if mesher in reasons or (mesher == "grid" and case.graded):
                 continue
             try:
-                runs[mesher].append(told("mesh", mesher, case.edge, case.graded))
+                runs[mesher].append(told("meshing.mesh", mesher, case.edge, case.graded))
             except Skipped as skipped:
                 reasons[mesher] = str(skipped)
     theirs = runs["Triangle"] if "Triangle" not in reasons else []
@@ -139,12 +159,42 @@ def _mesh_row(case: str, mesher: str, made: list[dict], theirs: list[dict]) -> l
     ]
 
 
-def _polygons(told, kind: str, name: str, rounds: int) -> list[str]:
+def _outlines(told, kind: str) -> list[list[str]]:
+    name, lengths = CASES[kind]
+    rows = []
+    for edge in lengths:
+        for mesher in ("delaunay", "frontal", "Gmsh"):
+            called = mesher if mesher == "Gmsh" else f"RealModel, `{mesher}`"
+            begin = [name, f"{edge:g}", called]
+            try:
+                made = told("hard_outlines.mesh", mesher, kind, edge)
+            except Skipped as skipped:
+                rows.append([*begin, *["-"] * (len(OUTLINES) - 4), f"SKIPPED; {skipped}"])
+            else:
+                rows.append([*begin, *_outline_cells(mesher, made)])
+    return rows
+
+
+def _outline_cells(mesher: str, made: dict) -> list[str]:
+    asked = _LEAST_RATIO if mesher == "frontal" else None
+    return [
+        f"{made['triangles']:,}",
+        f"{made['seconds']:.2f}",
+        f"{made['least_angle']:.1f}",
+        f"{made['mean_ratio']:.4f}",
+        "-" if asked is None else f"{asked}",
+        f"{100 * made['six']:.1f} %",
+        "" if asked is None else "met" if made["mean_ratio"] >= asked else "NOT met",
+    ]
+
+
+def _polygons(told, kind: str, rounds: int) -> list[str]:
+    name = _KINDS[kind]
     found: list[tuple[dict, dict]] = []
     try:
         for number in range(rounds):
             who = ("RealModel", "earcut") if number % 2 == 0 else ("earcut", "RealModel")
-            runs = {one: told("ears", one, kind) for one in who}
+            runs = {one: told("meshing.ears", one, kind) for one in who}
             found.append((runs["RealModel"], runs["earcut"]))
     except Skipped as skipped:
         return [name, "-", "-", "-", "-", "1", f"SKIPPED; {skipped}"]

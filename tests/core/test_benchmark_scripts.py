@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from realmodel import _native
+from realmodel.core import mesh_region
 
 sys.path.insert(0, str(ROOT / "scripts"))
 
-from benchmarks import fitting, meshing, page, peers, process
+from benchmarks import fitting, hard_outlines, meshing, page, peers, process
 from benchmarks.made_stacks import StackSpec
 
 
@@ -135,3 +136,18 @@ def test_a_process_that_takes_too_long_or_fails_is_skipped():
     out, seconds, _ = process.run_apart([sys.executable, "-c", "print(42)"], 30, 10**9)
     assert out == "42\n"
     assert seconds < 30
+
+
+@pytest.mark.parametrize("kind", hard_outlines.CASES)
+def test_hard_outlines_are_meshed_as_a_whole(kind):
+    try:
+        polygons = hard_outlines.polygons(kind)
+    except process.Skipped as missing:
+        pytest.skip(str(missing))
+    rings = [ring for polygon in polygons for ring in polygon]
+    areas = [[abs(meshing.signed_area(ring)) for ring in polygon] for polygon in polygons]
+    area = sum(outline - sum(holes) for outline, *holes in areas)
+    edge = hard_outlines.CASES[kind][1][0]
+    vertices, triangles = mesh_region(rings, edge_length=edge, mesher="delaunay")
+    found = sum(meshing.signed_area(corners) for corners in vertices[triangles])
+    assert found == pytest.approx(area, rel=1e-9)

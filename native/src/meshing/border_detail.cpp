@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "meshing/band.hpp"
@@ -19,6 +20,22 @@ namespace {
 // the refinement of angles, which needs no field that is as fine as the detail.
 constexpr std::size_t many_sources = 50'000;
 constexpr double finest_of_many = 64;
+
+// Beside outlines that are all detail most triangles are where lengths grow: the slower they do,
+// the better they are, and the more (15 % more than with a growth of a quarter).
+constexpr double growth = 0.2;
+
+/// How long edges should be at a fixed side. Refinement halves lengths; where the region is a strip
+/// between the side and the border opposite, its width tells how far.
+double length_at(const FlatMesh& mesh, Side side, const std::vector<bool>& is_fixed) {
+    const PlanPoint &a = mesh.point_from(side), &b = mesh.point_to(side);
+    const double length = std::sqrt(squared_distance(a, b));
+    const bool is_strip =
+        is_fixed[mesh.apex(side)] && !mesh.is_fixed(side.next()) && !mesh.is_fixed(side.previous());
+    if (!is_strip) return length;
+    const double width = twice_area(a, b, mesh.point_apex(side)) / length;
+    return std::clamp(2 / std::numbers::sqrt3 * width, 0.25 * length, 1.5 * length);
+}
 
 /// No source finer than `finest`, and of those one in each square of that side.
 void thin_out(std::vector<SizeSource>& sources, double finest) {
@@ -59,6 +76,11 @@ std::vector<SizeSource> border_detail(const RegionGraph& graph, const SizeField&
         is_loner[v] = true;
     std::vector<SizeSource> sources;
     const auto count = static_cast<std::int32_t>(mesh.corners.size());
+    std::vector<bool> is_fixed(mesh.points.size(), false);
+    for (std::int32_t t = 0; t < count; ++t)
+        for (int i = 0; i < 3; ++i)
+            if (mesh.is_fixed({t, i}))
+                is_fixed[mesh.from({t, i})] = is_fixed[mesh.to({t, i})] = true;
     for (std::int32_t t = 0; t < count; ++t) {
         for (int i = 0; i < 3; ++i) {
             const Side side(t, i);
@@ -69,10 +91,13 @@ std::vector<SizeSource> border_detail(const RegionGraph& graph, const SizeField&
             if (length >= short_share * size.at(middle(a, b))) continue;
             // Refinement passes over triangles with the shortest edges: leave it room above them.
             const double least = std::max(length, 4 * shortest_edge);
-            if (mesh.is_fixed(side)) sources.push_back({a, b, least, least});
+            if (mesh.is_fixed(side)) {
+                const double here = std::max(length_at(mesh, side, is_fixed), 4 * shortest_edge);
+                sources.push_back({a, b, here, here, growth});
+            }
             for (const std::int32_t v : {mesh.from(side), mesh.to(side)}) {
                 const PlanPoint& p = mesh.points[v];
-                if (is_loner[v]) sources.push_back({p, p, least, least});
+                if (is_loner[v]) sources.push_back({p, p, least, least, growth});
             }
         }
     }

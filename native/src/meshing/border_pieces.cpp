@@ -123,15 +123,16 @@ BorderPieces cut_edges(const RegionGraph& graph, const Check& check, SharesOf&& 
     std::size_t seen = 0;
     const auto cut = [&](const Segment& edge, std::vector<Segment>& out) {
         if (++seen % 1024 == 0) check(0);
-        const PlanPoint &a = graph.points[edge[0]], &b = graph.points[edge[1]];
+        // Always from the lesser end, so that a border read in the other direction is cut alike.
+        const bool turns = graph.points[edge[1]] < graph.points[edge[0]];
+        const Segment way = turns ? Segment{edge[1], edge[0]} : edge;
+        const PlanPoint &a = graph.points[way[0]], &b = graph.points[way[1]];
+        std::vector<double> shares = shares_of(way);
+        if (turns) std::reverse(shares.begin(), shares.end());
         std::int32_t last = edge[0];
-        for (const double t : shares_of(edge)) {
+        for (const double t : shares) {
             const auto next = static_cast<std::int32_t>(pieces.points.size());
-            // From the nearer end, so that a border read in the other direction is cut alike.
-            pieces.points.push_back(
-                t <= 0.5
-                    ? PlanPoint{a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])}
-                    : PlanPoint{b[0] + (1 - t) * (a[0] - b[0]), b[1] + (1 - t) * (a[1] - b[1])});
+            pieces.points.push_back({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])});
             out.push_back({last, next});
             last = next;
         }

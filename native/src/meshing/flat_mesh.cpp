@@ -162,6 +162,19 @@ std::array<Side, 2> FlatMesh::collapse(Side side) {
     return {left, right};
 }
 
+Side FlatMesh::pass_by(Side side) {
+    const Side kept = side.previous(), gone = behind(kept), outer = gone.next();
+    const Side beyond = behind(outer);
+    corners[side.triangle()][side.number()] = to(outer);
+    join(kept, beyond);
+    fix(kept, is_fixed(outer));
+    const std::int32_t dead = gone.triangle();
+    corners[dead] = {-1, -1, -1};
+    across[dead] = {};
+    fixed[dead] = 0;
+    return side;
+}
+
 void FlatMesh::compact(std::int32_t first) {
     const auto count = static_cast<std::int32_t>(corners.size());
     std::vector<std::int32_t> number(count - first, -1);

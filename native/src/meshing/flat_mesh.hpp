@@ -84,6 +84,10 @@ public:
     /// triangles were, both leaving the merged vertex or ending at it. The caller has made sure
     /// that nothing turns over.
     std::array<Side, 2> collapse(Side side);
+    /// Takes the vertex that a side on the border leaves, which must have two triangles, out of the
+    /// border: one triangle takes their place, the other dies. Returns the side of the border that
+    /// runs past it now. The caller has made sure that the triangle is not turned over.
+    Side pass_by(Side side);
     /// Forgets dead triangles; those before `first` keep their numbers, none of them is dead.
     void compact(std::int32_t first);
 

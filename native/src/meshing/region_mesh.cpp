@@ -304,7 +304,8 @@ PlanarMesh Meshing::mesh(const SizeField& size, double begin, double end) const 
            part(0.75, 0.8, "improving the border"));
     if (request_.mesher == Mesher::frontal) {
         const Check check = part(0.8, 0.9, "smoothing");
-        smooth(flat, size, banded.first_of_band, banded.rim_triangles, graph_.loners, check);
+        smooth(flat, size, banded.first_of_band, banded.rim_triangles,
+               static_cast<std::int32_t>(graph_.points.size()), graph_.loners, check);
         flat.compact(banded.first_of_band);
         refine(flat, target, size, 0, {}, check);
     }

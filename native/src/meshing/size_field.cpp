@@ -47,12 +47,15 @@ void SizeField::build(std::int32_t node, const Cell& cell, std::span<const SizeS
     if (nodes_.size() % 1024 == 1) check(0);
     const double half = cell.width / 2, reach = gradation_ * half * std::numbers::sqrt2;
     const double x = cell.x + half, y = cell.y + half;
+    const auto start_and_growth = [&](const SizeSource& source, double at_x, double at_y) {
+        return source.start + std::min(gradation_, source.growth) * distance(source, at_x, at_y);
+    };
     // Bounds of what each source asks for over the cell.
     double lowest = largest_, highest = largest_;
     std::vector<double> middle(candidates.size());
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         const SizeSource& source = sources[candidates[i]];
-        middle[i] = source.start + gradation_ * distance(source, x, y);
+        middle[i] = start_and_growth(source, x, y);
         lowest = std::min(lowest, std::max(source.least, middle[i] - reach));
         highest = std::min(highest, std::max(source.least, middle[i] + reach));
     }
@@ -87,9 +90,8 @@ void SizeField::build(std::int32_t node, const Cell& cell, std::span<const SizeS
                          cy = cell.y + (i & 2 ? cell.width : 0);
             for (const std::int32_t s : kept) {
                 const SizeSource& source = sources[s];
-                lengths[i] = std::min(
-                    lengths[i],
-                    std::max(source.least, source.start + gradation_ * distance(source, cx, cy)));
+                lengths[i] =
+                    std::min(lengths[i], std::max(source.least, start_and_growth(source, cx, cy)));
             }
         }
         make_leaf(lengths);

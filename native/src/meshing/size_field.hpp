@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -12,11 +13,13 @@
 namespace realmodel::meshing {
 
 /// A segment (or a point: both ends equal) near which edges are short: `least` at it, growing as
-/// `start` + gradation * distance where that is more.
+/// `start` + growth * distance where that is more.
 struct SizeSource {
     PlanPoint a, b;
     double start;
     double least;
+    /// No more than the field's gradation, which holds where nothing else is said.
+    double growth = std::numeric_limits<double>::infinity();
 };
 
 /// The least of what sources ask for, and of a largest length. No length differs from another by

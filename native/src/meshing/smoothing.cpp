@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "meshing/plan_predicates.hpp"
@@ -12,7 +13,7 @@ namespace realmodel::meshing {
 
 namespace {
 
-constexpr int rounds = 6;
+constexpr int rounds = 8;
 constexpr int moves_per_round = 2;
 constexpr int last_moves = 4;
 constexpr double least_ratio_of_flips = 0.35;
@@ -54,7 +55,8 @@ double mean_ratio(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
 class Smoothing {
 public:
     Smoothing(FlatMesh& mesh, const SizeField& size, std::int32_t first,
-              std::span<const std::int32_t> also, std::span<const std::int32_t> kept)
+              std::span<const std::int32_t> also, std::int32_t corners,
+              std::span<const std::int32_t> kept)
         : mesh_(mesh), size_(size) {
         const std::size_t points = mesh.points.size();
         leaving_.resize(points);
@@ -62,7 +64,8 @@ public:
         wanted_.assign(points, 6);
         is_still_.assign(points, true);
         is_fixed_.assign(points, false);
-        find_active(first, also);
+        line_.assign(points, none);
+        find_active(first, also, corners);
         for (const std::int32_t v : kept)
             is_still_[v] = is_fixed_[v] = true;
     }
@@ -84,7 +87,9 @@ public:
     }
 
 private:
-    void find_active(std::int32_t first, std::span<const std::int32_t> also) {
+    static constexpr std::int32_t none = -1;
+
+    void find_active(std::int32_t first, std::span<const std::int32_t> also, std::int32_t corners) {
         const auto count = static_cast<std::int32_t>(mesh_.corners.size());
         std::vector<double> angles(mesh_.points.size(), 0.0);
         std::vector<bool> near(mesh_.points.size(), false);
@@ -115,13 +120,44 @@ private:
                 if (mesh_.is_fixed(side)) is_fixed_[v] = is_fixed_[mesh_.to(side)] = true;
             }
         }
+        // Of one length pieces stay even: regions side by side meet in them.
+        if (!size_.is_uniform()) find_sliding(corners);
         for (std::size_t v = 0; v < near.size(); ++v) {
             if (!near[v] || triangles_[v] == 0) continue;
+            if (line_[v] != none) active_.push_back(static_cast<std::int32_t>(v));
             if (is_fixed_[v]) continue;
             is_still_[v] = false;
             active_.push_back(static_cast<std::int32_t>(v));
         }
         want_on_lines();
+    }
+
+    /// Vertices added between two corners of the border may slide between them.
+    void find_sliding(std::int32_t corners) {
+        const std::size_t points = mesh_.points.size();
+        std::vector<Side> border(points, Side::outside());  // of each added vertex: from it
+        std::vector<Side> begins;
+        const auto count = static_cast<std::int32_t>(mesh_.corners.size());
+        for (std::int32_t t = 0; t < count; ++t) {
+            if (mesh_.is_dead(t)) continue;
+            for (int i = 0; i < 3; ++i) {
+                const Side side(t, i);
+                if (!mesh_.is_border(side)) continue;
+                if (mesh_.from(side) >= corners) {
+                    border[mesh_.from(side)] = side;
+                } else if (mesh_.to(side) >= corners) {
+                    begins.push_back(side);
+                }
+            }
+        }
+        for (const Side begin : begins) {
+            const auto line = static_cast<std::int32_t>(lines_.size());
+            std::int32_t v = mesh_.to(begin);
+            for (; v >= corners; v = mesh_.to(border[v])) {
+                line_[v] = line;
+            }
+            lines_.push_back({mesh_.point_from(begin), mesh_.points[v]});
+        }
     }
 
     /// On fixed lines each sector between two fixed sides wants triangles of 60 degrees.
@@ -179,12 +215,16 @@ private:
 
     template <class Visit>
     void around(std::int32_t vertex, Visit&& visit) {
-        const Side begin = leaving_[vertex];
+        Side begin = leaving_[vertex];
+        if (line_[vertex] != none) {  // half a star, from the border to the border
+            while (!mesh_.is_border(begin))
+                begin = mesh_.turn_right(begin);
+        }
         Side side = begin;
         do {
             visit(side);
             side = mesh_.turn_left(side);
-        } while (side != begin);
+        } while (!side.is_outside() && side != begin);
     }
 
     void flip_towards_six(Ticker& tick) {
@@ -202,7 +242,10 @@ private:
                     strain(a, 0) + strain(b, 0) + strain(c, 0) + strain(d, 0)) {
                     continue;
                 }
-                if (triangles_[a] <= 3 || (triangles_[b] <= 3 && !is_fixed_[b])) continue;
+                if ((triangles_[a] <= 3 && !is_fixed_[a]) ||
+                    (triangles_[b] <= 3 && !is_fixed_[b])) {
+                    continue;
+                }
                 const PlanPoint &p = mesh_.points[a], &q = mesh_.points[b], &l = mesh_.points[c],
                                 &r = mesh_.points[d];
                 if (mean_ratio(r, l, p) < least_ratio_of_flips ||
@@ -221,7 +264,9 @@ private:
     void collapse_towards_six(Ticker& tick) {
         for (const std::int32_t v : active_) {
             tick(0.4);
-            if (is_gone(v) || is_still_[v] || triangles_[v] > 5) continue;
+            if (is_gone(v)) continue;
+            if (line_[v] != none) pass_by(v);
+            if (is_still_[v] || triangles_[v] > 5) continue;
             sides_.clear();
             around(v, [&](Side side) { sides_.push_back(side); });
             Side best = Side::outside();
@@ -242,6 +287,27 @@ private:
             }
             if (!best.is_outside()) collapse(best);
         }
+    }
+
+    /// Takes a vertex with two triangles out of the border where that helps the one opposite.
+    void pass_by(std::int32_t v) {
+        if (triangles_[v] != 2) return;
+        Side side = leaving_[v];
+        if (!mesh_.is_border(side)) side = mesh_.turn_right(side);
+        const std::int32_t next = mesh_.to(side), opposite = mesh_.apex(side),
+                           last = mesh_.apex(mesh_.behind(side.previous()));
+        if (strain(v, 0) + strain(opposite, 0) <= strain(opposite, -1)) return;
+        const PlanPoint &p = mesh_.points[last], &q = mesh_.points[next],
+                        &r = mesh_.points[opposite];
+        const double longest = longest_after_collapse * size_.at(mesh_.points[v]);
+        if (squared_distance(p, q) > longest * longest) return;
+        if (mean_ratio(p, q, r) < least_ratio_of_flips || side_of_line(p, q, r) <= 0) return;
+        mesh_.pass_by(side);
+        triangles_[v] = 0;
+        --triangles_[opposite];
+        leaving_[last] = side;
+        leaving_[next] = side.next();
+        leaving_[opposite] = side.previous();
     }
 
     /// Whether no triangle turns over or gets too long or thin if the vertex that `sides_` leave
@@ -276,32 +342,71 @@ private:
     void move_all(Ticker& tick) {
         for (const std::int32_t v : active_) {
             tick(0.6);
-            if (!is_gone(v) && !is_still_[v]) move(v);
+            if (is_gone(v)) continue;
+            if (line_[v] != none) {
+                slide(v);
+            } else if (!is_still_[v]) {
+                move(v);
+            }
         }
     }
 
     void move(std::int32_t v) {
-        PlanPoint& p = mesh_.points[v];
+        const PlanPoint& p = mesh_.points[v];
+        const Shape now = shape_of_star(v);
+        const double determinant = now.xx * now.yy - now.xy * now.xy;
+        const double dx = -(now.yy * now.x - now.xy * now.y) / determinant;
+        const double dy = -(now.xx * now.y - now.xy * now.x) / determinant;
+        step(v, now, std::hypot(dx, dy), [&](double share) {
+            return PlanPoint{p[0] + share * dx, p[1] + share * dy};
+        });
+    }
+
+    /// The same along the line between two corners of the border.
+    void slide(std::int32_t v) {
+        const PlanPoint& p = mesh_.points[v];
+        const auto& [a, b] = lines_[line_[v]];
+        const double length = std::sqrt(squared_distance(a, b));
+        const double ux = (b[0] - a[0]) / length, uy = (b[1] - a[1]) / length;
+        const Shape now = shape_of_star(v);
+        const double bend = ux * ux * now.xx + 2 * ux * uy * now.xy + uy * uy * now.yy;
+        const double along = -(ux * now.x + uy * now.y) / bend;
+        const double from = (p[0] - a[0]) * ux + (p[1] - a[1]) * uy;
+        step(v, now, std::abs(along), [&](double share) {
+            const double where = (from + share * along) / length;  // from the corners, rounded once
+            return PlanPoint{a[0] + where * (b[0] - a[0]), a[1] + where * (b[1] - a[1])};
+        });
+    }
+
+    Shape shape_of_star(std::int32_t v) {
         base_.clear();
         around(v, [&](Side side) { base_.push_back({mesh_.to(side), mesh_.apex(side)}); });
-        const auto shape_at = [&](const PlanPoint& place, Shape& shape) {
-            for (const auto& [a, b] : base_)
-                if (!shape.add(mesh_.points[a], mesh_.points[b], place)) return false;
-            return true;
-        };
-        Shape now;
-        if (!shape_at(p, now)) return;
-        const double determinant = now.xx * now.yy - now.xy * now.xy;
-        double dx = -(now.yy * now.x - now.xy * now.y) / determinant;
-        double dy = -(now.xx * now.y - now.xy * now.x) / determinant;
-        if (!std::isfinite(dx) || !std::isfinite(dy)) return;
+        return shape_at(mesh_.points[v]);
+    }
+
+    /// Of the star that base_ bounds; its value is infinite where a triangle would be turned over.
+    Shape shape_at(const PlanPoint& place) const {
+        Shape shape;
+        for (const auto& [a, b] : base_) {
+            if (shape.add(mesh_.points[a], mesh_.points[b], place)) continue;
+            shape.value = std::numeric_limits<double>::infinity();
+            break;
+        }
+        return shape;
+    }
+
+    /// Goes as large a share of a way as makes the star better.
+    template <class Place>
+    void step(std::int32_t v, const Shape& now, double way, const Place& place_at) {
+        PlanPoint& p = mesh_.points[v];
+        if (!std::isfinite(now.value) || !std::isfinite(way)) return;
         const double least =
-            moved_enough * moved_enough * squared_distance(p, mesh_.points[base_[0][0]]);
-        for (int halving = 0; halving < 6; ++halving, dx /= 2, dy /= 2) {
-            if (dx * dx + dy * dy < least) return;
-            const PlanPoint place{p[0] + dx, p[1] + dy};
-            Shape then;
-            if (!shape_at(place, then) || then.value >= now.value) continue;
+            moved_enough * std::sqrt(squared_distance(p, mesh_.points[base_[0][0]]));
+        double share = 1;
+        for (int halving = 0; halving < 6; ++halving, share /= 2) {
+            if (share * way < least) return;
+            const PlanPoint place = place_at(share);
+            if (!(shape_at(place).value < now.value)) continue;
             const bool is_upright = std::all_of(base_.begin(), base_.end(), [&](const auto& base) {
                 return side_of_line(mesh_.points[base[0]], mesh_.points[base[1]], place) > 0;
             });
@@ -339,6 +444,8 @@ private:
     std::vector<std::int32_t> triangles_;  ///< of each vertex: how many it has; 0: it is gone
     std::vector<std::int32_t> wanted_;     ///< and how many it should have
     std::vector<bool> is_still_, is_fixed_;
+    std::vector<std::int32_t> line_;  ///< of each vertex: which of the lines it slides on, or none
+    std::vector<std::array<PlanPoint, 2>> lines_;
     std::vector<std::int32_t> active_;
     std::vector<Side> sides_;
     std::vector<std::array<std::int32_t, 2>> base_;
@@ -347,9 +454,9 @@ private:
 }  // namespace
 
 void smooth(FlatMesh& mesh, const SizeField& size, std::int32_t first,
-            std::span<const std::int32_t> also, std::span<const std::int32_t> kept,
-            const Check& check) {
-    Smoothing(mesh, size, first, also, kept).run(check);
+            std::span<const std::int32_t> also, std::int32_t corners,
+            std::span<const std::int32_t> kept, const Check& check) {
+    Smoothing(mesh, size, first, also, corners, kept).run(check);
 }
 
 }  // namespace realmodel::meshing

@@ -17,9 +17,11 @@ namespace realmodel::meshing {
 ///     ratios of its triangles is least (Munson 2007, "Mesh shape-quality optimization using the
 ///     inverse mean-ratio metric"): within the star of a vertex this sum is convex.
 /// In the end all but fixed sides are Delaunay again. Vertices on fixed sides, and those in `kept`,
-/// stay. Vertices that were collapsed are used by no triangle. Deterministic.
+/// stay; but of those from number `corners` on that lie between two corners of the
+/// border, where sizes vary, some slide along it and some are taken out. Vertices that were
+/// collapsed are used by no triangle. Deterministic.
 void smooth(FlatMesh& mesh, const SizeField& size, std::int32_t first,
-            std::span<const std::int32_t> also, std::span<const std::int32_t> kept,
-            const Check& check);
+            std::span<const std::int32_t> also, std::int32_t corners,
+            std::span<const std::int32_t> kept, const Check& check);
 
 }  // namespace realmodel::meshing

@@ -112,6 +112,37 @@ TEST(FlatMesh, VerticesOnSidesKeepThemFixed) {
     EXPECT_TRUE(is_delaunay(mesh));
 }
 
+TEST(FlatMesh, TheBorderPassesByAVertexThatIsTakenOut) {
+    FlatMesh mesh = square();
+    mesh.insert_on({0, 0}, {0.5, 0});
+    const auto taken = static_cast<std::int32_t>(mesh.points.size()) - 1;
+    std::int32_t t = 0;
+    while (mesh.is_dead(t) || mesh.corners[t][0] != taken)
+        ++t;
+    Side side(t, 0);  // any of its sides; on to the one that leaves it on the border
+    while (!mesh.is_border(side))
+        side = mesh.turn_right(side);
+    std::size_t around = 0;
+    for (const auto& corner : mesh.corners)
+        around += std::count(corner.begin(), corner.end(), taken);
+    if (around == 3) {  // flipped: two triangles only
+        mesh.flip(side.previous());
+        side = Side::outside();
+        for (t = 0; side.is_outside(); ++t)
+            for (int i = 0; i < 3; ++i)
+                if (mesh.from({t, i}) == taken && mesh.is_border({t, i})) side = {t, i};
+    }
+    const std::size_t triangles = mesh.corners.size();
+    const Side past = mesh.pass_by(side);
+    EXPECT_TRUE(mesh.is_border(past) && mesh.is_fixed(past));
+    EXPECT_EQ(mesh.point_from(past), (PlanPoint{0, 0}));
+    EXPECT_EQ(mesh.point_to(past), (PlanPoint{1, 0}));
+    EXPECT_DOUBLE_EQ(checked_area(mesh), 1);
+    mesh.compact(0);
+    EXPECT_EQ(mesh.corners.size(), triangles - 1);
+    EXPECT_DOUBLE_EQ(checked_area(mesh), 1);
+}
+
 TEST(FlatMesh, CollapsedVerticesLeaveAMeshThatCanBeCompacted) {
     FlatMesh mesh = filled(60);
     int collapsed = 0;

@@ -86,6 +86,46 @@ TEST(Meshers, FrontalGradesToDetailOfTheBorder) {
     EXPECT_GT(mean_ratio(made(request, {coast})), 0.93);
 }
 
+/// Needles have no room for vertices inside: nodes slide along their sides.
+TEST(Meshers, FrontalFillsNeedlesWell) {
+    std::vector<Ring> rings(1);
+    for (int i = 0; i < 80; ++i) {
+        const double radius = i % 2 == 0 ? 50 : 5, turn = i * std::numbers::pi / 40;
+        rings[0].push_back({radius * std::cos(turn), radius * std::sin(turn)});
+    }
+    const PlanarMesh mesh = made(by(Mesher::frontal, 2), rings);
+    EXPECT_GT(mean_ratio(mesh), 0.95);
+    EXPECT_TRUE(std::equal(rings[0].begin(), rings[0].end(), mesh.vertices.begin()));
+    // What was added on the border lies on the outline's edges, but for rounding.
+    for (const auto& [v, next] : border_of(mesh)) {
+        double least = 1;
+        for (std::size_t i = 0; i < rings[0].size(); ++i) {
+            const PlanPoint &a = rings[0][i], &b = rings[0][(i + 1) % rings[0].size()],
+                            &p = mesh.vertices[v];
+            const double ux = b[0] - a[0], uy = b[1] - a[1], length = std::hypot(ux, uy);
+            const double along = ((p[0] - a[0]) * ux + (p[1] - a[1]) * uy) / length;
+            if (along < -1e-12 || along > length + 1e-12) continue;
+            least = std::min(least, std::abs((p[0] - a[0]) * uy - (p[1] - a[1]) * ux) / length);
+        }
+        EXPECT_LT(least, 1e-13);
+    }
+}
+
+/// Where one length holds, edges that two regions share are cut alike.
+TEST(Meshers, FrontalRegionsSideBySideMeetInTheSameVertices) {
+    const auto on_seam = [](const Ring& ring) {
+        std::vector<double> ys;
+        for (const PlanPoint& p : made(by(Mesher::frontal, 7), {ring}).vertices)
+            if (p[0] == 100) ys.push_back(p[1]);
+        std::sort(ys.begin(), ys.end());
+        return ys;
+    };
+    const std::vector<double> left = on_seam({{0, 0}, {100, 0}, {100, 100}, {0, 100}}),
+                              right = on_seam({{250, 100}, {100, 100}, {100, 0}, {250, 0}});
+    EXPECT_GT(left.size(), 10U);
+    EXPECT_EQ(left, right);
+}
+
 TEST(Meshers, CombsOfManyTeethAreFollowed) {
     Ring comb{{0, -1}};
     for (int i = 0; i < 2000; ++i) {
