@@ -112,6 +112,43 @@ class HandOver(PanelCase):
         self.assert_built()
 
 
+class BeingEdited(PanelCase):
+    """Blender does not take another mesh for an object that is in edit mode, and does not say so."""
+
+    def edit(self, item):
+        item.hide_set(False)
+        select(item)
+        bpy.ops.object.mode_set(mode="EDIT")
+
+    def test_a_block(self):
+        stack(0.0, 10.0, 20.0)
+        ops.build()
+        raise_by(bpy.data.objects["S2"], 3.0)
+        self.edit(bpy.data.objects["S2 block"])
+        before = inventory()
+        self.refused(ops.build, "block 'S2 block' is in edit mode.*leave the mode")
+        self.assertEqual(inventory(), before)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        ops.build()
+        self.assertAlmostEqual(volume(bpy.data.objects["S2 block"].data), 13e4, delta=1.0)
+
+    def test_an_interface_whose_heights_become_others(self):
+        ops.open_sample(sample="two_layers")
+        ops.build()
+        row = self.model.rocks[0].surfaces[1]
+        item, digest = row.interface, row.interface_digest
+        self.edit(item)
+        ops.build()  # it stays as it is, so nothing is in the way
+        row.method = "idw"
+        self.refused(ops.build, f"interface '{item.name}' is in edit mode")
+        self.assertEqual((row.source, row.interface_digest), ("POINTS_FILE", digest))
+        bpy.ops.object.mode_set(mode="OBJECT")
+        ops.build()
+        self.assertNotEqual(row.interface_digest, digest)
+        ops.build()
+        self.assertEqual(row.source, "POINTS_FILE", "nobody has edited it")
+
+
 class Arrays(PanelCase):
     def test_a_mesh_is_the_same_however_it_is_filled(self):
         """With edges that are given and with those that Blender finds, in one piece and number by number."""

@@ -69,6 +69,17 @@ class Rocks(PanelCase):
         self.refused(ops.build, "region object 'r'.*open.*close the curve")
         self.assertEqual(inventory(), before)
 
+    def test_a_region_that_was_deleted(self):
+        ops.open_sample(sample="two_layers")
+        rock = self.model.rocks[0]
+        rock.region = outline("field", [(0, 0), (100, 0), (100, 60), (0, 60)])
+        ops.build()
+        select(rock.region)
+        bpy.ops.object.delete()  # the setting still points to it
+        before = self.volumes()
+        self.refused(ops.build, "object 'field' was deleted from the scene; undo that, or choose another")
+        self.assertEqual(self.volumes(), before)
+
     def test_the_number_of_triangles_beside_the_edge_length(self):
         ops.open_sample(sample="two_layers")
         rock = self.model.rocks[0]

@@ -111,6 +111,30 @@ def check_rows(current, project):
         raise BuildFailed("the lists were changed while it was being built; build again")
 
 
+def check_modes(current, prepared=None):
+    """Raises BuildFailed where an object whose mesh is to be replaced is being edited: Blender would keep its
+    mesh as it is. prepared: as for `put`, to look at the interfaces too."""
+    for row in current.realmodel.results:
+        item = row.object
+        if item is not None and item.mode != "OBJECT":
+            raise BuildFailed(
+                f"block '{item.name}' is in {_mode_name(item)}, and a build replaces the meshes of blocks; "
+                "leave the mode (Tab), then build again"
+            )
+    for (r, s), (_, digest) in prepared.interfaces.items() if prepared is not None else ():
+        row = current.realmodel.rocks[r].surfaces[s]
+        item = _interface(row)
+        if item is not None and item.mode != "OBJECT" and digest != row.interface_digest:
+            raise BuildFailed(
+                f"interface '{item.name}' is in {_mode_name(item)}, and its heights have become others; "
+                "leave the mode (Tab), then build again"
+            )
+
+
+def _mode_name(item):
+    return item.bl_rna.properties["mode"].enum_items[item.mode].name.lower()
+
+
 def put(current, prepared, composed, in_place=False):
     """Puts a prepared model into a scene.
 
@@ -120,6 +144,7 @@ def put(current, prepared, composed, in_place=False):
     """
     model = prepared.model
     check_rows(current, model.project)
+    check_modes(current, prepared)
     created = scene.Created()
     try:
         palette, updates = _palette(current, model, created)

@@ -117,7 +117,7 @@ def _our_own(scene):
 
 
 def _begin(name, _changed_at):
-    from . import build_job
+    from . import build_job, built_scene
 
     scene = bpy.data.scenes.get(name)
     if scene is None or not scene.realmodel.live:
@@ -127,6 +127,7 @@ def _begin(name, _changed_at):
     try:
         with _our_own(scene):
             layer.update()
+            built_scene.check_modes(scene)
             job = build_job.BuildJob(scene, layer.depsgraph, "blocks", whole=False)
     except Exception as error:
         _tell(error)

@@ -16,7 +16,8 @@ from . import meshes, versions
 
 @contextmanager
 def evaluated_mesh(item, depsgraph):
-    """The mesh of an object as the viewport shows it, with its modifiers."""
+    """The mesh of an object as the viewport shows it, with its modifiers. Raises InputRefused where there is
+    none: the object was deleted, and only settings point to it."""
     if item.mode == "EDIT":
         item.update_from_editmode()
     is_plain = item.type == "MESH" and not item.modifiers and item.data.shape_keys is None
@@ -25,6 +26,11 @@ def evaluated_mesh(item, depsgraph):
         return
     evaluated = item.evaluated_get(depsgraph)
     mesh = evaluated.to_mesh(preserve_all_data_layers=False, depsgraph=depsgraph)
+    if mesh is None:
+        raise InputRefused(
+            f"object '{item.name}' was deleted from the scene",
+            advice="undo that, or choose another object",
+        )
     try:
         yield mesh
     finally:

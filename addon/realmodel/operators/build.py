@@ -30,6 +30,7 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
         live.stop_work()
         problems.forget(context)
         self._had_blocks = len(context.scene.realmodel.results) > 0
+        built_scene.check_modes(context.scene)
         job = build_job.BuildJob(context.scene, context.evaluated_depsgraph_get())
         self._tell_done(job.run())
 
@@ -40,6 +41,7 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
         problems.forget(context)
         self._had_blocks = len(context.scene.realmodel.results) > 0
         try:
+            built_scene.check_modes(context.scene)
             self._job = build_job.BuildJob(context.scene, context.evaluated_depsgraph_get())
         except RealModelError as error:
             return self._refused(context, error)
