@@ -99,6 +99,12 @@ void krige_from_nearest(const Task& task, const LocalSystem& system) {
 
 constexpr std::size_t nodes_in_order = 1U << 22;  // put in order at a time: some tens of ms
 
+/// Nodes between two looks at whether to stop: some hundredths of a second, however large the
+/// systems.
+std::size_t nodes_in_piece(std::size_t neighbours) {
+    return neighbours <= 64 ? 512 : neighbours <= 128 ? 128 : 64;
+}
+
 /// The nearest of all directions and distances, few enough: several systems at once. Those that are
 /// not well posed - points in one line and a drift across it - one by one.
 void krige_in_lanes(const Task& task) {
@@ -135,7 +141,7 @@ void krige_in_lanes(const Task& task) {
                     });
             };
         };
-        for_chunks(here, 512, task.options.threads, task.progress,
+        for_chunks(here, nodes_in_piece(neighbours), task.options.threads, task.progress,
                    static_cast<double>(first) / static_cast<double>(count), "kriging", make);
     }
 }

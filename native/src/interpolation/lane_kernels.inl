@@ -119,7 +119,7 @@ inline void eliminate(double* const* rows, const double* pivot_row, int k, Vecto
 }
 
 constexpr int at_once = 4;       // rows whose sums are in registers together
-constexpr int most_points = 64;  // lane_kriging.hpp asks for no more
+constexpr int most_points = 256; // lane_kriging.hpp asks for no more
 
 /// Eliminates systems with some rows behind the points'. The least pivot, for each lane.
 Vector eliminate_all(double** rows, int points, int all_rows) {

@@ -32,7 +32,7 @@ private:
 /// says of it; with one it leaves systems that are not well posed to DriftKriging.
 class LaneKriging {
 public:
-    static constexpr std::size_t most_neighbours = 64;
+    static constexpr std::size_t most_neighbours = 256;
 
     struct Node {
         Place place;                     ///< in local coordinates

@@ -14,13 +14,15 @@ namespace realmodel::interpolation {
 namespace {
 
 constexpr std::size_t chunk = 64;  // a multiple of `lanes`
+constexpr std::size_t most_neighbours = 64;
+static_assert(most_neighbours <= LaneKriging::most_neighbours);
 
 }  // namespace
 
 LeftOutPoints::LeftOutPoints(const DataPoints& data, std::size_t neighbours, std::size_t most,
                              int threads, Progress* progress)
     : data_(data),
-      neighbours_(std::min({neighbours, data.local.size() - 1, LaneKriging::most_neighbours})),
+      neighbours_(std::min({neighbours, data.local.size() - 1, most_neighbours})),
       threads_(threads),
       progress_(progress) {
     const std::size_t count = data.local.size(), taken = std::min(count, most);

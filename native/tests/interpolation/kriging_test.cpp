@@ -259,7 +259,7 @@ TEST(Kriging, RefusesWhatMemoryDoesNotAllow) {
 TEST(Kriging, StopsSoonAfterCancel) {
     const Points points = hills(3000, 100);
     const Nodes nodes = scattered_nodes(200'000, 100);
-    for (const int neighbours : {0, 64}) {
+    for (const int neighbours : {0, 64, 256}) {
         Progress progress;
         std::atomic<double> asked{};
         std::jthread watcher([&] {

@@ -102,6 +102,11 @@ TEST(LaneKriging, NestedVariogramsAndAllSizes) {
         SCOPED_TRACE(neighbours);
         expect_same_bytes(some_points("scattered", 200), some_nodes(9), v, neighbours, false);
     }
+    for (const int neighbours : {65, 129, 256}) {
+        SCOPED_TRACE(neighbours);
+        expect_same_bytes(some_points("scattered", 400), some_nodes(5), v, neighbours, false);
+        expect_same_bytes(some_points("lines", 300), {}, v, neighbours, true);
+    }
 }
 
 TEST(LaneKriging, PointsThatTheOthersTellArePassedOver) {
