@@ -18,7 +18,7 @@ WIDTH, HEIGHT = 1476, 850
 # (x, y, width, height), name, what it holds (| parts the lines), colour
 PARTS = (
     ((0, 58, 150, 56), "build_model.py", "command line", PALE),
-    ((170, 58, 220, 56), "operators, ui", "the panel: a later version", "white"),
+    ((170, 58, 220, 56), "operators, ui", "the panel in the sidebar", PALE),
     (
         (0, 160, 390, 72),
         "addon/realmodel/bl",
@@ -48,15 +48,15 @@ def draw_parts(drawing):
     drawing.at(30, 0)
     drawing.text(0, 38, "Parts, and who may know whom", 16, bold=True)
     for (x, y, width, height), name, holds, fill in PARTS:
-        drawing.rect(x, y, width, height, fill, dash="4 3" if fill == "white" else "")
+        drawing.rect(x, y, width, height, fill)
         drawing.text(x + 10, y + 19, name, 13.5, bold=True)
         drawing.lines_of_text(x + 10, y + 37, holds.split("|"), 11.5)
 
-    def arrow(*points, dash=""):
-        drawing.path(points, end="ink", dash=dash)
+    def arrow(*points):
+        drawing.path(points, end="ink")
 
     arrow((75, 114), (75, 158))
-    arrow((280, 114), (280, 158), dash="4 3")
+    arrow((280, 114), (280, 158))
     arrow((195, 232), (195, 276))
     # build_model.py knows core too, past bl
     arrow((0, 86), (-14, 86), (-14, 320), (-2, 320))
