@@ -19,9 +19,9 @@ _DATA = ROOT.parent / "shared" / "data"
 CASES = {
     "needles": ("star of 40 needles", (2.0,)),
     "comb": ("comb of 400 teeth", (0.5,)),
-    "lakes": ("pleasant's 9 lakes", (400.0, 30.0)),
-    "around": ("around pleasant's lakes", (400.0, 100.0, 30.0)),
     "formation": ("hamersley, the outline of most corners", (2000.0, 500.0, 100.0)),
+    "around": ("around pleasant's lakes", (400.0, 100.0, 30.0)),
+    "lakes": ("pleasant's 9 lakes", (400.0, 30.0)),
 }
 
 

@@ -52,6 +52,7 @@ _KINDS = {
 }
 _LEAST_RATIO = 0.95  # of frontal where an outline has much detail
 _SECONDS = 240.0  # for one mesh
+_OUTLINE_SECONDS = 60.0  # for one of a hard outline
 _ALL_SECONDS = 590.0  # for everything: what is not done by then is SKIPPED
 
 
@@ -71,11 +72,11 @@ def measure(
     rounds = 1 if quick else 3
     end = time.monotonic() + _ALL_SECONDS
 
-    def told(function: str, *arguments) -> dict:
+    def told(function: str, *arguments, most: float = _SECONDS) -> dict:
         left = end - time.monotonic()
         if left < 1:
             raise Skipped(f"the {_ALL_SECONDS:.0f} s that all this may take are over")
-        return alone(function, *arguments, seconds=min(_SECONDS, left), memory=memory, python=python)
+        return alone(function, *arguments, seconds=min(most, left), memory=memory, python=python)
 
     def say_all(rows: list[list[str]]) -> list[list[str]]:
         for row in rows:
@@ -83,8 +84,8 @@ def measure(
         return rows
 
     polygons = [row for kind in _KINDS for row in say_all([_polygons(told, kind, rounds)])]
-    outlines = [row for kind in CASES for row in say_all(_outlines(told, kind))]
     meshes = [row for case in _cases(quick) for row in say_all(_meshes(told, case, rounds))]
+    outlines = [row for kind in CASES for row in say_all(_outlines(told, kind))]
     return meshes, outlines, polygons
 
 
@@ -167,7 +168,7 @@ def _outlines(told, kind: str) -> list[list[str]]:
             called = mesher if mesher == "Gmsh" else f"RealModel, `{mesher}`"
             begin = [name, f"{edge:g}", called]
             try:
-                made = told("hard_outlines.mesh", mesher, kind, edge)
+                made = told("hard_outlines.mesh", mesher, kind, edge, most=_OUTLINE_SECONDS)
             except Skipped as skipped:
                 rows.append([*begin, *["-"] * (len(OUTLINES) - 4), f"SKIPPED; {skipped}"])
             else:

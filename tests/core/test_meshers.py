@@ -156,6 +156,28 @@ def test_weird_outlines(rings, length, mesher):
     check_mesh(vertices, triangles, rings)
 
 
+@st.composite
+def slits_and_needles(draw):
+    """A square that the outside cuts into, or that reaches out, in wedges down to a millionth wide."""
+    count = draw(st.integers(1, 8))
+    tips = draw(st.lists(st.floats(5, 95), min_size=count, max_size=count))
+    width = 10.0 ** draw(st.floats(-6, 0.7))
+    slant = draw(st.floats(0, 1))
+    side = draw(st.sampled_from([100.0, 2.0]))  # wedges go in, or out
+    outline = [[0.0, 0.0], [side, 0.0]]
+    for number, tip in enumerate(tips):
+        foot = 5 + 90 * number / count
+        outline += [[side, foot], [tip, foot + slant * width], [side, foot + width]]
+    return np.array([*outline, [side, 100.0], [0.0, 100.0]]) + draw(st.sampled_from([0.0, 5e4]))
+
+
+@settings(deadline=None, max_examples=25)
+@given(slits_and_needles())
+def test_vertices_that_slide_stay_on_the_border_and_nothing_turns_over(outline):
+    vertices, triangles = mesh_region(outline, edge_length=20.0, mesher="frontal")
+    check_mesh(vertices, triangles, [outline])
+
+
 @pytest.mark.parametrize("mesher", MESHERS)
 def test_cancelled_soon(mesher):
     asked, told_after = [], []
