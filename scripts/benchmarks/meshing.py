@@ -190,7 +190,7 @@ def figures(vertices: np.ndarray, triangles: np.ndarray, edge: float, graded: bo
         "least_angle": float(np.degrees(np.arcsin(sines.min()))),
         "mean_ratio": float(ratios.mean()),
         "mean_edge": float((lengths / wanted).mean()),
-        "six": float((around[inside] == 6).mean()),
+        "six": float((around[inside] == 6).mean()) if inside.any() else float("nan"),
     }
 
 
