@@ -20,8 +20,8 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr std::size_t points_left_out = 5000;
-constexpr std::size_t points_searched = 2000;
+constexpr std::size_t points_left_out = 10'000;
+constexpr std::size_t points_searched = 4000;
 constexpr std::size_t neighbours_searched = 16;
 constexpr std::size_t points_left_out_of_drift = 1000;
 constexpr double as_good = 1.004;     // of mean squares: RMS errors within 0.2 % tell nothing apart

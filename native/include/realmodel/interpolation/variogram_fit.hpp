@@ -48,8 +48,8 @@ struct FittedVariogram {
 /// structure (an exponential one, or one of a quarter of the range) are tried, each with the sill
 /// that fits best. Of all the one is taken with which points that are left out one by one are told
 /// best by kriging from their nearest others (root mean square error, errors beyond twenty
-/// deviations counted as twenty): 2000 points from 16 others search, and of the best eight up to
-/// 5000 points from all the neighbours choose. Where several tell them equally well, within 0.2
+/// deviations counted as twenty): 4000 points from 16 others search, and of the best eight up to
+/// 10,000 points from all the neighbours choose. Where several tell them equally well, within 0.2
 /// percent, the one without a second structure, then the one that fits the experimental values
 /// best. Then ranges and sill are moved so that 95 % of those errors lie within two kriging
 /// deviations: variances are honest. Constant values, or fewer than three points, give a spherical
