@@ -97,8 +97,8 @@ private:
         }
     }
 
-    /// Whole triangles hang together with their neighbours: what bounds told about is thick along
-    /// every edge.
+    /// Whole triangles hang together with their neighbours: on either side of one a block is thick
+    /// along every edge, as bounds told or the overlay found.
     void join_whole_triangles(DisjointParts& sets) const {
         const auto join = [&](std::int32_t a, std::int32_t b) {
             if (a >= 0 && b >= 0 && block(a) == block(b)) sets.join(a, b);
@@ -111,8 +111,6 @@ private:
                 if (n <= plane) continue;
                 const WholeFace& other = made_.whole[static_cast<std::size_t>(n)];
                 if (other.below == WholeFace::kUnset) continue;
-                if (made_.is_exact[p] != 0 && made_.is_exact[static_cast<std::size_t>(n)] != 0)
-                    continue;  // compared on the track of their edge
                 join(face.above, other.above);
                 join(face.below, other.below);
             }

@@ -84,6 +84,16 @@ Standing compare_over(const PlanGeometry& geometry, PlaneId lower, PlaneId upper
                : Standing::kUnclear;
 }
 
+/// The place between a triangle's corners, as rounding leaves it.
+std::array<double, 2> middle_of(const PlanGeometry& geometry, const PlanTriangle& triangle) {
+    std::array<double, 2> middle{0, 0};
+    for (const VertexId v : triangle) {
+        middle[0] += geometry.point(v).x / 3;
+        middle[1] += geometry.point(v).y / 3;
+    }
+    return middle;
+}
+
 /// Numbers of things by the tiles that their boxes meet.
 class TileBins {
 public:
@@ -127,6 +137,25 @@ private:
 };
 
 }  // namespace
+
+/// Where a place that rounding may have moved lies: 1 in a triangle for certain, -1 outside of it
+/// for certain, 0 near its border.
+int side_of_border(const PlanGeometry& geometry, const PlanTriangle& triangle,
+                   const std::array<double, 2>& place) {
+    constexpr double kRounding = 0x1p-44;  // of coordinates, far more than a middle has
+    const double error = kRounding * (std::abs(place[0]) + std::abs(place[1])) + 1e-290;
+    int side = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const exact::LineFilter edge =
+            geometry.edge_filter(triangle[i], triangle[i + 1 < 3 ? i + 1 : 0]);
+        const double u = edge.a * (place[0] - edge.x0), v = edge.b * (place[1] - edge.y0);
+        const double least =
+            (std::abs(edge.a) + std::abs(edge.b)) * error + 0x1p-46 * (std::abs(u) + std::abs(v));
+        if (u + v < -least) return -1;
+        if (!(u + v > least)) side = 0;
+    }
+    return side;
+}
 
 TriangleBounds bounds_of(const PlanGeometry& geometry, PlaneId plane) {
     TriangleBounds b{{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, HUGE_VAL, -HUGE_VAL};
@@ -221,8 +250,11 @@ void BlockOverlay::classify_surface(const BlockLayer& layer, const EnvelopeTiles
             const TriangleBounds& b = surface_at_[t].bounds;
             double low = HUGE_VAL, high = -HUGE_VAL;
             std::int32_t label = kNoLabel;
+            if (borders_.near(surface_at_[t].span)) {
+                c.label[t] = kBesideBorder;  // heights in tiles tell nothing there
+                continue;
+            }
             const bool mixed = tiles_.any(surface_at_[t].span, [&](std::size_t tile) {
-                if (borders_.in_tile(tile)) return true;
                 if (cover_[tile] == kOutsideOnly) {
                     low = -HUGE_VAL;
                     label = merged_label(label, kOutsideLabel);
@@ -255,7 +287,8 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
     std::vector<std::uint8_t> is_wanted(tiles_.size(), 0);
     for (std::size_t t = 0; t < layer.size(); ++t) {
         poll(progress_, t);
-        if (c.surface[t] != Classified::kUnclear || c.label[t] < 0) continue;
+        const bool beside = c.label[t] == kBesideBorder;
+        if (c.surface[t] != Classified::kUnclear || (c.label[t] < 0 && !beside)) continue;
         unclear.push_back(static_cast<std::int32_t>(t));
         tiles_.for_each(surface_at_[t].span, [&](std::size_t tile) { is_wanted[tile] = 1; });
     }
@@ -274,25 +307,44 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
                 const auto t = static_cast<std::size_t>(unclear[i]);
                 const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
                 const PlanBox& box = surface_at_[t].bounds.box;
-                bool below = true, above = true;
+                // No border divides a triangle beside one: there is rock over all of it if there is
+                // over its middle.
+                const bool beside = c.label[t] == kBesideBorder;
+                const PlanTriangle& corners = geometry_.plane(plane).plan;
+                if (beside && borders_.divide(geometry_, corners, surface_at_[t].span)) continue;
+                const auto middle = middle_of(geometry_, corners);
+                bool below = true, above = true, covered = !beside;
+                std::int32_t label = beside ? kNoLabel : c.label[t];
                 tiles_.any(surface_at_[t].span, [&](std::size_t tile) {
                     return !bins.all(tile, [&](std::int32_t number) {
                         const auto f = static_cast<std::size_t>(number);
                         const bool is_whole = f < whole_.size();
-                        const PlaneId facet =
-                            is_whole ? whole_[f].plane : parts_.plane[f - whole_.size()];
+                        const std::size_t part = f - whole_.size();
+                        const PlaneId facet = is_whole ? whole_[f].plane : parts_.plane[part];
                         const PlanBox& facet_box =
-                            (is_whole ? whole_at_[f] : part_at_[f - whole_.size()]).bounds.box;
+                            (is_whole ? whole_at_[f] : part_at_[part]).bounds.box;
                         if (!box.meets(facet_box)) return true;
                         const Standing standing =
                             compare_over(geometry_, plane, facet, box, facet_box, margin_);
                         if (standing == Standing::kApart) return true;
+                        if (beside) {
+                            label = merged_label(
+                                label, is_whole ? whole_[f].pending : parts_.pending[part]);
+                            covered =
+                                covered ||
+                                (is_whole && side_of_border(geometry_, geometry_.plane(facet).plan,
+                                                            middle) > 0);
+                        }
                         below &= standing == Standing::kBelow;
                         above &= standing == Standing::kAbove;
-                        return below || above;
+                        return label != kSeveral && (below || above);
                     });
                 });
-                if (below != above) c.surface[t] = below ? Classified::kBelow : Classified::kGone;
+                if (label == kSeveral || !covered) continue;
+                c.label[t] = label;
+                if (below == above) continue;
+                c.surface[t] = below ? Classified::kBelow : Classified::kGone;
+                if (beside) made_.is_exact[static_cast<std::size_t>(plane)] = 1;
             }
         });
 }
@@ -310,7 +362,6 @@ void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& 
         double low = HUGE_VAL, high = -HUGE_VAL;
         bool any_empty = false, any_rock = false, near_unclear = false;
         const bool mixed = tiles_.any(at.span, [&](std::size_t tile) {
-            if (borders_.in_tile(tile)) return true;
             near_unclear |= is_unclear[tile] != 0;
             if (surface.is_empty[tile] != 0) {
                 any_empty = true;
@@ -329,13 +380,23 @@ void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& 
     };
     c.whole.resize(whole_.size());
     parallel_chunks((whole_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
-        for (std::size_t f = k * kChunk; f < std::min(whole_.size(), (k + 1) * kChunk); ++f)
-            c.whole[f] = classify(whole_at_[f]);
+        for (std::size_t f = k * kChunk; f < std::min(whole_.size(), (k + 1) * kChunk); ++f) {
+            const TileSpan& span = whole_at_[f].span;
+            if (!borders_.near(span)) {
+                c.whole[f] = classify(whole_at_[f]);
+            } else {
+                const PlanTriangle& corners = geometry_.plane(whole_[f].plane).plan;
+                c.whole[f] = borders_.divide(geometry_, corners, span) ? Classified::kExact
+                                                                       : Classified::kToCompare;
+            }
+        }
     });
     c.part.resize(parts_.size());
     parallel_chunks((parts_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
         for (std::size_t f = k * kChunk; f < std::min(parts_.size(), (k + 1) * kChunk); ++f)
-            c.part[f] = parts_.plane[f] < 0 ? Classified::kExact : classify(part_at_[f]);
+            c.part[f] = parts_.plane[f] < 0 || borders_.near(part_at_[f].span)
+                            ? Classified::kExact
+                            : classify(part_at_[f]);
     });
     compare_facets(layer, c);
 }
@@ -361,7 +422,11 @@ void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
         threads_, progress_);
     const auto compare = [&](PlaneId facet, const TileBounds& at) {
         const PlanBox& box = at.bounds.box;
-        bool below = true, above = true;
+        // No border divides a facet beside one: there is rock under all of it if there is under its
+        // middle.
+        const bool beside = borders_.near(at.span);
+        const auto middle = middle_of(geometry_, geometry_.plane(facet).plan);
+        bool below = true, above = true, covers = !beside;
         const bool unclear = tiles_.any(at.span, [&](std::size_t tile) {
             return !bins.all(tile, [&](std::int32_t t) {
                 const PlaneId plane = layer.first_plane + t;
@@ -373,12 +438,15 @@ void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
                 const Standing standing =
                     compare_over(geometry_, plane, facet, box, other, margin_);
                 if (standing == Standing::kApart) return true;
+                covers =
+                    covers || side_of_border(geometry_, geometry_.plane(plane).plan, middle) > 0;
                 below &= standing == Standing::kBelow;
                 above &= standing == Standing::kAbove;
                 return below || above;
             });
         });
-        if (unclear || below == above) return Classified::kExact;
+        if (unclear || below == above || !covers) return Classified::kExact;
+        if (beside) made_.is_exact[static_cast<std::size_t>(facet)] = 1;
         return below ? Classified::kClosed : Classified::kKept;
     };
     parallel_chunks((whole_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {

@@ -13,8 +13,9 @@ namespace realmodel::strata {
 /// What the envelope is all over a tile that no border crosses.
 enum Cover : std::uint8_t { kRock, kSkyOnly, kOutsideOnly };
 
-/// Instead of a block: none yet, several, the outside, the sky.
-inline constexpr std::int32_t kNoLabel = -4, kSeveral = -3, kOutsideLabel = -2, kSkyLabel = -1;
+/// Instead of a block: not known beside a border, none yet, several, the outside, the sky.
+inline constexpr std::int32_t kBesideBorder = -5, kNoLabel = -4, kSeveral = -3, kOutsideLabel = -2,
+                              kSkyLabel = -1;
 
 /// Heights in every tile.
 struct TileHeights {
@@ -54,6 +55,11 @@ struct BlockOverlay::Classified {
     std::vector<PlaneId> closed_whole;
     std::vector<std::size_t> closed_parts;
 };
+
+/// Where a place that rounding may have moved lies: 1 in a triangle for certain, -1 outside of it
+/// for certain, 0 near its border.
+int side_of_border(const exact::PlanGeometry& geometry, const PlanTriangle& triangle,
+                   const std::array<double, 2>& place);
 
 /// Plan positions of a triangle's corners.
 inline std::array<std::array<double, 2>, 3> corners_of(const exact::PlanGeometry& geometry,

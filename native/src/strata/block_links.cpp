@@ -26,25 +26,6 @@ std::array<double, 2> middle_of(const Corners& corners, const PointOf& point_of)
     return middle;
 }
 
-/// Where a place that rounding may have moved lies: 1 in a triangle for certain, -1 outside of it
-/// for certain, 0 near its border.
-int side_of_border(const PlanGeometry& geometry, const PlanTriangle& triangle,
-                   const std::array<double, 2>& place) {
-    constexpr double kRounding = 0x1p-44;  // of coordinates, far more than a middle has
-    const double error = kRounding * (std::abs(place[0]) + std::abs(place[1])) + 1e-290;
-    int side = 1;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const exact::LineFilter edge =
-            geometry.edge_filter(triangle[i], triangle[i + 1 < 3 ? i + 1 : 0]);
-        const double u = edge.a * (place[0] - edge.x0), v = edge.b * (place[1] - edge.y0);
-        const double least =
-            (std::abs(edge.a) + std::abs(edge.b)) * error + 0x1p-46 * (std::abs(u) + std::abs(v));
-        if (u + v < -least) return -1;
-        if (!(u + v > least)) side = 0;
-    }
-    return side;
-}
-
 }  // namespace
 
 /// Links closed facets with what closes them. Neighbouring whole facets hang together, and so do

@@ -48,8 +48,9 @@ struct BlockConstruction {
     FaceList faces;                        ///< faces that are parts of triangles, between nodes
     std::vector<std::int32_t> node_block;  ///< of each node
     std::vector<std::pair<std::int32_t, std::int32_t>> links;
-    std::vector<WholeFace> whole;        ///< for each plane
-    std::vector<std::uint8_t> is_exact;  ///< for each plane: looked at more closely than by bounds
+    std::vector<WholeFace> whole;  ///< for each plane
+    /// For each plane: looked at more closely than by bounds, or beside a border.
+    std::vector<std::uint8_t> is_exact;
     std::vector<std::uint8_t> is_in_parts;  ///< for each plane: divided into several faces
     std::vector<std::pair<PlaneId, std::int32_t>>
         on_base;  ///< facets over the base, and their nodes

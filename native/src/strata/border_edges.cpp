@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "realmodel/exact/turn.hpp"
+
 namespace realmodel::strata {
 
 using exact::PlanGeometry;
@@ -35,26 +37,53 @@ BorderEdges::BorderEdges(PlanGeometry& geometry, const PlanTiles& tiles, std::ve
     });
 }
 
-bool BorderEdges::divide(Scope& scope, PolygonView polygon, const TileSpan& span) const {
+template <class Divides>
+bool BorderEdges::any_in(const TileSpan& span, const Divides& divides) const {
     return tiles_.any(span, [&](std::size_t tile) {
         return std::any_of(in_tiles_.begin() + offsets_[tile],
                            in_tiles_.begin() + offsets_[tile + 1],
-                           [&](std::uint32_t s) { return divides(scope, polygon, segments_[s]); });
+                           [&](std::uint32_t s) { return divides(segments_[s]); });
     });
 }
 
 // What is convex lies apart where a line along an edge of either separates the two.
-bool BorderEdges::divides(Scope& scope, PolygonView polygon, const Segment& segment) {
-    bool any_left = false, any_right = false;
-    for (const Corner& corner : polygon) {
-        const int side = scope.side(exact::directed(segment.line, false), corner.point);
-        any_left |= side > 0;
-        any_right |= side < 0;
-    }
-    if (!any_left || !any_right) return false;
-    return std::none_of(polygon.begin(), polygon.end(), [&](const Corner& corner) {
-        return scope.side(corner.line, segment.from) <= 0 &&
-               scope.side(corner.line, segment.to) <= 0;
+bool BorderEdges::divide(Scope& scope, PolygonView polygon, const TileSpan& span) const {
+    return any_in(span, [&](const Segment& segment) {
+        bool any_left = false, any_right = false;
+        for (const Corner& corner : polygon) {
+            const int side = scope.side(exact::directed(segment.line, false), corner.point);
+            any_left |= side > 0;
+            any_right |= side < 0;
+        }
+        if (!any_left || !any_right) return false;
+        return std::none_of(polygon.begin(), polygon.end(), [&](const Corner& corner) {
+            return scope.side(corner.line, segment.from) <= 0 &&
+                   scope.side(corner.line, segment.to) <= 0;
+        });
+    });
+}
+
+bool BorderEdges::divide(const PlanGeometry& geometry, const PlanTriangle& triangle,
+                         const TileSpan& span) const {
+    using Position = std::array<double, 2>;
+    const auto position = [&](exact::VertexId v) -> Position {
+        return {geometry.point(v).x, geometry.point(v).y};
+    };
+    const std::array corners{position(triangle[0]), position(triangle[1]), position(triangle[2])};
+    return any_in(span, [&](const Segment& segment) {
+        const Position from = position(segment.from), to = position(segment.to);
+        bool any_left = false, any_right = false;
+        for (const Position& corner : corners) {
+            const int side = exact::turn(from, to, corner);
+            any_left |= side > 0;
+            any_right |= side < 0;
+        }
+        if (!any_left || !any_right) return false;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Position &p = corners[i], &q = corners[i + 1 < 3 ? i + 1 : 0];
+            if (exact::turn(p, q, from) <= 0 && exact::turn(p, q, to) <= 0) return false;
+        }
+        return true;
     });
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "plan_links.hpp"
 #include "plan_tiles.hpp"
 #include "polygon.hpp"
 
@@ -28,13 +29,17 @@ public:
     /// Whether one has a place inside a convex polygon, whose tiles these are. Along its edges one
     /// may run.
     bool divide(Scope& scope, PolygonView polygon, const TileSpan& span) const;
+    /// The same of a triangle, whose lines need not exist.
+    bool divide(const exact::PlanGeometry& geometry, const PlanTriangle& triangle,
+                const TileSpan& span) const;
 
 private:
+    template <class Divides>
+    bool any_in(const TileSpan& span, const Divides& divides) const;
     struct Segment {
         PointId from, to;
         LineId line;
     };
-    static bool divides(Scope& scope, PolygonView polygon, const Segment& segment);
 
     PlanTiles tiles_;
     std::vector<Segment> segments_;
