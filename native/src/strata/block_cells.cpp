@@ -129,8 +129,9 @@ private:
             Tracks tracks = find_tracks(geometry_, faces, places, extra, threads_, progress_);
             loops_ = find_loops(geometry_, faces, places, tracks, threads_, progress_);
             place_vertices(places, loops_, threads_, progress_);
-            TrackContacts contacts = find_contacts(geometry_, faces, made_.node_block, tracks,
-                                                   loops_, overlay_.borders(), threads_, progress_);
+            TrackContacts contacts =
+                find_contacts(geometry_, faces, made_.node_block, places, tracks, loops_,
+                              overlay_.borders(), threads_, progress_);
             if (!contacts.missing.empty()) {
                 extra.insert(extra.end(), contacts.missing.begin(), contacts.missing.end());
                 continue;

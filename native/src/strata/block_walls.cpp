@@ -24,9 +24,10 @@ struct ContactBatch {
 class TrackComparison {
 public:
     TrackComparison(const FaceList& faces, const std::vector<std::int32_t>& node_block,
-                    const Tracks& tracks, const Loops& loops, const BorderEdges& borders,
-                    ContactBatch& batch)
+                    const Places& places, const Tracks& tracks, const Loops& loops,
+                    const BorderEdges& borders, ContactBatch& batch)
         : node_block_(node_block),
+          places_(places),
           loops_(loops),
           borders_(borders),
           curves_(faces, tracks, loops),
@@ -59,12 +60,18 @@ private:
         return true;
     }
 
-    bool may_have_walls(const Curve& curve) const {
+    bool may_have_walls(const Curve& curve) {
         const auto& p = loops_.positions[static_cast<std::size_t>(curve.start)];
         const auto& q = loops_.positions[static_cast<std::size_t>(curve.end)];
-        const PlanBox box{std::min(p[0], q[0]), std::min(p[1], q[1]), std::max(p[0], q[0]),
-                          std::max(p[1], q[1])};
-        return borders_.near(borders_.tiles().span(box));
+        const TileSpan span = borders_.tiles().span({std::min(p[0], q[0]), std::min(p[1], q[1]),
+                                                     std::max(p[0], q[0]), std::max(p[1], q[1])});
+        return borders_.near(span) &&
+               borders_.run_between(batch_.scope, point_of(curve.start), point_of(curve.end), span);
+    }
+    PointId point_of(std::int32_t vertex) const {
+        const auto& first = loops_.place_offsets;
+        const auto after = std::upper_bound(first.begin(), first.end(), vertex);
+        return places_.representative[static_cast<std::size_t>(after - first.begin()) - 1];
     }
 
     void link(std::int32_t a, std::int32_t b) {
@@ -114,6 +121,7 @@ private:
     }
 
     const std::vector<std::int32_t>& node_block_;
+    const Places& places_;
     const Loops& loops_;
     const BorderEdges& borders_;
     TrackCurves curves_;
@@ -123,15 +131,16 @@ private:
 }  // namespace
 
 TrackContacts find_contacts(PlanGeometry& geometry, const FaceList& faces,
-                            const std::vector<std::int32_t>& node_block, const Tracks& tracks,
-                            const Loops& loops, const BorderEdges& borders, int threads,
-                            const Progress* progress) {
+                            const std::vector<std::int32_t>& node_block, const Places& places,
+                            const Tracks& tracks, const Loops& loops, const BorderEdges& borders,
+                            int threads, const Progress* progress) {
     constexpr std::size_t kChunk = 2048;
     const std::size_t chunks = (tracks.size() + kChunk - 1) / kChunk;
     std::vector<std::unique_ptr<ContactBatch>> batches(chunks);
     parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
         batches[chunk] = std::make_unique<ContactBatch>(geometry);
-        TrackComparison comparison(faces, node_block, tracks, loops, borders, *batches[chunk]);
+        TrackComparison comparison(faces, node_block, places, tracks, loops, borders,
+                                   *batches[chunk]);
         for (std::size_t t = chunk * kChunk; t < std::min(tracks.size(), (chunk + 1) * kChunk); ++t)
             comparison.process(t);
     });

@@ -26,13 +26,13 @@ struct TrackContacts {
     std::vector<ExtraPoint> missing;  ///< points that tracks must pass before anything else
 };
 
-/// Where a border may be (in tiles that it crosses) all faces on both sides of a track are there,
-/// and what is between them is compared; elsewhere a face goes on beyond the track as it is, and so
-/// do the nodes above and below it.
+/// Where a border runs along a track all faces on both sides of it are there, and what is between
+/// them is compared; elsewhere a face goes on beyond the track as it is, and so do the nodes above
+/// and below it.
 TrackContacts find_contacts(exact::PlanGeometry& geometry, const FaceList& faces,
-                            const std::vector<std::int32_t>& node_block, const Tracks& tracks,
-                            const Loops& loops, const BorderEdges& borders, int threads,
-                            const Progress* progress);
+                            const std::vector<std::int32_t>& node_block, const Places& places,
+                            const Tracks& tracks, const Loops& loops, const BorderEdges& borders,
+                            int threads, const Progress* progress);
 
 /// Walls between cells. Loops counter-clockwise seen from the right of their track.
 struct Walls {

@@ -37,12 +37,12 @@ BorderEdges::BorderEdges(PlanGeometry& geometry, const PlanTiles& tiles, std::ve
     });
 }
 
-template <class Divides>
-bool BorderEdges::any_in(const TileSpan& span, const Divides& divides) const {
+template <class Holds>
+bool BorderEdges::any_in(const TileSpan& span, const Holds& holds) const {
     return tiles_.any(span, [&](std::size_t tile) {
         return std::any_of(in_tiles_.begin() + offsets_[tile],
                            in_tiles_.begin() + offsets_[tile + 1],
-                           [&](std::uint32_t s) { return divides(segments_[s]); });
+                           [&](std::uint32_t s) { return holds(segments_[s]); });
     });
 }
 
@@ -84,6 +84,18 @@ bool BorderEdges::divide(const PlanGeometry& geometry, const PlanTriangle& trian
             if (exact::turn(p, q, from) <= 0 && exact::turn(p, q, to) <= 0) return false;
         }
         return true;
+    });
+}
+
+bool BorderEdges::run_between(Scope& scope, PointId a, PointId b, const TileSpan& span) const {
+    return any_in(span, [&](const Segment& segment) {
+        const auto line = exact::directed(segment.line, false);
+        if (scope.side(line, a) != 0 || scope.side(line, b) != 0) return false;
+        const int axis = scope.compare(0, segment.from, segment.to) != 0 ? 0 : 1;
+        const auto before = [&](PointId p, PointId q) { return scope.compare(axis, p, q) > 0; };
+        const auto [low, high] = std::minmax(segment.from, segment.to, before);
+        const auto [first, last] = std::minmax(a, b, before);
+        return before(low, last) && before(first, high);
     });
 }
 

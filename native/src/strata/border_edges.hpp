@@ -33,9 +33,12 @@ public:
     bool divide(const exact::PlanGeometry& geometry, const PlanTriangle& triangle,
                 const TileSpan& span) const;
 
+    /// Whether one runs between two points in these tiles; neither of its ends lies between them.
+    bool run_between(Scope& scope, PointId a, PointId b, const TileSpan& span) const;
+
 private:
-    template <class Divides>
-    bool any_in(const TileSpan& span, const Divides& divides) const;
+    template <class Holds>
+    bool any_in(const TileSpan& span, const Holds& holds) const;
     struct Segment {
         PointId from, to;
         LineId line;
