@@ -18,7 +18,7 @@ protected:
     VertexId vertex(double x, double y) { return geometry_.add_vertex(x, y); }
 
     /// Whether an edge divides the triangle (0, 0), (4, 0), (0, 4).
-    bool divides(std::array<double, 2> from, std::array<double, 2> to) {
+    bool divides(const std::array<double, 2>& from, const std::array<double, 2>& to) {
         const PlanTriangle triangle{vertex(0, 0), vertex(4, 0), vertex(0, 4)};
         const BorderEdges::Edge edge{vertex(from[0], from[1]), vertex(to[0], to[1])};
         geometry_.freeze_vertices();
@@ -27,7 +27,10 @@ protected:
         // given twice, either way around
         const BorderEdges borders(geometry_, tiles, {edge, {edge.second, edge.first}});
         Scope scope(geometry_);
-        return borders.divide(scope, outline, tiles.span({0, 0, 4, 4}));
+        const TileSpan span = tiles.span({0, 0, 4, 4});
+        const bool found = borders.divide(scope, outline, span);
+        EXPECT_EQ(borders.divide(geometry_, triangle, span), found);
+        return found;
     }
 
 private:
@@ -66,6 +69,29 @@ TEST_F(BorderEdgesTest, AUnitInTheLastPlaceInsideDivides) {
 }
 TEST_F(BorderEdgesTest, AUnitInTheLastPlaceOutsideDoesNot) {
     EXPECT_FALSE(divides({3, std::nextafter(1, 2)}, {1, 3}));
+}
+
+TEST(BorderEdges, RunBetweenPointsOfTheirs) {
+    exact::PlanGeometry geometry;
+    std::vector<VertexId> along;
+    for (const double x : {0.0, 0.5, 1.0, 2.5, 3.0})
+        along.push_back(geometry.add_vertex(x, 1));
+    const VertexId beside = geometry.add_vertex(1, std::nextafter(1, 2));
+    geometry.freeze_vertices();
+    const PlanTiles tiles({0, 0, 4, 4}, 16);
+    const BorderEdges borders(geometry, tiles, {{along[1], along[3]}});
+    Scope scope(geometry);
+    const TileSpan all{0, 3, 0, 3};
+    const auto between = [&](VertexId a, VertexId b) {
+        return borders.run_between(scope, a, b, all) && borders.run_between(scope, b, a, all);
+    };
+    EXPECT_TRUE(between(along[1], along[2]));
+    EXPECT_TRUE(between(along[2], along[3]));
+    EXPECT_TRUE(between(along[1], along[3]));
+    EXPECT_FALSE(between(along[0], along[1]));
+    EXPECT_FALSE(between(along[3], along[4]));
+    EXPECT_FALSE(between(along[1], beside));
+    EXPECT_FALSE(borders.run_between(scope, along[1], along[2], {0, 3, 2, 3}));  // elsewhere
 }
 
 TEST(BorderEdges, TilesKnowTheirs) {
