@@ -365,7 +365,8 @@ private:
     /// The same along the line between two corners of the border.
     void slide(std::int32_t v) {
         const PlanPoint& p = mesh_.points[v];
-        const auto& [a, b] = lines_[line_[v]];
+        const auto& line = lines_[line_[v]];
+        const PlanPoint &a = line[0], &b = line[1];
         const double length = std::sqrt(squared_distance(a, b));
         const double ux = (b[0] - a[0]) / length, uy = (b[1] - a[1]) / length;
         const Shape now = shape_of_star(v);

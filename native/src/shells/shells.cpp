@@ -166,8 +166,8 @@ void separate(const Complex& complex, std::size_t begin, double shrink, const Po
     const std::span<std::int32_t> corners(
         shell.corners.begin() + static_cast<std::ptrdiff_t>(begin), shell.corners.end());
     used.assign(corners.begin(), corners.end());
-    std::ranges::sort(used);
-    used.erase(std::ranges::unique(used).begin(), used.end());
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
     Position mean{};
     for (const std::int32_t v : used) {
         for (std::size_t axis = 0; axis < 3; ++axis)

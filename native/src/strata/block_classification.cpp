@@ -301,51 +301,47 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
     };
     const TileBins bins(tiles_, is_wanted, whole_.size() + parts_.size(), span_of, threads_,
                         progress_);
+    const auto compare = [&](std::size_t t) {
+        const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
+        const PlanBox& box = surface_at_[t].bounds.box;
+        const TileSpan& span = surface_at_[t].span;
+        // No border divides a triangle beside one: there is rock over all of it if there is over
+        // its middle.
+        const bool beside = c.label[t] == kBesideBorder;
+        const PlanTriangle& corners = geometry_.plane(plane).plan;
+        if (beside && borders_.divide(geometry_, corners, span)) return;
+        const auto middle = middle_of(geometry_, corners);
+        bool below = true, above = true, covered = !beside;
+        std::int32_t label = beside ? kNoLabel : c.label[t];
+        const auto goes_on = [&](std::int32_t number) {
+            const auto f = static_cast<std::size_t>(number);
+            const bool is_whole = f < whole_.size();
+            const std::size_t part = f - whole_.size();
+            const PlaneId facet = is_whole ? whole_[f].plane : parts_.plane[part];
+            const PlanBox& other = (is_whole ? whole_at_[f] : part_at_[part]).bounds.box;
+            if (!box.meets(other)) return true;
+            const Standing standing = compare_over(geometry_, plane, facet, box, other, margin_);
+            if (standing == Standing::kApart) return true;
+            if (beside) {
+                label = merged_label(label, is_whole ? whole_[f].pending : parts_.pending[part]);
+                covered =
+                    covered || (is_whole &&
+                                side_of_border(geometry_, geometry_.plane(facet).plan, middle) > 0);
+            }
+            below &= standing == Standing::kBelow;
+            above &= standing == Standing::kAbove;
+            return label != kSeveral && (below || above);
+        };
+        tiles_.any(span, [&](std::size_t tile) { return !bins.all(tile, goes_on); });
+        if (label == kSeveral || !covered || below == above) return;
+        c.label[t] = label;
+        c.surface[t] = below ? Classified::kBelow : Classified::kGone;
+        if (beside) made_.is_exact[static_cast<std::size_t>(plane)] = 1;
+    };
     parallel_chunks(
         (unclear.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
-            for (std::size_t i = k * kChunk; i < std::min(unclear.size(), (k + 1) * kChunk); ++i) {
-                const auto t = static_cast<std::size_t>(unclear[i]);
-                const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
-                const PlanBox& box = surface_at_[t].bounds.box;
-                // No border divides a triangle beside one: there is rock over all of it if there is
-                // over its middle.
-                const bool beside = c.label[t] == kBesideBorder;
-                const PlanTriangle& corners = geometry_.plane(plane).plan;
-                if (beside && borders_.divide(geometry_, corners, surface_at_[t].span)) continue;
-                const auto middle = middle_of(geometry_, corners);
-                bool below = true, above = true, covered = !beside;
-                std::int32_t label = beside ? kNoLabel : c.label[t];
-                tiles_.any(surface_at_[t].span, [&](std::size_t tile) {
-                    return !bins.all(tile, [&](std::int32_t number) {
-                        const auto f = static_cast<std::size_t>(number);
-                        const bool is_whole = f < whole_.size();
-                        const std::size_t part = f - whole_.size();
-                        const PlaneId facet = is_whole ? whole_[f].plane : parts_.plane[part];
-                        const PlanBox& facet_box =
-                            (is_whole ? whole_at_[f] : part_at_[part]).bounds.box;
-                        if (!box.meets(facet_box)) return true;
-                        const Standing standing =
-                            compare_over(geometry_, plane, facet, box, facet_box, margin_);
-                        if (standing == Standing::kApart) return true;
-                        if (beside) {
-                            label = merged_label(
-                                label, is_whole ? whole_[f].pending : parts_.pending[part]);
-                            covered =
-                                covered ||
-                                (is_whole && side_of_border(geometry_, geometry_.plane(facet).plan,
-                                                            middle) > 0);
-                        }
-                        below &= standing == Standing::kBelow;
-                        above &= standing == Standing::kAbove;
-                        return label != kSeveral && (below || above);
-                    });
-                });
-                if (label == kSeveral || !covered) continue;
-                c.label[t] = label;
-                if (below == above) continue;
-                c.surface[t] = below ? Classified::kBelow : Classified::kGone;
-                if (beside) made_.is_exact[static_cast<std::size_t>(plane)] = 1;
-            }
+            for (std::size_t i = k * kChunk; i < std::min(unclear.size(), (k + 1) * kChunk); ++i)
+                compare(static_cast<std::size_t>(unclear[i]));
         });
 }
 
