@@ -252,7 +252,10 @@ class RealModelSurface(props_reading.ReadingSettings, bpy.types.PropertyGroup):
     structures: CollectionProperty(type=RealModelStructure)
     use_anisotropy: BoolProperty(
         name="Anisotropy",
-        description="Points along one direction are more alike than across it",
+        description=(
+            "Points along one direction are more alike than across it. Off: found together with a variogram "
+            "that is fitted, else the same in all directions"
+        ),
         update=changes.setting,
     )
     anisotropy_ratio: FloatProperty(

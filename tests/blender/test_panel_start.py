@@ -2,6 +2,7 @@
 """How models begin in Blender, and how they go to project files."""
 
 import shutil
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -40,6 +41,26 @@ class Start(PanelCase):
         mine = model_at_hand.model_of(bpy.context)
         for name in ARRAYS:
             self.assertEqual(getattr(mine, name).tobytes(), getattr(model, name).tobytes(), name)
+
+    def test_dropped_project_files_are_opened_where_blender_takes_files(self):
+        handler = getattr(bpy.types, "REALMODEL_FH_project", None)
+        self.assertEqual(handler is not None, hasattr(bpy.types, "FileHandler"))
+        if handler is None:
+            return
+        self.assertEqual(handler.bl_file_extensions, ".toml")
+        for area, wanted in (("VIEW_3D", True), ("TEXT_EDITOR", False)):
+            here = SimpleNamespace(area=SimpleNamespace(type=area))
+            self.assertEqual(handler.poll_drop(here), wanted)
+        self.assertFalse(handler.poll_drop(SimpleNamespace(area=None)))
+        # what Blender does with a dropped file: it calls the operator of this name with its path
+        group, name = handler.bl_import_operator.split(".")
+        dropped = getattr(getattr(bpy.ops, group), name)
+        dropped(filepath=str(SAMPLES / "two_layers" / "project.toml"))
+        self.assertEqual(self.model.rocks[0].name, "field")
+
+    def test_a_project_is_asked_for_each_time(self):
+        """A path that is kept would be opened from the menu at once, as a dropped file is."""
+        self.assertTrue(ops.open_project.get_rna_type().properties["filepath"].is_skip_save)
 
     def test_bad_projects_are_refused_and_change_nothing(self):
         stack(0.0, 10.0)

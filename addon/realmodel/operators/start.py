@@ -48,6 +48,14 @@ class REALMODEL_OT_open_project(Reporting, bpy.types.Operator, ImportHelper):
     bl_label = "Open RealModel Project"
 
     filename_ext = ".toml"
+    # not kept from one time to the next: with a path, as of a dropped file, no file browser opens
+    filepath: StringProperty(
+        name="File Path",
+        description="The project file",
+        maxlen=1024,
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
+    )
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
 
     def act(self, context):
