@@ -198,7 +198,7 @@ Shell shell_of_cells(const Complex& complex, std::vector<Side>& sides, double sh
         const std::size_t begin = shell.corners.size();
         const std::int32_t cell = sides[at].cell;
         for (; at < sides.size() && sides[at].cell == cell; ++at) {
-            if (progress != nullptr && (at & 0x3fff) == 0) progress->check();
+            strata::poll(progress, at);
             add_polygon(complex, sides[at], shell);
         }
         separate(complex, begin, shrink, origin, used, shell);

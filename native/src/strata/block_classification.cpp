@@ -84,16 +84,6 @@ Standing compare_over(const PlanGeometry& geometry, PlaneId lower, PlaneId upper
                : Standing::kUnclear;
 }
 
-/// The place between a triangle's corners, as rounding leaves it.
-std::array<double, 2> middle_of(const PlanGeometry& geometry, const PlanTriangle& triangle) {
-    std::array<double, 2> middle{0, 0};
-    for (const VertexId v : triangle) {
-        middle[0] += geometry.point(v).x / 3;
-        middle[1] += geometry.point(v).y / 3;
-    }
-    return middle;
-}
-
 /// Numbers of things by the tiles that their boxes meet.
 class TileBins {
 public:
@@ -301,6 +291,7 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
     };
     const TileBins bins(tiles_, is_wanted, whole_.size() + parts_.size(), span_of, threads_,
                         progress_);
+    const auto point = [&](VertexId v) -> const exact::Point& { return geometry_.point(v); };
     const auto compare = [&](std::size_t t) {
         const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
         const PlanBox& box = surface_at_[t].bounds.box;
@@ -310,7 +301,7 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
         const bool beside = c.label[t] == kBesideBorder;
         const PlanTriangle& corners = geometry_.plane(plane).plan;
         if (beside && borders_.divide(geometry_, corners, span)) return;
-        const auto middle = middle_of(geometry_, corners);
+        const auto middle = middle_of(corners, point);
         bool below = true, above = true, covered = !beside;
         std::int32_t label = beside ? kNoLabel : c.label[t];
         const auto goes_on = [&](std::int32_t number) {
@@ -416,12 +407,13 @@ void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
     const TileBins bins(
         tiles_, is_wanted, layer.size(), [&](std::size_t t) { return &surface_at_[t].span; },
         threads_, progress_);
+    const auto point = [&](VertexId v) -> const exact::Point& { return geometry_.point(v); };
     const auto compare = [&](PlaneId facet, const TileBounds& at) {
         const PlanBox& box = at.bounds.box;
         // No border divides a facet beside one: there is rock under all of it if there is under its
         // middle.
         const bool beside = borders_.near(at.span);
-        const auto middle = middle_of(geometry_, geometry_.plane(facet).plan);
+        const auto middle = middle_of(geometry_.plane(facet).plan, point);
         bool below = true, above = true, covers = !beside;
         const bool unclear = tiles_.any(at.span, [&](std::size_t tile) {
             return !bins.all(tile, [&](std::int32_t t) {

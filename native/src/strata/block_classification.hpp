@@ -56,6 +56,19 @@ struct BlockOverlay::Classified {
     std::vector<std::size_t> closed_parts;
 };
 
+/// The middle of some corners, as rounding leaves it.
+template <class Corners, class PointOf>
+std::array<double, 2> middle_of(const Corners& corners, const PointOf& point_of) {
+    std::array<double, 2> middle{0, 0};
+    const double share = 1.0 / static_cast<double>(corners.size());
+    for (const auto& corner : corners) {
+        const exact::Point& p = point_of(corner);
+        middle[0] += p.x * share;
+        middle[1] += p.y * share;
+    }
+    return middle;
+}
+
 /// Where a place that rounding may have moved lies: 1 in a triangle for certain, -1 outside of it
 /// for certain, 0 near its border.
 int side_of_border(const exact::PlanGeometry& geometry, const PlanTriangle& triangle,

@@ -11,23 +11,6 @@ namespace realmodel::strata {
 
 using exact::PlanGeometry;
 
-namespace {
-
-/// The middle of some corners, as rounding leaves it.
-template <class Corners, class PointOf>
-std::array<double, 2> middle_of(const Corners& corners, const PointOf& point_of) {
-    std::array<double, 2> middle{0, 0};
-    const double share = 1.0 / static_cast<double>(corners.size());
-    for (const auto& corner : corners) {
-        const exact::Point& p = point_of(corner);
-        middle[0] += p.x * share;
-        middle[1] += p.y * share;
-    }
-    return middle;
-}
-
-}  // namespace
-
 /// Links closed facets with what closes them. Neighbouring whole facets hang together, and so do
 /// the triangles beneath them: one link for each connected part of them is enough.
 void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {

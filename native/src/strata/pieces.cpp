@@ -64,47 +64,47 @@ PieceFinder::HeightRange PieceFinder::heights_of(PlaneId plane) const {
     return range;
 }
 
-const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
+/// Begins with a facet; true where one polygon of the layer is all that it meets, which is added.
+bool PieceFinder::begin(const Facet& facet) {
     pieces_.clear();
-    const Facet facet = facet_of(outline, plane);
-    if (find_candidates(outline)) {
-        add_common(candidates_.front(), outline, facet);
-        return pieces_;
+    if (find_candidates(facet.outline)) {
+        add_common(candidates_.front(), facet.outline, facet);
+        return true;
     }
-    facet_clipper_.begin(outline);
-    for (const std::int32_t c : candidates_)
-        add_common(c, facet_clipper_.intersect(outline_of(c)), facet);
+    facet_clipper_.begin(facet.outline);
+    return false;
+}
+
+void PieceFinder::add_all(std::span<const std::int32_t> polygons, const Facet& facet) {
+    for (const std::int32_t polygon : polygons)
+        add_common(polygon, facet_clipper_.intersect(outline_of(polygon)), facet);
+}
+
+const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
+    const Facet facet = facet_of(outline, plane);
+    if (!begin(facet)) add_all(candidates_, facet);
     return pieces_;
 }
 
 const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
     if (plane < 0) return find(outline, plane);
-    pieces_.clear();
     const Facet facet = facet_of(outline, plane);
-    if (find_candidates(outline)) {
-        add_common(candidates_.front(), outline, facet);
-        return pieces_;
-    }
-    facet_clipper_.begin(outline);
+    if (begin(facet)) return pieces_;
     // for as long as all is higher, it is only looked which polygons meet the facet
-    auto c = candidates_.begin();
     higher_.clear();
+    auto c = candidates_.begin();
     for (; c != candidates_.end(); ++c) {
-        if (is_higher(*c, facet)) {
-            if (facet_clipper_.meets(outline_of(*c))) higher_.push_back(*c);
-        } else if (facet_clipper_.meets(outline_of(*c))) {
-            break;
-        }
+        if (!facet_clipper_.meets(outline_of(*c))) continue;
+        if (!is_higher(*c, facet)) break;
+        higher_.push_back(*c);
     }
     if (c == candidates_.end()) {
         for (const std::int32_t polygon : higher_)
             add(polygon, Side::kNotBelow, {});
         return pieces_;
     }
-    for (const std::int32_t polygon : higher_)
-        add_common(polygon, facet_clipper_.intersect(outline_of(polygon)), facet);
-    for (; c != candidates_.end(); ++c)
-        add_common(*c, facet_clipper_.intersect(outline_of(*c)), facet);
+    add_all(higher_, facet);
+    add_all({c, candidates_.end()}, facet);
     return pieces_;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "envelope.hpp"
@@ -77,6 +78,8 @@ private:
     }
     bool is_higher(std::int32_t polygon, const Facet& facet) const;
     bool find_candidates(PolygonView outline);
+    bool begin(const Facet& facet);
+    void add_all(std::span<const std::int32_t> polygons, const Facet& facet);
     void add_common(std::int32_t polygon, PolygonView common, const Facet& facet);
     void add(std::int32_t polygon, Side side, PolygonView outline);
     void add_touching(std::int32_t polygon, PolygonView outline, PlaneId lower, PlaneId upper);
