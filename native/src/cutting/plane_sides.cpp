@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "exact/arithmetic.hpp"
 #include "realmodel/base/errors.hpp"
 #include "strata/parallel_chunks.hpp"
 
@@ -54,12 +56,28 @@ Ball PlaneDistance::at(const Position& p) const {
     return sum;
 }
 
+// A coordinate has to be right to its own last place, however much smaller than the ends of the
+// line it is: a cap is flat only if all of its corners are where the plane is, on every axis.
 Position PlaneDistance::crossing(const Position& p, const Position& q) const {
     const Ball d = at(p), share = d / (d - at(q));
+    std::optional<mpq_class> exact_share;
     Position result;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Ball x = Ball(p[k]) + share * Ball::difference(q[k], p[k]);
-        result[k] = std::clamp(x.high, std::min(p[k], q[k]), std::max(p[k], q[k]));
+        if (normal_[(k + 1) % 3] == 0 && normal_[(k + 2) % 3] == 0) {
+            result[k] = point_[k] + 0.0;  // of both zeros the one without a sign
+            continue;
+        }
+        if (const auto x = (Ball(p[k]) + share * Ball::difference(q[k], p[k])).rounded()) {
+            result[k] = *x + 0.0;
+            continue;
+        }
+        if (!exact_share) {
+            const mpq_class from = exact(p);
+            exact_share = from / (from - exact(q));
+        }
+        const mpq_class start(p[k]);
+        const mpq_class x = start + *exact_share * (mpq_class(q[k]) - start);
+        result[k] = exact::nearest_double(x.get_num(), x.get_den(), 0) + 0.0;
     }
     return result;
 }

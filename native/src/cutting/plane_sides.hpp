@@ -29,7 +29,8 @@ public:
     bool is_beside(const Position& p) const;
     exact::Ball at(const Position& p) const;
     mpq_class exact(const Position& p) const;
-    /// Where the line from p to q, which lie on different sides, passes through the plane.
+    /// The doubles nearest to where the line from p to q, which lie on different sides, passes
+    /// through the plane.
     Position crossing(const Position& p, const Position& q) const;
     const Position& normal() const { return normal_; }
 

@@ -208,6 +208,24 @@ TEST(PlaneCut, FarFromTheOriginTheVolumesAddUp) {
                 1e-9 * sum(c.volumes));
 }
 
+TEST(PlaneCut, CornersOfCapsLieInThePlaneHoweverLongTheEdges) {
+    const OwnedSurface floor =
+        grid(3, 3, 0, 0, 3, 3, [](double x, double y) { return -1e6 - 1e5 * x - y; });
+    const OwnedSurface ground =
+        grid(3, 3, 0, 0, 3, 3, [](double x, double y) { return x < 1 ? -7.0 : 2e-6 + 1e-7 * y; });
+    const CellComplex c = strata::build({floor, ground});
+    for (const double z : {0.0, -0.0, 1e-7}) {
+        const Cut cut = checked_cut(c, {{0, 0, z}, {0, 0, 1}});
+        EXPECT_FALSE(cut.section.vertices.empty());
+        for (const auto& p : cut.section.vertices)
+            EXPECT_EQ(p[2], z);
+    }
+    // the diagonal plane x + z = 1: where x is, z is the nearest double to 1 - x
+    const Cut cut = checked_cut(c, {{1, 0, 0}, {1, 0, 1}});
+    for (const auto& p : cut.section.vertices)
+        EXPECT_NEAR(p[0] + p[2], 1.0, 0x1p-53 * (std::abs(p[0]) + std::abs(p[2])));
+}
+
 TEST(PlaneCut, FencePanelEndsWhereItIsToldTo) {
     const CellComplex c = level_layers({0, 1, 3}, 3);
     const Section s = fence_panel(view(c), {0.5, 1.25}, {1.75, 1.25}, 1, nullptr);

@@ -3,11 +3,13 @@
 
 Every case has a number: the same number makes the same stack and cutter (--only N runs it alone).
 Ends with a table of what was refused, by family and kind of cutter, and the numbers of what failed;
---keep FOLDER writes models and cutters of what failed there, as tests/data/cuts has them.
+--keep FOLDER writes models and cutters of what failed there, as tests/data/cuts has them. Cuts by planes
+are hunted with --kind plane.
 """
 
 import argparse
 import collections
+import itertools
 import random
 import sys
 import time
@@ -29,7 +31,7 @@ def case(seed, number, families, kind=None):
     stack = random_stack(rng, family)
     cells = rng.choice(("columns", "blocks"))
     model = native_arrays(stack, built(stack, cells=cells, threads=1), cells)
-    if not len(model["cell_block"]):
+    if not len(model["cell_block"]) or (kind == "plane" and not has_room(model)):
         return None
     found = random_cutter(rng, stack, family, model, cells, kind)
     return None if found is None else (family, found[0], model, found[1])
@@ -54,17 +56,53 @@ def load(path):
         return file["kind"].item(), model, cutter
 
 
+def _area(section):
+    """The area of a section; cells that are too thin for doubles may have none of it."""
+    total = 0.0
+    for begin, end in itertools.pairwise(section["offsets"]):
+        corners = section["vertices"][section["polygon_vertices"][begin:end]]
+        spokes = corners[1:] - corners[0]
+        total += np.linalg.norm(np.cross(spokes[:-1], spokes[1:]).sum(axis=0)) / 2
+    return total
+
+
+def has_room(model):
+    """Whether there is room between any two heights for a part of a cell."""
+    return not np.diff(np.unique(model["vertices"][:, 2])).min(initial=1.0) < 1e-300
+
+
+def _section_failures(model, cut, section):
+    """What is wrong with a section alone, beside the one that the cut has found."""
+    vertices = model["vertices"]
+    if section["polygon_vertices"].max(initial=-1) != len(section["vertices"]) - 1:
+        return ["section: vertices that no polygon has"]
+    if any(np.diff(np.unique(axis)).min(initial=1.0) < 1e-9 for axis in vertices.T):
+        return []  # cells as thin as rounding: the section alone does not look at their parts
+    alone, found = _area(section), _area(cut["section"])
+    allowed = 1e-9 * found + 1e3 * np.spacing(np.abs(vertices).max()) * np.ptp(vertices, axis=0).max()
+    return [f"section: area {alone}, with the cut {found}"] if not abs(alone - found) <= allowed else []
+
+
 def judged(model, kind, cutter):
     """What is wrong with the cut, and why it was refused."""
     native = places.native()
-    function = native.cut_by_block if kind.endswith("block") else native.cut_by_surface
+    function = (
+        native.cut_by_plane
+        if kind == "plane"
+        else native.cut_by_block
+        if kind.endswith("block")
+        else native.cut_by_surface
+    )
     try:
         cut = function(model, *cutter, 1)
     except native.InputError as error:
         return [], error.kind
     except RuntimeError as error:
         return [f"defect: {error}"], None
-    return cut_failures(model, cut), None
+    failures = cut_failures(model, cut)
+    if kind == "plane" and not failures:
+        failures = _section_failures(model, cut, native.section_by_plane(model, *cutter, 2))
+    return failures, None
 
 
 def main():

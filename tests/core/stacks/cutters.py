@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random surfaces and blocks that cut stacks: in every position that is special, and anywhere."""
+"""Random surfaces, blocks and planes that cut stacks: in every position that is special, and anywhere."""
 
 import itertools
 
@@ -101,11 +101,39 @@ def _along_faces(rng, model):
     return square, np.array([(0, 1, 2), (0, 2, 3)], np.int32)
 
 
+def some_planes(rng, vertices):
+    """Planes (point, normal) through vertices and along what is there, and one that is anywhere."""
+
+    def vertex():
+        return vertices[rng.randrange(len(vertices))]
+
+    def plane(point, normal):
+        return np.array(point, float), np.array(normal, float)
+
+    p, q, r = vertex(), vertex(), vertex()
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    found = [
+        plane(p, [(1, 0, 0), (0, 1, 0), (0, 0, 1)][rng.randrange(3)]),
+        plane(p, np.cross(q - p, r - p)),  # through three vertices
+        plane(p, ((q - p)[1], -(q - p)[0], 0)),  # vertical, through two
+        plane(p, [rng.randint(-2, 2) for _ in range(3)]),
+        plane(
+            low + np.array([rng.random() for _ in range(3)]) * (high - low),
+            [rng.gauss(0, 1) for _ in range(3)],
+        ),
+    ]
+    return [(point, normal) for point, normal in found if normal.any() and np.isfinite(normal).all()]
+
+
 def random_cutter(rng, stack, family, model, cells, kind=None):
     """(kind, arguments): what native.cut_by_surface takes ("vertices, triangles") or native.cut_by_block
-    ("model, block") after the model; None where the kind does not apply."""
+    ("model, block") after the model; None where the kind does not apply. A "plane", which comes only where it
+    is asked for, is for native.cut_by_plane ("point, normal")."""
     kind = kind or rng.choice(KINDS)
     vertices = model["vertices"]
+    if kind == "plane":
+        planes = some_planes(rng, vertices)
+        return (kind, rng.choice(planes)) if planes else None
     if kind == "ground":
         return kind, _ground(rng, vertices)
     if kind == "box":
