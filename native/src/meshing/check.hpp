@@ -13,16 +13,17 @@ namespace realmodel::meshing {
 /// throws to stop it.
 using Check = std::function<void(double)>;
 
-/// Passes on every 16384th call to a check: for the innermost loops.
+/// Passes on every so many calls to a check: for the innermost loops.
 class Ticker {
 public:
-    explicit Ticker(const Check& check) : check_(check) {}
+    explicit Ticker(const Check& check, std::size_t every = 16384) : check_(check), every_(every) {}
     void operator()(double share) {
-        if (++calls_ % 16384 == 0) check_(share);
+        if (++calls_ % every_ == 0) check_(share);
     }
 
 private:
     const Check& check_;
+    std::size_t every_;
     std::size_t calls_ = 0;
 };
 

@@ -175,13 +175,16 @@ Side FlatMesh::pass_by(Side side) {
     return side;
 }
 
-void FlatMesh::compact(std::int32_t first) {
+void FlatMesh::compact() {
     const auto count = static_cast<std::int32_t>(corners.size());
+    std::int32_t first = 0;
+    while (first < count && !is_dead(first))
+        ++first;
+    if (first == count) return;
     std::vector<std::int32_t> number(count - first, -1);
     std::int32_t kept = first;
     for (std::int32_t t = first; t < count; ++t)
         if (!is_dead(t)) number[t - first] = kept++;
-    if (kept == count) return;
     for (std::int32_t t = 0; t < count; ++t) {
         if (is_dead(t)) continue;
         for (Side& side : across[t]) {

@@ -88,8 +88,8 @@ public:
     /// border: one triangle takes their place, the other dies. Returns the side of the border that
     /// runs past it now. The caller has made sure that the triangle is not turned over.
     Side pass_by(Side side);
-    /// Forgets dead triangles; those before `first` keep their numbers, none of them is dead.
-    void compact(std::int32_t first);
+    /// Forgets dead triangles; those before the first of them keep their numbers.
+    void compact();
 
 private:
     Side legalise_around(std::int32_t vertex, std::int32_t triangle);

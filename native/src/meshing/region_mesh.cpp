@@ -306,7 +306,7 @@ PlanarMesh Meshing::mesh(const SizeField& size, double begin, double end) const 
         const Check check = part(0.8, 0.9, "smoothing");
         smooth(flat, size, banded.first_of_band, banded.rim_triangles,
                static_cast<std::int32_t>(graph_.points.size()), graph_.loners, check);
-        flat.compact(banded.first_of_band);
+        flat.compact();
         refine(flat, target, size, 0, {}, check);
     }
     const Check finish = part(0.9, 1, "collecting the mesh");

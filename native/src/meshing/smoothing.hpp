@@ -11,11 +11,10 @@
 namespace realmodel::meshing {
 
 /// Improves the triangles from `first` on, those in `also`, and their neighbours, in rounds of
-///   - flips and collapses that bring vertices nearer to six neighbours (Frey and Field 1991, "Mesh
-///     relaxation"; on fixed lines: to triangles of 60 degrees),
-///   - moves of one vertex at a time, by Newton's method, to where the sum of the inverse mean
-///     ratios of its triangles is least (Munson 2007, "Mesh shape-quality optimization using the
-///     inverse mean-ratio metric"): within the star of a vertex this sum is convex.
+///   - flips and collapses that bring vertices nearer to six neighbours (Valences),
+///   - ways of several flips that bring a vertex of five and one of seven neighbours to their
+///     opposites (Dislocations),
+///   - moves of one vertex at a time to where its triangles are best (StarMoves).
 /// In the end all but fixed sides are Delaunay again. Vertices on fixed sides, and those in `kept`,
 /// stay; but of those from number `corners` on that lie between two corners of the
 /// border, where sizes vary, some slide along it and some are taken out. Vertices that were

@@ -138,7 +138,7 @@ TEST(FlatMesh, TheBorderPassesByAVertexThatIsTakenOut) {
     EXPECT_EQ(mesh.point_from(past), (PlanPoint{0, 0}));
     EXPECT_EQ(mesh.point_to(past), (PlanPoint{1, 0}));
     EXPECT_DOUBLE_EQ(checked_area(mesh), 1);
-    mesh.compact(0);
+    mesh.compact();
     EXPECT_EQ(mesh.corners.size(), triangles - 1);
     EXPECT_DOUBLE_EQ(checked_area(mesh), 1);
 }
@@ -168,7 +168,7 @@ TEST(FlatMesh, CollapsedVerticesLeaveAMeshThatCanBeCompacted) {
         }
     }
     EXPECT_GT(collapsed, 10);
-    mesh.compact(0);
+    mesh.compact();
     EXPECT_EQ(mesh.corners.size(), 2 * (60U - collapsed) - 4 - 2);
     EXPECT_NEAR(checked_area(mesh), 1, 1e-12);
 }

@@ -86,6 +86,35 @@ TEST(Meshers, FrontalGradesToDetailOfTheBorder) {
     EXPECT_GT(mean_ratio(made(request, {coast})), 0.93);
 }
 
+/// Of vertices inside; not counting those beside the border.
+double share_with_six(const PlanarMesh& mesh) {
+    std::vector<int> triangles(mesh.vertices.size(), 0);
+    std::vector<bool> is_near(mesh.vertices.size(), false), is_border(mesh.vertices.size(), false);
+    for (const auto& [v, next] : border_of(mesh))
+        is_border[v] = is_near[v] = true;
+    for (const auto& t : mesh.triangles) {
+        const bool touches = is_border[t[0]] || is_border[t[1]] || is_border[t[2]];
+        for (const std::int32_t v : t) {
+            ++triangles[v];
+            if (touches) is_near[v] = true;
+        }
+    }
+    double all = 0, six = 0;
+    for (std::size_t v = 0; v < triangles.size(); ++v) {
+        if (is_near[v]) continue;
+        ++all;
+        six += triangles[v] == 6;
+    }
+    return six / all;
+}
+
+/// Rows must end where lengths grow, but no more often than that asks for.
+TEST(Meshers, FrontalHasNoNeedlessEndsOfRows) {
+    MeshRequest request = by(Mesher::frontal, 20);
+    request.sizes = {{{}, 2, 0}};
+    EXPECT_GT(share_with_six(made(request, {rectangle(0, 0, 500, 500)})), 0.88);
+}
+
 /// Needles have no room for vertices inside: nodes slide along their sides.
 TEST(Meshers, FrontalFillsNeedlesWell) {
     std::vector<Ring> rings(1);

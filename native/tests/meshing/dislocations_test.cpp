@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "meshing/dislocations.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace realmodel::meshing {
+namespace {
+
+constexpr std::int32_t width = 16;
+
+std::int32_t node(std::int32_t i, std::int32_t j) {
+    return i + width * j;
+}
+
+/// A rhombus of equilateral triangles, each square of nodes divided from its lower right corner to
+/// its upper left one; its border is fixed.
+FlatMesh lattice() {
+    FlatMesh mesh;
+    for (std::int32_t j = 0; j < width; ++j)
+        for (std::int32_t i = 0; i < width; ++i)
+            mesh.points.push_back({i + 0.5 * j, std::numbers::sqrt3 / 2 * j});
+    for (std::int32_t j = 0; j + 1 < width; ++j) {
+        for (std::int32_t i = 0; i + 1 < width; ++i) {
+            mesh.add_triangle({node(i, j), node(i + 1, j), node(i, j + 1)});
+            mesh.add_triangle({node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});
+        }
+    }
+    std::map<std::array<std::int32_t, 2>, Side> sides;
+    const auto count = static_cast<std::int32_t>(mesh.corners.size());
+    for (std::int32_t t = 0; t < count; ++t)
+        for (int i = 0; i < 3; ++i)
+            sides[{mesh.from({t, i}), mesh.to({t, i})}] = {t, i};
+    for (const auto& [ends, side] : sides) {
+        const auto other = sides.find({ends[1], ends[0]});
+        if (other != sides.end()) {
+            mesh.join(side, other->second);
+        } else {
+            mesh.fix(side);
+        }
+    }
+    return mesh;
+}
+
+/// A lattice in which `flips` neighbouring diagonals between two rows were flipped: a vertex with
+/// five neighbours beside one with seven at either end, so many rows apart.
+struct TornLattice {
+    explicit TornLattice(int flips)
+        : mesh(lattice()), size(1), valences(mesh, size), moves(valences) {
+        for (std::int32_t v = 0; v < width * width; ++v)
+            if (!valences.is_fixed(v)) moves.free(v);
+        for (int k = 0; k < flips; ++k)
+            valences.flip(side(node(begin + k + 1, row), node(begin + k, row + 1)));
+    }
+
+    Side side(std::int32_t from, std::int32_t to) const {
+        Side found = Side::outside();
+        valences.around(from, [&](Side s) {
+            if (mesh.to(s) == to) found = s;
+        });
+        return found;
+    }
+
+    int irregular() const {
+        int count = 0;
+        for (std::int32_t v = 0; v < width * width; ++v)
+            count += !valences.is_fixed(v) && !valences.is_regular(v);
+        return count;
+    }
+
+    static constexpr std::int32_t begin = 4, row = 7;
+    FlatMesh mesh;
+    SizeField size;
+    Valences valences;
+    StarMoves moves;
+};
+
+TEST(Dislocations, AreGoneWhereTheyMeet) {
+    TornLattice torn(6);
+    ASSERT_EQ(torn.irregular(), 4);
+    ASSERT_EQ(torn.valences.triangles(node(4, 7)), 7);
+    const FlatMesh whole = lattice();
+    Dislocations dislocations(torn.valences, torn.moves);
+    EXPECT_TRUE(dislocations.glide(node(4, 7), 6));
+    EXPECT_EQ(torn.irregular(), 0);
+    EXPECT_FALSE(dislocations.glide(node(4, 7), 6)) << "nothing is left to gain";
+    for (std::int32_t v = 0; v < width * width; ++v) {
+        EXPECT_NEAR(torn.mesh.points[v][0], whole.points[v][0], 1e-9);
+        EXPECT_NEAR(torn.mesh.points[v][1], whole.points[v][1], 1e-9);
+    }
+}
+
+TEST(Dislocations, StayWhereNoWayIsShortEnough) {
+    TornLattice torn(6);
+    const auto corners = torn.mesh.corners;
+    const auto points = torn.mesh.points;
+    EXPECT_FALSE(Dislocations(torn.valences, torn.moves).glide(node(4, 7), 5));
+    EXPECT_EQ(torn.irregular(), 4);
+    EXPECT_EQ(torn.mesh.points, points);
+    // The same sides, though their triangles may have other numbers.
+    for (const auto& t : corners)
+        for (int i = 0; i < 3; ++i)
+            EXPECT_FALSE(torn.side(t[i], t[(i + 1) % 3]).is_outside());
+}
+
+TEST(Dislocations, DoNotPassVerticesThatStay) {
+    TornLattice torn(6);
+    StarMoves moves(torn.valences);
+    for (std::int32_t v = 0; v < width * width; ++v)
+        if (!torn.valences.is_fixed(v) && v != node(7, 7)) moves.free(v);
+    EXPECT_FALSE(Dislocations(torn.valences, moves).glide(node(4, 7), 6));
+    EXPECT_EQ(torn.irregular(), 4);
+}
+
+}  // namespace
+}  // namespace realmodel::meshing
