@@ -3,7 +3,8 @@
 
 #include <algorithm>
 
-#include "strata/parallel_chunks.hpp"
+#include "strata/parallel_counts.hpp"
+#include "strata/parallel_sort.hpp"
 
 namespace realmodel::cutting {
 
@@ -37,7 +38,8 @@ void add(Winding& winding, std::int32_t cell, std::int32_t times) {
 CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : overlay_(overlay) {
     number({});
     find_coinciding();
-    collect_uses();
+    collect_uses(progress);
+    find_fans(progress);
     winding_.assign(2 * overlay.size(), -1);
     // regions that reach beyond the model first: there is nothing around them
     for (const bool beyond : {true, false}) {
@@ -127,14 +129,14 @@ void CutterWinding::find_coinciding() {
     }
 }
 
-void CutterWinding::collect_uses() {
+void CutterWinding::collect_uses(const Progress* progress) {
     const std::size_t count = overlay_.size();
     std::vector<std::array<NodeId, 2>> edges;
     for (std::size_t r = 0; r < count; ++r) {
         if (!counts(r)) continue;
         each_edge(overlay_.loops(r), 0, [&](const EdgeUse& use) { edges.push_back(use.edge); });
     }
-    std::sort(edges.begin(), edges.end());
+    strata::parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     for (std::size_t r = 0; r < count; ++r) {
         if (overlay_.of_cutter(r) && !counts(r)) continue;
@@ -142,7 +144,7 @@ void CutterWinding::collect_uses() {
             if (std::binary_search(edges.begin(), edges.end(), use.edge)) uses_.push_back(use);
         });
     }
-    std::sort(uses_.begin(), uses_.end());
+    strata::parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
     edges_of_.resize(count);
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
         for (; end < uses_.size() && uses_[end].edge == uses_[begin].edge; ++end) {
@@ -152,7 +154,15 @@ void CutterWinding::collect_uses() {
         }
         edge_begins_.push_back(end);
     }
+}
+
+void CutterWinding::find_fans(const Progress* progress) {
     sectors_.resize(edge_count());
+    strata::parallel_ranges(sectors_.size(), 1 << 8, overlay_.threads(), progress,
+                            [this](std::size_t begin, std::size_t end) {
+                                for (std::size_t e = begin; e < end; ++e)
+                                    sectors_[e].fan = fan_of(overlay_, edge(e));
+                            });
 }
 
 std::int32_t CutterWinding::number(Winding&& winding) {
@@ -174,7 +184,6 @@ void CutterWinding::spread(std::size_t e, Progress* progress) {
     if (progress != nullptr && (e & 0xff) == 0) progress->check();
     const auto uses = edge(e);
     Sectors& sectors = sectors_[e];
-    sectors.fan = fan_of(overlay_, uses);
     const std::size_t blades = sectors.fan.blades();
     sectors.windings.assign(blades, 0);
     // the blade of a region that is known; a region may come to the edge from both sides

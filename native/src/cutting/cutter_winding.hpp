@@ -54,7 +54,8 @@ public:
 
 private:
     void find_coinciding();
-    void collect_uses();
+    void collect_uses(const Progress* progress);
+    void find_fans(const Progress* progress);
     void spread(std::size_t edge, Progress* progress);
     std::int32_t number(Winding&& winding);
     void pass(Winding& winding, std::size_t region, std::size_t entered) const;

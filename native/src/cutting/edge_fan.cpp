@@ -44,18 +44,29 @@ EdgeFan fan_of(SurfaceOverlay& overlay, std::span<const EdgeUse> uses) {
     while (axis < 2 && points.turn(axis, a, b, towards[0]) == 0)
         ++axis;
     const int first_turn = points.turn(axis, a, b, towards[0]);
+    // what is known to lie in one plane needs no arithmetic
+    const auto are_level = [&](std::size_t i, std::size_t j) {
+        return index(uses[i].item) < overlay.size() && index(uses[j].item) < overlay.size() &&
+               overlay.are_of_one_triangle(index(uses[i].item), index(uses[j].item));
+    };
+    const auto orientation = [&](std::size_t i, std::size_t j) {
+        return are_level(i, j) ? 0 : points.orientation(a, b, towards[i], towards[j]);
+    };
     std::vector<int> quarter;
-    for (const NodeId p : towards) {
-        const int o = points.orientation(a, b, towards[0], p);
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+        const NodeId p = towards[i];
+        const int o = orientation(0, i);
         if (o != 0) {
             quarter.push_back(o < 0 ? 1 : 3);
+        } else if (are_level(0, i)) {
+            quarter.push_back(uses[i].direction == uses[0].direction ? 0 : 2);
         } else {
             quarter.push_back(points.turn(axis, a, b, p) == first_turn ? 0 : 2);
         }
     }
     const auto compare = [&](std::size_t i, std::size_t j) {
         if (quarter[i] != quarter[j]) return quarter[i] - quarter[j];
-        return quarter[i] % 2 == 0 ? 0 : points.orientation(a, b, towards[i], towards[j]);
+        return quarter[i] % 2 == 0 ? 0 : orientation(i, j);
     };
     EdgeFan fan;
     fan.order.resize(uses.size());

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// How points come to be known. What is asked of them is in exact_signs.cpp.
 #include "exact_points.hpp"
 
 #include <algorithm>
@@ -6,64 +7,55 @@
 #include <cmath>
 
 #include "exact/arithmetic.hpp"
-#include "realmodel/exact/ball.hpp"
+#include "fractions.hpp"
+#include "wide_places.hpp"
 
 namespace realmodel::cutting {
 
+using exact::Ball;
+
 namespace {
 
-using Fractions = ExactPoints::Fractions;
-
-Fractions minus(const Fractions& a, const Fractions& b) {
-    return {mpq_class(a[0] - b[0]), mpq_class(a[1] - b[1]), mpq_class(a[2] - b[2])};
-}
-
-mpq_class determinant(const Fractions& u, const Fractions& v, const Fractions& w) {
-    return u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) +
-           u[2] * (v[0] * w[1] - v[1] * w[0]);
-}
-
-mpq_class cross(const Fractions& u, const Fractions& v, std::size_t axis) {
-    const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
-    return u[k] * v[l] - u[l] * v[k];
+std::uint64_t hash_of(const Position& p) {
+    std::array<std::uint64_t, 3> words;
+    for (std::size_t k = 0; k < 3; ++k)
+        words[k] = std::bit_cast<std::uint64_t>(p[k] + 0.0);  // both zeros alike
+    return NodeTable::hash(words);
 }
 
 }  // namespace
 
-std::size_t ExactPoints::Hash::operator()(const Position& p) const {
-    std::uint64_t hash = 0;
-    for (const double x : p) {
-        hash ^= std::bit_cast<std::uint64_t>(x + 0.0);  // both zeros alike
-        hash *= 0x9e3779b97f4a7c15ULL;
-        hash ^= hash >> 29;
-    }
-    return static_cast<std::size_t>(hash);
+/// The number of a point that is the same as the last one, or -1.
+NodeId ExactPoints::find_equal(NodeId p) const {
+    return known_.find(hash_of(rounded(p)), [this, p](NodeId other) {
+        if (rounded(other) != rounded(p)) return false;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (compare(axis, p, other) != 0) return false;
+        }
+        return true;
+    });
 }
 
-/// Whether a point with these doubles is the one given; `exact` is null where its doubles are
-/// exact.
-bool ExactPoints::is_same(NodeId p, const Position& rounded, const Fractions* exact) const {
-    if (is_double(p)) return exact == nullptr;
-    const Fractions own = this->exact(p);
-    if (exact != nullptr) return own == *exact;
-    return own == Fractions{mpq_class(rounded[0]), mpq_class(rounded[1]), mpq_class(rounded[2])};
-}
-
-NodeId ExactPoints::enter(const Position& rounded, std::unique_ptr<Fractions> exact) {
-    const auto [begin, end] = known_.equal_range(rounded);
-    for (auto found = begin; found != end; ++found) {
-        if (is_same(found->second, rounded, exact.get())) return found->second;
-    }
+/// The number of a point: a new one where none is the same. Leaves what it was made of with new
+/// points only.
+NodeId ExactPoints::enter(const Position& rounded, Source source) {
     const auto number = static_cast<NodeId>(rounded_.size());
     rounded_.push_back(rounded);
-    exact_.push_back(std::move(exact));
-    made_of_.push_back(nullptr);
-    known_.emplace(rounded, number);
-    return number;
+    source_.push_back(source);
+    const NodeId known = find_equal(number);
+    if (known < 0) {
+        known_.insert(hash_of(rounded), number);
+        return number;
+    }
+    rounded_.pop_back();
+    source_.pop_back();
+    if (source.kind == Source::Kind::kMade) made_.pop_back();
+    if (source.kind == Source::Kind::kFractions) fractions_.pop_back();
+    return known;
 }
 
 NodeId ExactPoints::add(const Position& p) {
-    return enter({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0}, nullptr);
+    return enter({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0}, {});
 }
 
 NodeId ExactPoints::add(Fractions&& p) {
@@ -74,113 +66,23 @@ NodeId ExactPoints::add(Fractions&& p) {
         rounded[k] = exact::nearest_double(p[k].get_num(), p[k].get_den(), 0);
         doubles = doubles && mpq_class(rounded[k]) == p[k];
     }
-    return enter(rounded, doubles ? nullptr : std::make_unique<Fractions>(std::move(p)));
+    if (doubles) return enter(rounded, {});
+    fractions_.push_back(std::move(p));
+    return enter(rounded,
+                 {Source::Kind::kFractions, static_cast<std::int32_t>(fractions_.size()) - 1});
 }
 
 Fractions ExactPoints::exact(NodeId p) const {
-    Fractions own;
-    return exact(p, own);
-}
-
-const Fractions& ExactPoints::exact(NodeId p, Fractions& own) const {
-    auto& known = exact_[index(p)];
-    if (known == nullptr && made_of_[index(p)] != nullptr)
-        known = std::make_unique<Fractions>(exact_crossing(*made_of_[index(p)]));
-    if (known != nullptr) return *known;
+    const Source& source = source_[index(p)];
+    if (source.kind == Source::Kind::kFractions) return fractions_[index(source.number)];
+    if (const Made* made = this->made(p)) return exact_crossing(made->crossing);
     const Position& r = rounded(p);
-    for (std::size_t k = 0; k < 3; ++k)
-        own[k] = r[k];
-    return own;
+    return {mpq_class(r[0]), mpq_class(r[1]), mpq_class(r[2])};
 }
 
 bool ExactPoints::was_made_on(NodeId p, NodeId a, NodeId b) const {
-    const auto& made = made_of_[index(p)];
-    return made != nullptr && made->of[0] == std::min(a, b) && made->of[1] == std::max(a, b);
-}
-
-/// A bound of how far the rounded differences of these points may be from the true ones.
-double ExactPoints::slack(NodeId a, NodeId b, NodeId c, NodeId d) const {
-    double largest = 0;
-    for (const NodeId p : {a, b, c, d}) {
-        if (is_double(p)) continue;
-        for (const double x : rounded(p))
-            largest = std::max(largest, std::abs(x));
-    }
-    return 0x1p-51 * largest;
-}
-
-int ExactPoints::orientation(NodeId a, NodeId b, NodeId c, NodeId d) const {
-    if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;
-    const Position &o = rounded(a), &p = rounded(b), &q = rounded(c), &r = rounded(d);
-    Position u, v, w;
-    double largest = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        u[k] = p[k] - o[k];
-        v[k] = q[k] - o[k];
-        w[k] = r[k] - o[k];
-        largest = std::max({largest, std::abs(u[k]), std::abs(v[k]), std::abs(w[k])});
-    }
-    const double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2],
-                 z = u[0] * v[1] - u[1] * v[0];
-    const double value = x * w[0] + y * w[1] + z * w[2];
-    const double size = (std::abs(u[1] * v[2]) + std::abs(u[2] * v[1])) * std::abs(w[0]) +
-                        (std::abs(u[2] * v[0]) + std::abs(u[0] * v[2])) * std::abs(w[1]) +
-                        (std::abs(u[0] * v[1]) + std::abs(u[1] * v[0])) * std::abs(w[2]);
-    // six products of three differences, each of which may be off by `off`
-    const double off = slack(a, b, c, d);
-    const double error = 0x1p-48 * size + 24 * off * (largest + off) * (largest + off) + 1e-280;
-    if (value > error) return 1;
-    if (value < -error) return -1;
-    Fractions of_a, other;
-    const Fractions& e = exact(a, of_a);
-    const auto from_a = [&](NodeId node) { return minus(exact(node, other), e); };
-    return sgn(determinant(from_a(b), from_a(c), from_a(d)));
-}
-
-int ExactPoints::turn(std::size_t axis, NodeId a, NodeId b, NodeId c) const {
-    if (a == b || a == c || b == c) return 0;
-    const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
-    const Position &o = rounded(a), &p = rounded(b), &q = rounded(c);
-    const double left = (p[k] - o[k]) * (q[l] - o[l]), right = (p[l] - o[l]) * (q[k] - o[k]);
-    const double largest = std::max({std::abs(p[k] - o[k]), std::abs(q[l] - o[l]),
-                                     std::abs(p[l] - o[l]), std::abs(q[k] - o[k])});
-    const double off = slack(a, b, c, a);
-    const double error =
-        0x1p-49 * (std::abs(left) + std::abs(right)) + 8 * off * (largest + off) + 1e-280;
-    if (left - right > error) return 1;
-    if (left - right < -error) return -1;
-    Fractions of_a, of_b, of_c;
-    const Fractions &e = exact(a, of_a), &f = exact(b, of_b), &g = exact(c, of_c);
-    const mpq_class one = (f[k] - e[k]) * (g[l] - e[l]), other = (f[l] - e[l]) * (g[k] - e[k]);
-    const int order = cmp(one, other);
-    return (order > 0) - (order < 0);
-}
-
-int ExactPoints::compare(std::size_t axis, NodeId a, NodeId b) const {
-    if (a == b) return 0;
-    const double x = rounded(a)[axis], y = rounded(b)[axis];
-    if (x != y) return x < y ? -1 : 1;  // rounding keeps the order
-    if (is_double(a) && is_double(b)) return 0;
-    Fractions of_a, of_b;
-    return cmp(exact(a, of_a)[axis], exact(b, of_b)[axis]);
-}
-
-int ExactPoints::compare(NodeId a, NodeId b) const {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const int order = compare(axis, a, b);
-        if (order != 0) return order;
-    }
-    return 0;
-}
-
-std::size_t ExactPoints::CrossingHash::operator()(const Crossing& c) const {
-    std::uint64_t hash = 0;
-    for (const NodeId node : c.of) {
-        hash ^= static_cast<std::uint64_t>(node);
-        hash *= 0x9e3779b97f4a7c15ULL;
-        hash ^= hash >> 29;
-    }
-    return static_cast<std::size_t>(hash);
+    const Made* made = this->made(p);
+    return made != nullptr && made->crossing.is_on_line(std::min(a, b), std::max(a, b));
 }
 
 NodeId ExactPoints::crossing(NodeId p, NodeId q, NodeId a, NodeId b, NodeId c) {
@@ -188,25 +90,42 @@ NodeId ExactPoints::crossing(NodeId p, NodeId q, NodeId a, NodeId b, NodeId c) {
     std::array<NodeId, 3> plane{a, b, c};
     std::sort(plane.begin(), plane.end());
     const Crossing crossing{{std::min(p, q), std::max(p, q), plane[0], plane[1], plane[2]}};
-    const auto [found, is_new] = crossings_.try_emplace(crossing, -1);
-    if (!is_new) return found->second;
-    const auto rounded = rounded_crossing(crossing);
-    if (!rounded || known_.contains(*rounded)) return found->second = add(exact_crossing(crossing));
-    found->second = static_cast<NodeId>(rounded_.size());
-    rounded_.push_back(*rounded);
-    exact_.push_back(nullptr);
-    made_of_.push_back(std::make_unique<Crossing>(crossing));
-    known_.emplace(*rounded, found->second);
-    return found->second;
+    const std::uint64_t hash = NodeTable::hash(crossing.of);
+    const std::int32_t named = crossings_.find(
+        hash, [&](std::int32_t name) { return crossing_names_[index(name)].first == crossing; });
+    if (named >= 0) return crossing_names_[index(named)].second;
+    const NodeId number = make(crossing);
+    crossings_.insert(hash, static_cast<std::int32_t>(crossing_names_.size()));
+    crossing_names_.push_back({crossing, number});
+    return number;
 }
 
-/// The doubles nearest to a crossing of what is given by doubles, where twice their precision
-/// tells.
-std::optional<Position> ExactPoints::rounded_crossing(const Crossing& crossing) const {
-    for (const NodeId node : crossing.of) {
-        if (!is_double(node)) return std::nullopt;
+/// The point of a crossing that has no number by its name.
+NodeId ExactPoints::make(const Crossing& crossing) {
+    const bool of_doubles = std::all_of(crossing.of.begin(), crossing.of.end(),
+                                        [this](NodeId node) { return is_double(node); });
+    if (!of_doubles) return add(exact_crossing(crossing));
+    const auto at = place(crossing);
+    Position rounded;
+    bool may_be_doubles = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto x = at[k].rounded();
+        if (!x) return add(exact_crossing(crossing));
+        rounded[k] = *x + 0.0;
+        may_be_doubles = may_be_doubles && at[k].low == 0;
     }
-    using exact::Ball;
+    if (may_be_doubles) {
+        const auto are_doubles = Wide(*this, crossing).is_at(crossing, rounded);
+        if (!are_doubles) return add(exact_crossing(crossing));
+        if (*are_doubles) return enter(rounded, {});
+    }
+    made_.push_back({crossing, at});
+    return enter(rounded, {Source::Kind::kMade, static_cast<std::int32_t>(made_.size()) - 1});
+}
+
+/// The coordinates of a crossing of what is given by doubles. What lies across an axis has that
+/// coordinate exactly.
+std::array<Ball, 3> ExactPoints::place(const Crossing& crossing) const {
     const auto minus = [this](NodeId p, NodeId q) {
         std::array<Ball, 3> way;
         for (std::size_t k = 0; k < 3; ++k)
@@ -223,11 +142,15 @@ std::optional<Position> ExactPoints::rounded_crossing(const Crossing& crossing) 
         change = change + normal * way[k];
     }
     const Ball share = -from / change;
-    Position result;
+    std::array<Ball, 3> result;
     for (std::size_t k = 0; k < 3; ++k) {
-        const auto x = (Ball(rounded(p)[k]) + share * way[k]).rounded();
-        if (!x) return std::nullopt;
-        result[k] = *x + 0.0;
+        if (way[k].is_exact_zero()) {
+            result[k] = Ball(rounded(p)[k]);
+        } else if (u[k].is_exact_zero() && v[k].is_exact_zero()) {
+            result[k] = Ball(rounded(a)[k]);
+        } else {
+            result[k] = Ball(rounded(p)[k]) + share * way[k];
+        }
     }
     return result;
 }
@@ -267,44 +190,12 @@ NodeId ExactPoints::dropped(std::size_t axis, NodeId p, NodeId a, NodeId b) {
                          mpq_class(o[2] + share * u[2])});
 }
 
-int ExactPoints::ray_passes(std::size_t axis, NodeId p, const std::array<NodeId, 3>& corners,
-                            bool from_below) const {
-    const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
-    for (const std::size_t across : {k, l}) {
-        double low = HUGE_VAL, high = -HUGE_VAL;
-        for (const NodeId c : corners) {
-            low = std::min(low, rounded(c)[across]);
-            high = std::max(high, rounded(c)[across]);
-        }
-        if (rounded(p)[across] < low || rounded(p)[across] > high) return 0;
-    }
-    const int turned = turn(axis, corners[0], corners[1], corners[2]);
-    if (turned == 0) return 0;
-    // edges to the right of p, which is taken to be a little to the right and less upward from here
-    bool inside = false;
-    for (std::size_t i = 0; i < 3; ++i) {
-        NodeId a = corners[i], b = corners[(i + 1) % 3];
-        const bool above_a = compare(l, a, p) > 0, above_b = compare(l, b, p) > 0;
-        if (above_a == above_b) continue;
-        if (above_a) std::swap(a, b);
-        if (turn(axis, a, b, p) > 0) inside = !inside;
-    }
-    if (!inside) return 0;
-    const int side = turned * orientation(corners[0], corners[1], corners[2], p);
-    return side < 0 || (side == 0 && from_below) ? turned : 0;
-}
-
 NodeId ExactPoints::middle(const std::array<NodeId, 3>& corners) {
     const Fractions a = exact(corners[0]), b = exact(corners[1]), c = exact(corners[2]);
     Fractions sum;
     for (std::size_t k = 0; k < 3; ++k)
         sum[k] = (a[k] + b[k] + c[k]) / 3;
     return add(std::move(sum));
-}
-
-bool ExactPoints::is_farther(std::size_t axis, NodeId a, NodeId b, NodeId p, NodeId q) const {
-    const Fractions o = exact(a), way = minus(exact(b), o);
-    return abs(cross(way, minus(exact(p), o), axis)) > abs(cross(way, minus(exact(q), o), axis));
 }
 
 }  // namespace realmodel::cutting

@@ -1,24 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <gmpxx.h>
-
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <optional>
-#include <unordered_map>
+#include <span>
 #include <vector>
 
+#include "fractions.hpp"
+#include "node_table.hpp"
 #include "polygons.hpp"
+#include "realmodel/exact/ball.hpp"
 
 namespace realmodel::cutting {
 
-/// Points of space, each known exactly, equal ones once. Signs are told by floating point where its
-/// error bound allows it, else by fractions.
+/// Points of space, each known exactly, equal ones once.
+///
+/// Signs are told by doubles where their error bound allows it, by the names that points were made
+/// of, by twice the precision of doubles, by whole numbers of fixed width, and only then by
+/// fractions. What asks may be called from several threads, what adds points from one.
 class ExactPoints {
 public:
-    using Fractions = std::array<mpq_class, 3>;
+    /// Where a line passes through a plane: ends of the line, corners of the plane, both ascending.
+    struct Crossing {
+        std::array<NodeId, 5> of;
+        bool operator==(const Crossing&) const = default;
+        bool is_on_line(NodeId a, NodeId b) const { return of[0] == a && of[1] == b; }
+        bool is_on_plane_of(const Crossing& c) const {
+            return of[2] == c.of[2] && of[3] == c.of[3] && of[4] == c.of[4];
+        }
+    };
 
     /// The number of a point given by doubles.
     NodeId add(const Position& p);
@@ -64,35 +75,44 @@ public:
     bool is_farther(std::size_t axis, NodeId a, NodeId b, NodeId p, NodeId q) const;
 
 private:
-    struct Crossing {
-        std::array<NodeId, 5> of;  ///< ends of the line, corners of the plane
-        auto operator<=>(const Crossing&) const = default;
+    /// A crossing of what is given by doubles, and its coordinates to twice their precision.
+    struct Made {
+        Crossing crossing;
+        std::array<exact::Ball, 3> at;
     };
-    struct Hash {
-        std::size_t operator()(const Position& p) const;
+    /// What a point is known by: its doubles, a crossing of `made_`, or one of `fractions_`.
+    struct Source {
+        enum class Kind : std::uint8_t { kDoubles, kMade, kFractions } kind = Kind::kDoubles;
+        std::int32_t number = 0;
     };
-    NodeId enter(const Position& rounded, std::unique_ptr<Fractions> exact);
-    struct CrossingHash {
-        std::size_t operator()(const Crossing& c) const;
-    };
-    /// What is known, or else made of the doubles into `own`.
-    const Fractions& exact(NodeId p, Fractions& own) const;
-    double slack(NodeId a, NodeId b, NodeId c, NodeId d) const;
-    bool is_double(NodeId p) const {
-        return exact_[index(p)] == nullptr && made_of_[index(p)] == nullptr;
+
+    NodeId enter(const Position& rounded, Source source);
+    NodeId make(const Crossing& crossing);
+    NodeId find_equal(NodeId p) const;
+    bool is_double(NodeId p) const { return source_[index(p)].kind == Source::Kind::kDoubles; }
+    const Made* made(NodeId p) const {
+        const Source& source = source_[index(p)];
+        return source.kind == Source::Kind::kMade ? &made_[index(source.number)] : nullptr;
     }
-    bool is_same(NodeId p, const Position& rounded, const Fractions* exact) const;
-    std::optional<Position> rounded_crossing(const Crossing& crossing) const;
+    std::array<exact::Ball, 3> place(const Crossing& crossing) const;
     Fractions exact_crossing(const Crossing& crossing) const;
 
+    double slack(NodeId a, NodeId b, NodeId c, NodeId d) const;
+    bool lie_on_one_plane_by_name(const std::array<NodeId, 4>& points) const;
+    bool lie_on_one_line_by_name(const std::array<NodeId, 3>& points) const;
+    /// A coordinate to twice the precision of doubles; nothing of points given by fractions.
+    std::optional<exact::Ball> ball(NodeId p, std::size_t axis) const;
+    std::optional<int> orientation_of_balls(const std::array<NodeId, 4>& points) const;
+    std::optional<int> turn_of_balls(std::size_t axis, const std::array<NodeId, 3>& points) const;
+    class Wide;  ///< places as whole numbers of fixed width
+
     std::vector<Position> rounded_;
-    /// None where the doubles are exact. Of crossings they are computed when they are asked for:
-    /// most are told apart from everything by their doubles. (Crossings are made and asked by one
-    /// thread.)
-    mutable std::vector<std::unique_ptr<Fractions>> exact_;
-    std::vector<std::unique_ptr<Crossing>> made_of_;
-    std::unordered_multimap<Position, NodeId, Hash> known_;
-    std::unordered_map<Crossing, NodeId, CrossingHash> crossings_;
+    std::vector<Source> source_;
+    std::vector<Made> made_;
+    std::vector<Fractions> fractions_;
+    NodeTable known_;      ///< points by their doubles
+    NodeTable crossings_;  ///< places in crossing_names_, by name
+    std::vector<std::pair<Crossing, NodeId>> crossing_names_;
 };
 
 }  // namespace realmodel::cutting

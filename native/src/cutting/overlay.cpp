@@ -4,10 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
+
+#include "strata/parallel_counts.hpp"
+#include "strata/parallel_sort.hpp"
 
 namespace realmodel::cutting {
 
 namespace {
+
+/// So many triangles are one piece of work.
+constexpr std::size_t kChunk = 1 << 8;
 
 std::array<NodeId, 2> unordered(NodeId a, NodeId b) {
     return {std::min(a, b), std::max(a, b)};
@@ -32,7 +40,7 @@ std::int32_t Overlay::add(const std::array<NodeId, 3>& corners) {
         if (t.turned != 0) break;
     }
     for (std::size_t i = 0; i < 3; ++i)
-        of_edge_[unordered(corners[i], corners[(i + 1) % 3])].push_back(number);
+        of_edge_.push_back({unordered(corners[i], corners[(i + 1) % 3]), number});
     triangles_.push_back(std::move(t));
     return number;
 }
@@ -48,36 +56,37 @@ NodeId Overlay::left_corner(std::int32_t triangle, NodeId from, NodeId to) const
 void Overlay::share(std::int32_t one, std::int32_t other, NodeId p, NodeId q) {
     for (const auto& [mine, yours] : {std::pair(one, other), std::pair(other, one)}) {
         Triangle& t = triangles_[index(mine)];
-        t.points.insert(p);
-        t.points.insert(q);
-        if (p != q) t.segments.insert({unordered(p, q), yours});
+        t.points.push_back(p);
+        if (p == q) continue;
+        t.points.push_back(q);
+        t.segments.push_back({unordered(p, q), yours});
     }
 }
 
-bool Overlay::may_meet(std::int32_t one, std::int32_t other) const {
-    const Triangle &a = triangles_[index(one)], &b = triangles_[index(other)];
-    if (a.turned == 0 || b.turned == 0) return false;
-    std::size_t shared = 0;
-    for (const NodeId p : a.corners)
-        shared += static_cast<std::size_t>(std::count(b.corners.begin(), b.corners.end(), p));
-    std::array<int, 2> nonzero{0, 0};
-    for (std::size_t which = 0; which < 2; ++which) {
-        const Triangle &own = which == 0 ? a : b, &plane = which == 0 ? b : a;
-        int above = 0, below = 0;
-        for (const NodeId p : own.corners) {
-            const int side =
-                points_.orientation(plane.corners[0], plane.corners[1], plane.corners[2], p);
-            above += side > 0;
-            below += side < 0;
-        }
-        if (above == 3 || below == 3) return false;
-        if (shared == 1 && std::max(above, below) == 2 && std::min(above, below) == 0) return false;
-        nonzero[which] = above + below;
+/// Calls visit(number) for all triangles, those of a chunk one after another on one thread.
+template <class Visit>
+void Overlay::each_triangle(int threads, const Progress* progress, const Visit& visit) const {
+    strata::parallel_ranges(triangles_.size(), kChunk, threads, progress,
+                            [&](std::size_t begin, std::size_t end) {
+                                for (std::size_t i = begin; i < end; ++i)
+                                    visit(i);
+                            });
+}
+
+Overlay::Sides Overlay::sides_of(const Triangle& own, const Triangle& plane) const {
+    Sides sides;
+    for (std::size_t i = 0; i < 3; ++i) {
+        sides.of[i] = points_.orientation(plane.corners[0], plane.corners[1], plane.corners[2],
+                                          own.corners[i]);
+        sides.above += sides.of[i] > 0;
+        sides.below += sides.of[i] < 0;
     }
-    if (shared < 2) return true;
-    if (nonzero[0] != 0) return false;  // an edge is all that they have in common
-    if (shared == 3) return true;
-    // in one plane, with an edge in common: whether one is folded over the other
+    return sides;
+}
+
+/// Of two triangles in one plane with two corners in common: whether neither covers a part of the
+/// other.
+bool Overlay::are_folded_apart(const Triangle& a, const Triangle& b) const {
     std::array<NodeId, 2> edge{}, tip{};
     std::size_t found = 0;
     for (const NodeId p : a.corners) {
@@ -91,46 +100,89 @@ bool Overlay::may_meet(std::int32_t one, std::int32_t other) const {
     for (const NodeId p : b.corners) {
         if (p != edge[0] && p != edge[1]) tip[1] = p;
     }
-    return turn(a, edge[0], edge[1], tip[0]) == turn(a, edge[0], edge[1], tip[1]);
+    return turn(a, edge[0], edge[1], tip[0]) != turn(a, edge[0], edge[1], tip[1]);
 }
 
-void Overlay::meet(std::int32_t one, std::int32_t other) {
+Overlay::Stretch Overlay::stretch_of(const Triangle& own, const Sides& sides, std::int32_t plane) {
+    Stretch stretch{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t next = (i + 1) % 3, before = (i + 2) % 3;
+        const int here = sides.of[i];
+        if (here == 0) {
+            const int from = sides.of[before], to = sides.of[next];
+            const End corner{own.corners[i]};
+            if (from <= 0 && to >= 0 && from != to) stretch.up = corner;
+            if (from >= 0 && to <= 0 && from != to) stretch.down = corner;
+            if (from == to) stretch = {corner, corner};
+        } else if (here * sides.of[next] < 0) {
+            if (here < 0) {
+                stretch.up = {own.corners[i], own.corners[next], plane};
+            } else {
+                stretch.down = {own.corners[next], own.corners[i], plane};
+            }
+        }
+    }
+    return stretch;
+}
+
+/// Which of two ends comes first along the line of two planes, in the direction of the product of
+/// a's normal and b's: 1 a's, -1 b's, 0 they are in one place. `sides`: of a's corners from b's
+/// plane.
+int Overlay::order(const Triangle& a, const Sides& sides, const End& on_a, const Triangle& b,
+                   const End& on_b) const {
+    if (on_a.to >= 0 && on_b.to >= 0)
+        return points_.orientation(on_a.from, on_a.to, on_b.from, on_b.to);
+    if (on_a.to >= 0) return turn(a, on_a.from, on_a.to, on_b.from);
+    if (on_b.to >= 0) return turn(b, on_b.from, on_b.to, on_a.from);
+    std::size_t off = 0;
+    while (sides.of[off] == 0)
+        ++off;
+    return -sides.of[off] * turn(a, a.corners[off], on_a.from, on_b.from);
+}
+
+std::optional<Overlay::Meeting> Overlay::meeting(std::int32_t one, std::int32_t other) const {
     const Triangle &a = triangles_[index(one)], &b = triangles_[index(other)];
-    if (a.turned == 0 || b.turned == 0) return;
-    std::array<std::array<int, 3>, 2> sides;  // of the corners of each from the plane of the other
+    if (a.turned == 0 || b.turned == 0) return std::nullopt;
+    const auto shared = std::count_if(a.corners.begin(), a.corners.end(), [&b](NodeId p) {
+        return std::find(b.corners.begin(), b.corners.end(), p) != b.corners.end();
+    });
+    std::array<Sides, 2> sides;
     for (std::size_t which = 0; which < 2; ++which) {
-        const Triangle &own = which == 0 ? a : b, &plane = which == 0 ? b : a;
-        int above = 0, below = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            sides[which][i] = points_.orientation(plane.corners[0], plane.corners[1],
-                                                  plane.corners[2], own.corners[i]);
-            above += sides[which][i] > 0;
-            below += sides[which][i] < 0;
+        sides[which] = which == 0 ? sides_of(a, b) : sides_of(b, a);
+        const auto [low, high] = std::minmax(sides[which].above, sides[which].below);
+        if (high == 3 || (shared == 1 && high == 2 && low == 0)) return std::nullopt;
+        if (which == 0 && high == 0) {
+            if (shared == 2 && are_folded_apart(a, b)) return std::nullopt;
+            return Meeting{one, other, true, {}};
         }
-        if (above == 3 || below == 3) return;
-        if (above == 0 && below == 0) return meet_in_plane(one, other);
+        if (shared >= 2) return std::nullopt;  // an edge is all that they have in common
     }
-    // the stretch that each has on the line of both planes
-    std::array<std::array<NodeId, 2>, 2> stretch;
-    for (std::size_t which = 0; which < 2; ++which) {
-        const auto& own = (which == 0 ? a : b).corners;
-        const auto& plane = (which == 0 ? b : a).corners;
-        std::vector<NodeId> found;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::size_t j = (i + 1) % 3;
-            if (sides[which][i] == 0) found.push_back(own[i]);
-            if (sides[which][i] * sides[which][j] < 0)
-                found.push_back(points_.crossing(own[i], own[j], plane[0], plane[1], plane[2]));
-        }
-        stretch[which] = {found.front(), found.back()};
-        if (points_.compare(found.front(), found.back()) > 0)
-            std::swap(stretch[which][0], stretch[which][1]);
+    const Stretch of_a = stretch_of(a, sides[0], other), of_b = stretch_of(b, sides[1], one);
+    // along the product of both normals a is passed from `up` to `down`, and b from `down` to `up`
+    const auto order_of = [&](const End& on_a, const End& on_b) {
+        return order(a, sides[0], on_a, b, on_b);
+    };
+    if (order_of(of_a.down, of_b.down) > 0 || order_of(of_a.up, of_b.up) < 0) return std::nullopt;
+    const int first = order_of(of_a.up, of_b.down), last = order_of(of_a.down, of_b.up);
+    // of two in one place a corner, which has a number
+    const bool from_b = first > 0 || (first == 0 && of_a.up.to >= 0);
+    const bool to_b = last < 0 || (last == 0 && of_a.down.to >= 0);
+    return Meeting{one, other, false, {from_b ? of_b.down : of_a.up, to_b ? of_b.up : of_a.down}};
+}
+
+void Overlay::take(const Meeting& meeting) {
+    if (meeting.in_one_plane) {
+        meet_in_plane(meeting.one, meeting.other);
+        return;
     }
-    const auto later = [this](NodeId p, NodeId q) { return points_.compare(p, q) > 0 ? p : q; };
-    const auto earlier = [this](NodeId p, NodeId q) { return points_.compare(p, q) > 0 ? q : p; };
-    const NodeId from = later(stretch[0][0], stretch[1][0]);
-    const NodeId to = earlier(stretch[0][1], stretch[1][1]);
-    if (points_.compare(from, to) <= 0) share(one, other, from, to);
+    std::array<NodeId, 2> ends;
+    for (std::size_t i = 0; i < 2; ++i) {
+        const End& end = meeting.ends[i];
+        const auto& plane = triangles_[index(end.plane)].corners;
+        ends[i] = end.to < 0 ? end.from
+                             : points_.crossing(end.from, end.to, plane[0], plane[1], plane[2]);
+    }
+    share(meeting.one, meeting.other, ends[0], ends[1]);
 }
 
 void Overlay::meet_in_plane(std::int32_t one, std::int32_t other) {
@@ -199,7 +251,7 @@ std::span<const NodeId> Overlay::points_between(const Triangle& t, NodeId a, Nod
     const auto before = [&](NodeId p, double x) { return points_.rounded(p)[axis] < x; };
     const auto after = [&](double x, NodeId p) { return x < points_.rounded(p)[axis]; };
     if (t.in_order.size() != t.points.size()) {
-        t.in_order.assign(t.points.begin(), t.points.end());
+        t.in_order = t.points;
         std::sort(t.in_order.begin(), t.in_order.end(), [&](NodeId p, NodeId q) {
             return std::pair(points_.rounded(p)[axis], p) < std::pair(points_.rounded(q)[axis], q);
         });
@@ -227,85 +279,136 @@ std::vector<NodeId> Overlay::nodes_on(const Triangle& t, NodeId a, NodeId b) con
     return found;
 }
 
-/// Segments of one triangle that cross each other: only where the triangles of a group do cross.
-void Overlay::cross_segments(std::int32_t triangle) {
-    std::vector<Segment> segments(triangles_[index(triangle)].segments.begin(),
-                                  triangles_[index(triangle)].segments.end());
-    const auto box = [&](const Segment& s, std::size_t k) {
-        const double p = points_.rounded(s.ends[0])[k], q = points_.rounded(s.ends[1])[k];
-        return std::pair(std::min(p, q), std::max(p, q));  // minmax would refer to p and q
-    };
-    const std::size_t axis = (triangles_[index(triangle)].axis + 1) % 3;
-    std::sort(segments.begin(), segments.end(), [&](const Segment& s, const Segment& r) {
-        const double x = box(s, axis).first, y = box(r, axis).first;
-        return x != y ? x < y : s < r;
-    });
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-        const double end = box(segments[i], axis).second;
-        for (std::size_t j = i + 1; j < segments.size(); ++j) {
-            const auto &s = segments[i], &r = segments[j];
-            if (box(r, axis).first > end) break;
-            bool apart = false;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const auto p = box(s, k), q = box(r, k);
-                apart = apart || p.second < q.first || q.second < p.first;
-            }
-            if (apart) continue;
-            Triangle& t = triangles_[index(triangle)];
-            const int a = turn(t, s.ends[0], s.ends[1], r.ends[0]);
-            const int b = turn(t, s.ends[0], s.ends[1], r.ends[1]);
-            if (a * b >= 0) continue;
-            const int c = turn(t, r.ends[0], r.ends[1], s.ends[0]);
-            const int d = turn(t, r.ends[0], r.ends[1], s.ends[1]);
-            if (c * d >= 0) continue;
-            t.points.insert(points_.crossing(t.axis, s.ends[0], s.ends[1], r.ends[0], r.ends[1]));
-        }
-    }
-}
-
-/// Hands the points on edges and segments to the other triangles that share these.
-void Overlay::spread_points(const Progress* progress) {
-    std::set<std::int32_t> changed;
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        if (triangles_[t].turned != 0) cross_segments(static_cast<std::int32_t>(t));
-        changed.insert(static_cast<std::int32_t>(t));
-    }
-    std::size_t round = 0;
-    while (!changed.empty()) {
-        if (progress != nullptr && (++round & 0xff) == 0) progress->check();
-        const std::int32_t number = *changed.begin();
-        changed.erase(changed.begin());
-        const Triangle& t = triangles_[index(number)];
-        const auto hand = [&](std::int32_t to, NodeId p) {
-            Triangle& other = triangles_[index(to)];
-            if (to == number ||
-                std::find(other.corners.begin(), other.corners.end(), p) != other.corners.end())
-                return;
-            if (other.points.insert(p).second) changed.insert(to);
+/// Puts the points and segments of all triangles in order, each once.
+void Overlay::settle(int threads, const Progress* progress) {
+    each_triangle(threads, progress, [this](std::size_t i) {
+        const auto order = [](auto& of) {
+            std::sort(of.begin(), of.end());
+            of.erase(std::unique(of.begin(), of.end()), of.end());
         };
-        for (const Segment& s : t.segments) {
-            for (const NodeId p : nodes_on(t, s.ends[0], s.ends[1]))
-                hand(s.other, p);
+        order(triangles_[i].points);
+        order(triangles_[i].segments);
+    });
+}
+
+/// Pairs of segments of one triangle that cross each other.
+std::vector<Overlay::Cross> Overlay::crossing_segments(const Triangle& t) const {
+    std::vector<Cross> found;
+    if (t.turned == 0) return found;
+    struct Boxed {
+        const Segment* segment;
+        Box box;
+    };
+    std::vector<Boxed> boxed;
+    for (const Segment& s : t.segments) {
+        Boxed& own = boxed.emplace_back(Boxed{&s, {}});
+        for (const NodeId end : s.ends)
+            own.box.include(points_.rounded(end));
+    }
+    const std::size_t axis = (t.axis + 1) % 3;
+    std::sort(boxed.begin(), boxed.end(), [&](const Boxed& s, const Boxed& r) {
+        const double x = s.box.low[axis], y = r.box.low[axis];
+        return x != y ? x < y : *s.segment < *r.segment;
+    });
+    for (std::size_t i = 0; i < boxed.size(); ++i) {
+        const auto [a, b] = boxed[i].segment->ends;
+        for (std::size_t j = i + 1; j < boxed.size(); ++j) {
+            if (boxed[j].box.low[axis] > boxed[i].box.high[axis]) break;
+            const auto [c, d] = boxed[j].segment->ends;
+            if (a == c || a == d || b == c || b == d) continue;
+            if (!boxed[i].box.meets(boxed[j].box)) continue;
+            if (turn(t, a, b, c) * turn(t, a, b, d) >= 0) continue;
+            if (turn(t, c, d, a) * turn(t, c, d, b) >= 0) continue;
+            found.push_back({a, b, c, d});
         }
-        for (std::size_t i = 0; i < 3; ++i) {
-            const NodeId a = t.corners[i], b = t.corners[(i + 1) % 3];
-            const auto on = nodes_on(t, a, b);
-            if (on.empty()) continue;
-            for (const std::int32_t other : of_edge_.at(unordered(a, b))) {
-                for (const NodeId p : on)
-                    hand(other, p);
-            }
+    }
+    return found;
+}
+
+/// Notes where segments of one triangle cross each other: only where the triangles of a group do
+/// cross.
+void Overlay::cross_segments(int threads, const Progress* progress) {
+    std::vector<std::vector<Cross>> found(triangles_.size());
+    each_triangle(threads, progress,
+                  [&](std::size_t i) { found[i] = crossing_segments(triangles_[i]); });
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        for (const auto& [a, b, c, d] : found[i])
+            triangles_[i].points.push_back(points_.crossing(triangles_[i].axis, a, b, c, d));
+    }
+}
+
+/// What the points on the edges and segments of a triangle are to the others that share these.
+void Overlay::hand_on(std::int32_t triangle, std::vector<Hand>& hands) const {
+    const Triangle& t = triangles_[index(triangle)];
+    // of a triangle without area one corner may lie on the edge between the others
+    if (t.points.empty() && t.turned != 0) return;
+    const auto hand = [&](std::int32_t to, NodeId p) {
+        const Triangle& other = triangles_[index(to)];
+        if (to == triangle ||
+            std::find(other.corners.begin(), other.corners.end(), p) != other.corners.end() ||
+            std::binary_search(other.points.begin(), other.points.end(), p))
+            return;
+        hands.push_back({to, p});
+    };
+    for (const Segment& s : t.segments) {
+        for (const NodeId p : nodes_on(t, s.ends[0], s.ends[1]))
+            hand(s.other, p);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        const NodeId a = t.corners[i], b = t.corners[(i + 1) % 3];
+        const auto on = nodes_on(t, a, b);
+        if (on.empty()) continue;
+        const auto edge = unordered(a, b);
+        for (auto other = std::lower_bound(of_edge_.begin(), of_edge_.end(), std::pair(edge, 0));
+             other != of_edge_.end() && other->first == edge; ++other) {
+            for (const NodeId p : on)
+                hand(other->second, p);
         }
     }
 }
 
-void Overlay::divide(const Progress* progress) {
-    exchange_segments();
-    spread_points(progress);
-    for (std::size_t t = 0; t < triangles_.size(); ++t) {
-        if (progress != nullptr && (t & 0xff) == 0) progress->check();
-        if (triangles_[t].turned != 0) find_regions(static_cast<std::int32_t>(t));
+/// Hands the points on edges and segments to the other triangles that share these, until all of
+/// them know them.
+void Overlay::spread_points(int threads, const Progress* progress) {
+    std::vector<std::int32_t> changed(triangles_.size());
+    std::iota(changed.begin(), changed.end(), 0);
+    while (!changed.empty()) {
+        std::vector<std::vector<Hand>> hands((changed.size() + kChunk - 1) / kChunk);
+        strata::parallel_ranges(changed.size(), kChunk, threads, progress,
+                                [&](std::size_t begin, std::size_t end) {
+                                    for (std::size_t i = begin; i < end; ++i)
+                                        hand_on(changed[i], hands[begin / kChunk]);
+                                });
+        changed.clear();
+        for (const auto& chunk : hands) {
+            for (const Hand& hand : chunk) {
+                auto& points = triangles_[index(hand.to)].points;
+                const auto at = std::lower_bound(points.begin(), points.end(), hand.point);
+                if (at != points.end() && *at == hand.point) continue;
+                points.insert(at, hand.point);
+                changed.push_back(hand.to);
+            }
+        }
+        std::sort(changed.begin(), changed.end());
+        changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     }
+}
+
+void Overlay::divide(int threads, const Progress* progress) {
+    strata::parallel_sort(of_edge_, std::less<>(), threads, progress);
+    settle(threads, progress);
+    exchange_segments();
+    settle(threads, progress);
+    cross_segments(threads, progress);
+    settle(threads, progress);
+    spread_points(threads, progress);
+    std::vector<std::vector<Region>> found((triangles_.size() + kChunk - 1) / kChunk);
+    each_triangle(threads, progress, [&](std::size_t i) {
+        if (triangles_[i].turned != 0)
+            find_regions(static_cast<std::int32_t>(i), found[i / kChunk]);
+    });
+    for (auto& regions : found)
+        std::move(regions.begin(), regions.end(), std::back_inserter(regions_));
 }
 
 }  // namespace realmodel::cutting

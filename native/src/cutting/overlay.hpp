@@ -2,11 +2,11 @@
 #pragma once
 
 #include <array>
-#include <map>
-#include <set>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "box_tree.hpp"
 #include "exact_points.hpp"
 #include "realmodel/base/progress.hpp"
 
@@ -29,12 +29,26 @@ public:
 
     /// The number of the triangle. One without area stays an edge that others share.
     std::int32_t add(const std::array<NodeId, 3>& corners);
-    /// Whether two triangles may have something in common beside corners and edges that they share.
-    bool may_meet(std::int32_t one, std::int32_t other) const;
-    /// Finds where two triangles meet.
-    void meet(std::int32_t one, std::int32_t other);
+    /// An end of a stretch on the line of two planes: a corner, or where an edge of one triangle
+    /// passes through the plane of the other.
+    struct End {
+        NodeId from;             ///< the corner, or the end of the edge below the plane
+        NodeId to = -1;          ///< the other end, -1: a corner
+        std::int32_t plane = 0;  ///< of which triangle
+    };
+    /// Where two triangles meet: along a stretch, in a point (two equal ends), or in one plane.
+    struct Meeting {
+        std::int32_t one, other;
+        bool in_one_plane;
+        std::array<End, 2> ends;
+    };
+    /// Where two triangles meet beside the corners and edges that they share. May be asked by
+    /// several threads at once.
+    std::optional<Meeting> meeting(std::int32_t one, std::int32_t other) const;
+    /// Notes it with both triangles.
+    void take(const Meeting& meeting);
     /// Divides all triangles. With it no more can be added.
-    void divide(const Progress* progress);
+    void divide(int threads, const Progress* progress);
 
     const std::vector<Region>& regions() const { return regions_; }
     const std::array<NodeId, 3>& corners(std::int32_t triangle) const {
@@ -56,9 +70,9 @@ private:
     struct Triangle {
         std::array<NodeId, 3> corners;
         std::size_t axis = 0;
-        int turned = 0;  ///< which way it turns seen along its axis, 0: no area
-        std::set<NodeId> points;
-        std::set<Segment> segments;
+        int turned = 0;                 ///< which way it turns seen along its axis, 0: no area
+        std::vector<NodeId> points;     ///< in order, once all are there
+        std::vector<Segment> segments;  ///< likewise
         /// The points in the order of one coordinate; made when there are many, and made again
         /// when there are more.
         mutable std::vector<NodeId> in_order;
@@ -67,21 +81,49 @@ private:
     int turn(const Triangle& t, NodeId a, NodeId b, NodeId c) const {
         return t.turned * points_.turn(t.axis, a, b, c);
     }
+    /// On which sides of the plane of another triangle corners lie.
+    struct Sides {
+        std::array<int, 3> of;
+        int above = 0, below = 0;
+    };
+    /// What a triangle has of the line of its plane and another's. It is passed from below that
+    /// other plane at `up`, and back at `down`; both are one where only a corner touches it.
+    struct Stretch {
+        End up, down;
+    };
+    Sides sides_of(const Triangle& own, const Triangle& plane) const;
+    bool are_folded_apart(const Triangle& a, const Triangle& b) const;
+    static Stretch stretch_of(const Triangle& own, const Sides& sides, std::int32_t plane);
+    int order(const Triangle& a, const Sides& sides, const End& on_a, const Triangle& b,
+              const End& on_b) const;
     void share(std::int32_t one, std::int32_t other, NodeId p, NodeId q);
     void meet_in_plane(std::int32_t one, std::int32_t other);
     void clip_edges(std::int32_t edges_of, std::int32_t into);
     void clip_segment(NodeId p, NodeId q, std::int32_t of, std::int32_t into);
     void exchange_segments();
     bool on_segment(const Triangle& t, NodeId p, NodeId a, NodeId b) const;
+    template <class Visit>
+    void each_triangle(int threads, const Progress* progress, const Visit& visit) const;
+    void settle(int threads, const Progress* progress);
     std::vector<NodeId> nodes_on(const Triangle& t, NodeId a, NodeId b) const;
     std::span<const NodeId> points_between(const Triangle& t, NodeId a, NodeId b) const;
-    void spread_points(const Progress* progress);
-    void cross_segments(std::int32_t triangle);
-    void find_regions(std::int32_t triangle);
+    /// The ends of one segment, then those of another.
+    using Cross = std::array<NodeId, 4>;
+    std::vector<Cross> crossing_segments(const Triangle& t) const;
+    void cross_segments(int threads, const Progress* progress);
+    void spread_points(int threads, const Progress* progress);
+    /// A point of one triangle that is also on another.
+    struct Hand {
+        std::int32_t to;
+        NodeId point;
+    };
+    void hand_on(std::int32_t triangle, std::vector<Hand>& hands) const;
+    void find_regions(std::int32_t triangle, std::vector<Region>& regions) const;
 
     ExactPoints& points_;
     std::vector<Triangle> triangles_;
-    std::map<std::array<NodeId, 2>, std::vector<std::int32_t>> of_edge_;
+    /// The edges of all triangles, in order, with the triangle of each.
+    std::vector<std::pair<std::array<NodeId, 2>, std::int32_t>> of_edge_;
     std::vector<Region> regions_;
     std::vector<std::array<std::int32_t, 2>> in_one_plane_;
 };

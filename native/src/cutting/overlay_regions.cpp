@@ -16,34 +16,46 @@ struct Half {
 
 }  // namespace
 
-void Overlay::find_regions(std::int32_t triangle) {
+void Overlay::find_regions(std::int32_t triangle, std::vector<Region>& regions) const {
     const Triangle& t = triangles_[index(triangle)];
     if (t.points.empty() && t.segments.empty()) {
-        regions_.push_back({triangle, {{t.corners[0], t.corners[1], t.corners[2]}}});
+        regions.push_back({triangle, {{t.corners[0], t.corners[1], t.corners[2]}}});
         return;
     }
-    std::set<std::array<NodeId, 2>> edges;
+    std::vector<std::array<NodeId, 2>> edges;
     const auto lay = [&](NodeId a, NodeId b) {
         NodeId last = a;
         for (const NodeId p : nodes_on(t, a, b)) {
-            edges.insert({std::min(last, p), std::max(last, p)});
+            edges.push_back({std::min(last, p), std::max(last, p)});
             last = p;
         }
-        edges.insert({std::min(last, b), std::max(last, b)});
+        edges.push_back({std::min(last, b), std::max(last, b)});
     };
     for (std::size_t i = 0; i < 3; ++i)
         lay(t.corners[i], t.corners[(i + 1) % 3]);
     for (const Segment& s : t.segments)
         lay(s.ends[0], s.ends[1]);
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 
+    // the nodes, in order, and the half edges that leave each
+    std::vector<NodeId> nodes;
+    for (const auto& edge : edges)
+        nodes.insert(nodes.end(), edge.begin(), edge.end());
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    const auto place = [&nodes](NodeId node) {
+        return static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), node) -
+                                        nodes.begin());
+    };
     std::vector<Half> halves;
-    std::map<NodeId, std::vector<std::int32_t>> leaving;
+    std::vector<std::vector<std::int32_t>> leaving(nodes.size());
     for (const auto& [a, b] : edges) {
         const auto first = static_cast<std::int32_t>(halves.size());
         halves.push_back({a, b, first + 1, -1, -1});
         halves.push_back({b, a, first, -1, -1});
-        leaving[a].push_back(first);
-        leaving[b].push_back(first + 1);
+        leaving[place(a)].push_back(first);
+        leaving[place(b)].push_back(first + 1);
     }
     const std::size_t k = (t.axis + 1) % 3, l = (t.axis + 2) % 3;
     // the plane's own x and y, in which the triangle turns left
@@ -53,7 +65,7 @@ void Overlay::find_regions(std::int32_t triangle) {
         const int x = order_x(h.from, h.to);
         return x < 0 || (x == 0 && order_y(h.from, h.to) < 0);
     };
-    for (auto& [node, out] : leaving) {
+    for (auto& out : leaving) {
         std::sort(out.begin(), out.end(), [&](std::int32_t a, std::int32_t b) {
             const Half &g = halves[index(a)], &h = halves[index(b)];
             const bool right_g = to_the_right(g), right_h = to_the_right(h);
@@ -77,22 +89,24 @@ void Overlay::find_regions(std::int32_t triangle) {
         }
     }
     // connected parts of the graph, and the loop around each
-    std::map<NodeId, std::int32_t> part_of;
+    std::vector<std::int32_t> part_of(nodes.size(), -1);
     std::vector<NodeId> least;
-    for (const auto& [node, out] : leaving) {
-        if (part_of.contains(node)) continue;
+    for (std::size_t start = 0; start < nodes.size(); ++start) {
+        if (part_of[start] >= 0) continue;
         const auto part = static_cast<std::int32_t>(least.size());
-        std::vector<NodeId> open{node};
-        part_of[node] = part;
-        NodeId low = node;
+        std::vector<std::size_t> open{start};
+        part_of[start] = part;
+        NodeId low = nodes[start];
         while (!open.empty()) {
-            const NodeId at = open.back();
+            const std::size_t at = open.back();
             open.pop_back();
-            const int x = order_x(at, low);
-            if (x < 0 || (x == 0 && order_y(at, low) < 0)) low = at;
+            const int x = order_x(nodes[at], low);
+            if (x < 0 || (x == 0 && order_y(nodes[at], low) < 0)) low = nodes[at];
             for (const std::int32_t h : leaving[at]) {
-                if (part_of.emplace(halves[index(h)].to, part).second)
-                    open.push_back(halves[index(h)].to);
+                const std::size_t to = place(halves[index(h)].to);
+                if (part_of[to] >= 0) continue;
+                part_of[to] = part;
+                open.push_back(to);
             }
         }
         least.push_back(low);
@@ -101,17 +115,15 @@ void Overlay::find_regions(std::int32_t triangle) {
     std::vector<std::int32_t> outer(least.size());
     for (std::size_t part = 0; part < least.size(); ++part) {
         // at the leftmost node nothing leaves to the left: that sector is outside
-        outer[part] = halves[index(leaving[least[part]].back())].loop;
+        outer[part] = halves[index(leaving[place(least[part])].back())].loop;
         around[index(outer[part])] = true;
     }
-    std::vector<std::int32_t> region_of(loops.size(), -1);
-    const auto first_region = regions_.size();
+    const auto first_region = regions.size();
     for (std::size_t i = 0; i < loops.size(); ++i) {
-        if (around[i]) continue;
-        region_of[i] = static_cast<std::int32_t>(regions_.size());
-        regions_.push_back({triangle, {loops[i]}});
+        if (!around[i]) regions.push_back({triangle, {loops[i]}});
     }
-    const std::int32_t main_part = part_of[t.corners[0]];
+    if (least.size() == 1) return;
+    const std::int32_t main_part = part_of[place(t.corners[0])];
     const auto contains = [&](const std::vector<NodeId>& loop, NodeId p) {
         bool inside = false;
         for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -133,15 +145,14 @@ void Overlay::find_regions(std::int32_t triangle) {
     };
     for (std::size_t part = 0; part < least.size(); ++part) {
         if (static_cast<std::int32_t>(part) == main_part) continue;
-        std::size_t found = regions_.size();
-        for (std::size_t r = first_region; r < regions_.size(); ++r) {
-            const auto& outline = regions_[r].loops[0];
-            if (part_of[outline[0]] == static_cast<std::int32_t>(part)) continue;
+        std::size_t found = regions.size();
+        for (std::size_t r = first_region; r < regions.size(); ++r) {
+            const auto& outline = regions[r].loops[0];
+            if (part_of[place(outline[0])] == static_cast<std::int32_t>(part)) continue;
             if (!contains(outline, least[part])) continue;
-            if (found == regions_.size() || size(outline) < size(regions_[found].loops[0]))
-                found = r;
+            if (found == regions.size() || size(outline) < size(regions[found].loops[0])) found = r;
         }
-        if (found < regions_.size()) regions_[found].loops.push_back(loops[index(outer[part])]);
+        if (found < regions.size()) regions[found].loops.push_back(loops[index(outer[part])]);
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "realmodel/exact/turn.hpp"
 #include "strata/parallel_chunks.hpp"
@@ -245,9 +246,9 @@ void SurfaceOverlay::overlay_all() {
     // Which meet is found out on all threads; where they do is entered in order.
     const auto count = index(first_cutter_) + surface_.triangles.size();
     constexpr std::size_t kChunk = 1 << 8;
-    std::vector<std::vector<std::array<std::int32_t, 2>>> meeting((count + kChunk - 1) / kChunk);
+    std::vector<std::vector<Overlay::Meeting>> meetings((count + kChunk - 1) / kChunk);
     if (progress_ != nullptr) progress_->begin(0.1, 0.3, "finding where surface and faces meet");
-    strata::parallel_chunks(meeting.size(), threads_, progress_, [&](std::size_t chunk) {
+    strata::parallel_chunks(meetings.size(), threads_, progress_, [&](std::size_t chunk) {
         for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
             const auto t = static_cast<std::int32_t>(i);
             Box box;
@@ -256,17 +257,19 @@ void SurfaceOverlay::overlay_all() {
             if (t >= first_cutter_ && !box.meets(model_box_)) continue;
             tree_->find(box, [&](std::int32_t c) {
                 const std::int32_t other = first_cutter_ + c;
-                if (other > t && overlay_.may_meet(t, other)) meeting[chunk].push_back({t, other});
+                if (other <= t) return;
+                if (const auto meeting = overlay_.meeting(t, other))
+                    meetings[chunk].push_back(*meeting);
             });
         }
     });
     if (progress_ != nullptr) progress_->begin(0.3, 0.55, "dividing faces and surface");
-    for (std::size_t chunk = 0; chunk < meeting.size(); ++chunk) {
+    for (const auto& found : meetings) {
         if (progress_ != nullptr) progress_->check();
-        for (const auto& [t, other] : meeting[chunk])
-            overlay_.meet(t, other);
+        for (const Overlay::Meeting& meeting : found)
+            overlay_.take(meeting);
     }
-    overlay_.divide(progress_);
+    overlay_.divide(threads_, progress_);
 }
 
 /// Numbers all nodes: the model's vertices keep theirs, the others follow.

@@ -23,6 +23,7 @@ public:
 
     const ComplexView& model() const { return model_; }
     const CutterSurface& surface() const { return surface_; }
+    int threads() const { return threads_; }
     std::size_t size() const { return overlay_.regions().size(); }
     bool of_cutter(std::size_t region) const { return triangle(region) >= first_cutter_; }
     /// The face that a region is part of.
@@ -49,12 +50,17 @@ public:
     }
     bool is_near(NodeId vertex) const { return vertex_node_[index(vertex)] >= 0; }
 
-    /// The exact point of a node.
+    /// The exact point of a node. Those of regions have one already: of them several threads may
+    /// ask at once.
     NodeId exact(NodeId node);
     ExactPoints& points() { return points_; }
     /// The corners, as exact points, of the triangle that a region is part of.
     const std::array<NodeId, 3>& corners(std::size_t region) const {
         return overlay_.corners(triangle(region));
+    }
+    /// Whether two regions are parts of one triangle.
+    bool are_of_one_triangle(std::size_t region, std::size_t other) const {
+        return triangle(region) == triangle(other);
     }
     /// A corner of that triangle to the left of a line in it; all as exact points.
     NodeId left_corner(std::size_t region, NodeId from, NodeId to) const {

@@ -218,6 +218,29 @@ TEST(SurfaceCut, AModelWhoseFacesCrossByRoundingIsCut) {
     }
 }
 
+TEST(SurfaceCut, TheSameForAnyNumberOfThreads) {
+    const auto wavy = [](double height) {
+        return [height](double x, double y) { return height + 0.4 * std::sin(9 * x + 5 * y); };
+    };
+    const CellComplex c =
+        strata::build({grid(17, 17, 0, 0, 1, 1, wavy(0)), grid(16, 16, 0, 0, 1, 1, wavy(0.3)),
+                       grid(18, 18, 0, 0, 1, 1, wavy(0.5))});
+    // more triangles than one thread takes at once, some of them in planes of the model's walls
+    const OwnedSurface cutter = grid(20, 20, -0.1, -0.1, 1.2, 1.2, wavy(0.25));
+    const OwnedSurface shaft = box({0.25, 0.25, -2}, {0.5, 0.75, 2});
+    for (const OwnedSurface& s : {cutter, shaft}) {
+        const Cut one = cut_by_surface(view(c), view(s), 1, nullptr);
+        const Cut four = cut_by_surface(view(c), view(s), 4, nullptr);
+        for (const auto half : {&Cut::below, &Cut::above}) {
+            EXPECT_TRUE(std::ranges::equal((one.*half).vertices, (four.*half).vertices));
+            EXPECT_TRUE(std::ranges::equal((one.*half).face_vertices, (four.*half).face_vertices));
+            EXPECT_TRUE(std::ranges::equal((one.*half).face_cells, (four.*half).face_cells));
+        }
+        EXPECT_EQ(one.section.vertices, four.section.vertices);
+        EXPECT_EQ(one.section.polygon_vertices, four.section.polygon_vertices);
+    }
+}
+
 TEST(SurfaceCut, BesideTheModelTheNearestSideCounts) {
     const CellComplex c = level_layers({0, 1});
     for (const double z : {-1.0, 2.0}) {
