@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
@@ -96,8 +97,13 @@ def given_rings(outline, holes: Iterable = ()) -> list[NamedRing]:
 def rings_of_shapes(shapes: Shapes) -> list[NamedRing]:
     """The rings of polygons that were read."""
     rings = []
+    parts = Counter(shape.item for shape in shapes.polygons)
+    part = Counter()
     for polygon, shape in enumerate(shapes.polygons):
         item = shape.item or ("outline" if len(shapes.polygons) == 1 else f"polygon {polygon + 1}")
+        part[shape.item] += 1
+        if shape.item and parts[shape.item] > 1:
+            item = f"{item}, polygon {part[shape.item]}"
         for number, corners in enumerate(shape.rings):
             hole = shape.has_roles and number > 0
             if hole:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -12,6 +13,8 @@ import numpy as np
 from ..errors import InputRefused
 from ..finite import is_finite
 from .shapes import Heights, Selection, Shapes
+
+_BETWEEN = re.compile(r"[ \t\r\n\x1e]*")
 
 
 def read_geojson(file: str | Path, where: Mapping | None = None, heights: Heights | None = None) -> Shapes:
@@ -27,7 +30,7 @@ def read_geojson(file: str | Path, where: Mapping | None = None, heights: Height
     except UnicodeDecodeError as error:
         raise InputRefused("not UTF-8 text", file=file, advice="save it as UTF-8") from error
     try:
-        content = json.loads(text, parse_constant=_refuse_constant)
+        content = _parsed(text)
     except json.JSONDecodeError as error:
         raise InputRefused(f"not valid JSON: {error.msg}", file=file, line=error.lineno) from error
     except _NotANumber as error:
@@ -40,6 +43,18 @@ def read_geojson(file: str | Path, where: Mapping | None = None, heights: Height
     walk.node(content, "")
     walk.selection.require_some()
     return walk.shapes
+
+
+def _parsed(text: str):
+    """One JSON text; or several after each other, as one collection: one a line, or each behind a record
+    separator (RFC 8142)."""
+    decoder = json.JSONDecoder(parse_constant=_refuse_constant)
+    members, at = [], _BETWEEN.match(text).end()
+    while at < len(text) or not members:
+        member, at = decoder.raw_decode(text, at)
+        members.append(member)
+        at = _BETWEEN.match(text, at).end()
+    return members[0] if len(members) == 1 else {"type": "FeatureCollection", "features": members}
 
 
 class _NotANumber(ValueError):

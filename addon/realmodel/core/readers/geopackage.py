@@ -20,7 +20,8 @@ from .text import Step, no_step
 _MAGIC = b"SQLite format 3\0"
 _ENVELOPES = (0, 32, 48, 48, 64)  # bytes of the bounding box, by what the flags say
 _POINT, _LINE, _POLYGON = 1, 2, 3
-_COLLECTIONS = (4, 5, 6, 7)  # several points, lines, polygons; several of any kind
+_COLLECTIONS = (4, 5, 6, 7, 11, 12)  # several points, lines, polygons; of any kind; of curves, of surfaces
+_CURVED = {8: "CircularString", 9: "CompoundCurve", 10: "CurvePolygon"}
 _DEEPEST = 50
 _STEP = 1000  # features
 
@@ -39,12 +40,27 @@ def read_geopackage(
 ) -> Shapes:
     """The features of one layer: of `layer`, or of the only one. Raises InputRefused naming both."""
     file = Path(file)
-    address = f"file:{quote(str(file.resolve()))}?mode=ro&immutable=1"
+    address = f"file:{quote(str(file.resolve()))}?mode=ro"
+    if open_changes(file) is None:
+        address += "&immutable=1"  # so that nothing is written beside it
     try:
         with closing(sqlite3.connect(address, uri=True)) as base:
             return _read(file, base, layer, where or {}, step, heights)
     except sqlite3.Error as error:
-        raise InputRefused(f"not a GeoPackage that can be read: {error}", file=file) from error
+        changed = open_changes(file) is not None
+        advice = "close it in the program that has it open, so that its last changes are in it"
+        what = f"not a GeoPackage that can be read: {error}"
+        raise InputRefused(what, file=file, advice=advice if changed else None) from error
+
+
+def open_changes(file: Path) -> Path | None:
+    """The file beside a GeoPackage with what a program that has it open changed last; None: there is none."""
+    changes = file.resolve()
+    changes = changes.with_name(changes.name + "-wal")
+    try:
+        return changes if changes.stat().st_size > 0 else None
+    except OSError:
+        return None
 
 
 def _read(
@@ -67,6 +83,8 @@ def _read(
         advice = f'say which: layer = "..."; it has {names_shown(list(layers))}'
         raise InputRefused(f"it has {len(layers)} layers", file=file, advice=advice)
     table = layer if layer is not None else next(iter(layers))
+    if table not in layers:  # SQL does not tell a from A
+        table = next((name for name in layers if name.lower() == table.lower()), table)
     if table not in layers:
         what = f"it has no layer '{layer}'"
         raise InputRefused(what, file=file, advice=f"it has {names_shown(list(layers))}")
@@ -168,5 +186,7 @@ class _WellKnownBinary:
         elif kind in _COLLECTIONS:
             for _ in range(self.number(order)):
                 self.geometry(item, shapes, depth + 1)
+        elif kind in _CURVED:
+            raise ValueError(f"a {_CURVED[kind]}, which is curved; save it with straight lines")
         else:
             raise ValueError(f"a geometry of kind {kind}, which is not read")

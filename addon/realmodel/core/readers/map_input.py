@@ -11,15 +11,18 @@ from ..errors import InputRefused
 from ..map_layer import MapLayer, begins_as_wkt
 from ..units import MODEL_UNIT, factor
 from .geojson import read_geojson
-from .geopackage import is_geopackage, read_geopackage
+from .geopackage import is_geopackage, open_changes, read_geopackage
 from .shapefile_reader import beside, is_shapefile, read_shapefile
 from .shapes import Heights, Shapes
 from .text import Step, no_step, read_text
 from .wkt import parse_wkt
 
 _HEAD = 512
-_JSON = (".json", ".geojson")
+_JSON = (".json", ".geojson", ".geojsonl", ".geojsons")
 _BOM = b"\xef\xbb\xbf"
+_RECORD_SEPARATOR = b"\x1e"  # begins each text of a GeoJSON text sequence (RFC 8142)
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")
+_BESIDE_SHAPEFILE = (".shx", ".dbf", ".prj", ".cpg", ".sbn", ".sbx", ".qix")
 
 
 def is_map_layer(file: Path, head: bytes) -> bool:
@@ -30,7 +33,8 @@ def is_map_layer(file: Path, head: bytes) -> bool:
 
 
 def _is_json(file: Path, head: bytes) -> bool:
-    return file.suffix.lower() in _JSON or head.removeprefix(_BOM).lstrip()[:1] in (b"{", b"[")
+    first = head.removeprefix(_BOM).lstrip()[:1]
+    return file.suffix.lower() in _JSON or first in (b"{", b"[", _RECORD_SEPARATOR)
 
 
 def read_shapes(
@@ -51,16 +55,17 @@ def read_shapes(
     elif given.layer is not None:
         what = f"it is no GeoPackage, so it has no layer '{given.layer}'"
         raise InputRefused(what, file=file, advice="take 'layer' out")
+    elif file.suffix.lower() in _BESIDE_SHAPEFILE:
+        raise InputRefused("only a part of a shapefile", file=file, advice="name the .shp beside it")
     elif is_shapefile(head):
         shapes = read_shapefile(file, given.where, step, heights)
     elif _is_json(file, head):
         shapes = read_geojson(file, given.where, heights)
     else:
-        text = read_text(file)
+        text = "" if b"\0" in head and not head.startswith(_UTF16) else read_text(file)
         if not begins_as_wkt(text):
-            raise InputRefused(
-                "neither GeoJSON, well-known text, a shapefile (.shp) nor a GeoPackage", file=file
-            )
+            what = "neither GeoJSON, well-known text, a shapefile (.shp) nor a GeoPackage"
+            raise InputRefused(what, file=file, advice="save it as one of these from the program it is of")
         if given.where:
             raise InputRefused("well-known text has no attributes, so 'where' has no meaning here", file=file)
         if heights and heights.attribute is not None:
@@ -92,4 +97,6 @@ def require_polygons(shapes: Shapes, file: Path | None) -> None:
 
 def map_companions(file: Path) -> list[Path]:
     """Files beside one of outlines that are read with it."""
-    return beside(file) if file.suffix.lower() == ".shp" else []
+    if file.suffix.lower() == ".shp":
+        return beside(file)
+    return [changes] if file.suffix.lower() == ".gpkg" and (changes := open_changes(file)) else []
