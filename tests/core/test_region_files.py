@@ -216,9 +216,8 @@ def test_changes_that_are_not_yet_in_a_geopackage(package):
 def test_curves_are_refused(tmp_path):
     curve = struct.pack("<BII", 1, 10, 1) + struct.pack("<BII6d", 1, 8, 3, 0, 0, 1, 1, 2, 0)
     path = write_geopackage(tmp_path / "c.gpkg", {"c": ("geom", [(curve, "")])})
-    with pytest.raises(
-        InputRefused, match="layer 'c', feature 1: .*CurvePolygon.*save it with straight lines"
-    ):
+    words = r"layer 'c', feature 1: .*CurvePolygon.*save it with straight lines"
+    with pytest.raises(InputRefused, match=words):
         read_shapes(MapLayer(path))
 
 
