@@ -2,7 +2,6 @@
 """Small projects on disk for the tests of the core."""
 
 import sys
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -53,23 +52,3 @@ def grid_surface(n, height, size=1.0):
     )
     z = np.broadcast_to(height(x, y), x.shape)
     return np.column_stack([x.ravel(), y.ravel(), z.ravel()]), triangles.astype(np.int32)
-
-
-def least_of(measure, enough, attempts=6):
-    """The least of some measurements, the first that is below `enough` being the last.
-
-    Other work on the machine makes a measured time longer, never shorter: what is slow of itself is slow
-    every time.
-    """
-    least = measure()
-    for _ in range(attempts - 1):
-        if least < enough:
-            break
-        least = min(least, measure())
-    return least
-
-
-def unevenness(times):
-    """How far calls at these times are from ten a second, evenly: below 1 they are, on a busy machine too."""
-    longest = max(b - a for a, b in pairwise(times))
-    return max(longest / 0.25, (times[-1] - times[0]) / len(times) / 0.1)

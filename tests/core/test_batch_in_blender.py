@@ -55,7 +55,6 @@ def test_stopped_while_it_renders(layers, tmp_path, number, status):
         process = rendering(project, out, scratch)
         time.sleep(random.Random(int(number)).uniform(0.0, latest))
         process.send_signal(number)
-        began = time.perf_counter()
         _, errors = process.communicate(timeout=60)
         if process.returncode != 0:
             break
@@ -63,7 +62,6 @@ def test_stopped_while_it_renders(layers, tmp_path, number, status):
         assert latest > 0.01, "it cannot be stopped"
         for path in out.iterdir():
             path.unlink()
-    assert time.perf_counter() - began < 10.0
     assert process.returncode == status
     assert len(errors.splitlines()) <= 1, errors
     assert list(out.iterdir()) == []

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From a project to a model: what comes out, and what bad input is answered with."""
 
-import time
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from conftest import grid_surface, least_of, unevenness
+from conftest import grid_surface
+from realmodel import _native
 from realmodel.core import (
     Cancelled,
     InputRefused,
@@ -19,6 +19,7 @@ from realmodel.core import (
     build,
     load_project,
 )
+from realmodel.core.work import run
 
 
 def level(name, z, n=2, shift=0.0, **more):
@@ -312,53 +313,58 @@ def test_one_surface_alone_warns():
 
 @pytest.fixture(scope="module")
 def long_build():
-    """A project that takes a second or so, whatever the machine."""
+    """A project that takes long enough for many calls of progress() and cancel()."""
 
     def height(k):
         return lambda x, y: 0.1 * k + 0.4 * np.sin(7 * x + k) * np.cos(6 * y - k)
 
-    cells, taken = 40, 0.0
-    while taken < 0.7:
-        cells = int(cells * 1.5)
-        project = rock(*(Surface(f"S{k}", *grid_surface(cells + k, height(k))) for k in range(10)))
-        began = time.perf_counter()
-        build(project)
-        taken = time.perf_counter() - began
-    return project
+    return rock(*(Surface(f"S{k}", *grid_surface(90 + k, height(k))) for k in range(10)))
 
 
 def test_progress_of_a_build(long_build):
-    def watched():
-        calls = []
-        build(long_build, progress=lambda fraction, text: calls.append((time.perf_counter(), fraction, text)))
-        times, fractions, texts = zip(*calls, strict=True)
-        assert list(fractions) == sorted(fractions)
-        assert fractions[-1] == 1.0
-        assert any("intersecting" in text for text in texts)
-        assert fractions[0] >= 0.0
-        return max(unevenness(times), fractions[0] / 0.5)
-
-    assert least_of(watched, 1.0) < 1.0
+    calls = []
+    build(long_build, progress=lambda fraction, text: calls.append((fraction, text)))
+    fractions, texts = zip(*calls, strict=True)
+    assert list(fractions) == sorted(fractions)
+    assert 0.0 <= fractions[0] < 1.0
+    assert fractions[-1] == 1.0
+    assert any("intersecting" in text for text in texts)
+    assert len(set(fractions)) > 5
 
 
-def seconds_to_cancel(project, share):
-    """From the moment that cancel() says yes, once this share of the work is done."""
-    told, asked = [0.0], []
+def counted_after_cancel(project, share, monkeypatch):
+    """What native work counts of itself, 1 being a whole call, after cancel() has said yes; it does so once
+    this share of the build is done."""
+    controls, told, asked = [], [0.0], []
+    control = _native.Control
+
+    def recorded():
+        controls.append(control())
+        return controls[-1]
+
+    def counted():
+        return sum(one.fraction for one in controls)
 
     def cancel():
         if told[-1] < share:
             return False
-        asked.append(time.perf_counter())
+        asked.append(counted())
         return True
 
-    with pytest.raises(Cancelled):
-        build(project, progress=lambda fraction, text: told.append(fraction), cancel=cancel)
-    return time.perf_counter() - asked[0]
+    with monkeypatch.context() as patch:
+        patch.setattr(_native, "Control", recorded)
+        with pytest.raises(Cancelled):
+            build(project, progress=lambda fraction, text: told.append(fraction), cancel=cancel)
+        run(lambda work: None)  # waits for the work that was stopped
+    assert len(asked) == 1
+    return counted() - asked[0]
 
 
 @pytest.mark.parametrize("share", [0.0, 0.2, 0.4, 0.6])
-def test_a_build_is_cancelled_within_a_fifth_of_a_second(long_build, share):
-    assert least_of(lambda: seconds_to_cancel(long_build, share), 0.2) < 0.2
+def test_a_cancelled_build_does_little_more(long_build, share, monkeypatch):
+    """Of several attempts one must: on a busy machine work goes on before the wish arrives."""
+    most = 0.1
+    assert any(counted_after_cancel(long_build, share, monkeypatch) < most for _ in range(6))
 
 
 def test_a_base_that_a_method_passed_says_which_points_did_not(write):

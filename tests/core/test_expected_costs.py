@@ -2,7 +2,6 @@
 """How the progress of a build is divided, and that it tells the share of the work done."""
 
 import json
-import time
 
 import numpy as np
 import pytest
@@ -82,14 +81,18 @@ def test_surfaces_of_points_are_mostly_interpolated(write):
 
 @pytest.mark.parametrize("cells", ["columns", "blocks"])
 @pytest.mark.parametrize("own", [True, False])
-def test_progress_tells_the_share_of_the_work(cells, own):
-    """Against the processor time of this process, which does not count how busy the machine is."""
+def test_progress_goes_by_the_expected_shares(cells, own):
+    """Every part of a build begins and ends in the progress where its costs say."""
+    project = waves(8, 60, own)
     told = []
-    began = time.process_time()
-    build(waves(8, 60, own), cells, 1, progress=lambda share, _: told.append((time.process_time(), share)))
-    spent = np.array([at for at, _ in told]) - began
-    shares = np.array([share for _, share in told])
+    build(project, cells, 1, progress=lambda share, text: told.append((share, text)))
+    shares = np.array([share for share, _ in told])
     assert (np.diff(shares) >= 0).all()
     assert shares[-1] == 1.0
-    # twice what is promised of wall time: a small stack's parts cost differently
-    assert np.abs(shares - spent / spent[-1]).max() < 0.3
+    expected = expected_shares(project, cells)
+    cutting = [share for share, text in told if text == "intersecting and cutting"]
+    after = [share for share, text in told if text == "putting the model together"]
+    assert cutting
+    assert min(cutting) >= expected.read
+    assert max(cutting) <= expected.intersect + 1e-12
+    assert min(after) >= expected.intersect - 1e-12

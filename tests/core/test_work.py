@@ -6,85 +6,86 @@ import threading
 import time
 
 import pytest
-from conftest import least_of, unevenness
 from realmodel.core import Cancelled, InputRefused
-from realmodel.core.work import run
+from realmodel.core.work import POLL_SECONDS, run
+
+ENDLESS = 6000  # steps of 10 ms: a test that takes all of them has failed
 
 
-def in_steps(work, seconds=1.0, steps=200):
-    with work.phase(0.0, 0.5, "first half"):
-        for step in range(steps // 2):
-            time.sleep(seconds / steps)
-            work.step(step / (steps // 2))
-    with work.phase(0.5, 1.0, "second half"):
-        for step in range(steps // 2):
-            time.sleep(seconds / steps)
-            work.step(step / (steps // 2))
-    return "done"
+class Steps:
+    """Work in two phases of short steps, which counts them; it ends early once `enough()` holds."""
+
+    def __init__(self, enough=lambda: False):
+        self.done = 0
+        self._enough = enough
+
+    def __call__(self, work):
+        for start, text in ((0.0, "first half"), (0.5, "second half")):
+            with work.phase(start, start + 0.5, text):
+                for step in range(ENDLESS // 2):
+                    if self._enough() and step > 0:
+                        break
+                    time.sleep(0.01)
+                    self.done += 1
+                    work.step(step / (ENDLESS // 2))
+        return "done"
 
 
 def working_threads():
     return [thread for thread in threading.enumerate() if thread.name == "realmodel work"]
 
 
-def test_progress_ten_times_a_second_and_never_falling():
+def test_progress_while_the_work_goes_on_and_never_falling():
     caller = threading.get_ident()
+    calls = []
 
-    def watched():
-        calls = []
+    def progress(fraction, text):
+        assert threading.get_ident() == caller
+        calls.append((fraction, text))
 
-        def progress(fraction, text):
-            assert threading.get_ident() == caller
-            calls.append((time.perf_counter(), fraction, text))
-
-        assert run(in_steps, progress) == "done"
-        times, fractions, texts = zip(*calls, strict=True)
-        assert list(fractions) == sorted(fractions)
-        assert fractions[0] >= 0.0
-        assert fractions[-1] == 1.0
-        assert list(texts) == sorted(texts)
-        return max(unevenness(times), fractions[0] / 0.2)
-
-    assert least_of(watched, 1.0) < 1.0
+    steps = Steps(lambda: len(calls) >= 20)
+    assert run(steps, progress) == "done"
+    assert POLL_SECONDS <= 0.1, "ten times a second"
+    assert len(calls) >= 20
+    assert steps.done < ENDLESS, "progress is not told while the work goes on"
+    fractions, texts = zip(*calls, strict=True)
+    assert list(fractions) == sorted(fractions)
+    assert fractions[0] >= 0.0
+    assert fractions[-1] == 1.0
+    assert list(texts) == sorted(texts)
 
 
-def test_cancel_stops_soon_and_leaves_no_thread():
-    def seconds_to_stop():
-        asked = []
+def test_cancel_stops_at_the_next_step_and_leaves_no_thread():
+    asked = []
+    steps = Steps()
 
-        def cancel():
-            asked.append(time.perf_counter())
-            return len(asked) > 3
+    def cancel():
+        asked.append(steps.done)
+        return len(asked) > 3
 
-        with pytest.raises(Cancelled):
-            run(lambda work: in_steps(work, 60.0, 6000), cancel=cancel)
-        assert not working_threads()
-        return time.perf_counter() - asked[3]
-
-    assert least_of(seconds_to_stop, 0.2) < 0.2
+    with pytest.raises(Cancelled):
+        run(steps, cancel=cancel)
+    run(lambda _work: None)  # waits for what was stopped
+    assert not working_threads()
+    assert len(asked) == 4
+    assert steps.done - asked[3] < ENDLESS / 10
 
 
 def test_cancel_answers_before_all_is_torn_down():
     """Freeing what a large model has taken needs longer than a person waits; the next work waits for it."""
-    gone = threading.Event()
+    may_leave, gone = threading.Event(), threading.Event()
 
     def slow_to_leave(work):
         try:
-            in_steps(work, 60.0, 6000)
+            Steps()(work)
         finally:
-            time.sleep(1.0)
+            may_leave.wait(60.0)
             gone.set()
 
-    asked = []
-
-    def cancel():
-        asked.append(time.perf_counter())
-        return True
-
     with pytest.raises(Cancelled):
-        run(slow_to_leave, cancel=cancel)
-    assert time.perf_counter() - asked[0] < 0.5
+        run(slow_to_leave, cancel=lambda: True)
     assert not gone.is_set()
+    may_leave.set()
     assert run(lambda _work: gone.is_set()), "stopped work is gone before the next begins"
     assert not working_threads()
 
@@ -94,26 +95,20 @@ def test_what_progress_raises_stops_the_work():
         raise RuntimeError("the window is gone")
 
     with pytest.raises(RuntimeError, match="window"):
-        run(lambda work: in_steps(work, 60.0, 6000), progress)
+        run(Steps(), progress)
+    run(lambda _work: None)
     assert not working_threads()
 
 
 def test_ctrl_c_stops_the_work_and_passes_on():
-    def seconds_to_stop():
-        pressed = []
-
-        def press():
-            pressed.append(time.perf_counter())
-            _thread.interrupt_main()
-
-        timer = threading.Timer(0.2, press)
-        with pytest.raises(KeyboardInterrupt):
-            timer.start()
-            run(lambda work: in_steps(work, 60.0, 6000))
-        assert not working_threads()
-        return time.perf_counter() - pressed[0]
-
-    assert least_of(seconds_to_stop, 0.3) < 0.3
+    steps = Steps()
+    timer = threading.Timer(0.2, _thread.interrupt_main)
+    with pytest.raises(KeyboardInterrupt):
+        timer.start()
+        run(steps)
+    run(lambda _work: None)
+    assert not working_threads()
+    assert steps.done < ENDLESS
 
 
 def test_errors_of_the_work_reach_the_caller():

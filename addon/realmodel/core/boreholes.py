@@ -9,18 +9,24 @@ from pathlib import Path
 
 from .point_file import ReadingRefused, check_units
 
-COLUMNS = ("hole", "x", "y", "z", "surface", "depth", "elevation")
+COLUMNS = ("hole", "x", "y", "z", "surface", "depth", "elevation", "azimuth", "dip", "inclination")
+DOWNWARD_DIPS = ("negative", "positive")
 
 
 @dataclass(frozen=True)
 class Boreholes:
-    """Tables of vertical boreholes, which give points for all surfaces of a rock mass at once.
+    """Tables of boreholes, which give points for all surfaces of a rock mass at once.
 
-    picks: a table with a row for each surface met in a hole: hole, surface, and its depth below the collar,
-    or its elevation. collars: a table with a row for each hole: hole, x, y, z; None where the rows of picks
-    have these themselves. columns: {"hole": "BHID", ...}, names or numbers from 1 of columns that are called
-    otherwise, in whichever table has them. separator, decimal: as of a PointFile, of both tables. units: of
-    both, "ft", or {"xy": "m", "z": "ft"} (depths are in the unit of z); None: those of the model.
+    picks: a table with a row for each surface met in a hole: hole, surface, and its depth below the collar
+    (along the hole), or its elevation. collars: a table with a row for each hole: hole, x, y, z, and azimuth
+    and dip or inclination where it is straight but not vertical; None where the rows of picks have x, y and z
+    themselves. survey: a table with a row for each place where the direction of a hole was measured: hole,
+    depth along it, azimuth in degrees clockwise from north (+y), and either the inclination in degrees from
+    the vertical or the dip from the horizontal; None: holes go as the collars say, or straight down.
+    downward_dip: "negative" or "positive", which dips go down; None: all of a table go the same way, down.
+    columns: {"hole": "BHID", ...}, names or numbers from 1 of columns that are called
+    otherwise, in whichever tables have them. separator, decimal: as of a PointFile, of all tables. units: of
+    all, "ft", or {"xy": "m", "z": "ft"} (depths are in the unit of z); None: those of the model.
     """
 
     picks: str | Path
@@ -29,10 +35,12 @@ class Boreholes:
     separator: str | None = None
     decimal: str | None = None
     units: str | Mapping | None = None
+    survey: str | Path | None = None
+    downward_dip: str | None = None
 
     @property
     def files(self) -> list[Path]:
-        return [Path(file) for file in (self.collars, self.picks) if file is not None]
+        return [Path(file) for file in (self.collars, self.survey, self.picks) if file is not None]
 
     def check(self) -> None:
         """Raises ReadingRefused for a key that makes no sense."""
@@ -47,4 +55,7 @@ class Boreholes:
             if not is_number and not (isinstance(column, str) and column.strip()):
                 what = f"column '{name}' must be a name or a number from 1, not {column!r}"
                 raise ReadingRefused("columns", what)
+        if self.downward_dip is not None and self.downward_dip not in DOWNWARD_DIPS:
+            what = f'\'downward_dip\' must be "negative" or "positive", not {self.downward_dip!r}'
+            raise ReadingRefused("downward_dip", what)
         check_units(self.units)

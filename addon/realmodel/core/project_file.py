@@ -199,12 +199,13 @@ def _read_boreholes(table: Table, folder: Path) -> Boreholes | None:
     if not isinstance(given, dict):
         raise table.refuse("'boreholes' must be a file or a table", "boreholes", _BOREHOLES)
     keys = _inner(table, "boreholes", given)
-    keys.allow_only(("picks", "collars", "columns", "separator", "decimal", "units"))
-    collars = keys.text("collars")
-    values = {name: given[name] for name in ("columns", "separator", "decimal", "units") if name in given}
-    return Boreholes(
-        folder / keys.text("picks", required=True), None if collars is None else folder / collars, **values
-    )
+    said = ("columns", "separator", "decimal", "units", "downward_dip")
+    keys.allow_only(("picks", "collars", "survey", *said))
+    values = {name: given[name] for name in said if name in given}
+    for name in ("collars", "survey"):
+        if (file := keys.text(name)) is not None:
+            values[name] = folder / file
+    return Boreholes(folder / keys.text("picks", required=True), **values)
 
 
 def _inner(table: Table, key: str, content: dict) -> Table:

@@ -7,15 +7,15 @@ from bpy_extras.io_utils import ImportHelper
 
 from ..bl import borehole_points, live, project_settings, reading_text
 from ..core import InputRefused
-from ..core.boreholes import Boreholes
+from ..core.boreholes import COLUMNS, Boreholes
 from ..core.point_file import ReadingRefused
 from ..core.readers import read_boreholes
 from .reporting import Reporting, needed_path, needed_rock
 
 
 class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
-    """Read a table with the depths at which boreholes met the surfaces; the surfaces get these points beside
-    their own, and are added where they are not there yet"""
+    """Read a table with the depths at which boreholes, vertical or not, met the surfaces; the surfaces get
+    these points beside their own, and are added where they are not there yet"""
 
     bl_idname = "realmodel.boreholes_read"
     bl_label = "Read Boreholes"
@@ -27,14 +27,28 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
         description="Table with hole, x, y and z of each borehole, beside the table of picks or anywhere; "
         "empty: the picks have x, y and z themselves",
     )
+    survey: StringProperty(
+        name="Survey",
+        description="Table with hole, depth along it, azimuth, and dip or inclination, beside the table of "
+        "picks or anywhere; empty: holes go as the collars say, or straight down",
+    )
+    downward_dip: EnumProperty(
+        name="Downward Dip",
+        description="Which dips of holes go down",
+        items=[
+            ("TOLD", "As in the table", "All dips of a table have one sign, and go down"),
+            ("NEGATIVE", "Negative", "-90 is straight down"),
+            ("POSITIVE", "Positive", "90 is straight down"),
+        ],
+    )
     columns: StringProperty(
         name="Columns",
-        description="Columns that are called otherwise, in either table, such as hole = BHID; depth = FROM. "
-        "There are hole, x, y, z, surface, depth and elevation",
+        description="Columns that are called otherwise, in any of the tables, such as hole = BHID; "
+        "depth = FROM. There are " + ", ".join(COLUMNS),
     )
     units: EnumProperty(
         name="Unit",
-        description="Unit of both tables",
+        description="Unit of all the tables",
         items=[(unit or "NONE", *rest) for unit, *rest in reading_text.UNITS],
     )
     add_surfaces: BoolProperty(
@@ -46,14 +60,13 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     def act(self, context):
         rock = needed_rock(context)
         picks = project_settings.absolute(needed_path(self.filepath, "the picks"))
-        collars = project_settings.absolute(self.collars)
-        if collars is not None and not collars.is_file():
-            collars = picks.parent / self.collars.strip()
         given = Boreholes(
             picks,
-            collars,
+            _beside(picks, self.collars),
             reading_text.named_columns(self.columns),
             units=None if self.units == "NONE" else self.units,
+            survey=_beside(picks, self.survey),
+            downward_dip=None if self.downward_dip == "TOLD" else self.downward_dip.lower(),
         )
         for file in given.files:
             if not file.is_file():
@@ -71,6 +84,12 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
 
     def check(self, _context):
         return False  # a file of any ending
+
+
+def _beside(picks, given):
+    """The path of another table, which may stand beside the picks; None where none is given."""
+    path = project_settings.absolute(given)
+    return picks.parent / given.strip() if path is not None and not path.is_file() else path
 
 
 CLASSES = (REALMODEL_OT_boreholes_read,)
