@@ -390,6 +390,23 @@ class Written(PanelCase):
             surface.method = "plane"
         ops.build()
         self.assertEqual([row.name for row in self.model.results], ["in holes only block"])
+        # half of what one goes along a hole that dips by 30 degrees is down
+        (self.folder / "survey.csv").write_text(
+            "BHID,depth,azimuth,dip\nB1,0,90,-30\nB2,0,90,-30\nB3,0,90,-30\n"
+        )
+        ops.boreholes_read(
+            filepath=str(self.folder / "picks.csv"),
+            collars="collars.csv",
+            survey="survey.csv",
+            downward_dip="NEGATIVE",
+            columns="hole = BHID",
+        )
+        points = next(s.points for s in self.composed().surfaces if s.name == "trend")[-3:]
+        for got, (x, y, z), depth in zip(
+            points, [(20, 20, 60), (70, 50, 61), (30, 70, 60.5)], (31, 32, 33), strict=True
+        ):
+            for number, expected in zip(got, (x + depth * 0.75**0.5, y, z - depth / 2), strict=True):
+                self.assertAlmostEqual(number, expected, places=9)
         self.refused(
             ops.boreholes_read, "columns", filepath=str(self.folder / "picks.csv"), columns="bore = X"
         )
