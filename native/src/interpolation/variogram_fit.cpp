@@ -28,9 +28,9 @@ constexpr double as_good = 1.004;     // of mean squares: RMS errors within 0.2 
 constexpr double nearly_best = 1.05;  // of mean squares: what few points say of others
 constexpr std::size_t finalists = 8;
 constexpr std::size_t least_for_anisotropy = 30;  // points
-constexpr double shown_by_few = 200;   // points: fewer tell less of how honest variances are than
-                                       // pairs of them tell of the curve
-constexpr double hardly_worse = 1.01;  // of mean squares, for the sake of honest variances
+constexpr double shown_by_few = 200;    // points: fewer tell less of how honest variances are than
+                                        // pairs of them tell of the curve
+constexpr double hardly_worse = 1.002;  // of mean squares, for the sake of honest variances
 // A sill far below what distant pairs show would make variances far from points too small.
 constexpr double least_scale = 0.25;
 
@@ -62,8 +62,12 @@ public:
                 all = search(out, hopeful_models(all), 0.4, 0.75);
             }
         }
-        const Candidate best = last_choice(std::move(all), out.variogram.anisotropy);
-        report(0.9);
+        const Anisotropy& anisotropy = out.variogram.anisotropy;
+        const Candidate chosen = last_choice(std::move(all), anisotropy);
+        report(0.85);
+        const Candidate best =
+            refined(chosen, points_, out.experimental, anisotropy, extent(anisotropy), *judge_);
+        report(0.95);
         out.variogram = variogram_of(best.fit, out.variogram.anisotropy);
         make_honest(out, best.square);
     }
@@ -148,8 +152,9 @@ private:
         scale /= left_undone;
         const double power = growth(variogram, out.experimental.lags.front());
         const double longest = std::max(variogram.range, extent(variogram.anisotropy));
-        for (int step = 0; step < 3 && std::abs(std::log(scale)) > 0.05; ++step) {
-            const double times = std::min(std::clamp(std::pow(scale, -1 / power), 0.5, 2.0),
+        double reach = 1;  // of the way that would do it all
+        for (int step = 0; step < 4 && std::abs(std::log(scale)) > 0.05; ++step) {
+            const double times = std::min(std::clamp(std::pow(scale, -reach / power), 0.5, 2.0),
                                           std::max(longest / variogram.range, 1.0));
             Variogram moved = variogram;
             moved.range *= times;
@@ -159,7 +164,8 @@ private:
             const double with_range = honest_sill(with_moved) / moved.sill / left_undone;
             if (!(std::abs(std::log(with_range)) < std::abs(std::log(scale))) ||
                 (*judge_)(with_moved.errors) > hardly_worse * square) {
-                break;
+                reach /= 2;
+                continue;
             }
             variogram = moved;
             scale = with_range;

@@ -13,6 +13,10 @@ namespace {
 constexpr double contradicting = 8;  // times: errors and experimental values ask for such sills
 constexpr double hopeless = 2;       // times the best mean square: such a model is not looked into
 constexpr double hopeful = 1.3;      // times the best mean square: such a one is made rougher
+// A mean square that is less by no more than this, or than that of so many points, may be so by
+// chance.
+constexpr double told_by_chance = 0.001;
+constexpr double points_told_by_chance = 10;
 // Of the experimental value at the shortest lag.
 constexpr double nuggets_tried[] = {0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1};
 constexpr double ranges_tried[] = {0.25, 0.5, 2, 4};  // times the range that fits the curve best
@@ -44,6 +48,27 @@ bool usable(const CurveFit& fit) {
     return fit.sill() > 0 && std::isfinite(fit.sill()) && std::isfinite(fit.misfit);
 }
 
+/// The numbers of a variogram that are changed to refine it, and by how much.
+struct Step {
+    double CurveFit::*nugget;
+    double Curve::*curve;
+    double times;
+
+    bool applies_to(const CurveFit& fit) const {
+        return nugget != nullptr ? fit.nugget > 0
+                                 : curve == &Curve::range || fit.curve.rough_share > 0;
+    }
+    void change(CurveFit& fit, bool up) const {
+        (nugget != nullptr ? fit.*nugget : fit.curve.*curve) *= up ? times : 1 / times;
+    }
+};
+
+constexpr Step steps[] = {{nullptr, &Curve::rough_share, 1.8},
+                          {nullptr, &Curve::range, 1.4},
+                          {nullptr, &Curve::rough_range, 1.6},
+                          {&CurveFit::nugget, nullptr, 2}};
+constexpr double most_rough = 0.6;  // share of the rougher part
+
 }  // namespace
 
 bool Candidate::contradicts() const {
@@ -73,6 +98,37 @@ std::vector<VariogramModel> hopeful_models(const std::vector<Candidate>& candida
         if (std::any_of(candidates.begin(), candidates.end(), is_good)) out.push_back(model);
     }
     return out;
+}
+
+Candidate refined(const Candidate& start, const LeftOutPoints& points,
+                  const ExperimentalVariogram& e, const Anisotropy& anisotropy, double longest,
+                  const Judge& judge) {
+    Candidate best = start;
+    longest = std::max(longest, start.fit.curve.range);
+    const auto better_by = [&](const Step& step, bool up) {
+        CurveFit changed = best.fit;
+        step.change(changed, up);
+        const Curve& curve = changed.curve;
+        if (curve.range > longest || curve.rough_share > most_rough) return false;
+        const CurveFit fit = fit_sill(e, curve, changed.nugget);
+        if (!usable(fit) || fit.partial_sill <= 0) return false;
+        const LeftOutErrors told = points.told_by(Covariance(variogram_of(fit, anisotropy)));
+        const Candidate found{fit, honest_sill(told), judge(told.errors)};
+        const auto count = static_cast<double>(told.errors.size());
+        const double by_chance = std::max(told_by_chance, points_told_by_chance / count);
+        if (found.contradicts() || !(found.square < (1 - by_chance) * best.square)) return false;
+        best = found;
+        return true;
+    };
+    for (const Step& step : steps) {
+        if (!step.applies_to(best.fit)) continue;
+        if (better_by(step, true)) {
+            better_by(step, true);
+        } else if (better_by(step, false)) {
+            better_by(step, false);
+        }
+    }
+    return best;
 }
 
 /// What fits the experimental values best, of each model with and without a nugget.

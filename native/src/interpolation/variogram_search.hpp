@@ -33,6 +33,13 @@ const Candidate& best_of(const std::vector<Candidate>& candidates);
 /// Models that tell points nearly as well as the best.
 std::vector<VariogramModel> hopeful_models(const std::vector<Candidate>& candidates);
 
+/// What changing the ranges, the rougher part and the nugget of a variogram by steps leads to, as
+/// long as points are told better by more than chance.
+/// @param start  its square is that of these points
+Candidate refined(const Candidate& start, const LeftOutPoints& points,
+                  const ExperimentalVariogram& e, const Anisotropy& anisotropy, double longest,
+                  const Judge& judge);
+
 /// Curves fitted to experimental values, and others about them.
 class VariogramSearch {
 public:
