@@ -15,8 +15,8 @@ from .heights_programs import gmt_surface, gstat
 from .process import ROOT, Skipped
 
 _DATA = ROOT.parent / "shared" / "data"
-# Points known, and points left out: of 500 of a rough surface chance alone makes half a percent, so there are ten
-# times as many where the data have them.
+# Points known, and points left out: of 500 of a rough surface chance alone makes half a percent, so there are
+# ten times as many where the data have them.
 SETS = {
     "claudius": (4768, 500),
     "drogon": (20_000, 5000),
