@@ -52,7 +52,7 @@ class PanelCase(unittest.TestCase):
         bpy.ops.wm.open_mainfile(filepath=str(path))
         return path
 
-    def live_is_done(self, patience=60.0):
+    def live_is_done(self, patience=600.0):
         """Does what Blender's timer does, until nothing is left to do."""
         until = time.monotonic() + patience
         while (wait := live._work.look()) is not None:

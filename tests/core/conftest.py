@@ -12,6 +12,10 @@ for folder in (ROOT / "addon", Path(__file__).parent):
     if str(folder) not in sys.path:
         sys.path.insert(0, str(folder))
 
+import same_examples  # noqa: E402
+
+same_examples.use()
+
 SQUARE_OFF = "OFF\n4 2 0\n0 0 {z}\n1 0 {z}\n1 1 {z}\n0 1 {z}\n3 0 1 2\n3 0 2 3\n"
 
 

@@ -265,7 +265,7 @@ def outcomes_of(target, *arguments):
     outcome = FORK.Queue()
     child = FORK.Process(target=target, args=(*arguments, outcome))
     child.start()
-    found = [outcome.get(timeout=20), outcome.get(timeout=20)]
+    found = [outcome.get(timeout=300), outcome.get(timeout=300)]
     child.join()
     return found
 

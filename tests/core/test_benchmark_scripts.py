@@ -128,14 +128,14 @@ def test_a_process_that_takes_too_long_or_fails_is_skipped():
     with pytest.raises(process.Skipped, match="not done within"):
         process.run_apart([sys.executable, "-c", "import time; time.sleep(60)"], 0.3, 10**9)
     with pytest.raises(process.Skipped, match="no such thing"):
-        process.run_apart([sys.executable, "-c", "raise SystemExit('no such thing')"], 30, 10**9)
+        process.run_apart([sys.executable, "-c", "raise SystemExit('no such thing')"], 300, 10**9)
     with pytest.raises(process.Skipped, match="more than"):
         process.run_apart(
-            [sys.executable, "-c", "b = bytearray(300_000_000); import time; time.sleep(60)"], 30, 10**8
+            [sys.executable, "-c", "b = bytearray(300_000_000); import time; time.sleep(600)"], 300, 10**8
         )
-    out, seconds, _ = process.run_apart([sys.executable, "-c", "print(42)"], 30, 10**9)
+    out, seconds, _ = process.run_apart([sys.executable, "-c", "print(42)"], 300, 10**9)
     assert out == "42\n"
-    assert seconds < 30
+    assert 0 < seconds < 300
 
 
 @pytest.mark.parametrize("kind", hard_outlines.CASES)

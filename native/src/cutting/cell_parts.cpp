@@ -81,10 +81,11 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
     for (std::size_t i = 0; i < count; ++i)
         root[i] = sets.find(static_cast<std::int32_t>(i));
 
+    attach_shells(refs, result, root);
+    // a part that rounding has turned inside out may meet the one that it goes to along an edge
     if (!model_.cells_are_blocks && !use_edges_twice(root, pieces)) return false;
 
     result.part.assign(count, -1);
-    attach_shells(refs, result, root);
     std::vector<std::int32_t> number(count, -1);
     result.part_side.clear();
     for (std::size_t i = 0; i < count; ++i) {

@@ -219,17 +219,23 @@ void Ring::remove(std::int32_t i) {
     --count_;
 }
 
-/// Whether a corner of the ring lies in the triangle a, tip, c, so that it cannot be cut off.
+/// Whether a corner of the ring lies in the triangle a, tip, c, so that it cannot be cut off. At
+/// first one is in the way, too, that rounding may have put just beyond an edge which it only
+/// touches: what is left without that edge would be turned over.
 bool Ring::blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int32_t c, Care care) {
     if (other == a || other == tip || other == c) return false;
     const NodeId own = node(other);
     if (own == node(a) || own == node(tip) || own == node(c)) return false;
+    const auto is_beyond = [&](std::int32_t p, std::int32_t q, int turned) {
+        return turned < 0 && (care != Care::kFat || cross(at(p), at(q), at(other)) <
+                                                        -slack(at(p), at(q), at(other), rounding_));
+    };
     const int ab = turn(a, tip, other);
-    if (ab < 0) return false;
+    if (is_beyond(a, tip, ab)) return false;
     const int bc = turn(tip, c, other);
-    if (bc < 0) return false;
+    if (is_beyond(tip, c, bc)) return false;
     const int ca = turn(c, a, other);
-    if (ca < 0) return false;
+    if (is_beyond(c, a, ca)) return false;
     if (care == Care::kStrict && (ab == 0 || bc == 0 || ca == 0)) return false;
     // where a corner that turns left lies inside, one that does not lies inside as well
     return turn(link(other).previous, other, link(other).next) <= 0;

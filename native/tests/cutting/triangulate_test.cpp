@@ -128,21 +128,31 @@ TEST(Triangulate, ALongCombOfManyTeeth) {
     expect_tiles(corners, {corners.loop(comb)}, signed_area(comb));
 }
 
-TEST(Triangulate, WhatRoundingHasFoldedOverStaysClosed) {
+TEST(Triangulate, WhatRoundingHasFoldedOverStaysClosedAndTurnsNothingOver) {
     Corners corners;
-    const std::vector<Loop> loops{
-        corners.loop({{0, 0}, {4, 0}, {4, 4}, {2, -1e-9}, {0, 4}})};  // its dent pokes through
-    Polygons polygons;
-    divide_convex(loops, {1e-8, 1e-8}, {}, polygons);
-    std::map<std::array<NodeId, 2>, int> edges;
-    for (std::size_t i = 0; i < loops[0].size(); ++i)
-        --edges[std::array{loops[0][i].node, loops[0][(i + 1) % loops[0].size()].node}];
-    for (std::size_t k = 0; k < polygons.size(); ++k) {
-        for (std::size_t i = 0; i < polygons[k].size(); ++i)
-            ++edges[std::array{polygons[k][i], polygons[k][(i + 1) % polygons[k].size()]}];
+    // dents that poke through: from within, and one whose edge ends where it pokes
+    for (const Loop& loop : {corners.loop({{0, 0}, {4, 0}, {4, 4}, {2, -1e-9}, {0, 4}}),
+                             corners.loop({{0, 0}, {4, 0}, {3, 1}, {2, -1e-9}})}) {
+        Polygons polygons;
+        divide_convex({&loop, 1}, {1e-8, 1e-8}, {}, polygons);
+        std::map<std::array<NodeId, 2>, int> edges;
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            --edges[std::array{loop[i].node, loop[(i + 1) % loop.size()].node}];
+        for (std::size_t k = 0; k < polygons.size(); ++k) {
+            const auto nodes = polygons[k];
+            std::vector<PlanePosition> positions;
+            Loop own;
+            for (std::size_t i = 0; i < nodes.size(); ++i) {
+                own.push_back({nodes[i], corners.at(nodes[i])});
+                ++edges[std::array{nodes[i], nodes[(i + 1) % nodes.size()]}];
+                positions.push_back(corners.at(nodes[i]));
+            }
+            EXPECT_GT(signed_area(positions), -1e-7);
+            EXPECT_TRUE(is_convex(own, {1e-8, 1e-8}));
+        }
+        for (const auto& [edge, count] : edges)
+            EXPECT_EQ(count, (edges[std::array{edge[1], edge[0]}]));
     }
-    for (const auto& [edge, count] : edges)
-        EXPECT_EQ(count, (edges[std::array{edge[1], edge[0]}]));
 }
 
 }  // namespace
