@@ -22,6 +22,7 @@ from .process import ROOT, Skipped, alone, peak_resident, resident
 TARGET = ROOT / "addon" / "realmodel" / "core" / "measured_costs.py"
 CELLS = ("columns", "blocks")
 FEATURES = ("triangles", "vertices", "faces", "corners")
+KINDS = ("own", "shared", "touching")  # of stacks, as estimate.stack_kind
 CASES = [
     StackSpec(10, 100),
     StackSpec(10, 190),
@@ -36,7 +37,7 @@ CASES = [
     StackSpec(10, 700),
 ]
 _KNOTS = 25
-_STEEPEST = 1.1
+_GROWTHS = np.linspace(0.8, 1.1, 31)  # powers of the size that time is taken to grow by
 _QUICK = 1_000_000  # triangles in all
 _LARGE = 1_000_000  # the same, of which a stack's pace is that of large ones
 _BOUND = 1.5  # how far memory by triangles alone lies above the dearest case
@@ -78,7 +79,7 @@ def build_measured(spec: dict, cells: str, threads: int) -> dict:
 
 
 def sample_measured(spec: dict, cells: str, threads: int) -> dict:
-    """One sample: seconds of its stacks, corners that they made and corners that the whole will have."""
+    """One sample: seconds of its stacks, corners that they made and the whole will have, how much touches."""
     from realmodel.core.estimate import sampled
     from realmodel.core.rock_input import read_rocks
     from realmodel.core.work import Work
@@ -93,16 +94,18 @@ def sample_measured(spec: dict, cells: str, threads: int) -> dict:
         "seconds": sample.seconds,
         "built": sample.built,
         "corners": sample.counts.corners,
-        "whole": sample.built >= sample.counts.corners,
+        "touching": float(sample.touching),
+        "whole": sample.built == round(sample.counts.corners),  # nothing scaled, nothing torn
         "took": time.perf_counter() - began,
     }
 
 
-def least_squares(rows: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Coefficients >= 0 that make rows @ coefficients / wanted closest to 1: the best of all subsets."""
+def least_squares(rows: np.ndarray, wanted: np.ndarray, most: int | None = None) -> np.ndarray:
+    """Coefficients >= 0 that make rows @ coefficients / wanted closest to 1: the best of all subsets of at
+    most so many."""
     best, error = np.zeros(rows.shape[1]), np.inf
     scaled = rows / wanted[:, None]
-    for count in range(1, rows.shape[1] + 1):
+    for count in range(1, min(rows.shape[1], most or rows.shape[1]) + 1):
         for chosen in itertools.combinations(range(rows.shape[1]), count):
             found, *_ = np.linalg.lstsq(scaled[:, chosen], np.ones(len(rows)), rcond=None)
             if (found < 0).any():
@@ -144,31 +147,53 @@ def knots(cases: list[dict]) -> list[list[float]]:
 
 
 def scale(cases: list[dict]) -> dict[str, float]:
-    """How much longer a whole build takes than its sample: `pace` times a power of the ratio of corners, as
-    many as the sample tells, such that no case is missed by more than it has to be."""
+    """How much longer a whole build takes than its sample: `pace` times a power of the ratio of corners, such
+    that no case is missed by more than it has to be. Below 1 the power stands for what each start costs, of
+    which a sample of eight windows has more than the whole."""
     sampled = [case for case in cases if not case["sample"]["whole"]]
     if not sampled:
         return {"pace": 1.0, "growth": 1.0}
     work = np.log([case["sample"]["corners"] / case["sample"]["built"] for case in sampled])
     slower = np.log([case["seconds"] / case["sample"]["seconds"] for case in sampled])
-    # a busy machine makes the slope of few cases a matter of luck: it is near 1, and never below
-    growth = float(np.clip(np.polyfit(work, slower, 1)[0], 1.0, _STEEPEST)) if len(sampled) > 2 else 1.0
-    left = slower - growth * work
-    return {"pace": float(f"{np.exp((left.min() + left.max()) / 2):.4g}"), "growth": float(f"{growth:.4g}")}
+    # two cases have no more than one power: that is not known then
+    powers = _GROWTHS if len(sampled) > 2 else np.ones(1)
+    left = slower - powers[:, None] * work
+    # the power that leaves least between the cases; of equal ones that nearest to 1
+    best = min(zip(np.ptp(left, axis=1).round(6), np.abs(powers - 1), range(len(powers)), strict=True))[2]
+    middle = (left[best].min() + left[best].max()) / 2
+    return {"pace": float(f"{np.exp(middle):.4g}"), "growth": float(f"{powers[best]:.4g}")}
+
+
+def sizes(cases: list[dict]) -> dict[str, float]:
+    """Bytes for each triangle, vertex, face and corner: no more of these than half the cases tell, and such
+    that no case is missed by more than it has to be."""
+    rows = np.array([[case[name] for name in FEATURES] for case in cases], float)
+    taken = np.array([case["bytes"] for case in cases], float)
+    found = least_squares(rows, taken, max(1, len(cases) // 2))
+    told = rows @ found / taken
+    found /= np.sqrt(told.min() * told.max())
+    return dict(zip(FEATURES, found.round(1).tolist(), strict=True))
+
+
+def kind_of(case: dict) -> str:
+    """Which kind of stack a case is, as estimate() tells them apart."""
+    from realmodel.core.estimate import stack_kind
+
+    return stack_kind(case["spec"]["plan"] != "own", case["sample"]["touching"])
 
 
 def constants(cells: str, cases: list[dict]) -> dict:
     """The part of COSTS of one kind of cells, from measured cases."""
-    rows = np.array([[case[name] for name in FEATURES] for case in cases], float)
-    taken = np.array([case["bytes"] for case in cases], float)
     own = [case for case in cases if case["spec"]["plan"] == "own"]
     shared = [case for case in cases if case["spec"]["plan"] != "own"]
+    # a kind that none of few cases is of is taken to cost what all of them do
+    by_kind = {kind: [case for case in cases if kind_of(case) == kind] or cases for kind in KINDS}
+    dearest = max(case["bytes"] / case["triangles"] for case in cases)
     return {
-        "bytes": dict(zip(FEATURES, least_squares(rows, taken).round(1).tolist(), strict=True)),
-        "most_bytes_per_triangle": round(float(_BOUND * (taken / rows[:, 0]).max())),
+        **{f"bytes_{kind}": sizes(of_kind) for kind, of_kind in by_kind.items()},
+        "most_bytes_per_triangle": round(_BOUND * dearest),
         "seconds_per_triangle": float(f"{np.median([c['seconds'] / c['triangles'] for c in cases]):.3g}"),
-        "scale_own": scale(own),
-        "scale_shared": scale(shared),
+        **{f"scale_{kind}": scale(of_kind) for kind, of_kind in by_kind.items()},
         "pace_own": pace(own),
         "pace_shared": pace(shared),
     }

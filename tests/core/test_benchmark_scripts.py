@@ -97,6 +97,22 @@ def test_the_fit_finds_what_was_put_in():
     assert (fitting.least_squares(rows, rows @ [3.0, -1.0, 0.0, 4.0]) >= 0).all()
 
 
+def a_case(ratio, seconds, whole=False):
+    return {"seconds": seconds, "sample": {"corners": ratio, "built": 1, "seconds": 1.0, "whole": whole}}
+
+
+@pytest.mark.parametrize("growth", [0.8, 0.9, 1.0, 1.1])
+def test_the_growth_that_was_put_in_is_found(growth):
+    cases = [a_case(ratio, 0.6 * ratio**growth) for ratio in (0.5, 4, 40, 200)]
+    assert fitting.scale([*cases, a_case(1, 99.0, whole=True)]) == {"pace": 0.6, "growth": growth}
+
+
+def test_no_case_is_missed_by_more_than_it_has_to_be():
+    assert fitting.scale([a_case(8, 8.0), a_case(8, 4 * 8.0)]) == {"pace": 2.0, "growth": 1.0}
+    cases = [{"triangles": 1, "vertices": 0, "faces": 0, "corners": 0, "bytes": size} for size in (100, 900)]
+    assert fitting.sizes(cases)["triangles"] == 300.0
+
+
 def test_a_pace_rises_where_counting_jumps_and_stands_still():
     told = [[0.0, 0.0], [0.2, 0.5], [0.4, 0.5], [0.6, 0.5], [0.9, 0.6], [1.0, 1.0]]
     knots = fitting.knots([{"told": told}])

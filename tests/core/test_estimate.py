@@ -18,6 +18,7 @@ from realmodel.core import (
 )
 from realmodel.core import sample_windows as sample_windows_module
 from realmodel.core.coarse_blocks import coarse_blocks
+from realmodel.core.estimate import touching_vertices
 from realmodel.core.measured_costs import COSTS
 from realmodel.core.sample_windows import Window, cut_out, sample_windows, within_rings
 
@@ -96,6 +97,30 @@ def test_counts_as_the_build_finds_them(make, cells):
     assert told.seconds > 0
 
 
+@pytest.mark.parametrize(
+    ("make", "kind"), [(waves, "own"), (lambda: waves(own=False), "shared"), (steps, "touching")]
+)
+def test_stacks_cost_as_their_kind(make, kind, monkeypatch):
+    def told():
+        return estimate(make(), "blocks")
+
+    plain = told()
+    costs = COSTS["blocks"]
+    monkeypatch.setitem(costs, f"bytes_{kind}", {n: 9 * size for n, size in costs[f"bytes_{kind}"].items()})
+    monkeypatch.setitem(costs, f"scale_{kind}", {"pace": 1e6, "growth": 1.0})
+    dearer = told()
+    assert dearer.memory > 5 * plain.memory
+    assert dearer.seconds > 1000 * plain.seconds
+
+
+def test_vertices_that_stand_in_one_place_are_counted():
+    one = np.array([[0.0, 0, 1], [1, 0, 1], [0, 1, 2]])
+    other = one + np.array([0.0, 0, 1])
+    assert touching_vertices([one, other]).tolist() == [0, 6]
+    assert touching_vertices([one, one[:2], other]).tolist() == [2, 8]
+    assert touching_vertices([one, one, one]).tolist() == [6, 9]
+
+
 def test_a_small_project_is_its_own_sample():
     project = waves(3, 20)
     told, model = estimate(project), build(project)
@@ -154,8 +179,8 @@ def test_a_build_that_would_not_fit_is_refused_before_it_begins():
 
 
 def test_blocks_are_proposed_where_they_would_fit(monkeypatch):
-    half = {name: value / 2 for name, value in COSTS["columns"]["bytes"].items()}
-    monkeypatch.setitem(COSTS["blocks"], "bytes", half)
+    half = {name: value / 2 for name, value in COSTS["columns"]["bytes_own"].items()}
+    monkeypatch.setitem(COSTS["blocks"], "bytes_own", half)
     project = waves()
     limit = round(0.8 * estimate(project).memory)
     with pytest.raises(NotEnoughMemory, match='cells="blocks"'):

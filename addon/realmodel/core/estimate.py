@@ -21,6 +21,7 @@ from .stack_refusals import refused_stack
 from .surface_heights import rough_heights, where_known
 from .work import Cancel, Progress, Work, native_module, run
 
+_TOUCHING = 0.05  # a larger share of vertices in common makes a stack one of many ties
 _FEW_NODES = 16
 _SHAPE_NODES = 20_000  # show the shape of a surface without points
 
@@ -156,12 +157,16 @@ def require_memory(work: Work, inputs: list[RockInput], cells: str, threads: int
 class Sample:
     """What sampling found, for all rock masses sampled so far.
 
-    triangles: of the input. counts: expected of the whole. built: corners of faces that the sample has, its
-    torn edges included. seconds: of the stack builder; interpolating: of giving heights.
+    triangles: of the input. counts: expected of the whole. memory: bytes that building it takes. touching:
+    the share of the sample's vertices that stand where one of another surface does. built: corners of faces
+    that the sample has, its torn edges included. seconds: of the stack builder; interpolating: of giving
+    heights.
     """
 
     triangles: int = 0
     counts: Counts = field(default_factory=Counts)
+    memory: float = 0.0
+    touching: float = 0.0
     built: int = 0
     seconds: float = 0.0
     interpolating: float = 0.0
@@ -170,6 +175,8 @@ class Sample:
         return Sample(
             self.triangles + other.triangles,
             self.counts + other.counts,
+            self.memory + other.memory,
+            max(self.touching, other.touching),
             self.built + other.built,
             self.seconds + other.seconds,
             self.interpolating + other.interpolating,
@@ -177,13 +184,6 @@ class Sample:
 
     def estimate(self, cells: str, threads: int, seconds_before: float) -> Estimate:
         cell_count, faces, corners, vertices = self.counts.values()
-        per = COSTS[cells]["bytes"]
-        memory = (
-            per["triangles"] * self.triangles
-            + per["vertices"] * vertices
-            + per["faces"] * faces
-            + per["corners"] * corners
-        )
         arrays = 24 * vertices + 20 * faces + 4 * corners + 8 * cell_count + 24 * self.triangles
         return Estimate(
             cells,
@@ -192,7 +192,7 @@ class Sample:
             round(cell_count),
             round(faces),
             round(vertices),
-            max(round(memory), round(arrays)),
+            max(round(self.memory), round(arrays)),
             round(arrays),
             seconds_before + self.interpolating + self.seconds,
             native_module().available_memory(),
@@ -206,6 +206,7 @@ def sampled(work: Work, entry: RockInput, cells: str, threads: int, scaled: bool
     rings = None if rock.region is None else rock.rings()
     windows, used = sample_windows(plans, rings, cells)
     found, in_windows, built_corners, seconds = Counts(), 0, 0, 0.0
+    touching = np.zeros(2, np.int64)
     interpolating = _Interpolating(work, entry, threads)
     for window in windows:
         work.check()
@@ -220,18 +221,53 @@ def sampled(work: Work, entry: RockInput, cells: str, threads: int, scaled: bool
             raise _refused(error, entry, numbers) from error
         seconds += taken
         built_corners += len(built["face_vertices"])
+        touching += touching_vertices([vertices for vertices, _ in given[0]])
         found = found + counted(built, window, cells)
         in_windows += sum(triangles_in(window, plan, rings) for plan in plans)
     found = found.times(used / in_windows if in_windows else 0.0)
+    kind = stack_kind(on_one_plan(plans), touching[0] / max(1, touching[1]))
     if len(windows) > 1 and built_corners:
         if scaled:
-            scale = COSTS[cells]["scale_shared" if on_one_plan(plans) else "scale_own"]
+            scale = COSTS[cells][f"scale_{kind}"]
             seconds *= scale["pace"] * (found.corners / built_corners) ** scale["growth"]
         if cells == "blocks":
             coarse = coarse_blocks(entry.rock, [interpolating.places(k) for k in range(len(plans))])
             found = Counts(max(found.cells, coarse), *found.values()[1:])
     triangles = sum(len(plan[1]) for plan in plans)
-    return Sample(triangles, found, built_corners, seconds, interpolating.seconds_of_all())
+    return Sample(
+        triangles,
+        found,
+        _memory(cells, kind, triangles, found),
+        touching[0] / max(1, touching[1]),
+        built_corners,
+        seconds,
+        interpolating.seconds_of_all(),
+    )
+
+
+def stack_kind(one_plan: bool, touching: float) -> str:
+    """What a stack costs as: "own" triangulations, one "shared" plan, or one on which surfaces are "touching"
+    often, so that ties have to be decided exactly and blocks fall into many parts.
+
+    touching: the share of vertices that stand where one of another surface does."""
+    if not one_plan:
+        return "own"
+    return "touching" if touching > _TOUCHING else "shared"
+
+
+def touching_vertices(surfaces: list[np.ndarray]) -> np.ndarray:
+    """[how many vertices stand exactly where one before them does, how many there are], of all surfaces'
+    vertices (V, 3)."""
+    places = np.concatenate(surfaces)
+    places = places[np.lexsort(places.T)]
+    return np.array([(places[1:] == places[:-1]).all(axis=1).sum(), len(places)], np.int64)
+
+
+def _memory(cells: str, kind: str, triangles: int, found: Counts) -> float:
+    """Bytes that building takes, by the counts of the whole."""
+    _, faces, corners, vertices = found.values()
+    counted = {"triangles": triangles, "vertices": vertices, "faces": faces, "corners": corners}
+    return sum(size * counted[name] for name, size in COSTS[cells][f"bytes_{kind}"].items())
 
 
 def _built(work: Work, given, cells: str, threads: int) -> tuple[dict, float]:

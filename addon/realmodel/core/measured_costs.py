@@ -7,21 +7,37 @@ COSTS = {
     "interpolate": 2.75e-07,
     "variogram": 0.0028,
     "columns": {
-        "bytes": {
-            "triangles": 247.5,
-            "vertices": 107.9,
-            "faces": 25.4,
+        "bytes_own": {
+            "triangles": 0.0,
+            "vertices": 0.0,
+            "faces": 250.5,
+            "corners": 0.0,
+        },
+        "bytes_shared": {
+            "triangles": 0.0,
+            "vertices": 735.5,
+            "faces": 0.0,
+            "corners": 0.0,
+        },
+        "bytes_touching": {
+            "triangles": 500.2,
+            "vertices": 0.0,
+            "faces": 0.0,
             "corners": 0.0,
         },
         "most_bytes_per_triangle": 2131,
         "seconds_per_triangle": 4.83e-06,
         "scale_own": {
-            "pace": 0.7112,
-            "growth": 1.037,
+            "pace": 0.6693,
+            "growth": 1.06,
         },
         "scale_shared": {
-            "pace": 0.7734,
-            "growth": 1.0,
+            "pace": 0.771,
+            "growth": 0.95,
+        },
+        "scale_touching": {
+            "pace": 0.6942,
+            "growth": 1.1,
         },
         "pace_own": [
             {
@@ -149,21 +165,37 @@ COSTS = {
         ],
     },
     "blocks": {
-        "bytes": {
+        "bytes_own": {
+            "triangles": 0.0,
+            "vertices": 610.2,
+            "faces": 0.0,
+            "corners": 0.0,
+        },
+        "bytes_shared": {
             "triangles": 0.0,
             "vertices": 0.0,
             "faces": 0.0,
-            "corners": 103.7,
+            "corners": 94.3,
+        },
+        "bytes_touching": {
+            "triangles": 0.0,
+            "vertices": 0.0,
+            "faces": 576.1,
+            "corners": 0.0,
         },
         "most_bytes_per_triangle": 1234,
         "seconds_per_triangle": 8.25e-07,
         "scale_own": {
-            "pace": 0.506,
-            "growth": 1.0,
+            "pace": 0.6553,
+            "growth": 0.87,
         },
         "scale_shared": {
-            "pace": 0.5836,
-            "growth": 1.0,
+            "pace": 0.6939,
+            "growth": 0.85,
+        },
+        "scale_touching": {
+            "pace": 0.6848,
+            "growth": 1.1,
         },
         "pace_own": [
             {
