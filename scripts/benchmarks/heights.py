@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import time
+from functools import cache
 
 import numpy as np
 
@@ -28,6 +29,7 @@ _SPHERICAL = {"model": "spherical", "range": 2000.0, "sill": 5000.0, "nugget": 0
 _MATERN_RANGE = 2000.0
 
 
+@cache
 def horizon(name: str) -> np.ndarray:
     """(P, 3) points, no two at one place."""
     if name == "claudius" and (_DATA / "claudius").is_dir():

@@ -66,6 +66,12 @@ def measure(
         seconds = min(_SECONDS[function], max(left, _LONG))
         return alone(f"heights.{function}", *arguments, seconds=seconds, memory=memory, python=python)
 
+    accuracy = []
+    for method in METHODS:
+        if method in _SAME_SYSTEMS:
+            continue
+        accuracy.append(_accuracy(told, method, splits))
+        say("heights: " + " | ".join(accuracy[-1]))
     speed = []
     for name in TIMED:
         for ours, theirs, their_nodes, asked in _PAIRS:
@@ -76,12 +82,6 @@ def measure(
             say("heights: " + " | ".join(speed[-1]))
     speed.append(_dsi(told, nodes))
     say("heights: " + " | ".join(speed[-1]))
-    accuracy = []
-    for method in METHODS:
-        if method in _SAME_SYSTEMS:
-            continue
-        accuracy.append(_accuracy(told, method, splits))
-        say("heights: " + " | ".join(accuracy[-1]))
     return speed, accuracy
 
 
@@ -98,7 +98,7 @@ def _pair(told, name: str, ours: str, theirs: str, nodes, pairs: int, asked) -> 
                 rates[method] = run["nodes"] / run["seconds"]
                 longest = max(longest, run["seconds"])
             found.append((rates[ours], rates[theirs]))
-            no_doubt = asked is not None and rates[ours] > _PLAIN * asked * rates[theirs]
+            no_doubt = asked is None or rates[ours] > _PLAIN * asked * rates[theirs]
             if longest > _LONG or no_doubt:
                 break
     except Skipped as skipped:
