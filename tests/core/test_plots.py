@@ -101,3 +101,13 @@ def test_without_matplotlib_it_says_what_to_do():
         check=False,
     )
     assert "needs matplotlib" in run.stdout, run.stderr
+
+
+def test_many_points_are_smaller_dots():
+    """5000 points would hide a map otherwise, and their errors one another."""
+    many = np.column_stack([RNG.random((5000, 2)) * 100, np.zeros(5000)])
+    few, crowded = (
+        drawn(plots.height_map(VERTICES, TRIANGLES, points)).collections[-1] for points in (POINTS, many)
+    )
+    assert len(crowded.get_offsets()) == 5000
+    assert 0 < crowded.get_sizes()[0] < few.get_sizes()[0] / 10

@@ -25,7 +25,7 @@ from .work import native_module
 __all__ = ["cross_validation", "height_map", "mesh_quality", "triangle_quality", "variance_map", "variogram"]
 
 _SIZE = (5.2, 3.9)  # inches
-_POINT = {"s": 6.0, "c": "black", "linewidths": 0.0}
+_MANY = 300  # points: of more than these the dots are smaller, so that they leave free what they lie on
 
 
 def variogram(fitted: Variogram, axes=None):
@@ -42,7 +42,7 @@ def variogram(fitted: Variogram, axes=None):
     axes.plot(distance, fitted.semivariance(distance), c="tab:red", label=name)
     axes.set(xlabel="distance", ylabel="semivariance", xlim=(0, longest))
     axes.set_ylim(bottom=0)
-    axes.legend(loc="upper left", fontsize="small")
+    axes.legend(loc="lower right", fontsize="small")
     return figure
 
 
@@ -53,16 +53,18 @@ def cross_validation(told: CrossValidation, axes=None):
     known = np.isfinite(told.errors)
     given, found = told.points[known, 2], told.z[known]
     beyond = np.zeros(len(given), bool)
+    size = 10 * _share_of_many(len(given)) ** 0.5
     if told.standardised is not None:
         beyond = np.abs(told.standardised[known]) > 2
-        axes.scatter(given[beyond], found[beyond], 10, c="tab:red", label="beyond two deviations", zorder=3)
-    axes.scatter(given[~beyond], found[~beyond], 10, c="tab:blue", label="points left out")
+        axes.scatter(given[beyond], found[beyond], size, c="tab:red", label="beyond two deviations", zorder=3)
+    axes.scatter(given[~beyond], found[~beyond], size, c="tab:blue", label="points left out")
     low, high = (f(np.concatenate([given, found])) for f in (np.min, np.max)) if len(given) else (0, 1)
     axes.plot([low, high], [low, high], c="0.6", lw=1, zorder=0)
     share = told.within_two_deviations
     honest = "" if share is None else f"\n{100 * share:.1f} % within two deviations"
     axes.set_title(f"{told.method}: root mean square error {told.rmse:.4g}{honest}", fontsize="medium")
     axes.set(xlabel="height of the point", ylabel="as the others tell it")
+    axes.locator_params(axis="x", nbins=6)
     axes.legend(loc="upper left", fontsize="small")
     return figure
 
@@ -116,6 +118,11 @@ def _axes(axes):
     return figure, figure.subplots()
 
 
+def _share_of_many(points: int) -> float:
+    """1, or less where there are many points, but never so little that dots vanish."""
+    return min(1.0, max(_MANY / max(points, 1), 0.03))
+
+
 def _map(plan, triangles, values, points, axes, limits, label, colours):
     figure, axes = _axes(axes)
     # matplotlib's own arithmetic has single precision in places: coordinates from the middle
@@ -136,7 +143,7 @@ def _map(plan, triangles, values, points, axes, limits, label, colours):
         axes.tricontour(mesh, filled, levels=levels, colors="white", linewidths=0.4, alpha=0.6)
     if points is not None:
         px, py = (np.asarray(points, np.float64)[:, :2] - middle).T
-        axes.scatter(px, py, **_POINT)
+        axes.scatter(px, py, 6 * _share_of_many(len(px)), c="black", linewidths=0.0)
     axes.set_aspect("equal")
     if middle.any():
         axes.set(xlabel=f"x - {middle[0]:.0f}", ylabel=f"y - {middle[1]:.0f}")
