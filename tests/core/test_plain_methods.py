@@ -270,3 +270,23 @@ def test_any_points_give_heights_or_are_refused_as_contradicting(points, method)
     if method in ("tin", "natural_neighbour"):
         assert points[:, 2].min() - 1e-6 <= z.min()
         assert z.max() <= points[:, 2].max() + 1e-6
+
+
+@pytest.mark.parametrize("method", ["idw", "spline", "kriging"])
+def test_nodes_without_a_point_within_the_radius_are_told(method):
+    points = np.array([[0.0, 0, 1], [2, 0, 2], [0, 2, 3], [2, 2, 2], [1, 1, 2], [1, 0, 1]])
+    nodes = [[1.0, 0.5], [2.0, 1.0], [9.0, 9.0], [2.5, 40.0]]
+    variogram = {"variogram": {"model": "spherical", "range": 5, "sill": 1}} if method == "kriging" else {}
+    result = interpolate(points, nodes, method, radius=3.0, **variogram)
+    assert result.warnings == (
+        "50 % of the nodes have no point within the radius: there the nearest point alone counts",
+    )
+    assert result.z[2:] == pytest.approx([2, 2])
+    assert interpolate(points, nodes[:2], method, radius=3.0, **variogram).warnings == ()
+
+
+def test_points_elsewhere_are_told():
+    """Other coordinates or units: all is extrapolated, and nothing that comes out means anything."""
+    (warning,) = interpolate(WAVY, NODES * 3.28, "tin").warnings
+    assert warning.startswith("no point lies where heights are wanted: x of the points is 431250.")
+    assert interpolate(WAVY, NODES + 900, "tin").warnings == ()

@@ -68,12 +68,26 @@ def krige(task: Task, known: Structure | None = None) -> Result:
         z, variance, alone = task.run(native.krige_left_out, task.points, **arguments)
     else:
         z, variance, alone = task.run(native.krige, task.points, task.nodes, **arguments)
-    if alone and len(z):
-        warnings.append(
-            f"{100 * alone / len(z):.3g} % of the nodes have no point within the radius: there the nearest "
-            "point alone counts"
-        )
+    warnings += _without_near_points(alone, len(z))
     return Result(z, variance, known.variogram, warnings, neighbours=known.neighbours)
+
+
+def _without_near_points(alone: int, nodes: int) -> list[str]:
+    if not alone:
+        return []
+    return [
+        f"{100 * alone / nodes:.3g} % of the nodes have no point within the radius: there the nearest "
+        "point alone counts"
+    ]
+
+
+def _beyond_radius(task: Task) -> list[str]:
+    """What there is to tell of nodes that have no point within the radius."""
+    radius = task.settings["radius"]
+    if radius is None or not len(task.nodes):
+        return []
+    distance = task.run(native_module().nearest_distance, task.points, task.nodes)
+    return _without_near_points(int((distance > radius).sum()), len(task.nodes))
 
 
 def nearest_heights(task: Task, nodes: np.ndarray) -> np.ndarray:
@@ -86,9 +100,11 @@ def inverse_distance(task: Task) -> Result:
     arguments = {**_neighbourhood(task.settings), "power": task.settings["power"]}
     if task.left_out:
         return Result(task.run(native.idw_left_out, task.points, **arguments))
-    return Result(task.run(native.idw, task.points, task.nodes, **arguments))
+    z = task.run(native.idw, task.points, task.nodes, **arguments)
+    return Result(z, warnings=_beyond_radius(task))
 
 
 def thin_plate(task: Task) -> Result:
     arguments = {**_neighbourhood(task.settings), "smoothing": task.settings["smoothing"]}
-    return Result(task.run(native_module().spline, task.points, task.nodes, **arguments))
+    z = task.run(native_module().spline, task.points, task.nodes, **arguments)
+    return Result(z, warnings=_beyond_radius(task))

@@ -62,7 +62,8 @@ def heights(
         result = replace_extrapolated(task, result, outside)
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error
-    warnings = [*([mis_ties] if mis_ties else []), *few_points(points, method), *result.warnings]
+    warnings = [*([mis_ties] if mis_ties else []), *few_points(points, method), *elsewhere(points, nodes)]
+    warnings += result.warnings
     if not any(settings.get(option) is not None for option in SURFACE_OPTIONS):
         warnings += runs_away(points, result.z, method)
     share = float(outside.mean()) if len(outside) else 0.0
@@ -88,6 +89,21 @@ def few_points(points: np.ndarray, method: str) -> list[str]:
         return ["there is one point only: the surface is its height everywhere"]
     if len(elsewhere) and (elsewhere == elsewhere[0]).all():
         return ["there are two points only: the surface is known along their line at best"]
+    return []
+
+
+def elsewhere(points: np.ndarray, nodes: np.ndarray) -> list[str]:
+    """What to tell where the points are in another place than the nodes: mostly a slip."""
+    if not len(points) or not len(nodes):
+        return []
+    for axis, name in enumerate("xy"):
+        low, high = points[:, axis].min(), points[:, axis].max()
+        lowest, highest = nodes[:, axis].min(), nodes[:, axis].max()
+        if high < lowest or highest < low:
+            return [
+                f"no point lies where heights are wanted: {name} of the points is {low:.9g} to {high:.9g}, "
+                f"wanted {lowest:.9g} to {highest:.9g}; check their coordinates and units"
+            ]
     return []
 
 
