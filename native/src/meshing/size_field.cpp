@@ -20,7 +20,8 @@ double distance(const SizeSource& source, double x, double y) {
     const double vx = x - source.a[0], vy = y - source.a[1];
     const double squared = ux * ux + uy * uy;
     const double t = squared > 0 ? std::clamp((ux * vx + uy * vy) / squared, 0.0, 1.0) : 0;
-    return std::hypot(vx - t * ux, vy - t * uy);
+    const double dx = vx - t * ux, dy = vy - t * uy;
+    return std::sqrt(dx * dx + dy * dy);  // std::hypot took a third of the time of all meshing
 }
 
 }  // namespace

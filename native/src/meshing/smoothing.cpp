@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "meshing/dislocations.hpp"
+#include "meshing/judged_flips.hpp"
 #include "meshing/star_moves.hpp"
 #include "meshing/valences.hpp"
 
@@ -12,7 +12,7 @@ namespace realmodel::meshing {
 namespace {
 
 constexpr int rounds = 6;
-constexpr int rounds_with_glides = 2;  // later ones find next to nothing
+constexpr int judged_rounds = 2;  // later ones find next to nothing
 constexpr int moves_per_round = 2;
 constexpr int last_moves = 4;
 constexpr int flips_of_a_glide = 8;
@@ -26,7 +26,7 @@ public:
           size_(size),
           valences_(mesh, size),
           moves_(valences_),
-          dislocations_(valences_, moves_) {
+          flips_(valences_, moves_) {
         for (const std::int32_t v : kept)
             valences_.keep(v);
         // Of one length pieces stay even: regions side by side meet in them.
@@ -39,10 +39,11 @@ public:
         for (int round = 0; round < rounds; ++round) {
             flip_towards_six(tick);
             collapse_towards_six(tick);
-            if (round < rounds_with_glides) glide(check);
+            if (round < judged_rounds) glide(check);
             for (int i = 0; i < moves_per_round; ++i)
                 move_all(tick);
             make_delaunay(tick);
+            if (round < judged_rounds) mend(check);
         }
         for (int i = 0; i < last_moves; ++i)
             move_all(tick);
@@ -142,7 +143,15 @@ private:
                 continue;
             }
             tick(0.5);
-            dislocations_.glide(v, flips_of_a_glide);
+            flips_.glide(v, flips_of_a_glide);
+        }
+    }
+
+    void mend(const Check& check) {
+        Ticker tick(check, 1024);
+        for (const std::int32_t v : active_) {
+            tick(0.7);
+            if (!valences_.is_gone(v)) flips_.mend(v);
         }
     }
 
@@ -179,7 +188,7 @@ private:
     const SizeField& size_;
     Valences valences_;
     StarMoves moves_;
-    Dislocations dislocations_;
+    JudgedFlips flips_;
     std::vector<std::int32_t> active_;
     std::vector<Side> sides_;
 };

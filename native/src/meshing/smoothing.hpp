@@ -13,7 +13,7 @@ namespace realmodel::meshing {
 /// Improves the triangles from `first` on, those in `also`, and their neighbours, in rounds of
 ///   - flips and collapses that bring vertices nearer to six neighbours (Valences),
 ///   - ways of several flips that bring a vertex of five and one of seven neighbours to their
-///     opposites (Dislocations),
+///     opposites, and flips that make bad triangles better (JudgedFlips),
 ///   - moves of one vertex at a time to where its triangles are best (StarMoves).
 /// In the end all but fixed sides are Delaunay again. Vertices on fixed sides, and those in `kept`,
 /// stay; but of those from number `corners` on that lie between two corners of the

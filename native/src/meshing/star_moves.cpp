@@ -82,7 +82,7 @@ void StarMoves::go_freely(std::int32_t v) {
     const double determinant = now.xx * now.yy - now.xy * now.xy;
     const double dx = -(now.yy * now.x - now.xy * now.y) / determinant;
     const double dy = -(now.xx * now.y - now.xy * now.x) / determinant;
-    step(v, now, std::hypot(dx, dy), [&](double share) {
+    step(v, now, std::sqrt(dx * dx + dy * dy), [&](double share) {
         return PlanPoint{p[0] + share * dx, p[1] + share * dy};
     });
 }

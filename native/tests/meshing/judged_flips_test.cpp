@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "meshing/dislocations.hpp"
+#include "meshing/judged_flips.hpp"
 
 #include <gtest/gtest.h>
 
@@ -78,26 +78,26 @@ struct TornLattice {
     StarMoves moves;
 };
 
-TEST(Dislocations, AreGoneWhereTheyMeet) {
+TEST(JudgedFlips, DislocationsAreGoneWhereTheyMeet) {
     TornLattice torn(6);
     ASSERT_EQ(torn.irregular(), 4);
     ASSERT_EQ(torn.valences.triangles(node(4, 7)), 7);
     const FlatMesh whole = lattice();
-    Dislocations dislocations(torn.valences, torn.moves);
-    EXPECT_TRUE(dislocations.glide(node(4, 7), 6));
+    JudgedFlips flips(torn.valences, torn.moves);
+    EXPECT_TRUE(flips.glide(node(4, 7), 6));
     EXPECT_EQ(torn.irregular(), 0);
-    EXPECT_FALSE(dislocations.glide(node(4, 7), 6)) << "nothing is left to gain";
+    EXPECT_FALSE(flips.glide(node(4, 7), 6)) << "nothing is left to gain";
     for (std::int32_t v = 0; v < width * width; ++v) {
         EXPECT_NEAR(torn.mesh.points[v][0], whole.points[v][0], 1e-9);
         EXPECT_NEAR(torn.mesh.points[v][1], whole.points[v][1], 1e-9);
     }
 }
 
-TEST(Dislocations, StayWhereNoWayIsShortEnough) {
+TEST(JudgedFlips, DislocationsStayWhereNoWayIsShortEnough) {
     TornLattice torn(6);
     const auto corners = torn.mesh.corners;
     const auto points = torn.mesh.points;
-    EXPECT_FALSE(Dislocations(torn.valences, torn.moves).glide(node(4, 7), 5));
+    EXPECT_FALSE(JudgedFlips(torn.valences, torn.moves).glide(node(4, 7), 5));
     EXPECT_EQ(torn.irregular(), 4);
     EXPECT_EQ(torn.mesh.points, points);
     // The same sides, though their triangles may have other numbers.
@@ -106,13 +106,29 @@ TEST(Dislocations, StayWhereNoWayIsShortEnough) {
             EXPECT_FALSE(torn.side(t[i], t[(i + 1) % 3]).is_outside());
 }
 
-TEST(Dislocations, DoNotPassVerticesThatStay) {
+TEST(JudgedFlips, DislocationsDoNotPassVerticesThatStay) {
     TornLattice torn(6);
     StarMoves moves(torn.valences);
     for (std::int32_t v = 0; v < width * width; ++v)
         if (!torn.valences.is_fixed(v) && v != node(7, 7)) moves.free(v);
-    EXPECT_FALSE(Dislocations(torn.valences, moves).glide(node(4, 7), 6));
+    EXPECT_FALSE(JudgedFlips(torn.valences, moves).glide(node(4, 7), 6));
     EXPECT_EQ(torn.irregular(), 4);
+}
+
+/// A flip that brings thin triangles is taken back, whatever strain it costs; one that would is not
+/// made.
+TEST(JudgedFlips, MendWhatIsBad) {
+    TornLattice torn(0);
+    const Side diagonal = torn.side(node(5, 7), node(4, 8));
+    torn.valences.flip(diagonal);
+    ASSERT_EQ(torn.irregular(), 4);
+    JudgedFlips flips(torn.valences, torn.moves);
+    EXPECT_TRUE(flips.mend(node(4, 7)));
+    EXPECT_EQ(torn.irregular(), 0);
+    const auto corners = torn.mesh.corners;
+    for (std::int32_t v = 0; v < width * width; ++v)
+        EXPECT_FALSE(!torn.valences.is_fixed(v) && flips.mend(v));
+    EXPECT_EQ(torn.mesh.corners, corners);
 }
 
 }  // namespace

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "meshing/judged_flips.hpp"
+
+#include <algorithm>
+
+namespace realmodel::meshing {
+
+namespace {
+
+constexpr int most_looks = 100;  // flips tried from one vertex
+constexpr int sweeps = 2;        // of moves before a way is judged
+
+// How much of the sum of inverse mean ratios less strain by one may cost. Beside fixed lines angles
+// are given, and six neighbours no longer mean good triangles: there these must get better.
+constexpr double price = 0.4, price_beside_lines = -0.05;
+
+constexpr double bad_ratio = 0.9;      // of a triangle that is to be mended
+constexpr double worth_a_flip = 0.02;  // in that sum
+
+}  // namespace
+
+bool JudgedFlips::glide(std::int32_t vertex, int most_flips) {
+    looks_left_ = most_looks;
+    candidates_.clear();
+    way_.clear();
+    const std::array changed{vertex};
+    return seek(changed, 0, most_flips);
+}
+
+bool JudgedFlips::seek(std::span<const std::int32_t> changed, int gained, int flips_left) {
+    const std::size_t begin = candidates_.size();
+    for (const std::int32_t v : changed) {
+        if (valences_.is_fixed(v) || valences_.is_regular(v)) continue;
+        valences_.around(v, [&](Side side) {
+            add_candidate(side, 0);
+            add_candidate(side.next(), 0);
+        });
+    }
+    sort_candidates(begin);
+    const std::size_t end = candidates_.size();
+    bool found = false;
+    for (std::size_t i = begin; i < end && !found; ++i) {
+        const int all = gained + candidates_[i].gain;
+        if (all <= 0 && flips_left == 1) break;  // they are sorted
+        if (--looks_left_ < 0) break;
+        if (!try_flip(candidates_[i].edge)) continue;
+        if (all > 0) {
+            found = is_worth_it(price * all, price_beside_lines * all);
+        } else {
+            const auto [before, after] = way_.back();
+            const std::array touched{before[0], before[1], after[0], after[1]};
+            found = seek(touched, all, flips_left - 1);
+        }
+        if (!found) undo();
+    }
+    candidates_.resize(begin);
+    return found;
+}
+
+bool JudgedFlips::mend(std::int32_t vertex) {
+    const FlatMesh& mesh = valences_.mesh();
+    bool is_bad = false;
+    valences_.around(vertex, [&](Side side) {
+        is_bad = is_bad || mean_ratio(mesh.point_from(side), mesh.point_to(side),
+                                      mesh.point_apex(side)) < bad_ratio;
+    });
+    if (!is_bad) return false;
+    candidates_.clear();
+    way_.clear();
+    valences_.around(vertex, [&](Side side) { add_candidate(side, any_gain); });
+    sort_candidates(0);
+    for (const Candidate& candidate : candidates_) {
+        if (!try_flip(candidate.edge)) continue;
+        if (is_worth_it(-worth_a_flip, -worth_a_flip)) return true;
+        undo();
+    }
+    return false;
+}
+
+bool JudgedFlips::may_change(std::int32_t vertex) const {
+    return moves_.moves_freely(vertex) || valences_.is_fixed(vertex);
+}
+
+/// A side whose flip lessens the strain by so much at least.
+void JudgedFlips::add_candidate(Side side, int least_gain) {
+    const FlatMesh& mesh = valences_.mesh();
+    if (mesh.is_fixed(side)) return;
+    for (const Side s : {side, mesh.behind(side)})
+        if (!may_change(mesh.from(s)) || !may_change(mesh.apex(s))) return;
+    const int gain = valences_.gain_of_flip(side);
+    if (gain < least_gain) return;
+    const auto [a, b] = std::minmax({mesh.from(side), mesh.to(side)});
+    const Edge edge{a, b};
+    for (const Flip& flip : way_)
+        if (flip.after == edge) return;
+    candidates_.push_back({gain, edge});
+}
+
+/// Those that gain most first, each once.
+void JudgedFlips::sort_candidates(std::size_t begin) {
+    const auto first = candidates_.begin() + static_cast<std::ptrdiff_t>(begin);
+    std::sort(first, candidates_.end(), [](const Candidate& a, const Candidate& b) {
+        return a.gain != b.gain ? a.gain > b.gain : a.edge < b.edge;
+    });
+    const auto last =
+        std::unique(first, candidates_.end(),
+                    [](const Candidate& a, const Candidate& b) { return a.edge == b.edge; });
+    candidates_.erase(last, candidates_.end());
+}
+
+/// Adds a flip to the way where there can be one.
+bool JudgedFlips::try_flip(const Edge& edge) {
+    const Side side = side_between(edge);
+    if (!valences_.can_flip(side)) return false;
+    const Side diagonal = valences_.flip(side);
+    const FlatMesh& mesh = valences_.mesh();
+    const auto [c, d] = std::minmax({mesh.from(diagonal), mesh.to(diagonal)});
+    way_.push_back({edge, {c, d}});
+    return true;
+}
+
+/// Takes the last flip of the way back.
+void JudgedFlips::undo() {
+    valences_.flip(side_between(way_.back().after));
+    way_.pop_back();
+}
+
+/// Whether the way just gone makes the triangles of its vertices no worse than that, once these
+/// have been moved a little. If so they stay moved.
+bool JudgedFlips::is_worth_it(double most_worse, double most_worse_beside_lines) {
+    touched_.clear();
+    for (const Flip& flip : way_)
+        for (const Edge& edge : {flip.before, flip.after})
+            touched_.insert(touched_.end(), edge.begin(), edge.end());
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    for (auto flip = way_.rbegin(); flip != way_.rend(); ++flip)
+        valences_.flip(side_between(flip->after));
+    const double before = badness();
+    for (const Flip& flip : way_)
+        valences_.flip(side_between(flip.before));
+    std::vector<PlanPoint>& points = valences_.mesh().points;
+    places_.clear();
+    for (const std::int32_t v : touched_)
+        places_.push_back(points[v]);
+    for (int i = 0; i < sweeps; ++i)
+        for (const std::int32_t v : touched_)
+            moves_.move(v);
+    const bool is_beside_line = std::any_of(touched_.begin(), touched_.end(),
+                                            [&](std::int32_t v) { return valences_.is_fixed(v); });
+    if (badness() < before + (is_beside_line ? most_worse_beside_lines : most_worse)) return true;
+    for (std::size_t i = 0; i < touched_.size(); ++i)
+        points[touched_[i]] = places_[i];
+    return false;
+}
+
+/// The sum over the triangles of the vertices touched of what their inverse mean ratios have above
+/// 1.
+double JudgedFlips::badness() {
+    const FlatMesh& mesh = valences_.mesh();
+    star_.clear();
+    for (const std::int32_t v : touched_)
+        valences_.around(v, [&](Side side) { star_.push_back(side.triangle()); });
+    std::sort(star_.begin(), star_.end());
+    star_.erase(std::unique(star_.begin(), star_.end()), star_.end());
+    double sum = 0;
+    for (const std::int32_t t : star_) {
+        const auto [a, b, c] = mesh.corners[t];
+        sum += 1 / mean_ratio(mesh.points[a], mesh.points[b], mesh.points[c]) - 1;
+    }
+    return sum;
+}
+
+Side JudgedFlips::side_between(const Edge& edge) const {
+    Side found = Side::outside();
+    valences_.around(edge[0], [&](Side side) {
+        if (valences_.mesh().to(side) == edge[1]) found = side;
+    });
+    return found;
+}
+
+}  // namespace realmodel::meshing
