@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "plane_cross.hpp"
+
 namespace realmodel::cutting {
 
 void CellCutter::cap(std::span<const PieceRef> refs, CellCut& result) {
@@ -126,11 +128,34 @@ void CellCutter::collect_open_edges(std::span<const PieceRef> refs) {
             if (may_pass && !std::binary_search(dissolved_.begin(), dissolved_.end(), edge) &&
                 caps_on_both_sides({uses_.data() + begin, end - begin}, refs)) {
                 slits_.push_back(edge);
-                open_.push_back({edge[0], edge[1]});
-                open_.push_back({edge[1], edge[0]});
             }
         }
         begin = end;
+    }
+    keep_slits_in_caps();
+}
+
+/// Whether the open edges go round the middle of an edge in the plane.
+bool CellCutter::is_in_caps(const std::array<NodeId, 2>& edge) const {
+    const PlanePosition a = corner(edge[0]).at, b = corner(edge[1]).at;
+    const PlanePosition middle{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2};
+    int times = 0;
+    for (const DirectedEdge& e : open_) {
+        const PlanePosition p = corner(e.from).at, q = corner(e.to).at;
+        if ((p[1] > middle[1]) == (q[1] > middle[1])) continue;
+        if (q[1] > p[1] ? cross(p, q, middle) > 0 : cross(p, q, middle) < 0)
+            times += q[1] > p[1] ? 1 : -1;
+    }
+    return times != 0;
+}
+
+/// A part of the cell's boundary may touch the plane where the cell has a face in it. There nothing
+/// is open on either side, however steep the faces are that meet in the edge.
+void CellCutter::keep_slits_in_caps() {
+    std::erase_if(slits_, [this](const auto& edge) { return !is_in_caps(edge); });
+    for (const auto& edge : slits_) {
+        open_.push_back({edge[0], edge[1]});
+        open_.push_back({edge[1], edge[0]});
     }
 }
 

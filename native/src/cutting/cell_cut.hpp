@@ -62,6 +62,8 @@ private:
     void close(std::span<const PieceRef> refs, CellCut& result);
     void collect_open_edges(std::span<const PieceRef> refs);
     bool caps_on_both_sides(std::span<const Use> uses, std::span<const PieceRef> refs) const;
+    bool is_in_caps(const std::array<NodeId, 2>& edge) const;
+    void keep_slits_in_caps();
     NodeId far_node(const Use& use, std::span<const PieceRef> refs) const;
     void trace_loops();
     void take_whole_loops(Polygons& caps) const;

@@ -29,6 +29,20 @@ bool left_or_straight(const Loop& loop, std::size_t corner, const PlanePosition&
     return cross(a, at, c) >= -slack(a, at, c, rounding);
 }
 
+/// Whether the corners of a loop go there and back once along an axis, up to rounding. One that
+/// turns left or goes straight on everywhere may still run back along itself, or wind round twice.
+bool goes_there_and_back(const Loop& loop, std::size_t axis, const PlanePosition& rounding) {
+    int changes = 0;
+    double last = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const double step = loop[(i + 1) % loop.size()].at[axis] - loop[i].at[axis];
+        if (std::abs(step) <= rounding[axis]) continue;
+        if (last != 0 && (step > 0) != (last > 0)) ++changes;
+        last = step;
+    }
+    return changes <= 2;
+}
+
 /// Convex polygons grown from triangles.
 class Merger {
 public:
@@ -105,6 +119,9 @@ private:
         const std::size_t n = merged.size();
         if (!left_or_straight(merged, 0, rounding_) || !left_or_straight(merged, seam, rounding_))
             return;
+        if (!goes_there_and_back(merged, 0, rounding_) ||
+            !goes_there_and_back(merged, 1, rounding_))
+            return;
         for (std::size_t k = seam + 1; k < n; ++k) {
             for (std::size_t l = 0; l <= seam; ++l) {
                 if (merged[k].node == merged[l].node) return;
@@ -126,18 +143,11 @@ private:
 bool is_convex(const Loop& loop, const PlanePosition& rounding) {
     const std::size_t n = loop.size();
     if (n < 3) return false;
-    // Turning left everywhere may still wind round twice: along a convex loop the x rise once only.
-    int changes = 0;
-    double last = 0;
     for (std::size_t i = 0; i < n; ++i) {
-        const PlanePosition &a = loop[i].at, &b = loop[(i + 1) % n].at;
         if (!left_or_straight(loop, i, rounding)) return false;
-        const double step = b[0] - a[0];
-        if (std::abs(step) <= rounding[0]) continue;
-        if (last != 0 && (step > 0) != (last > 0)) ++changes;
-        last = step;
     }
-    if (changes > 2) return false;
+    if (!goes_there_and_back(loop, 0, rounding) || !goes_there_and_back(loop, 1, rounding))
+        return false;
     std::vector<NodeId> nodes;
     for (const LoopCorner& c : loop)
         nodes.push_back(c.node);

@@ -99,6 +99,42 @@ void PartRounding::glue_doubled() {
     pieces_ = std::move(glued);
     parts_ = std::move(glued_parts);
     find_pieces_of_parts();
+    drop_hollow();
+}
+
+/// Takes away parts of which two polygons are left that lie on each other: what is beyond the one
+/// meets what is beyond the other.
+void PartRounding::drop_hollow() {
+    bool any = false;
+    for (std::size_t part = 0; part < half_cells_.size(); ++part) {
+        if (first_[part + 1] - first_[part] != 2) continue;
+        const auto at = static_cast<std::size_t>(first_[part]);
+        const std::array both{index(pieces_of_[at]), index(pieces_of_[at + 1])};
+        const auto number = static_cast<std::int32_t>(part);
+        const bool has_both = both[0] != both[1] && std::ranges::all_of(both, [&](std::size_t p) {
+                                  return std::ranges::count(parts_[p], number) == 1;
+                              });
+        if (!has_both) continue;
+        any = true;
+        std::array<std::size_t, 2> own{};
+        std::array<std::int32_t, 2> beyond{};  // the parts of this half there, or none
+        for (std::size_t k = 0; k < 2; ++k) {
+            own[k] = parts_[both[k]][0] == number ? 0 : 1;
+            const auto& sides = pieces_.sides[both[k]];
+            beyond[k] = sides[0] == sides[1] ? parts_[both[k]][1 - own[k]] : -1;
+        }
+        const std::size_t stays = beyond[0] < 0 ? 0 : 1, goes = 1 - stays;
+        const std::int32_t next = beyond[goes] == beyond[stays] ? -1 : beyond[goes];
+        parts_[both[stays]][own[stays]] = next;
+        parts_[both[goes]][own[goes]] = -1;
+        if (next >= 0) {
+            pieces_.cells[both[stays]][own[stays]] = half_cells_[index(next)].cell;
+            parts_[both[goes]] = {-1, -1};
+        } else if (beyond[stays] >= 0) {
+            parts_[both[stays]] = parts_[both[goes]] = {-1, -1};
+        }
+    }
+    if (any) find_pieces_of_parts();
 }
 
 namespace {
@@ -133,6 +169,17 @@ bool is_nearly_convex(std::span<const PlanePosition> corners, const PlanePositio
     return true;
 }
 
+/// Whether a polygon has more than the area that rounding may give to one that has none.
+bool has_area(std::span<const PlanePosition> corners, double twice_area,
+              const PlanePosition& rounding) {
+    PlanePosition around{0, 0};  // the way along each axis
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            around[axis] += std::abs(corners[(i + 1) % corners.size()][axis] - corners[i][axis]);
+    }
+    return std::abs(twice_area) > 4 * (rounding[0] * around[1] + rounding[1] * around[0]);
+}
+
 }  // namespace
 
 /// Divides polygons that rounding has bent, and those that are there already.
@@ -151,8 +198,8 @@ void PartRounding::divide_bent() {
             divided.level.push_back(pieces_.level[p]);
             parts.push_back(parts_[p]);
         };
-        const bool is_made =
-            std::any_of(nodes.begin(), nodes.end(), [this](NodeId node) { return is_new(node); });
+        const std::int32_t face = pieces_.face[p];
+        const bool is_made = face < 0 || !std::ranges::equal(nodes, model_.face(index(face)));
         const bool may_be_bent =
             nodes.size() > 3 && is_made && (!is_wall(p) || pieces_.level[p] != 0);
         if (!may_be_bent && is_doubled_[p] == 0) {
@@ -165,13 +212,16 @@ void PartRounding::divide_bent() {
         const Position normal = polygon_normal(corners);
         // what lay on one of the model's surfaces must be convex in plan, the rest as it is seen
         // best
-        const View seen = pieces_.face[p] >= 0 && pieces_.level[p] == 0 && normal[2] != 0
-                              ? View({0, 0, normal[2]})
-                              : View(normal);
+        const bool lay_on_surface = face >= 0 && pieces_.level[p] == 0 && normal[2] != 0;
+        const View seen = lay_on_surface ? View({0, 0, normal[2]}) : View(normal);
         flat.clear();
         for (const Position& corner : corners)
             flat.push_back(seen(corner));
-        if (is_doubled_[p] == 0 && is_nearly_convex(flat, seen.rounding(corners))) {
+        const PlanePosition rounding = seen.rounding(corners);
+        // of what has no area it is not sure how it is seen best
+        const bool is_sure =
+            lay_on_surface || is_wall(p) || has_area(flat, normal[seen.axis()], rounding);
+        if (is_doubled_[p] == 0 && is_sure && is_nearly_convex(flat, rounding)) {
             add(nodes);
             continue;
         }
@@ -182,7 +232,6 @@ void PartRounding::divide_bent() {
                 middle[k] += (corner[k] - corners[0][k]) / static_cast<double>(corners.size());
         }
         if (!taken_.insert(middle).second) {
-            const std::int32_t face = pieces_.face[p];
             const bool on_base = face >= 0 && model_.face_surface[index(face)] == strata::kBase;
             middle =
                 free_position_beside(middle, on_base ? Freedom::kLevel : Freedom::kAny, taken_);

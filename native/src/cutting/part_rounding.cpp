@@ -46,6 +46,7 @@ bool PartRounding::is_wall(std::size_t piece) const {
 
 void PartRounding::run() {
     find_pieces_of_parts();
+    drop_hollow();  // of a cell that lies flat on the cutter
     level_base();
     contract();
     set_apart();

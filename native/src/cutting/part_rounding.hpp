@@ -41,6 +41,7 @@ private:
     void move_aside(NodeId node);
     void give_extents();
     void glue_doubled();
+    void drop_hollow();
     void divide_bent();
     void drop_empty();
 

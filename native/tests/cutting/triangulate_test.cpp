@@ -130,9 +130,13 @@ TEST(Triangulate, ALongCombOfManyTeeth) {
 
 TEST(Triangulate, WhatRoundingHasFoldedOverStaysClosedAndTurnsNothingOver) {
     Corners corners;
-    // dents that poke through: from within, and one whose edge ends where it pokes
-    for (const Loop& loop : {corners.loop({{0, 0}, {4, 0}, {4, 4}, {2, -1e-9}, {0, 4}}),
-                             corners.loop({{0, 0}, {4, 0}, {3, 1}, {2, -1e-9}})}) {
+    const double p = 4 + 1e-9, q = 4 + 2e-9;
+    // dents that poke through: from within, and one whose edge ends where it pokes; a border that
+    // runs back along itself
+    for (const Loop& loop :
+         {corners.loop({{0, 0}, {4, 0}, {4, 4}, {2, -1e-9}, {0, 4}}),
+          corners.loop({{0, 0}, {4, 0}, {3, 1}, {2, -1e-9}}),
+          corners.loop({{0, 0}, {4, 0}, {4, 1}, {p, 1}, {p, 0}, {q, 0}, {q, 4}, {0, 4}})}) {
         Polygons polygons;
         divide_convex({&loop, 1}, {1e-8, 1e-8}, {}, polygons);
         std::map<std::array<NodeId, 2>, int> edges;
