@@ -27,37 +27,24 @@ PlanBox box_of(const Scope& scope, PolygonView polygon) {
 }
 
 std::int64_t PolygonCells::column(double x) const {
-    const double c = (x - frame_.low_x) / step_x_;
+    const double c = (x - grid_.frame.low_x) / grid_.step_x;
     return std::clamp(static_cast<std::int64_t>(std::clamp(c, 0.0, 1e9)), std::int64_t{0},
-                      columns_ - 1);
+                      grid_.columns - 1);
 }
 
 std::int64_t PolygonCells::row(double y) const {
-    const double r = (y - frame_.low_y) / step_y_;
+    const double r = (y - grid_.frame.low_y) / grid_.step_y;
     return std::clamp(static_cast<std::int64_t>(std::clamp(r, 0.0, 1e9)), std::int64_t{0},
-                      rows_ - 1);
+                      grid_.rows - 1);
 }
 
 void PolygonCells::fill(const exact::PlanGeometry& geometry, const PolygonPool& polygons,
                         const std::vector<PlanBox>& boxes, const std::vector<std::int32_t>& chosen,
                         std::size_t cells, int threads, const Progress* progress) {
     if (chosen.empty()) return;
-    frame_ = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    for (const std::int32_t i : chosen) {
-        const PlanBox& box = boxes[static_cast<std::size_t>(i)];
-        frame_ = {std::min(frame_.low_x, box.low_x), std::min(frame_.low_y, box.low_y),
-                  std::max(frame_.high_x, box.high_x), std::max(frame_.high_y, box.high_y)};
-    }
-    const double width = frame_.high_x - frame_.low_x, height = frame_.high_y - frame_.low_y;
-    // cells as square as the frame allows
-    const auto count = static_cast<double>(std::max<std::size_t>(cells, 1));
-    const double shape = std::clamp(width / height, 1.0 / count, count);
-    columns_ = std::max<std::int64_t>(1, std::llround(std::sqrt(count * shape)));
-    rows_ = std::max<std::int64_t>(1, std::llround(std::sqrt(count / shape)));
-    step_x_ = std::max(width / static_cast<double>(columns_), 1e-300);
-    step_y_ = std::max(height / static_cast<double>(rows_), 1e-300);
-    offsets_ =
-        zeros<std::uint32_t>(static_cast<std::size_t>(columns_ * rows_ + 1), threads, progress);
+    grid_ = CellGrid(box_around(boxes, chosen), cells);
+    offsets_ = zeros<std::uint32_t>(static_cast<std::size_t>(grid_.columns * grid_.rows + 1),
+                                    threads, progress);
     // Calls visit(cell, polygon), from several threads.
     const auto for_all = [&](const auto& visit) {
         parallel_ranges(chosen.size(), kRange, threads, progress,
@@ -74,8 +61,8 @@ void PolygonCells::fill(const exact::PlanGeometry& geometry, const PolygonPool& 
     for_all([&](std::size_t cell, std::int32_t) { count_one(offsets_[cell]); });
     running_totals(offsets_, UINT32_MAX, threads, progress);
     items_ = FlatArray<Item>(offsets_[offsets_.size() - 1]);
-    FlatArray<std::uint32_t> filled =
-        zeros<std::uint32_t>(static_cast<std::size_t>(columns_ * rows_), threads, progress);
+    FlatArray<std::uint32_t> filled = zeros<std::uint32_t>(
+        static_cast<std::size_t>(grid_.columns * grid_.rows), threads, progress);
     for_all([&](std::size_t cell, std::int32_t polygon) {
         const PlanBox& box = boxes[static_cast<std::size_t>(polygon)];
         const CellSpan span = span_of(box);
@@ -91,8 +78,8 @@ PolygonCells::CellSpan PolygonCells::span_of(const PlanBox& box) const {
 }
 
 bool PolygonCells::is_inside(const PlanBox& box) const {
-    return box.low_x >= frame_.low_x && box.high_x <= frame_.high_x && box.low_y >= frame_.low_y &&
-           box.high_y <= frame_.high_y;
+    return box.low_x >= grid_.frame.low_x && box.high_x <= grid_.frame.high_x &&
+           box.low_y >= grid_.frame.low_y && box.high_y <= grid_.frame.high_y;
 }
 
 template <class Visit>
@@ -103,14 +90,14 @@ void PolygonCells::for_each_cell(const Scope& scope, PolygonView polygon, const 
     if (is_inside(box) && span.is_narrow()) {
         for (std::int64_t r = r0; r <= r1; ++r) {
             for (std::int64_t c = c0; c <= c1; ++c)
-                visit(r * columns_ + c);
+                visit(r * grid_.columns + c);
         }
         return;
     }
     // The stretch of x that the polygon covers in each row, a little too long rather than too
     // short.
     const double slack_x = 0x1p-46 * (std::abs(box.low_x) + std::abs(box.high_x));
-    const double slack_y = 0x1p-46 * (std::abs(frame_.low_y) + std::abs(frame_.high_y));
+    const double slack_y = 0x1p-46 * (std::abs(grid_.frame.low_y) + std::abs(grid_.frame.high_y));
     std::vector<std::array<double, 2>> reach(static_cast<std::size_t>(r1 - r0 + 1),
                                              {HUGE_VAL, -HUGE_VAL});
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -119,8 +106,10 @@ void PolygonCells::for_each_cell(const Scope& scope, PolygonView polygon, const 
         const double low = std::min(p.y, q.y) - slack_y, high = std::max(p.y, q.y) + slack_y;
         for (std::int64_t r = std::max(r0, row(low)), end = std::min(r1, row(high)); r <= end;
              ++r) {
-            const double bottom = frame_.low_y + static_cast<double>(r) * step_y_ - slack_y;
-            const double top = frame_.low_y + static_cast<double>(r + 1) * step_y_ + slack_y;
+            const double bottom =
+                grid_.frame.low_y + static_cast<double>(r) * grid_.step_y - slack_y;
+            const double top =
+                grid_.frame.low_y + static_cast<double>(r + 1) * grid_.step_y + slack_y;
             auto& [from, to] = reach[static_cast<std::size_t>(r - r0)];
             const auto include = [&from = from, &to = to](double x) {
                 from = std::min(from, x);
@@ -140,9 +129,10 @@ void PolygonCells::for_each_cell(const Scope& scope, PolygonView polygon, const 
     }
     for (std::int64_t r = r0; r <= r1; ++r) {
         const auto& [from, to] = reach[static_cast<std::size_t>(r - r0)];
-        if (from > to || to + slack_x < frame_.low_x || from - slack_x > frame_.high_x) continue;
+        if (from > to || to + slack_x < grid_.frame.low_x || from - slack_x > grid_.frame.high_x)
+            continue;
         for (std::int64_t c = column(from - slack_x), end = column(to + slack_x); c <= end; ++c) {
-            visit(r * columns_ + c);
+            visit(r * grid_.columns + c);
         }
     }
 }
@@ -150,7 +140,7 @@ void PolygonCells::for_each_cell(const Scope& scope, PolygonView polygon, const 
 bool PolygonCells::append(const Scope& scope, PolygonView polygon, const PlanBox& box,
                           const std::vector<PlanBox>& boxes,
                           std::vector<std::int32_t>& found) const {
-    if (items_.size() == 0 || !box.meets(frame_)) return true;
+    if (items_.size() == 0 || !box.meets(grid_.frame)) return true;
     const CellSpan span = span_of(box);
     bool is_once = true;
     const auto visit = [&](std::size_t cell, const auto& is_first) {
@@ -165,7 +155,7 @@ bool PolygonCells::append(const Scope& scope, PolygonView polygon, const PlanBox
     if (is_inside(box) && span.is_narrow()) {
         for (std::int64_t r = span.low; r <= span.high; ++r) {
             for (std::int64_t c = span.left; c <= span.right; ++c) {
-                visit(static_cast<std::size_t>(r * columns_ + c), [&](const Item& item) {
+                visit(static_cast<std::size_t>(r * grid_.columns + c), [&](const Item& item) {
                     return item.left == kScattered ||
                            (c == std::max<std::int64_t>(span.left, item.left) &&
                             r == std::max<std::int64_t>(span.low, item.low));
@@ -194,7 +184,11 @@ PlanGrid::PlanGrid(const exact::PlanGeometry& geometry, const PolygonPool& polyg
                             boxes_[i] = box_of(scope, polygons[i]);
                     });
     cells = std::max(cells, polygons.size());
-    inner_.fill(geometry, polygons, boxes_, inner, cells, threads, progress);
+    // of two polygons for a cell, all but the largest are small
+    const std::vector<std::int32_t> large =
+        small_.fill(boxes_, inner, cells / 2, threads, progress);
+    large_.fill(geometry, polygons, boxes_, large, std::min(cells, 8 * large.size()), threads,
+                progress);
     // fans of needles around the border: finer cells keep them apart, but each is in many
     outer_.fill(geometry, polygons, boxes_, outer, 8 * outer.size(), threads, progress);
 }
@@ -203,7 +197,8 @@ void PlanGrid::candidates(const Scope& scope, PolygonView polygon,
                           std::vector<std::int32_t>& found) const {
     found.clear();
     const PlanBox box = box_of(scope, polygon);
-    bool is_once = inner_.append(scope, polygon, box, boxes_, found);
+    small_.append(box, found);
+    bool is_once = large_.append(scope, polygon, box, boxes_, found);
     is_once &= outer_.append(scope, polygon, box, boxes_, found);
     std::sort(found.begin(), found.end());
     if (!is_once) found.erase(std::unique(found.begin(), found.end()), found.end());

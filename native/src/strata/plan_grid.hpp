@@ -7,19 +7,9 @@
 #include "flat_array.hpp"
 #include "polygon.hpp"
 #include "realmodel/base/progress.hpp"
+#include "small_boxes.hpp"
 
 namespace realmodel::strata {
-
-/// An axis-parallel box in plan.
-struct PlanBox {
-    double low_x = 0, low_y = 0, high_x = 0, high_y = 0;
-    /// Whether the boxes share at least a point. Coordinates are rounded monotonically, so boxes of
-    /// polygons that share an area always meet.
-    bool meets(const PlanBox& other) const {
-        return low_x <= other.high_x && other.low_x <= high_x && low_y <= other.high_y &&
-               other.low_y <= high_y;
-    }
-};
 
 PlanBox box_of(const Scope& scope, PolygonView polygon);
 
@@ -58,15 +48,13 @@ private:
     void for_each_cell(const Scope& scope, PolygonView polygon, const PlanBox& box,
                        const Visit& visit) const;
 
-    PlanBox frame_;
-    double step_x_ = 1, step_y_ = 1;
-    std::int64_t columns_ = 0, rows_ = 0;
+    CellGrid grid_;
     FlatArray<std::uint32_t> offsets_;
     FlatArray<Item> items_;  ///< of one cell in any order
 };
 
-/// Finds the polygons of a set that may share an area with another polygon. What fills the frame
-/// around a surface has cells of its own: it would make those of the surface coarse.
+/// Finds the polygons of a set that may share an area with another polygon. Most of a surface's are
+/// small; what is larger, and what fills the frame around the surface, has cells of its own.
 class PlanGrid {
 public:
     PlanGrid() = default;
@@ -82,7 +70,8 @@ public:
 
 private:
     std::vector<PlanBox> boxes_;
-    PolygonCells inner_, outer_;
+    SmallBoxes small_;
+    PolygonCells large_, outer_;
 };
 
 }  // namespace realmodel::strata
