@@ -136,6 +136,12 @@ void PlanGeometry::freeze_vertices() {
         const double largest = std::max(
             {std::abs(r.low_x), std::abs(r.high_x), std::abs(r.low_y), std::abs(r.high_y)});
         r.point_error = largest * 0x1p-53 + 1e-300;
+        const auto edge_error = [&](double way) {
+            return ((1 + kEpsilon) * (r.point_error + kEpsilon * way) + 5 * kEpsilon * way) *
+                   (1 + 0x1p-40);
+        };
+        r.edge_x = edge_error(r.width);
+        r.edge_y = edge_error(r.height);
     }
     for (const SpaceVertex& s : space_)
         height_exponent_ = finest_exponent(s.z, height_exponent_);

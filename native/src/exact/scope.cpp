@@ -277,8 +277,7 @@ PointId Scope::crossing_between_ends(LineId a, LineId b) {
     return kLocal + found.number;
 }
 
-void Scope::ask_for_line(LineId id) {
-    if (id < kLocal) return;
+void Scope::ask_for_local_line(LineId id) {
     const auto local = static_cast<std::size_t>(id - kLocal);
     if (line_ids_.size() < lines_.size()) line_ids_.resize(lines_.size(), kKept);
     if (line_ids_[local] != kKept) return;
@@ -286,8 +285,7 @@ void Scope::ask_for_line(LineId id) {
     asked_lines_.push_back(static_cast<std::int32_t>(local));
 }
 
-void Scope::ask_for_point(PointId id) {
-    if (id < kLocal) return;
+void Scope::ask_for_local_point(PointId id) {
     const auto local = static_cast<std::size_t>(id - kLocal);
     if (point_ids_.size() < points_.size()) point_ids_.resize(points_.size(), kKept);
     if (point_ids_[local] != kKept) return;
@@ -309,27 +307,32 @@ void Scope::hand_over(PlanGeometry& geometry) {
         if (i + kAhead < asked_lines_.size()) geometry.prefetch(lines_[line_asked(i + kAhead)]);
         shared_line(kLocal + asked_lines_[i]);
     }
-    for (std::size_t i = 0; i < asked_points_.size() + kAhead; ++i) {
-        if (i < asked_points_.size()) {
-            Point& ahead = points_[static_cast<std::size_t>(asked_points_[i])];
-            ahead.first = shared_line(ahead.first);
-            ahead.second = shared_line(ahead.second);
-            geometry.prefetch(ahead);
+    // Of some points at a time, all places in the table are fetched before the first is needed:
+    // what takes time is to find their pages of memory, and the machine looks for several at once.
+    std::array<const void*, 64> place;
+    for (std::size_t begin = 0; begin < asked_points_.size(); begin += place.size()) {
+        const std::size_t count = std::min(place.size(), asked_points_.size() - begin);
+        for (std::size_t i = 0; i < count; ++i) {
+            Point& point = points_[static_cast<std::size_t>(asked_points_[begin + i])];
+            point.first = shared_line(point.first);
+            point.second = shared_line(point.second);
+            place[i] = geometry.place_of_name(point);
         }
-        if (i >= kAhead) shared_point(kLocal + asked_points_[i - kAhead]);
+        for (std::size_t i = 0; i < count; ++i)
+            __builtin_prefetch(place[i]);
+        for (std::size_t i = 0; i < count; ++i)
+            shared_point(kLocal + asked_points_[begin + i]);
     }
 }
 
-LineId Scope::shared_line(LineId id) {
-    if (id < kLocal) return id;
+LineId Scope::shared_local_line(LineId id) {
     const auto local = static_cast<std::size_t>(id - kLocal);
     LineId& shared = line_ids_[local];
     if (shared < 0) shared = receiver_->add_line(lines_[local]);
     return shared;
 }
 
-PointId Scope::shared_point(PointId id) {
-    if (id < kLocal) return id;
+PointId Scope::shared_local_point(PointId id) {
     const auto local = static_cast<std::size_t>(id - kLocal);
     PointId& shared = point_ids_[local];
     if (shared < 0) {

@@ -37,12 +37,6 @@ Sides completed(const CertainSides& known, std::size_t size, const Ask& ask) {
     return sides;
 }
 
-/// One bound of the error for all points within reach: that of Scope::filtered_side at the farthest
-/// of them. Most signs are certain far beyond it, and it costs nothing for each point.
-double bound_within(const LineFilter& f, const PlanReach& reach) {
-    return f.error_at(reach.width, reach.height, reach.point_error) * (1 + 0x1p-40);
-}
-
 }  // namespace
 
 void Scope::add_to(PointRow& row, PointId id) const {
@@ -54,31 +48,54 @@ void Scope::add_to(PointRow& row, PointId id) const {
     ++row.size;
 }
 
-void Scope::add_to(LineRow& row, DirectedLine directed_line) const {
+/// One bound of the error for all points within reach: that of Scope::filtered_side at the farthest
+/// of them. Most signs are certain far beyond it, and it costs nothing for each point.
+Scope::RowFilter Scope::row_filter(DirectedLine directed_line) const {
     const LineFilter f = filter(line_of(directed_line));
     const double sign = is_reversed(directed_line) ? -1.0 : 1.0;
+    const PlanReach& reach = shared_.reach();
+    return {sign * f.a, sign * f.b,
+            sign * f.c, f.x0,
+            f.y0,       f.error_at(reach.width, reach.height, reach.point_error) * (1 + 0x1p-40)};
+}
+
+/// The same of the line through two input vertices, whatever it is made of.
+Scope::RowFilter Scope::row_filter_between(const Point& from, const Point& to) const {
+    const double a = from.y - to.y, b = to.x - from.x;
+    const PlanReach& reach = shared_.reach();
+    return {a,      b,      0,
+            from.x, from.y, std::abs(a) * reach.edge_x + std::abs(b) * reach.edge_y + 2e-290};
+}
+
+void Scope::add_to(LineRow& row, const DirectedEdge& edge) const {
+    const RowFilter f = is_vertex(edge.from) && is_vertex(edge.to)
+                            ? row_filter_between(point(edge.from), point(edge.to))
+                            : row_filter(edge.line);
     const std::size_t i = row.size;
-    row.line[i] = directed_line;
-    row.a[i] = sign * f.a;
-    row.b[i] = sign * f.b;
-    row.c[i] = sign * f.c;
-    row.bound[i] = bound_within(f, shared_.reach());
+    row.line[i] = edge.line;
+    row.a[i] = f.a;
+    row.b[i] = f.b;
+    row.c[i] = f.c;
+    row.bound[i] = f.bound;
     row.x0[i] = f.x0;
     row.y0[i] = f.y0;
     ++row.size;
 }
 
-Sides Scope::sides(DirectedLine directed_line, const PointRow& points) {
-    const LineFilter f = filter(line_of(directed_line));
-    const double sign = is_reversed(directed_line) ? -1.0 : 1.0;
-    const double a = sign * f.a, b = sign * f.b, c = sign * f.c;
-    const double bound = points.within ? bound_within(f, shared_.reach()) : HUGE_VAL;
+Sides Scope::sides(const DirectedEdge& edge, const PointRow& points) {
+    if (is_vertex(edge.from) && is_vertex(edge.to))
+        return sides(row_filter_between(point(edge.from), point(edge.to)), edge.line, points);
+    return sides(row_filter(edge.line), edge.line, points);
+}
+
+Sides Scope::sides(const RowFilter& f, DirectedLine line, const PointRow& points) {
+    const double bound = points.within ? f.bound : HUGE_VAL;
     CertainSides known;
     for (std::size_t i = 0; i < points.size; ++i)
-        known.add(i, a * (points.x[i] - f.x0) + b * (points.y[i] - f.y0) + c, bound);
+        known.add(i, f.a * (points.x[i] - f.x0) + f.b * (points.y[i] - f.y0) + f.c, bound);
     decisions_ += points.size;
     return completed(known, points.size,
-                     [&](std::size_t i) { return side(directed_line, points.point[i]); });
+                     [&](std::size_t i) { return side(line, points.point[i]); });
 }
 
 Sides Scope::sides(const LineRow& lines, PointId id) {

@@ -7,6 +7,11 @@ using exact::Sides;
 
 namespace {
 
+/// An edge of a polygon.
+exact::DirectedEdge edge_of(PolygonView polygon, std::size_t i) {
+    return {polygon[i].line, polygon[i].point, polygon[i + 1 < polygon.size() ? i + 1 : 0].point};
+}
+
 bool bit(std::uint32_t bits, std::size_t i) {
     return (bits >> i & 1U) != 0;
 }
@@ -19,9 +24,9 @@ void FacetClipper::begin(PolygonView facet) {
     corners_.clear();
     lines_.clear();
     if (facet.size() > exact::kRowLength) return;
-    for (const Corner& corner : facet) {
-        scope_.add_to(corners_, corner.point);
-        scope_.add_to(lines_, corner.line);
+    for (std::size_t i = 0; i < facet.size(); ++i) {
+        scope_.add_to(corners_, facet[i].point);
+        scope_.add_to(lines_, edge_of(facet, i));
     }
 }
 
@@ -32,12 +37,15 @@ const FacetClipper::KnownPoint& FacetClipper::known_point(PointId point) {
     return known;
 }
 
-FacetClipper::KnownLine& FacetClipper::known_line(LineId line) {
+FacetClipper::KnownLine& FacetClipper::known_line(PolygonView window, std::size_t edge) {
+    const LineId line = exact::line_of(window[edge].line);
     KnownLine& known = known_lines_[static_cast<std::size_t>(line) % kKnown];
     if (known.line != line || known.facet != number_) {
         known.line = line;
         known.facet = number_;
-        known.sides = scope_.sides(exact::directed(line, false), corners_);
+        const exact::DirectedEdge along = edge_of(window, edge);
+        known.sides = scope_.sides(along, corners_);
+        if (exact::is_reversed(along.line)) std::swap(known.sides.left, known.sides.right);
         known.crossing.fill(-1);
     }
     return known;
@@ -59,7 +67,7 @@ bool FacetClipper::compare(PolygonView window) {
     const std::uint32_t all = (1U << facet_.size()) - 1U;
     on_line_ = false;
     for (std::size_t j = 0; j < window.size(); ++j) {
-        KnownLine& known = known_line(exact::line_of(window[j].line));
+        KnownLine& known = known_line(window, j);
         Sides corners = known.sides;
         if (exact::is_reversed(window[j].line)) std::swap(corners.left, corners.right);
         if (corners.left == 0) return false;

@@ -49,7 +49,7 @@ private:
     };
 
     const KnownPoint& known_point(PointId point);
-    KnownLine& known_line(LineId line);
+    KnownLine& known_line(PolygonView window, std::size_t edge);
     PolygonView follow(PolygonView window);
     PolygonView cut_by_lines(PolygonView window);
     PointId crossing(std::size_t facet_edge, std::size_t window_edge, PolygonView window);

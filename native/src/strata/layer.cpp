@@ -157,6 +157,13 @@ std::array<Corner, 3> triangle_outline(PlanGeometry& geometry, const PlanTriangl
              {v[2], geometry.add_edge(v[2], v[0])}}};
 }
 
+HeightRange heights_of(const PlanGeometry& geometry, PlaneId plane) {
+    const auto& corner = geometry.plane(plane).corner;
+    const auto [low, high] = std::minmax(
+        {geometry.space(corner[0]).z, geometry.space(corner[1]).z, geometry.space(corner[2]).z});
+    return {low, high};
+}
+
 void Layer::index(const PlanGeometry& geometry, int threads, const Progress* progress,
                   std::size_t cells) {
     std::vector<std::uint8_t> is_surface(plane.size());
@@ -164,6 +171,12 @@ void Layer::index(const PlanGeometry& geometry, int threads, const Progress* pro
                    [](PlaneId p) { return static_cast<std::uint8_t>(p == kVoid ? 0 : 1); });
     runs_on.assign(plane.size(), 0);
     grid = PlanGrid(geometry, polygons, is_surface, cells, threads, progress);
+    heights = FlatArray<HeightRange>(plane.size());
+    parallel_ranges(
+        plane.size(), kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p)
+                heights[p] = plane[p] < 0 ? HeightRange{} : heights_of(geometry, plane[p]);
+        });
 }
 
 bool meet_in_height(const PlanGeometry& geometry, PlaneId plane, std::size_t i, PlaneId other) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "flat_array.hpp"
 #include "plan_grid.hpp"
 #include "plan_links.hpp"
 #include "plan_snapping.hpp"
@@ -19,6 +20,12 @@ inline constexpr PlaneId kVoid = -1;
 inline constexpr PlaneId kSky = -2;
 inline constexpr PlaneId kOutside = -3;
 
+/// Heights between which a triangle lies.
+struct HeightRange {
+    double low, high;
+};
+HeightRange heights_of(const exact::PlanGeometry& geometry, PlaneId plane);
+
 /// One surface as a set of convex plan polygons that tile the whole frame: its triangles, and void
 /// triangles where it has none. So every plan point lies in one polygon of every layer, and cutting
 /// away what a surface does not cover needs no operation of its own.
@@ -28,9 +35,11 @@ struct Layer {
     /// Of each polygon: 1 where the surface is known to go on at the same heights across all of its
     /// edges, with one polygon beyond each.
     std::vector<std::uint8_t> runs_on;
+    FlatArray<HeightRange> heights;  ///< of each polygon's plane, where it has one
     PlanGrid grid;
 
-    /// Makes the grid of the polygons as they are now; nothing more is known of how they run on.
+    /// Makes the grid of the polygons as they are now, and finds their heights; nothing more is
+    /// known of how they run on.
     void index(const exact::PlanGeometry& geometry, int threads, const Progress* progress,
                std::size_t cells = 0);
 };

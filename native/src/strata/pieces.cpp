@@ -55,15 +55,6 @@ const std::vector<std::int32_t>& PieceFinder::overlapping(PolygonView outline) {
     return overlapping_;
 }
 
-PieceFinder::HeightRange PieceFinder::heights_of(PlaneId plane) const {
-    HeightRange range{HUGE_VAL, -HUGE_VAL};
-    for (const exact::SpaceId corner : scope_.shared().plane(plane).corner) {
-        const double z = scope_.shared().space(corner).z;
-        range = {std::min(range.low, z), std::max(range.high, z)};
-    }
-    return range;
-}
-
 /// Begins with a facet; true where one polygon of the layer is all that it meets, which is added.
 bool PieceFinder::begin(const Facet& facet) {
     pieces_.clear();
@@ -113,7 +104,7 @@ const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
 bool PieceFinder::is_higher(std::int32_t polygon, const Facet& facet) const {
     const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
     if (surface < 0) return false;
-    const HeightRange heights = heights_of(surface);
+    const HeightRange heights = layer_.heights[static_cast<std::size_t>(polygon)];
     if (heights.low >= facet.heights.high) return true;
     if (heights.high < facet.heights.high) return false;  // most that are not higher
     const auto trace = scope_.shared().trace_filter(surface, facet.plane);
@@ -132,7 +123,7 @@ void PieceFinder::add_common(std::int32_t polygon, PolygonView common, const Fac
         add(polygon, facet.plane == kSky ? Side::kBelow : Side::kNotBelow, common);
     } else {
         // both are parts of triangles, so most are told apart by the heights of the corners
-        const HeightRange heights = heights_of(surface);
+        const HeightRange heights = layer_.heights[static_cast<std::size_t>(polygon)];
         if (heights.high < facet.heights.low) {
             add(polygon, Side::kBelow, common);
         } else if (heights.low >= facet.heights.high) {

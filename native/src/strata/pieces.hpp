@@ -59,11 +59,6 @@ public:
     const std::vector<std::int32_t>& overlapping(PolygonView outline);
 
 private:
-    /// Heights between which a triangle lies.
-    struct HeightRange {
-        double low, high;
-    };
-    HeightRange heights_of(PlaneId plane) const;
     /// A facet of the envelope.
     struct Facet {
         PolygonView outline;
@@ -71,7 +66,7 @@ private:
         HeightRange heights;
     };
     Facet facet_of(PolygonView outline, PlaneId plane) const {
-        return {outline, plane, plane < 0 ? HeightRange{} : heights_of(plane)};
+        return {outline, plane, plane < 0 ? HeightRange{} : heights_of(scope_.shared(), plane)};
     }
     PolygonView outline_of(std::int32_t polygon) const {
         return layer_.polygons[static_cast<std::size_t>(polygon)];

@@ -39,11 +39,14 @@ public:
         }
     }
 
-    /// Fetches the place of a key that will be inserted soon, as memory takes its time. (Calls that
-    /// do nothing else are left out by g++, so this and what calls it must be inlined.)
-    [[gnu::always_inline]] void prefetch(const Key& key) const {
-        if (!slots_.empty()) __builtin_prefetch(&slots_[hash(key) & mask_]);
+    /// Where a key will be looked for first, nothing where there is no table yet: to be fetched
+    /// some time before it is inserted, as memory takes its time.
+    const void* place(const Key& key) const {
+        return slots_.empty() ? nullptr : &slots_[hash(key) & mask_];
     }
+    /// Fetches that. (Calls that do nothing else are left out by g++, so this and what calls it
+    /// must be inlined.)
+    [[gnu::always_inline]] void prefetch(const Key& key) const { __builtin_prefetch(place(key)); }
 
     /// Makes room for so many keys at once.
     void reserve(std::size_t count) {

@@ -45,6 +45,12 @@ inline DirectedLine opposite(DirectedLine line) {
     return line ^ 1;
 }
 
+/// A stretch of a directed line between two different points of it, in its direction.
+struct DirectedEdge {
+    DirectedLine line;
+    PointId from, to;
+};
+
 /// What a plan line is made of, straight from the input. Nothing in the program stands on a line or
 /// a point that was itself rounded, so every decision is exact on the input.
 struct Line {
@@ -174,6 +180,9 @@ struct Plane {
 struct PlanReach {
     double low_x = HUGE_VAL, low_y = HUGE_VAL, high_x = -HUGE_VAL, high_y = -HUGE_VAL;
     double width = 0, height = 0, point_error = 0;
+    /// |a| and |b| of an edge's filter times these, and a trifle for underflow, bound its error at
+    /// any point in the box: LineFilter::error_at with all that the edges have in common taken out.
+    double edge_x = 0, edge_y = 0;
 
     bool has(double x, double y) const {
         return x >= low_x && x <= high_x && y >= low_y && y <= high_y;
@@ -235,8 +244,9 @@ public:
     [[gnu::always_inline]] void prefetch(const Line& line) const {
         line_table_.prefetch(line_key_of(line));
     }
-    [[gnu::always_inline]] void prefetch(const Point& point) const {
-        point_table_.prefetch(point_key_of(point));
+    /// What is to be fetched before a point is added.
+    const void* place_of_name(const Point& point) const {
+        return point_table_.place(point_key_of(point));
     }
 
     VertexId vertex_count() const { return static_cast<VertexId>(vertex_count_); }
@@ -321,9 +331,9 @@ public:
     int side(DirectedLine line, PointId point);
     /// Adds a point, or a line, to a row that has room.
     void add_to(PointRow& row, PointId point) const;
-    void add_to(LineRow& row, DirectedLine line) const;
+    void add_to(LineRow& row, const DirectedEdge& edge) const;
     /// The same as `side` of all points of a row, or of a point and all lines of a row.
-    Sides sides(DirectedLine line, const PointRow& points);
+    Sides sides(const DirectedEdge& edge, const PointRow& points);
     Sides sides(const LineRow& lines, PointId point);
     /// The sign of the height of plane `upper` less that of plane `lower` above a point.
     int compare_heights(PlaneId upper, PlaneId lower, PointId point);
@@ -373,8 +383,12 @@ public:
     std::uint64_t exact_decisions() const { return exact_; }
 
     /// Asks for a line or point, which may be local, to be handed over.
-    void ask_for_line(LineId id);
-    void ask_for_point(PointId id);
+    void ask_for_line(LineId id) {
+        if (id >= kLocal) ask_for_local_line(id);
+    }
+    void ask_for_point(PointId id) {
+        if (id >= kLocal) ask_for_local_point(id);
+    }
     /// Hands the local lines and points over to the geometry that were asked for; what nobody asks
     /// for stays behind. Nothing new may be found afterwards.
     void hand_over(PlanGeometry& geometry);
@@ -384,13 +398,25 @@ public:
     }
     /// The shared id of a line or point, which may be local; handed over now if nobody asked
     /// before.
-    LineId shared_line(LineId id);
+    LineId shared_line(LineId id) { return id < kLocal ? id : shared_local_line(id); }
     DirectedLine shared_directed(DirectedLine id) {
         return directed(shared_line(line_of(id)), is_reversed(id));
     }
-    PointId shared_point(PointId id);
+    PointId shared_point(PointId id) { return id < kLocal ? id : shared_local_point(id); }
 
 private:
+    /// A directed line as a (x - x0) + b (y - y0) + c, with one bound for its error at all points
+    /// within reach of the input vertices.
+    struct RowFilter {
+        double a, b, c, x0, y0, bound;
+    };
+    RowFilter row_filter(DirectedLine line) const;
+    RowFilter row_filter_between(const Point& from, const Point& to) const;
+    Sides sides(const RowFilter& filter, DirectedLine line, const PointRow& points);
+    void ask_for_local_line(LineId id);
+    void ask_for_local_point(PointId id);
+    LineId shared_local_line(LineId id);
+    PointId shared_local_point(PointId id);
     int filtered_side(const LineFilter& line, const Point& point) const;
     bool vanishes(const LineFilter& edge, const Point& vertex) const;
     bool runs_along(const LineFilter& edge, const Point& crossing) const;
