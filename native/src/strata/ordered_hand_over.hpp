@@ -23,20 +23,39 @@ public:
         geometry.make_room(facets * 4 + 1024, facets * 8 + 1024);
     }
 
-    /// To be called when nothing more will be asked of the scope of a chunk.
-    void finished(std::size_t chunk, Scope& scope) {
+    /// Chunks from `first` to `last` - 1.
+    struct Chunks {
+        std::size_t first = 0, last = 0;
+    };
+
+    /// For callers whom it is all one when a chunk is handed over.
+    struct Nothing {
+        void operator()(std::size_t) const {}
+    };
+
+    /// To be called when nothing more will be asked of the scope of a chunk. `passed` is called
+    /// with each chunk that is handed over, in order.
+    /// @return the chunks that this call handed over, which may be none or other ones: their scopes
+    /// are the caller's again
+    template <class Passed = Nothing>
+    Chunks finished(std::size_t chunk, Scope& scope, const Passed& passed = {}) {
         finished_[chunk].store(&scope, std::memory_order_release);
         const std::unique_lock lock(busy_, std::try_to_lock);
-        if (!lock) return;  // another thread goes on, now or with its next chunk
+        if (!lock) return {};  // another thread goes on, now or with its next chunk
+        const std::size_t first = next_;
         for (Scope* next = finished_scope(); next != nullptr && next->has_room_in(geometry_);
              next = finished_scope())
-            hand_over(*next);
+            hand_over(*next, passed);
+        return {first, next_};
     }
 
-    /// To be called when all chunks are finished: hands over what is left.
-    void finish() {
+    /// To be called when all chunks are finished: hands over what is left, and returns it.
+    template <class Passed = Nothing>
+    Chunks finish(const Passed& passed = {}) {
+        const std::size_t first = next_;
         for (Scope* next = finished_scope(); next != nullptr; next = finished_scope())
-            hand_over(*next);
+            hand_over(*next, passed);
+        return {first, next_};
     }
 
 private:
@@ -44,8 +63,10 @@ private:
         return next_ < finished_.size() ? finished_[next_].load(std::memory_order_acquire)
                                         : nullptr;
     }
-    void hand_over(Scope& scope) {
+    template <class Passed>
+    void hand_over(Scope& scope, const Passed& passed) {
         scope.hand_over(geometry_);
+        passed(next_);
         ++next_;
     }
 

@@ -4,11 +4,11 @@
 #include <atomic>
 #include <memory>
 
+#include "chunk_joining.hpp"
 #include "envelope.hpp"
 #include "ordered_hand_over.hpp"
 #include "parallel_chunks.hpp"
 #include "pieces.hpp"
-#include "realmodel/base/errors.hpp"
 #include "shared_polygons.hpp"
 #include "surface_facets.hpp"
 
@@ -21,28 +21,6 @@ namespace {
 /// Facets worked on at a time: fixed, so that the result does not depend on the number of threads.
 constexpr std::size_t kChunk = 256;
 
-/// A piece of the surface that becomes part of the envelope.
-struct LoweredPiece {
-    std::int32_t polygon;     ///< of the layer
-    std::int32_t cell_above;  ///< counted within the chunk, or kOutsideCell
-};
-
-/// What one chunk of facets became. Lines and points are the scope's, cells are counted from 0.
-struct ChunkResult {
-    explicit ChunkResult(const PlanGeometry& geometry) : scope(geometry) {}
-
-    Scope scope;
-    GrowingArray<std::int32_t> cell_block;
-    FaceList faces;  ///< finished; above is a shared cell, below one of the chunk's
-    PolygonPool lowered_outlines;
-    GrowingArray<LoweredPiece> lowered;
-    Envelope kept;
-
-    std::array<PolygonPool*, 4> pools() {
-        return {&faces.polygons, &lowered_outlines, &kept.outlines, &kept.face_polygons};
-    }
-};
-
 /// Works on the facets of one chunk.
 class FacetOverlay {
 public:
@@ -53,9 +31,9 @@ public:
           number_(number),
           whole_(whole),
           result_(result),
-          finder_(result.scope, layer),
-          grouping_(result.scope, layer),
-          clipper_(result.scope) {}
+          finder_(*result.scope, layer),
+          grouping_(*result.scope, layer),
+          clipper_(*result.scope) {}
 
     void process(std::size_t facet) {
         const PolygonView outline = envelope_.outlines[facet];
@@ -190,138 +168,6 @@ private:
     std::vector<std::int32_t> group_;
 };
 
-/// Polygons and corners counted up to a chunk.
-struct PoolStart {
-    std::size_t polygon = 0, corner = 0;
-    void pass(const PolygonPool& pool) {
-        polygon += pool.size();
-        corner += pool.corners.size();
-    }
-    void make_room(PolygonPool& pool) const {
-        pool.offsets.resize(polygon + 1);
-        pool.corners.resize(corner);
-    }
-};
-
-/// Where the elements of a chunk go.
-struct ChunkStart {
-    std::int64_t cell = 0;
-    PoolStart face, lowered, facet, facet_face;
-
-    void pass(const ChunkResult& chunk) {
-        cell += static_cast<std::int64_t>(chunk.cell_block.size());
-        face.pass(chunk.faces.polygons);
-        lowered.pass(chunk.lowered_outlines);
-        facet.pass(chunk.kept.outlines);
-        facet_face.pass(chunk.kept.face_polygons);
-    }
-};
-
-template <class Element, class From>
-void put(GrowingArray<Element>& to, std::size_t at, const From& from) {
-    std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(at));
-}
-
-void put(PolygonPool& to, const PoolStart& at, const PolygonPool& from) {
-    put(to.corners, at.corner, from.corners);
-    for (std::size_t i = 1; i < from.offsets.size(); ++i)
-        to.offsets[at.polygon + i] = static_cast<std::int64_t>(at.corner) + from.offsets[i];
-}
-
-/// Puts what the chunks became behind what is there already, in order of chunks.
-class ChunkJoining {
-public:
-    ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, Construction& construction)
-        : chunks_(chunks), construction_(construction) {
-        ChunkStart at;
-        at.cell = static_cast<std::int64_t>(construction.cell_block.size());
-        at.face.pass(construction.faces.polygons);
-        for (auto& chunk : chunks) {
-            start_.push_back(at);
-            at.pass(*chunk);
-        }
-        end_ = at;
-        if (at.cell > INT32_MAX) {
-            throw InputError("too_large",
-                             "the model has more than 2147 million cells; use coarser surfaces");
-        }
-    }
-
-    void join(Envelope& next, LoweredPieces& lowered, int threads, const Progress* progress) {
-        FaceList& faces = construction_.faces;
-        construction_.cell_block.resize(static_cast<std::size_t>(end_.cell));
-        end_.face.make_room(faces.polygons);
-        for (auto* list : {&faces.plane, &faces.layer, &faces.above, &faces.below})
-            list->resize(end_.face.polygon);
-        end_.lowered.make_room(lowered.outlines);
-        lowered.polygon.resize(end_.lowered.polygon);
-        lowered.cell_above.resize(end_.lowered.polygon);
-        make_room_for_surface(next);
-        end_.facet.make_room(next.outlines);
-        for (auto* list : {&next.plane, &next.layer, &next.pending})
-            list->resize(end_.facet.polygon);
-        next.face_offsets.resize(end_.facet.polygon + 1);
-        end_.facet_face.make_room(next.face_polygons);
-        next.face_above.resize(end_.facet_face.polygon);
-        parallel_chunks(chunks_.size(), threads, progress, [&](std::size_t c) {
-            for (PolygonPool* pool : chunks_[c]->pools())
-                share(chunks_[c]->scope, *pool);
-            put_chunk(*chunks_[c], start_[c], next, lowered);
-            chunks_[c].reset();
-        });
-    }
-
-private:
-    /// Each lowered piece becomes a face, and a facet or part of one, behind what is kept.
-    void make_room_for_surface(Envelope& next) const {
-        const PoolStart &facet = end_.facet, &face = end_.facet_face, &more = end_.lowered;
-        next.outlines.offsets.reserve(facet.polygon + more.polygon + 1);
-        next.outlines.corners.reserve(facet.corner + more.corner);
-        for (auto* list : {&next.plane, &next.layer, &next.pending})
-            list->reserve(facet.polygon + more.polygon);
-        next.face_offsets.reserve(facet.polygon + more.polygon + 1);
-        next.face_polygons.offsets.reserve(face.polygon + more.polygon + 1);
-        next.face_polygons.corners.reserve(face.corner + more.corner);
-        next.face_above.reserve(face.polygon + more.polygon);
-    }
-
-    void put_chunk(const ChunkResult& chunk, const ChunkStart& at, Envelope& next,
-                   LoweredPieces& lowered) {
-        const auto shared_cell = [&](std::int32_t cell) {
-            return cell == kOutsideCell ? cell : cell + static_cast<std::int32_t>(at.cell);
-        };
-        FaceList& faces = construction_.faces;
-        put(construction_.cell_block, static_cast<std::size_t>(at.cell), chunk.cell_block);
-        put(faces.polygons, at.face, chunk.faces.polygons);
-        put(faces.plane, at.face.polygon, chunk.faces.plane);
-        put(faces.layer, at.face.polygon, chunk.faces.layer);
-        put(faces.above, at.face.polygon, chunk.faces.above);
-        std::transform(chunk.faces.below.begin(), chunk.faces.below.end(),
-                       faces.below.begin() + static_cast<std::ptrdiff_t>(at.face.polygon),
-                       shared_cell);
-        put(lowered.outlines, at.lowered, chunk.lowered_outlines);
-        for (std::size_t i = 0; i < chunk.lowered.size(); ++i) {
-            lowered.polygon[at.lowered.polygon + i] = chunk.lowered[i].polygon;
-            lowered.cell_above[at.lowered.polygon + i] = shared_cell(chunk.lowered[i].cell_above);
-        }
-        put(next.outlines, at.facet, chunk.kept.outlines);
-        put(next.plane, at.facet.polygon, chunk.kept.plane);
-        put(next.layer, at.facet.polygon, chunk.kept.layer);
-        put(next.pending, at.facet.polygon, chunk.kept.pending);
-        for (std::size_t f = 1; f < chunk.kept.face_offsets.size(); ++f) {
-            next.face_offsets[at.facet.polygon + f] =
-                static_cast<std::int64_t>(at.facet_face.polygon) + chunk.kept.face_offsets[f];
-        }
-        put(next.face_polygons, at.facet_face, chunk.kept.face_polygons);
-        put(next.face_above, at.facet_face.polygon, chunk.kept.face_above);
-    }
-
-    std::vector<std::unique_ptr<ChunkResult>>& chunks_;
-    Construction& construction_;
-    std::vector<ChunkStart> start_;
-    ChunkStart end_;
-};
-
 }  // namespace
 
 Envelope initial_envelope(const Layer& layer, std::int32_t number) {
@@ -341,7 +187,11 @@ Envelope overlay(PlanGeometry& geometry, const Envelope& envelope, const Layer& 
     std::vector<std::uint8_t> whole(layer.plane.size(), 1);
     const std::size_t chunks = (envelope.size() + kChunk - 1) / kChunk;
     std::vector<std::unique_ptr<ChunkResult>> results(chunks);
+    Envelope next;
+    LoweredPieces lowered;
+    ChunkJoining joining(results, envelope.size(), construction, next, lowered);
     OrderedHandOver hand_over(geometry, chunks, envelope.size());
+    const auto find_place = [&](std::size_t c) { joining.find_place(c); };
     parallel_chunks(chunks, threads, progress, [&](std::size_t c) {
         results[c] = std::make_unique<ChunkResult>(geometry);
         FacetOverlay facets(envelope, layer, number, whole, *results[c]);
@@ -349,13 +199,13 @@ Envelope overlay(PlanGeometry& geometry, const Envelope& envelope, const Layer& 
             facets.process(f);
         }
         for (const PolygonPool* pool : results[c]->pools())
-            ask_for(results[c]->scope, *pool);
-        hand_over.finished(c, results[c]->scope);
+            ask_for(*results[c]->scope, *pool);
+        const auto [first, last] = hand_over.finished(c, *results[c]->scope, find_place);
+        for (std::size_t done = first; done < last; ++done)
+            joining.put_where_room(done);
     });
-    hand_over.finish();
-    Envelope next;
-    LoweredPieces lowered;
-    ChunkJoining(results, construction).join(next, lowered, threads, progress);
+    hand_over.finish(find_place);
+    joining.finish(threads, progress);
     add_surface_facets(layer, whole, lowered, number, next, threads, progress);
     return next;
 }

@@ -13,10 +13,16 @@ inline void ask_for(Scope& scope, const PolygonPool& pool) {
     }
 }
 
-/// Gives polygons the shared lines and points, which the scope has handed over.
+/// Puts the corners of polygons somewhere, with the shared lines and points, which the scope has
+/// handed over.
+inline void share(Scope& scope, const PolygonPool& pool, Corner* shared) {
+    for (const Corner& corner : pool.corners)
+        *shared++ = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};
+}
+
+/// Gives polygons the shared lines and points.
 inline void share(Scope& scope, PolygonPool& pool) {
-    for (Corner& corner : pool.corners)
-        corner = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};
+    share(scope, pool, pool.corners.begin());
 }
 
 }  // namespace realmodel::strata

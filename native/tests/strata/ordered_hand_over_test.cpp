@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <numeric>
 #include <vector>
@@ -75,6 +76,30 @@ TEST(OrderedHandOver, NumbersDoNotDependOnWhoIsFirst) {
     EXPECT_EQ(Comb().hand_over(order, 1000), expected);
     std::rotate(order.begin(), order.begin() + 5, order.end());
     EXPECT_EQ(Comb().hand_over(order, 1000), expected);
+}
+
+TEST(OrderedHandOver, TellsWhichChunksACallHandedOver) {
+    PlanGeometry geometry;
+    geometry.freeze_vertices();
+    OrderedHandOver handing(geometry, 4, 4);
+    std::vector<std::unique_ptr<Scope>> owned;
+    for (int i = 0; i < 4; ++i)
+        owned.push_back(std::make_unique<Scope>(geometry));
+    std::vector<std::size_t> passed;
+    const auto pass = [&](std::size_t chunk) { passed.push_back(chunk); };
+    const auto finished = [&](std::size_t chunk) {
+        const auto [first, last] = handing.finished(chunk, *owned[chunk], pass);
+        return std::array{first, last};
+    };
+    const auto none = finished(1);
+    EXPECT_EQ(none[0], none[1]);
+    EXPECT_EQ(finished(0), (std::array<std::size_t, 2>{0, 2}));
+    const auto still_none = finished(3);
+    EXPECT_EQ(still_none[0], still_none[1]);
+    EXPECT_EQ(finished(2), (std::array<std::size_t, 2>{2, 4}));
+    EXPECT_EQ(passed, (std::vector<std::size_t>{0, 1, 2, 3}));
+    const auto rest = handing.finish(pass);
+    EXPECT_EQ(rest.first, rest.last);
 }
 
 TEST(PlanGeometry, FindsByNameAgainWhatItHasForgotten) {

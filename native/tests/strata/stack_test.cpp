@@ -266,6 +266,25 @@ TEST(Stack, AnyNumberOfThreadsGivesTheSame) {
     EXPECT_EQ(one.volumes, four.volumes);
 }
 
+// Two triangles become far more than the overlay makes room for beforehand, and the many facets
+// after them less.
+TEST(Stack, AFineSurfaceUnderACoarseOne) {
+    const auto fine = [](double z, bool other) {
+        return grid(
+            36, 36, 0, 0, 1, 1,
+            [z](double x, double y) { return z + 0.2 * std::sin(40 * x) * std::cos(30 * y); },
+            other);
+    };
+    const std::vector<OwnedSurface> surfaces{fine(-1, false), flat(0, true), fine(0.1, true),
+                                             flat(0.15)};
+    const auto one = build(surfaces, std::nullopt, 1), two = build(surfaces, std::nullopt, 3);
+    expect_valid(one);
+    EXPECT_EQ(one.vertices, two.vertices);
+    EXPECT_EQ(one.face_vertices, two.face_vertices);
+    EXPECT_EQ(one.face_cells, two.face_cells);
+    EXPECT_EQ(one.cell_block, two.cell_block);
+}
+
 TEST(Stack, ACancelledBuildThrows) {
     Progress progress;
     progress.cancel();
