@@ -13,6 +13,7 @@
 #include "halves.hpp"
 #include "model_check.hpp"
 #include "part_rounding.hpp"
+#include "realmodel/exact/turn.hpp"
 #include "strata/parallel_chunks.hpp"
 
 namespace realmodel::cutting {
@@ -25,9 +26,33 @@ using strata::poll;
 constexpr std::size_t kFaces = 1 << 14;
 constexpr std::size_t kCells = 1 << 10;
 constexpr std::uint8_t kHasAbove = 1, kHasBelow = 2, kCut = kHasAbove | kHasBelow;
+
 /// Vertices this many times farther from the plane than they are precise may be taken to lie on it
 /// where otherwise a part would have no thickness in doubles.
 constexpr double kNear = 16;
+
+/// Whether a piece of a wall, seen from its side, crosses itself.
+bool crosses_itself(std::span<const Position> corners) {
+    PlanePosition extent{0, 0};
+    for (const Position& p : corners) {
+        for (std::size_t k = 0; k < 2; ++k)
+            extent[k] = std::max(extent[k], std::abs(p[k] - corners[0][k]));
+    }
+    const std::size_t along = extent[0] >= extent[1] ? 0 : 1, n = corners.size();
+    const auto at = [&](std::size_t i) {
+        return PlanePosition{corners[i % n][along], corners[i % n][2]};
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+        const PlanePosition a = at(i), b = at(i + 1);
+        for (std::size_t j = i + 2; j < n && j + 1 < n + i; ++j) {
+            const PlanePosition p = at(j), q = at(j + 1);
+            if (exact::turn(a, b, p) * exact::turn(a, b, q) < 0 &&
+                exact::turn(p, q, a) * exact::turn(p, q, b) < 0)
+                return true;
+        }
+    }
+    return false;
+}
 
 std::size_t chunks(std::size_t count, std::size_t size) {
     return (count + size - 1) / size;
@@ -88,6 +113,7 @@ private:
     std::int8_t level_side(std::size_t face, std::size_t which, int turned) const;
     void cut_cells(bool parts);
     bool settle();
+    bool straighten_walls();
     bool settle_part(std::int32_t part, const CellCut& cut, std::span<const PieceRef> refs);
     void number_cells(PieceParts& parts, std::vector<HalfCell>& half_cells) const;
     Position position(NodeId node) const {
@@ -355,8 +381,35 @@ bool PlaneCutter::settle_part(std::int32_t part, const CellCut& cut,
     return false;
 }
 
-bool PlaneCutter::settle() {
+/// Where a wall is not quite upright, by rounding, a slanted plane cuts it in a line that is not
+/// straight either, and may run through vertices that it is as near to as that: then they are taken
+/// to lie on it (true: to be done again).
+bool PlaneCutter::straighten_walls() {
     bool moved = false;
+    std::vector<NodeId> near;
+    std::vector<Position> corners;
+    for (std::size_t p = 0; p < first_cap_; ++p) {
+        poll(progress_, p);
+        const auto face = index(pieces_.face[p]);
+        if (face_sides_[face] != kCut || model_.face_surface[face] != strata::kWall) continue;
+        near.clear();
+        corners.clear();
+        for (const NodeId node : pieces_.polygons[p]) {
+            corners.push_back(position(node));
+            if (crossings_->is_crossing(node) || sides_[index(node)] == kOn) continue;
+            if (std::abs(distance_.at(corners.back()).high) <= distance_.rounding(corners.back()))
+                near.push_back(node);
+        }
+        if (near.empty() || !crosses_itself(corners)) continue;
+        for (const NodeId v : near)
+            sides_[index(v)] = kOn;
+        moved = true;
+    }
+    return moved;
+}
+
+bool PlaneCutter::settle() {
+    bool moved = straighten_walls();
     for (std::size_t i = 0; i < cell_cuts_.size(); ++i) {
         poll(progress_, i);
         for (std::size_t part = 0; part < cell_cuts_[i].part_side.size(); ++part)
