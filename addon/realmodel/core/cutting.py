@@ -16,7 +16,7 @@ from .rock_input import checked_triangulation
 from .section import Fence, Section
 from .work import Cancel, Progress, Work, native_module, run
 
-_CUT_SHARE = 0.9
+_CUT_SHARE = 0.97
 _ARRAYS = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
 
 

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "realmodel/base/errors.hpp"
-#include "strata/parallel_chunks.hpp"
+#include "strata/parallel_sort.hpp"
 
 namespace realmodel::cutting {
 
@@ -50,7 +50,7 @@ CutterSides::CutterSides(SurfaceOverlay& overlay, const CutterWinding& winding, 
       reaches_(overlay.model().cell_block.size(), 0) {
     find_reached_cells();
     refuse_borders();
-    hand_on();
+    hand_on(progress);
     for (std::size_t e = 0; e < winding.edge_count(); ++e) {
         strata::poll(progress, e);
         go_round(e);
@@ -103,7 +103,7 @@ void CutterSides::refuse_borders() const {
 
 /// Faces around a cell that is not reached are on one side of the surface; so are regions that meet
 /// at an edge that is none of the surface's.
-void CutterSides::hand_on() {
+void CutterSides::hand_on(const Progress* progress) {
     const ComplexView& model = overlay_.model();
     std::vector<std::int32_t> first(reaches_.size(), -1);
     std::vector<EdgeUse> uses;
@@ -130,7 +130,7 @@ void CutterSides::hand_on() {
         if (!overlay_.is_active(f))
             take(static_cast<std::int32_t>(overlay_.size() + f), f, std::array{model.face(f)});
     }
-    std::sort(uses.begin(), uses.end());
+    strata::parallel_sort(uses, std::less<>(), overlay_.threads(), progress);
     std::size_t edge = 0;
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         while (edge < winding_.edge_count() && winding_.edge(edge)[0].edge < uses[begin].edge)

@@ -42,7 +42,7 @@ private:
     };
 
     void find_reached_cells();
-    void hand_on();
+    void hand_on(const Progress* progress);
     void go_round(std::size_t edge);
     void refuse_borders() const;
     void settle();

@@ -15,15 +15,16 @@ namespace {
 
 Cut cut(const ComplexView& model, const CutterSurface& surface, int threads, Progress* progress) {
     SurfaceOverlay overlay(model, surface, threads, progress);
-    if (progress != nullptr) progress->begin(0.55, 0.7, "finding what the surface goes through");
+    if (progress != nullptr) progress->begin(0.3, 0.5, "finding what the surface goes through");
     const CutterWinding winding(overlay, progress);
     const CutterSides sides(overlay, winding, progress);
-    if (progress != nullptr) progress->begin(0.7, 0.8, "finding the parts of cells");
+    if (progress != nullptr) progress->begin(0.5, 0.68, "finding the parts of cells");
     SurfaceParts made(overlay, winding, sides, progress);
+    if (progress != nullptr) progress->begin(0.85, 0.92, "rounding what was cut");
     PartRounding(model, overlay.new_positions(), made.pieces, made.parts, made.half_cells,
                  made.touches)
         .run();
-    if (progress != nullptr) progress->begin(0.8, 1.0, "putting the halves together");
+    if (progress != nullptr) progress->begin(0.95, 1.0, "putting the halves together");
     Cut halves = assemble_halves(model, overlay.new_positions(), made.pieces, made.parts,
                                  made.half_cells, threads, progress);
     halves.below_touches = made.touches[0];

@@ -247,7 +247,7 @@ void SurfaceOverlay::overlay_all() {
     const auto count = index(first_cutter_) + surface_.triangles.size();
     constexpr std::size_t kChunk = 1 << 8;
     std::vector<std::vector<Overlay::Meeting>> meetings((count + kChunk - 1) / kChunk);
-    if (progress_ != nullptr) progress_->begin(0.1, 0.3, "finding where surface and faces meet");
+    if (progress_ != nullptr) progress_->begin(0.08, 0.15, "finding where surface and faces meet");
     strata::parallel_chunks(meetings.size(), threads_, progress_, [&](std::size_t chunk) {
         for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
             const auto t = static_cast<std::int32_t>(i);
@@ -263,7 +263,7 @@ void SurfaceOverlay::overlay_all() {
             });
         }
     });
-    if (progress_ != nullptr) progress_->begin(0.3, 0.55, "dividing faces and surface");
+    if (progress_ != nullptr) progress_->begin(0.15, 0.3, "dividing faces and surface");
     for (const auto& found : meetings) {
         if (progress_ != nullptr) progress_->check();
         for (const Overlay::Meeting& meeting : found)

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "strata/disjoint_parts.hpp"
-#include "strata/parallel_chunks.hpp"
+#include "strata/parallel_sort.hpp"
 
 namespace realmodel::cutting {
 
@@ -27,15 +27,17 @@ SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding
                            const CutterSides& sides, Progress* progress)
     : overlay_(overlay), winding_(winding), sides_(sides) {
     make_patches(progress);
+    if (progress != nullptr) progress->begin(0.68, 0.75, "joining what bounds a part");
     make_caps();
     owner_.resize(slots_.size());
     std::iota(owner_.begin(), owner_.end(), 0);
     join_parts(progress);
     attach_hollows();
     number_parts();
-    write_patches();
+    if (progress != nullptr) progress->begin(0.77, 0.85, "dividing faces into polygons");
+    write_patches(progress);
     write_caps();
-    find_touches();
+    find_touches(progress);
 }
 
 std::int32_t SurfaceParts::find(std::int32_t slot) {
@@ -63,8 +65,11 @@ void SurfaceParts::make_patches(Progress* progress) {
         if (!overlay_.of_cutter(r) && winding_.level(r) < 0)
             of_face[overlay_.face_of(r)].push_back(static_cast<std::int32_t>(r));
     }
+    constexpr std::size_t kCounted = 1 << 10;  // faces
+    CountedLoop counted(progress, model.face_count() / kCounted, 1.0);
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         strata::poll(progress, f);
+        if (f % kCounted == kCounted - 1) counted.count();
         if (overlay_.is_active(f)) {
             divide_face(f, of_face[f]);
             continue;
@@ -181,7 +186,7 @@ void SurfaceParts::join_parts(Progress* progress) {
         if (first[cell] < 0) first[cell] = static_cast<std::int32_t>(s);
         join(first[cell], static_cast<std::int32_t>(s));
     }
-    std::sort(uses_.begin(), uses_.end());
+    strata::parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
         strata::poll(progress, begin);
         while (end < uses_.size() && uses_[end].cell == uses_[begin].cell &&

@@ -63,11 +63,12 @@ private:
     void join_round_edge(std::span<const SlotUse> uses);
     void attach_hollows();
     void number_parts();
-    void write_patches();
+    void write_patches(const Progress* progress);
     void write_caps();
-    void write(const Polygons& polygons, bool reversed, std::int32_t face,
-               std::array<std::int32_t, 2> slots, bool level);
-    void find_touches();
+    void divide(const Patch& patch, Polygons& polygons);
+    void write(const Polygons& polygons, std::size_t first, std::size_t end, bool reversed,
+               std::int32_t face, std::array<std::int32_t, 2> slots, bool level);
+    void find_touches(const Progress* progress);
     std::int32_t find(std::int32_t slot);
 
     SurfaceOverlay& overlay_;

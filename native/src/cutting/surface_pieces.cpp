@@ -2,6 +2,8 @@
 // The polygons around parts of cells.
 #include <algorithm>
 
+#include "strata/parallel_counts.hpp"
+#include "strata/parallel_sort.hpp"
 #include "surface_parts.hpp"
 #include "triangulate.hpp"
 
@@ -85,10 +87,11 @@ void SurfaceParts::number_parts() {
         part_[s] = part_[index(find(static_cast<std::int32_t>(s)))];
 }
 
-/// Adds polygons between two slots: they turn counter-clockwise, turned over where `reversed`, seen
-/// from outside of the first, and clockwise from outside of the second.
-void SurfaceParts::write(const Polygons& polygons, bool reversed, std::int32_t face,
-                         std::array<std::int32_t, 2> slots, bool level) {
+/// Adds some of the polygons between two slots: they turn counter-clockwise, turned over where
+/// `reversed`, seen from outside of the first, and clockwise from outside of the second.
+void SurfaceParts::write(const Polygons& polygons, std::size_t first, std::size_t end,
+                         bool reversed, std::int32_t face, std::array<std::int32_t, 2> slots,
+                         bool level) {
     std::array<std::int32_t, 2> cells{-1, -1}, part{-1, -1};
     std::array<std::int8_t, 2> sides{kOn, kOn};
     for (std::size_t k = 0; k < 2; ++k) {
@@ -97,7 +100,7 @@ void SurfaceParts::write(const Polygons& polygons, bool reversed, std::int32_t f
         sides[k] = slots_[index(slots[k])].half;
         part[k] = part_[index(slots[k])];
     }
-    for (std::size_t p = 0; p < polygons.size(); ++p) {
+    for (std::size_t p = first; p < end; ++p) {
         const auto nodes = polygons[p];
         if (reversed) {
             pieces.polygons.nodes.insert(pieces.polygons.nodes.end(), nodes.rbegin(), nodes.rend());
@@ -113,31 +116,53 @@ void SurfaceParts::write(const Polygons& polygons, bool reversed, std::int32_t f
     }
 }
 
-void SurfaceParts::write_patches() {
+/// A patch in polygons, which are added.
+void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
     const ComplexView& model = overlay_.model();
-    Polygons polygons;
+    const auto face = index(patch.face);
+    if (patch.regions.empty()) {
+        polygons.add(model.face(face));
+        return;
+    }
     std::vector<Position> corners;
-    for (const Patch& patch : patches_) {
-        const auto face = index(patch.face);
-        polygons.clear();
-        if (patch.regions.empty()) {
-            polygons.add(model.face(face));
-        } else {
-            corners.clear();
-            for (const NodeId v : model.face(face))
-                corners.push_back(model.vertex(v));
-            const bool is_wall = model.face_surface[face] == strata::kWall;
-            if (!divide_loops(overlay_, polygon_normal(corners), patch.loops, is_wall, polygons)) {
-                polygons.clear();
-                for (const std::int32_t region : patch.regions) {
-                    const auto [axis, turned] = overlay_.view_of(index(region));
-                    Position way{0, 0, 0};
-                    way[axis] = turned;
-                    divide_loops(overlay_, way, overlay_.loops(index(region)), false, polygons);
-                }
-            }
+    for (const NodeId v : model.face(face))
+        corners.push_back(model.vertex(v));
+    const bool is_wall = model.face_surface[face] == strata::kWall;
+    Polygons whole;
+    if (!divide_loops(overlay_, polygon_normal(corners), patch.loops, is_wall, whole)) {
+        whole.clear();
+        for (const std::int32_t region : patch.regions) {
+            const auto [axis, turned] = overlay_.view_of(index(region));
+            Position way{0, 0, 0};
+            way[axis] = turned;
+            divide_loops(overlay_, way, overlay_.loops(index(region)), false, whole);
         }
-        write(polygons, false, patch.face, patch.slots, false);
+    }
+    for (std::size_t p = 0; p < whole.size(); ++p)
+        polygons.add(whole[p]);
+}
+
+/// Patches are divided on all threads and written in their order.
+void SurfaceParts::write_patches(const Progress* progress) {
+    constexpr std::size_t kChunk = 1 << 10;
+    struct Divided {
+        Polygons polygons;
+        std::vector<std::size_t> ends;  ///< of each patch's polygons
+    };
+    std::vector<Divided> divided((patches_.size() + kChunk - 1) / kChunk);
+    strata::parallel_ranges(patches_.size(), kChunk, overlay_.threads(), progress,
+                            [&](std::size_t begin, std::size_t end) {
+                                Divided& own = divided[begin / kChunk];
+                                for (std::size_t i = begin; i < end; ++i) {
+                                    divide(patches_[i], own.polygons);
+                                    own.ends.push_back(own.polygons.size());
+                                }
+                            });
+    for (std::size_t i = 0; i < patches_.size(); ++i) {
+        const Divided& own = divided[i / kChunk];
+        const std::size_t first = i % kChunk == 0 ? 0 : own.ends[i % kChunk - 1];
+        write(own.polygons, first, own.ends[i % kChunk], false, patches_[i].face, patches_[i].slots,
+              false);
     }
 }
 
@@ -173,9 +198,10 @@ void SurfaceParts::write_caps() {
                 ++count;
             }
             if (again) {
-                write(from_middle(overlay_, polygons), reversed, face, slots, level);
+                const Polygons divided = from_middle(overlay_, polygons);
+                write(divided, 0, divided.size(), reversed, face, slots, level);
             } else {
-                write(polygons, reversed, face, slots, level);
+                write(polygons, 0, polygons.size(), reversed, face, slots, level);
             }
         };
         const std::int32_t outer = outer_face[index(caps.region)];
@@ -208,11 +234,11 @@ void SurfaceParts::write_caps() {
     }
 }
 
-void SurfaceParts::find_touches() {
+void SurfaceParts::find_touches(const Progress* progress) {
     std::vector<std::array<std::int32_t, 3>> edges;  // part and ends
     for (const SlotUse& use : uses_)
         edges.push_back({part_[index(use.slot)], use.use.edge[0], use.use.edge[1]});
-    std::sort(edges.begin(), edges.end());
+    strata::parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
     for (std::size_t i = 2; i < edges.size(); ++i) {
         if (edges[i] == edges[i - 2])
             touches[half_cells[index(edges[i][0])].side == kAbove ? 1 : 0] = true;
