@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from realmodel.core import InputRefused, cross_validate, interpolate
 from scipy.interpolate import LinearNDInterpolator
@@ -256,6 +256,7 @@ COORDINATE = st.one_of(st.integers(-2, 2), st.floats(-1e3, 1e3))
 SETS = st.lists(st.tuples(COORDINATE, COORDINATE, st.floats(-100, 100)), min_size=1, max_size=20)
 
 
+@example([(0, 0, 0.0), (0, 1e-308, 1.0), (1e-308, 0, 2.0)], "plane")
 @settings(max_examples=80, deadline=None)
 @given(SETS, st.sampled_from(["tin", "natural_neighbour", "plane", "constant"]))
 def test_any_points_give_heights_or_are_refused_as_contradicting(points, method):

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from dense_kriging import SHAPES, dense_kriging, distances, semivariance
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from realmodel.core import InputRefused, Structure, Variogram, interpolate
 
@@ -193,6 +193,8 @@ COORDINATE = st.one_of(st.integers(-3, 3), st.floats(-1e3, 1e3))
 SETS = st.lists(st.tuples(COORDINATE, COORDINATE, st.floats(-100, 100)), min_size=1, max_size=25)
 
 
+@example([(0, 0, 0.0), (0, 5e-324, 0.0)], "linear", 0)
+@example([(k * 1e-155, k * k * 1e-155, k % 2) for k in range(9)], "quadratic", 0)
 @settings(max_examples=60, deadline=None)
 @given(SETS, st.sampled_from(["constant", "linear", "quadratic"]), st.sampled_from([0, 5]))
 def test_any_points_give_heights_or_are_refused_as_contradicting(points, drift, neighbours):

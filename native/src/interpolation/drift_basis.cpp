@@ -11,6 +11,9 @@ namespace {
 // Of a term, where its values are of the order of 1: below this the data do not tell it from the
 // terms before it. Points off a line by a millionth of its length are on it.
 constexpr double told_apart = 1e-6;
+// Points within so little lie in one place and show no trend: far from them its terms, and the
+// variances that are their squares, would overflow.
+constexpr double least_spread = 1e-60;
 
 /// Takes the part along the first `count` columns of an orthonormal basis out of v, twice for full
 /// accuracy (Giraud and others 2005); `along` gets what was taken out.
@@ -56,7 +59,7 @@ DriftFrame::DriftFrame(std::span<const Place> places, Drift drift) : drift_(drif
         yy += y * y;
         largest = std::max({largest, std::abs(x), std::abs(y)});
     }
-    if (largest > 0) scale_ = largest;
+    if (largest > least_spread) scale_ = largest;
     // The axis of greatest spread of the covariance matrix [xx xy; xy yy].
     const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
     along_x_ = std::cos(angle);

@@ -14,6 +14,8 @@ from .surface_reference import heights_of
 
 # Of the greatest spread of the points: below this they lie in one line, and show no slope across it.
 _IN_LINE = 1e-6
+# Points within so little lie in one place, and show no slope at all: far from them it would overflow.
+_IN_ONE_PLACE = 1e-60
 
 
 def constant(task: Task) -> Result:
@@ -42,8 +44,8 @@ def plane(task: Task) -> Result:
         slope = -math.tan(math.radians(dip)) * np.array([math.sin(azimuth), math.cos(azimuth)])
         return _with_variance(z - plan @ slope, np.ones((len(plan), 1)), base + nodes @ slope, _ones(nodes))
     _, spread, axes = np.linalg.svd(plan, full_matrices=False)
-    shown = spread > _IN_LINE * max(spread[0], np.finfo(float).tiny)
-    scale = spread[0] or 1.0
+    shown = spread > max(_IN_LINE * spread[0], _IN_ONE_PLACE)
+    scale = spread[0] if shown.any() else 1.0
     axes = axes[shown]
     return _with_variance(
         z,
