@@ -52,9 +52,20 @@ _KINDS = {
     "holes": "1,024 round holes",
 }
 _LEAST_RATIO = 0.95  # of frontal where an outline has much detail
-_SECONDS = 240.0  # for one mesh
-_OUTLINE_SECONDS = 60.0  # for one of a hard outline
-_ALL_SECONDS = 590.0  # for everything: what is not done by then is SKIPPED
+
+
+@dataclass(frozen=True)
+class _Patience:
+    """Seconds for one mesh, for one of a hard outline, and for everything: what is not done by then is
+    SKIPPED."""
+
+    mesh: float
+    outline: float
+    all: float
+
+
+_PATIENCE = _Patience(240.0, 60.0, 590.0)
+_QUICK = _Patience(30.0, 15.0, 150.0)
 
 
 @dataclass(frozen=True)
@@ -71,12 +82,13 @@ def measure(
     """Rows for MESHES, OUTLINES and POLYGONS; what could not be measured is SKIPPED, and why."""
     python = os.environ.get("REALMODEL_MESHING_PYTHON")
     rounds = 1 if quick else 3
-    end = time.monotonic() + _ALL_SECONDS
+    patience = _QUICK if quick else _PATIENCE
+    end = time.monotonic() + patience.all
 
-    def told(function: str, *arguments, most: float = _SECONDS) -> dict:
+    def told(function: str, *arguments, most: float = patience.mesh) -> dict:
         left = end - time.monotonic()
         if left < 1:
-            raise Skipped(f"the {_ALL_SECONDS:.0f} s that all this may take are over")
+            raise Skipped(f"the {patience.all:.0f} s that all this may take are over")
         return alone(function, *arguments, seconds=min(most, left), memory=memory, python=python)
 
     def say_all(rows: list[list[str]]) -> list[list[str]]:
@@ -85,10 +97,11 @@ def measure(
         return rows
 
     polygons = [row for kind in _KINDS for row in say_all([_polygons(told, kind, rounds)])]
-    *cases, largest = _cases(quick)
+    cases = _cases(quick)
+    last = [] if quick else [cases.pop()]  # of 4 M: Gmsh takes minutes for it
     meshes = [row for case in cases for row in say_all(_meshes(told, case, rounds))]
-    outlines = [row for kind in CASES for row in say_all(_outlines(told, kind))]
-    meshes += say_all(_meshes(told, largest, rounds))  # last: Gmsh takes minutes for it
+    outlines = _outlines(told, patience.outline, say_all)
+    meshes += [row for case in last for row in say_all(_meshes(told, case, rounds))]
     return meshes, outlines, polygons
 
 
@@ -164,20 +177,27 @@ def _mesh_row(case: str, mesher: str, made: list[dict], theirs: list[dict]) -> l
     ]
 
 
-def _outlines(told, kind: str) -> list[list[str]]:
-    name, lengths = CASES[kind]
-    rows = []
-    for edge in lengths:
-        for mesher in ("delaunay", "frontal", "Gmsh"):
-            called = mesher if mesher == "Gmsh" else f"RealModel, `{mesher}`"
-            begin = [name, f"{edge:g}", called]
-            try:
-                made = told("hard_outlines.mesh", mesher, kind, edge, most=_OUTLINE_SECONDS)
-            except Skipped as skipped:
-                rows.append([*begin, *["-"] * (len(OUTLINES) - 4), f"SKIPPED; {skipped}"])
-            else:
-                rows.append([*begin, *_outline_cells(mesher, made)])
-    return rows
+def _outlines(told, seconds: float, say_all) -> list[list[str]]:
+    """All meshers' rows by outline and length; Gmsh is run once ours are done: it is slow."""
+    meshers = ("delaunay", "frontal", "Gmsh")
+    cases = [(kind, edge) for kind, (_, lengths) in CASES.items() for edge in lengths]
+    rows = {}
+    for some in (meshers[:2], meshers[2:]):
+        for kind, edge in cases:
+            for mesher in some:
+                rows[kind, edge, mesher] = _outline_row(told, kind, edge, mesher, seconds)
+                say_all([rows[kind, edge, mesher]])
+    return [rows[kind, edge, mesher] for kind, edge in cases for mesher in meshers]
+
+
+def _outline_row(told, kind: str, edge: float, mesher: str, seconds: float) -> list[str]:
+    called = mesher if mesher == "Gmsh" else f"RealModel, `{mesher}`"
+    begin = [CASES[kind][0], f"{edge:g}", called]
+    try:
+        made = told("hard_outlines.mesh", mesher, kind, edge, most=seconds)
+    except Skipped as skipped:
+        return [*begin, *["-"] * (len(OUTLINES) - 4), f"SKIPPED; {skipped}"]
+    return [*begin, *_outline_cells(mesher, made)]
 
 
 def _outline_cells(mesher: str, made: dict) -> list[str]:
