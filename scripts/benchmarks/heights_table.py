@@ -32,7 +32,7 @@ _SAME_SYSTEMS = ("PyKrige, spherical, 16", "gstat, spherical, 16", "gstat, unive
 # triangulation or a grid: there ours has as few. What is slow has as many as take it some seconds. Triangles
 # and grids alone may be faster; the other table has their errors.
 _PAIRS = (
-    ("kriging, spherical, 16", "PyKrige, spherical, 16", 5000, 3.0),
+    ("kriging, spherical, 16", "PyKrige, spherical, 16", 10_000, 3.0),
     ("kriging, spherical, 16", "gstat, spherical, 16", 100_000, 3.0),
     ("universal kriging, spherical, 16", "gstat, universal, spherical, 16", 50_000, 3.0),
     ("kriging, Matern 3/2, 32", "gstat, Matern 3/2, 32", 20_000, 3.0),
