@@ -55,7 +55,7 @@ def test_stopped_while_it_renders(layers, tmp_path, number, status):
         process = rendering(project, out, scratch)
         time.sleep(random.Random(int(number)).uniform(0.0, latest))
         process.send_signal(number)
-        _, errors = process.communicate(timeout=60)
+        _, errors = process.communicate(timeout=600)
         if process.returncode != 0:
             break
         latest /= 3  # a machine that renders in less: it was too late to stop
