@@ -137,7 +137,7 @@ private:
     }
 
     void glide(const Check& check) {
-        Ticker tick(check, 256);  // of those that look far
+        Ticker tick(check, 32);  // a vertex may look at a hundred flips
         for (const std::int32_t v : active_) {
             if (valences_.is_gone(v) || !moves_.moves_freely(v) || valences_.is_regular(v)) {
                 continue;
