@@ -109,6 +109,26 @@ NearGradient near_gradient(const PlanGeometry& g, PlaneId plane) {
     return {value, kUnit * size(value)};
 }
 
+/// Where two edges cross, relative to the first one's first vertex.
+NearPoint near_crossing(const PlanGeometry& g, const Line& l, const Line& m) {
+    const Point &o = g.point(l.first), &p = g.point(l.second);
+    const Point &s = g.point(m.first), &t = g.point(m.second);
+    const Extended along_x = Extended(p.x) - o.x, along_y = Extended(p.y) - o.y;
+    const Extended other_x = Extended(t.x) - s.x, other_y = Extended(t.y) - s.y;
+    const Extended way_x = Extended(s.x) - o.x, way_y = Extended(s.y) - o.y;
+    // the crossing is that share of the way along the first edge
+    const Near share = quotient(determinant(way_x, other_y, way_y, other_x),
+                                determinant(along_x, other_y, along_y, other_x));
+    const auto part = [&](Extended along) {
+        const Extended value = share.value * along;
+        const bool exact = along == 0 || (share.error == 0 && value == 0);
+        return Near{value, exact ? 0
+                                 : size(along) * share.error * (1 + 0x1p-40) +
+                                       3 * kUnit * size(value) + kTiny};
+    };
+    return {l.first, part(along_x), part(along_y)};
+}
+
 }  // namespace
 
 NearLine near_line(const PlanGeometry& g, const Line& line, VertexId origin) {
@@ -186,6 +206,7 @@ NearPoint Scope::near(const Point& p) const {
     const VertexId origin = l->kind == Line::Kind::kEdge
                                 ? l->first
                                 : shared_.space(shared_.plane(l->first).corner[0]).plan;
+    if (m->kind == Line::Kind::kEdge) return near_crossing(shared_, *l, *m);
     const NearLine a = near_line(shared_, *l, origin), b = near_line(shared_, *m, origin);
     const Near w = determinant(a.a, b.b, b.a, a.b);
     return {origin, quotient(determinant(a.b, b.c, b.b, a.c), w),
