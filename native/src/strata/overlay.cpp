@@ -19,7 +19,10 @@ using exact::PlanGeometry;
 namespace {
 
 /// Facets worked on at a time: fixed, so that the result does not depend on the number of threads.
-constexpr std::size_t kChunk = 256;
+/// More find fewer points twice, on the edges between chunks, but have to stay in the cache.
+constexpr std::size_t kChunk = 1024;
+/// Points that a facet finds on surfaces of much the same resolution, hardly ever more.
+constexpr std::size_t kPointsOfFacet = 4;
 
 /// Works on the facets of one chunk.
 class FacetOverlay {
@@ -194,10 +197,11 @@ Envelope overlay(PlanGeometry& geometry, const Envelope& envelope, const Layer& 
     const auto find_place = [&](std::size_t c) { joining.find_place(c); };
     parallel_chunks(chunks, threads, progress, [&](std::size_t c) {
         results[c] = std::make_unique<ChunkResult>(geometry);
+        const std::size_t begin = c * kChunk, end = std::min(envelope.size(), begin + kChunk);
+        results[c]->scope->expect_points(kPointsOfFacet * (end - begin));
         FacetOverlay facets(envelope, layer, number, whole, *results[c]);
-        for (std::size_t f = c * kChunk; f < std::min(envelope.size(), (c + 1) * kChunk); ++f) {
+        for (std::size_t f = begin; f < end; ++f)
             facets.process(f);
-        }
         for (const PolygonPool* pool : results[c]->pools())
             ask_for(*results[c]->scope, *pool);
         const auto [first, last] = hand_over.finished(c, *results[c]->scope, find_place);

@@ -314,6 +314,12 @@ public:
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
 
+    /// Makes room for so many points that this scope may find, at once.
+    void expect_points(std::size_t count) {
+        points_.reserve(count);
+        point_table_.reserve(count);
+    }
+
     const PlanGeometry& shared() const { return shared_; }
     const Line& line(LineId id) const {
         return id < kLocal ? shared_.line(id) : lines_[static_cast<std::size_t>(id - kLocal)];
