@@ -193,18 +193,18 @@ void BlockOverlay::locate(const BlockLayer& layer) {
 }
 
 BlockOverlay::SurfaceTiles BlockOverlay::surface_tiles(const BlockLayer& layer) const {
-    SurfaceTiles surface(tiles_.size());
+    SurfaceTiles surface(tiles().size());
     for (std::size_t t = 0; t < layer.size(); ++t) {
         poll(progress_, t);
         const auto& [b, span] = surface_at_[t];
         for (std::int32_t r = span.low; r <= span.high; ++r) {
             for (std::int32_t c = span.left; c <= span.right; ++c)
-                surface.include(tiles_.tile(c, r), b.low, b.high);
+                surface.include(tiles().tile(c, r), b.low, b.high);
         }
     }
     for (const PlanTriangle& t : layer.empty) {
-        tiles_.for_each_centre_in(corners_of(geometry_, t),
-                                  [&](std::size_t tile) { surface.is_empty[tile] = 1; });
+        tiles().for_each_centre_in(corners_of(geometry_, t),
+                                   [&](std::size_t tile) { surface.is_empty[tile] = 1; });
     }
     for (std::size_t tile = 0; tile < surface.low.size(); ++tile) {
         if (surface.low[tile] > surface.high[tile]) surface.is_empty[tile] = 1;
@@ -213,9 +213,9 @@ BlockOverlay::SurfaceTiles BlockOverlay::surface_tiles(const BlockLayer& layer) 
 }
 
 BlockOverlay::EnvelopeTiles BlockOverlay::envelope_tiles() const {
-    EnvelopeTiles envelope(tiles_.size());
+    EnvelopeTiles envelope(tiles().size());
     const auto include = [&](const TileBounds& at, std::int32_t pending) {
-        tiles_.for_each(at.span, [&](std::size_t tile) {
+        tiles().for_each(at.span, [&](std::size_t tile) {
             envelope.include(tile, at.bounds.low, at.bounds.high);
             envelope.label[tile] = merged_label(envelope.label[tile], pending);
         });
@@ -244,7 +244,7 @@ void BlockOverlay::classify_surface(const BlockLayer& layer, const EnvelopeTiles
                 c.label[t] = kBesideBorder;  // heights in tiles tell nothing there
                 continue;
             }
-            const bool mixed = tiles_.any(surface_at_[t].span, [&](std::size_t tile) {
+            const bool mixed = tiles().any(surface_at_[t].span, [&](std::size_t tile) {
                 if (cover_[tile] == kOutsideOnly) {
                     low = -HUGE_VAL;
                     label = merged_label(label, kOutsideLabel);
@@ -274,13 +274,13 @@ void BlockOverlay::classify_surface(const BlockLayer& layer, const EnvelopeTiles
 /// plane.
 void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
     std::vector<std::int32_t> unclear;
-    std::vector<std::uint8_t> is_wanted(tiles_.size(), 0);
+    std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
     for (std::size_t t = 0; t < layer.size(); ++t) {
         poll(progress_, t);
         const bool beside = c.label[t] == kBesideBorder;
         if (c.surface[t] != Classified::kUnclear || (c.label[t] < 0 && !beside)) continue;
         unclear.push_back(static_cast<std::int32_t>(t));
-        tiles_.for_each(surface_at_[t].span, [&](std::size_t tile) { is_wanted[tile] = 1; });
+        tiles().for_each(surface_at_[t].span, [&](std::size_t tile) { is_wanted[tile] = 1; });
     }
     if (unclear.empty()) return;
     // whole facets first, then parts
@@ -289,7 +289,7 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
         const std::size_t part = i - whole_.size();
         return parts_.plane[part] >= 0 ? &part_at_[part].span : nullptr;
     };
-    const TileBins bins(tiles_, is_wanted, whole_.size() + parts_.size(), span_of, threads_,
+    const TileBins bins(tiles(), is_wanted, whole_.size() + parts_.size(), span_of, threads_,
                         progress_);
     const auto point = [&](VertexId v) -> const exact::Point& { return geometry_.point(v); };
     const auto compare = [&](std::size_t t) {
@@ -323,7 +323,7 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
             above &= standing == Standing::kAbove;
             return label != kSeveral && (below || above);
         };
-        tiles_.any(span, [&](std::size_t tile) { return !bins.all(tile, goes_on); });
+        tiles().any(span, [&](std::size_t tile) { return !bins.all(tile, goes_on); });
         if (label == kSeveral || !covered || below == above) return;
         c.label[t] = label;
         c.surface[t] = below ? Classified::kBelow : Classified::kGone;
@@ -338,17 +338,17 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
 
 void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& surface,
                                    Classified& c) {
-    std::vector<std::uint8_t> is_unclear(tiles_.size(), 0);
+    std::vector<std::uint8_t> is_unclear(tiles().size(), 0);
     for (std::size_t t = 0; t < layer.size(); ++t) {
         poll(progress_, t);
         if (c.surface[t] != Classified::kUnclear) continue;
-        tiles_.for_each(surface_at_[t].span, [&](std::size_t tile) { is_unclear[tile] = 1; });
+        tiles().for_each(surface_at_[t].span, [&](std::size_t tile) { is_unclear[tile] = 1; });
     }
     const auto classify = [&](const TileBounds& at) {
         const TriangleBounds& b = at.bounds;
         double low = HUGE_VAL, high = -HUGE_VAL;
         bool any_empty = false, any_rock = false, near_unclear = false;
-        const bool mixed = tiles_.any(at.span, [&](std::size_t tile) {
+        const bool mixed = tiles().any(at.span, [&](std::size_t tile) {
             near_unclear |= is_unclear[tile] != 0;
             if (surface.is_empty[tile] != 0) {
                 any_empty = true;
@@ -391,11 +391,11 @@ void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& 
 /// Compares facets that heights alone do not tell about with the triangles near them. A facet has
 /// to be looked at exactly where a triangle has to be, for the triangle's parts to be complete.
 void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
-    std::vector<std::uint8_t> is_wanted(tiles_.size(), 0);
+    std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
     bool any = false;
     const auto want = [&](const TileBounds& at) {
         any = true;
-        tiles_.for_each(at.span, [&](std::size_t tile) { is_wanted[tile] = 1; });
+        tiles().for_each(at.span, [&](std::size_t tile) { is_wanted[tile] = 1; });
     };
     for (std::size_t f = 0; f < whole_.size(); ++f) {
         if (c.whole[f] == Classified::kToCompare) want(whole_at_[f]);
@@ -405,7 +405,7 @@ void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
     }
     if (!any) return;
     const TileBins bins(
-        tiles_, is_wanted, layer.size(), [&](std::size_t t) { return &surface_at_[t].span; },
+        tiles(), is_wanted, layer.size(), [&](std::size_t t) { return &surface_at_[t].span; },
         threads_, progress_);
     const auto point = [&](VertexId v) -> const exact::Point& { return geometry_.point(v); };
     const auto compare = [&](PlaneId facet, const TileBounds& at) {
@@ -415,7 +415,7 @@ void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
         const bool beside = borders_.near(at.span);
         const auto middle = middle_of(geometry_.plane(facet).plan, point);
         bool below = true, above = true, covers = !beside;
-        const bool unclear = tiles_.any(at.span, [&](std::size_t tile) {
+        const bool unclear = tiles().any(at.span, [&](std::size_t tile) {
             return !bins.all(tile, [&](std::int32_t t) {
                 const PlaneId plane = layer.first_plane + t;
                 const PlanBox& other = surface_at_[static_cast<std::size_t>(t)].bounds.box;

@@ -50,8 +50,8 @@ void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
     std::vector<Waiting> waiting;
     const auto wait = [&](const std::array<double, 2>& middle, std::int32_t node) {
         const auto [x, y] = middle;
-        const TileSpan span = tiles_.span({x, y, x, y});
-        waiting.push_back({tiles_.tile(span.left, span.low), middle, node, kNothing});
+        const TileSpan span = tiles().span({x, y, x, y});
+        waiting.push_back({tiles().tile(span.left, span.low), middle, node, kNothing});
     };
     const auto point = [&](PointId id) -> const exact::Point& { return geometry_.point(id); };
     for (std::size_t i = 0; i < whole_count; ++i) {
@@ -71,7 +71,7 @@ void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
     struct InTile {
         std::uint32_t first = 0, last = 0;  ///< of those that wait
     };
-    std::vector<InTile> in_tile(tiles_.size());
+    std::vector<InTile> in_tile(tiles().size());
     for (std::size_t w = 0; w < waiting.size(); ++w) {
         InTile& here = in_tile[waiting[w].tile];
         if (here.last == 0) here.first = static_cast<std::uint32_t>(w);
@@ -87,7 +87,7 @@ void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
                 if (c.surface[t] != Classified::kBelow) continue;
                 const auto number = static_cast<std::int32_t>(t);
                 const auto& triangle = geometry_.plane(layer.first_plane + number).plan;
-                tiles_.for_each(surface_at_[t].span, [&](std::size_t tile) {
+                tiles().for_each(surface_at_[t].span, [&](std::size_t tile) {
                     for (auto w = in_tile[tile].first; w < in_tile[tile].last; ++w) {
                         const int side = side_of_border(geometry_, triangle, waiting[w].middle);
                         if (side == 0) near[begin / kTriangles].emplace_back(w, number);

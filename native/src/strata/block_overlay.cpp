@@ -20,12 +20,11 @@ BlockOverlay::BlockOverlay(PlanGeometry& geometry, std::span<const BlockLayer> l
     : geometry_(geometry),
       layers_(layers),
       borders_(std::move(borders)),
-      tiles_(borders_.tiles()),
       // Well above what rounding moves vertices by: what bounds tell apart stays apart.
       margin_(largest_height * 0x1p-40),
       threads_(threads),
       progress_(progress),
-      cover_(tiles_.size(), kRock) {
+      cover_(tiles().size(), kRock) {
     made_.whole.resize(geometry.plane_count());
     made_.is_exact.resize(geometry.plane_count(), 0);
     made_.is_in_parts.resize(geometry.plane_count(), 0);
@@ -72,10 +71,10 @@ void BlockOverlay::start_region(const std::vector<PlanTriangle>& region,
          {std::pair(&region, kSky), std::pair(&outside, kOutside)}) {
         for (const PlanTriangle& t : *triangles) {
             parts_.add_facet(triangle_outline(geometry_, t), plane, -1, kSkyLabel);
-            tiles_.for_each_centre_in(corners_of(geometry_, t),
-                                      [&, kind = plane](std::size_t tile) {
-                                          cover_[tile] = kind == kSky ? kSkyOnly : kOutsideOnly;
-                                      });
+            tiles().for_each_centre_in(corners_of(geometry_, t),
+                                       [&, kind = plane](std::size_t tile) {
+                                           cover_[tile] = kind == kSky ? kSkyOnly : kOutsideOnly;
+                                       });
         }
     }
 }
@@ -84,23 +83,23 @@ void BlockOverlay::start_sky(const BlockLayer& layer) {
     started_ = true;
     for (const PlanTriangle& t : layer.empty) {
         parts_.add_facet(triangle_outline(geometry_, t), kSky, -1, kSkyLabel);
-        tiles_.for_each_centre_in(corners_of(geometry_, t),
-                                  [&](std::size_t tile) { cover_[tile] = kSkyOnly; });
+        tiles().for_each_centre_in(corners_of(geometry_, t),
+                                   [&](std::size_t tile) { cover_[tile] = kSkyOnly; });
     }
     for (std::size_t t = 0; t < layer.size(); ++t) {
         poll(progress_, t);
         const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
         made_.is_exact[static_cast<std::size_t>(plane)] =
-            borders_.near(tiles_.span(bounds_of(geometry_, plane).box)) ? 1 : 0;
+            borders_.near(tiles().span(bounds_of(geometry_, plane).box)) ? 1 : 0;
         whole_.push_back({plane, layer.number, kOutsideCell});
     }
 }
 
 /// The triangles that may meet a facet looked at exactly, and where there are none at all.
 Layer BlockOverlay::needed_part(const BlockLayer& layer, Classified& c) {
-    std::vector<std::uint8_t> is_needed(tiles_.size(), 0);
+    std::vector<std::uint8_t> is_needed(tiles().size(), 0);
     const auto need = [&](const TileSpan& span) {
-        tiles_.for_each(span, [&](std::size_t tile) { is_needed[tile] = 1; });
+        tiles().for_each(span, [&](std::size_t tile) { is_needed[tile] = 1; });
     };
     for (std::size_t f = 0; f < whole_.size(); ++f) {
         if (c.whole[f] == Classified::kExact) need(whole_at_[f].span);
@@ -113,8 +112,8 @@ Layer BlockOverlay::needed_part(const BlockLayer& layer, Classified& c) {
     for (std::size_t t = 0; t < layer.size(); ++t) {
         poll(progress_, t);
         if (c.surface[t] != Classified::kUnclear &&
-            !tiles_.any(surface_at_[t].span,
-                        [&](std::size_t tile) { return is_needed[tile] != 0; }))
+            !tiles().any(surface_at_[t].span,
+                         [&](std::size_t tile) { return is_needed[tile] != 0; }))
             continue;
         c.polygon[t] = static_cast<std::int32_t>(part.plane.size());
         part.plane.push_back(layer.first_plane + static_cast<PlaneId>(t));
@@ -124,7 +123,7 @@ Layer BlockOverlay::needed_part(const BlockLayer& layer, Classified& c) {
         part.polygons.add(triangle_outline(geometry_, t));
         part.plane.push_back(kVoid);
     }
-    part.index(geometry_, threads_, progress_, std::max(tiles_.size(), part.plane.size()));
+    part.index(geometry_, threads_, progress_, std::max(tiles().size(), part.plane.size()));
     return part;
 }
 
@@ -152,7 +151,7 @@ void BlockOverlay::overlay_exactly(const BlockLayer& layer, const Layer& part,
         exact.facets.add_facet_of(parts_, f, parts_.pending[f]);
         bool complete = true;
         if (parts_.plane[f] < 0) {
-            complete = !tiles_.any(part_at_[f].span, [&](std::size_t tile) {
+            complete = !tiles().any(part_at_[f].span, [&](std::size_t tile) {
                 return !borders_.in_tile(tile) && surface.is_empty[tile] == 0;
             });
         }

@@ -115,8 +115,9 @@ private:
         return static_cast<std::int32_t>(made_.node_block.size()) - 1;
     }
     TileBounds located(const TriangleBounds& bounds) const {
-        return {bounds, tiles_.span(bounds.box)};
+        return {bounds, tiles().span(bounds.box)};
     }
+    const PlanTiles& tiles() const { return borders_.tiles(); }
     std::int32_t block_of(std::int32_t node) const {
         return made_.node_block[static_cast<std::size_t>(node)];
     }
@@ -124,7 +125,6 @@ private:
     exact::PlanGeometry& geometry_;
     std::span<const BlockLayer> layers_;
     BorderEdges borders_;
-    PlanTiles tiles_;
     double margin_;
     int threads_;
     const Progress* progress_;

@@ -46,20 +46,34 @@ bool BorderEdges::any_in(const TileSpan& span, const Holds& holds) const {
     });
 }
 
-// What is convex lies apart where a line along an edge of either separates the two.
+/// Whether a segment has a place inside a convex polygon. What is convex lies apart where a line
+/// along an edge of either separates the two.
+/// @param side_of_segment  side_of_segment(i): on which side of the segment corner i lies
+/// @param side_of_edge     side_of_edge(i, end): on which side of the edge from there the end lies
+template <class SideOfSegment, class SideOfEdge>
+bool BorderEdges::reaches_inside(const Segment& segment, std::size_t corners,
+                                 const SideOfSegment& side_of_segment,
+                                 const SideOfEdge& side_of_edge) {
+    bool any_left = false, any_right = false;
+    for (std::size_t i = 0; i < corners; ++i) {
+        const int side = side_of_segment(i);
+        any_left |= side > 0;
+        any_right |= side < 0;
+    }
+    if (!any_left || !any_right) return false;
+    for (std::size_t i = 0; i < corners; ++i) {
+        if (side_of_edge(i, segment.from) <= 0 && side_of_edge(i, segment.to) <= 0) return false;
+    }
+    return true;
+}
+
 bool BorderEdges::divide(Scope& scope, PolygonView polygon, const TileSpan& span) const {
     return any_in(span, [&](const Segment& segment) {
-        bool any_left = false, any_right = false;
-        for (const Corner& corner : polygon) {
-            const int side = scope.side(exact::directed(segment.line, false), corner.point);
-            any_left |= side > 0;
-            any_right |= side < 0;
-        }
-        if (!any_left || !any_right) return false;
-        return std::none_of(polygon.begin(), polygon.end(), [&](const Corner& corner) {
-            return scope.side(corner.line, segment.from) <= 0 &&
-                   scope.side(corner.line, segment.to) <= 0;
-        });
+        const auto line = exact::directed(segment.line, false);
+        return reaches_inside(
+            segment, polygon.size(),
+            [&](std::size_t i) { return scope.side(line, polygon[i].point); },
+            [&](std::size_t i, PointId end) { return scope.side(polygon[i].line, end); });
     });
 }
 
@@ -72,18 +86,13 @@ bool BorderEdges::divide(const PlanGeometry& geometry, const PlanTriangle& trian
     const std::array corners{position(triangle[0]), position(triangle[1]), position(triangle[2])};
     return any_in(span, [&](const Segment& segment) {
         const Position from = position(segment.from), to = position(segment.to);
-        bool any_left = false, any_right = false;
-        for (const Position& corner : corners) {
-            const int side = exact::turn(from, to, corner);
-            any_left |= side > 0;
-            any_right |= side < 0;
-        }
-        if (!any_left || !any_right) return false;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Position &p = corners[i], &q = corners[i + 1 < 3 ? i + 1 : 0];
-            if (exact::turn(p, q, from) <= 0 && exact::turn(p, q, to) <= 0) return false;
-        }
-        return true;
+        return reaches_inside(
+            segment, corners.size(),
+            [&](std::size_t i) { return exact::turn(from, to, corners[i]); },
+            [&](std::size_t i, exact::VertexId end) {
+                return exact::turn(corners[i], corners[(i + 1) % 3],
+                                   end == segment.from ? from : to);
+            });
     });
 }
 

@@ -37,12 +37,16 @@ public:
     bool run_between(Scope& scope, PointId a, PointId b, const TileSpan& span) const;
 
 private:
-    template <class Holds>
-    bool any_in(const TileSpan& span, const Holds& holds) const;
     struct Segment {
         PointId from, to;
         LineId line;
     };
+    template <class Holds>
+    bool any_in(const TileSpan& span, const Holds& holds) const;
+    template <class SideOfSegment, class SideOfEdge>
+    static bool reaches_inside(const Segment& segment, std::size_t corners,
+                               const SideOfSegment& side_of_segment,
+                               const SideOfEdge& side_of_edge);
 
     PlanTiles tiles_;
     std::vector<Segment> segments_;
