@@ -35,6 +35,13 @@ int Scope::filtered_side(const LineFilter& line, const Point& point) const {
     return 2;
 }
 
+bool Scope::is_right_by(const LineFilter& trace, PointId id, double difference) const {
+    const Point& p = point(id);
+    const double dx = p.x - trace.x0, dy = p.y - trace.y0;
+    const double value = trace.a * dx + trace.b * dy + trace.c;
+    return value + difference < -64 * trace.error_at(dx, dy, p.error());
+}
+
 // Whether an input vertex lies on an input edge because both products of the determinant vanish, as
 // they do along borders parallel to an axis: a difference of doubles is 0 only where they are
 // equal.

@@ -126,7 +126,8 @@ private:
         geometry_.forget_names();
         for (;;) {
             const Places places = find_places(geometry_, faces, extra, threads_, progress_);
-            Tracks tracks = find_tracks(geometry_, faces, places, extra, threads_, progress_);
+            Tracks tracks =
+                find_tracks(geometry_, faces, places, extra, nullptr, threads_, progress_);
             loops_ = find_loops(geometry_, faces, places, tracks, threads_, progress_);
             place_vertices(places, loops_, threads_, progress_);
             TrackContacts contacts =
@@ -143,8 +144,10 @@ private:
                 stretch.right = cell(stretch.right);
             }
             is_needed_.assign(loops_.positions.size(), 0);
-            for (const std::uint32_t entry : loops_.edge_begin)
-                is_needed_[static_cast<std::size_t>(loops_.vertices[entry])] = 1;
+            for (std::size_t c = 0; c < faces.polygons.corners.size(); ++c) {
+                const std::int32_t v = loops_.vertices[loops_.edge_begin[c]];
+                is_needed_[static_cast<std::size_t>(v)] = 1;
+            }
             std::vector<std::uint8_t> may_bend(loops_.positions.size(), 0);
             for (const ExtraPoint& e : extra) {
                 const auto place =

@@ -90,6 +90,7 @@ ChunkJoining::ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, st
         make_room(*pool, facets);
     const std::size_t polygons = facets * kPolygonsOfFacet + kSome;
     make_room(construction.cell_block, polygons);
+    make_room(construction.cell_is_thick, polygons);
     for (auto* list : lists_of(construction.faces))
         make_room(*list, polygons);
     for (auto* list : lists_of(lowered))
@@ -101,7 +102,9 @@ ChunkJoining::ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, st
 }
 
 bool ChunkJoining::has_room() const {
-    return static_cast<std::size_t>(end_.cell) <= construction_.cell_block.capacity() &&
+    const auto cells = static_cast<std::size_t>(end_.cell);
+    return cells <= construction_.cell_block.capacity() &&
+           cells <= construction_.cell_is_thick.capacity() &&
            end_.facet.polygon < next_.face_offsets.capacity() &&
            strata::has_room(construction_.faces.polygons, lists_of(construction_.faces),
                             end_.face) &&
@@ -126,6 +129,7 @@ void ChunkJoining::put_where_room(std::size_t chunk) {
 
 void ChunkJoining::finish(int threads, const Progress* progress) {
     construction_.cell_block.resize(static_cast<std::size_t>(end_.cell));
+    construction_.cell_is_thick.resize(static_cast<std::size_t>(end_.cell));
     resize(construction_.faces.polygons, end_.face);
     for (auto* list : lists_of(construction_.faces))
         list->resize(end_.face.polygon);
@@ -152,6 +156,8 @@ void ChunkJoining::put(std::size_t c) {
     };
     FaceList& faces = construction_.faces;
     strata::put(construction_.cell_block, static_cast<std::size_t>(at.cell), chunk.cell_block);
+    strata::put(construction_.cell_is_thick, static_cast<std::size_t>(at.cell),
+                chunk.cell_is_thick);
     strata::put(faces.polygons, at.face, chunk.faces.polygons, scope);
     strata::put(faces.plane, at.face.polygon, chunk.faces.plane);
     strata::put(faces.layer, at.face.polygon, chunk.faces.layer);

@@ -26,6 +26,7 @@ struct ChunkResult {
 
     std::unique_ptr<Scope> scope;
     GrowingArray<std::int32_t> cell_block;
+    GrowingArray<std::uint8_t> cell_is_thick;
     FaceList faces;  ///< finished; above is a shared cell, below one of the chunk's
     PolygonPool lowered_outlines;
     GrowingArray<LoweredPiece> lowered;

@@ -8,6 +8,7 @@
 #include "envelope.hpp"
 #include "flat_array.hpp"
 #include "realmodel/strata/stack.hpp"
+#include "track_pairs.hpp"
 
 namespace realmodel::strata {
 
@@ -36,19 +37,10 @@ struct Places {
 Places find_places(const exact::PlanGeometry& geometry, const FaceList& faces,
                    const std::vector<ExtraPoint>& extra, int threads, const Progress* progress);
 
-/// A face edge on its track.
-struct TrackEdge {
-    std::int32_t from, to;  ///< its ends, counted along the track
-    std::uint32_t begin;  ///< the corner, of all faces, that it leaves; for loops: its first entry
-    std::int32_t face;
-};
-
-/// The places that a face edge passes: `steps` of them, its far end left out, from `first` on, or
-/// backwards from there where `steps` is negative.
-struct PassedPlaces {
-    std::uint32_t first;
-    std::int32_t steps;
-};
+/// The places that face edges pass between their ends, one edge after another: the corner that it
+/// leaves, how many there are, and they themselves in its order. Where a count is negative, they
+/// are taken up only if something else needs a vertex there.
+using PassedPlaces = std::vector<std::int32_t>;
 
 /// The lines in use, those that run through the same places taken together, each with the face
 /// edges on it. A track runs to rising x, or to rising y where x does not change.
@@ -56,27 +48,44 @@ struct Tracks {
     FlatArray<LineId> representative;  ///< the lowest line of each track; tracks are in its order
     FlatArray<std::uint32_t> edge_offsets;
     FlatArray<TrackEdge> edges;
-    FlatArray<PlaceId> places;       ///< of each track, in order along it, with gaps between
-    FlatArray<PassedPlaces> passed;  ///< for each corner: by the edge that leaves it
+    /// For each corner how many places the edge that leaves it has, its far end left out; and a
+    /// last one to make these totals.
+    FlatArray<std::uint32_t> entries;
+    std::vector<PassedPlaces> passed;  ///< by the edges of so many tracks each
+    std::vector<PairedEdges> paired;   ///< of the tracks that are left out above
 
     std::size_t size() const { return representative.size(); }
 };
+/// @param cell_is_thick  if given, tracks on which all edges are pairs (track_pairs.hpp) are left
+/// out:
+///     their walls are planned, and their edges pass only what others need
 Tracks find_tracks(const exact::PlanGeometry& geometry, const FaceList& faces, const Places& places,
-                   const std::vector<ExtraPoint>& extra, int threads, const Progress* progress);
+                   const std::vector<ExtraPoint>& extra,
+                   const GrowingArray<std::uint8_t>* cell_is_thick, int threads,
+                   const Progress* progress);
+
+/// A vertex on an edge that has no entry for it: it follows a given entry.
+struct LateVertex {
+    std::uint32_t entry;
+    std::int32_t vertex;
+};
 
 /// The faces with every vertex that lies on their edges put in, and all vertices: on each place one
-/// for each height that a face has there, ascending.
+/// for each height that a corner or an edge needs there, ascending.
 struct Loops {
     FlatArray<std::uint32_t> face_offsets;  ///< entries of each face
     FlatArray<std::uint32_t> edge_begin;    ///< first entry of the edge that leaves a corner
-    FlatArray<std::int32_t> vertices;       ///< of each entry, counter-clockwise in plan
+    /// Of each entry, counter-clockwise in plan; -1 where an edge passes a place tentatively and
+    /// nothing else is as high there.
+    FlatArray<std::int32_t> vertices;
+    std::vector<LateVertex> late;           ///< in order of entries
     FlatArray<std::int32_t> place_offsets;  ///< first vertex of each place
     /// Of the vertices, for so many places each: rounded, those of a place all different.
     std::vector<std::vector<double>> heights;
     static constexpr std::size_t kPlacesTogether = 1 << 11;
     GrowingArray<std::array<double, 3>> positions;  ///< empty until place_vertices
 };
-/// Takes what it needs of the tracks: their `places` and `passed` are given back, and their edges
+/// Takes what it needs of the tracks: their `entries` and `passed` are given back, and their edges
 /// name the first of their entries from here on.
 Loops find_loops(const exact::PlanGeometry& geometry, const FaceList& faces, const Places& places,
                  Tracks& tracks, int threads, const Progress* progress);
@@ -91,8 +100,9 @@ struct WallBatch {
     std::vector<std::int32_t> vertices;
     std::vector<std::array<std::int32_t, 2>> cells;  ///< left and right of the track, -1 outside
 };
-/// The walls between columns, in order of tracks; where columns left and right of a track cross in
-/// height, nothing but the points that the tracks must pass first are returned in `missing`.
+/// The walls between columns, in order of tracks, those of paired edges last; where columns left
+/// and right of a track cross in height, nothing but the points that the tracks must pass first are
+/// returned in `missing`.
 std::vector<WallBatch> find_walls(exact::PlanGeometry& geometry, const FaceList& faces,
                                   const Tracks& tracks, const Loops& loops,
                                   std::vector<ExtraPoint>& missing, int threads,

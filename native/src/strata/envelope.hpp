@@ -92,6 +92,9 @@ struct Envelope {
 struct Construction {
     FaceList faces;
     GrowingArray<std::int32_t> cell_block;
+    /// Of each cell: 1 where its top is above its bottom everywhere, its border included, by far
+    /// more than rounding moves heights.
+    GrowingArray<std::uint8_t> cell_is_thick;
 };
 
 /// The envelope before the first overlay: the youngest surface itself, or the region under the sky.
@@ -104,6 +107,8 @@ Envelope overlay(exact::PlanGeometry& geometry, const Envelope& envelope, const 
                  const Progress* progress);
 
 /// Closes what is left: block 0 down to a flat base where there is one, the outside elsewhere.
-void finish(const Envelope& envelope, std::optional<PlaneId> base, Construction& construction);
+/// @param is_thick  whether the base is far below all, see Construction
+void finish(const Envelope& envelope, std::optional<PlaneId> base, bool is_thick,
+            Construction& construction);
 
 }  // namespace realmodel::strata

@@ -18,55 +18,49 @@ constexpr std::size_t kFaces = 1 << 12, kEntries = 1 << 15,
 /// What faces have on places, sorted by place.
 struct FacesOnPlaces {
     FlatArray<std::uint32_t> offsets;  ///< of each place
-    /// First the planes of the faces, then which of the heights there those have, at last vertices.
+    /// First the planes of the faces (complements of those that pass tentatively), then which of
+    /// the heights there those have, at last vertices; -1 for what takes up none.
     FlatArray<std::int32_t> values;
 };
 
-/// Numbers the entries: each edge has one for each place on it but its far end.
-void number_entries(const FaceList& faces, const Tracks& tracks, Loops& loops, int threads,
+/// Numbers the entries: each edge has one for each place that it takes up, but for its far end.
+void number_entries(const FaceList& faces, Tracks& tracks, Loops& loops, int threads,
                     const Progress* progress) {
+    loops.edge_begin = std::move(tracks.entries);
+    running_totals(loops.edge_begin, UINT32_MAX, threads, progress);
     loops.face_offsets = FlatArray<std::uint32_t>(faces.size() + 1);
-    loops.edge_begin = FlatArray<std::uint32_t>(faces.polygons.corners.size());
-    const auto& offsets = faces.polygons.offsets;
-    parallel_ranges(faces.size(), kFaces, threads, progress,
+    parallel_ranges(faces.size() + 1, kFaces, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t f = begin; f < end; ++f) {
-                            std::uint32_t count = 0;
-                            for (auto c = offsets[f]; c < offsets[f + 1]; ++c)
-                                count += static_cast<std::uint32_t>(
-                                    std::abs(tracks.passed[static_cast<std::size_t>(c)].steps));
-                            loops.face_offsets[f] = count;
+                            const auto corner = static_cast<std::size_t>(faces.polygons.offsets[f]);
+                            loops.face_offsets[f] = loops.edge_begin[corner];
                         }
                     });
-    running_totals(loops.face_offsets, UINT32_MAX, threads, progress);
-    parallel_ranges(
-        faces.size(), kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t f = begin; f < end; ++f) {
-                std::uint32_t next = loops.face_offsets[f];
-                for (auto i = offsets[f]; i < offsets[f + 1]; ++i) {
-                    const auto c = static_cast<std::size_t>(i);
-                    loops.edge_begin[c] = next;
-                    next += static_cast<std::uint32_t>(std::abs(tracks.passed[c].steps));
-                }
-            }
-        });
 }
 
-/// The places that faces pass, entry by entry.
-FlatArray<PlaceId> places_of_entries(const Tracks& tracks, const Loops& loops, std::size_t entries,
+/// The places that faces pass, entry by entry; their complement where they are passed tentatively.
+FlatArray<PlaceId> places_of_entries(const FaceList& faces, const Places& places,
+                                     const Tracks& tracks, const Loops& loops, std::size_t entries,
                                      int threads, const Progress* progress) {
     FlatArray<PlaceId> place(entries);
-    parallel_ranges(loops.edge_begin.size(), 4 * kFaces, threads, progress,
+    const auto& corners = faces.polygons.corners;
+    parallel_ranges(corners.size(), 4 * kFaces, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t c = begin; c < end; ++c) {
-                            const auto [first, steps] = tracks.passed[c];
-                            const PlaceId* along = tracks.places.begin() + first;
-                            PlaceId* to = place.begin() + loops.edge_begin[c];
-                            const std::int32_t step = steps > 0 ? 1 : -1;
-                            for (std::int32_t i = 0; i != steps; i += step)
-                                *to++ = along[i];
+                            place[loops.edge_begin[c]] =
+                                places.of_point[static_cast<std::size_t>(corners[c].point)];
                         }
                     });
+    parallel_chunks(tracks.passed.size(), threads, progress, [&](std::size_t chunk) {
+        const PassedPlaces& passed = tracks.passed[chunk];
+        for (std::size_t i = 0; i < passed.size();) {
+            const auto corner = static_cast<std::size_t>(passed[i++]);
+            const std::int32_t count = passed[i++];
+            PlaceId* to = place.begin() + loops.edge_begin[corner];
+            for (std::int32_t n = std::abs(count); n > 0; --n, ++i)
+                *++to = count < 0 ? ~passed[i] : passed[i];
+        }
+    });
     return place;
 }
 
@@ -79,7 +73,8 @@ FacesOnPlaces sort_by_place(const FaceList& faces, const FlatArray<PlaceId>& pla
     on.offsets = zeros<std::uint32_t>(places + 1, threads, progress);
     loops.vertices = FlatArray<std::int32_t>(place.size());
     const auto offset_of = [&](std::size_t entry) -> std::uint32_t& {
-        return on.offsets[static_cast<std::size_t>(place[entry])];
+        const PlaceId p = place[entry];
+        return on.offsets[static_cast<std::size_t>(p < 0 ? ~p : p)];
     };
     const auto prefetch_offset = [&](std::size_t entry) {
         prefetch(&offset_of(std::min(entry + 32, place.size() - 1)));
@@ -101,7 +96,7 @@ FacesOnPlaces sort_by_place(const FaceList& faces, const FlatArray<PlaceId>& pla
                     prefetch_offset(i);
                     const std::uint32_t at =
                         offset_of(i) + static_cast<std::uint32_t>(loops.vertices[i]);
-                    on.values[at] = plane;
+                    on.values[at] = place[i] < 0 ? ~plane : plane;
                     loops.vertices[i] = static_cast<std::int32_t>(at);
                 }
             }
@@ -163,6 +158,24 @@ void name_entries(Tracks& tracks, const Loops& loops, int threads, const Progres
                     });
 }
 
+/// The vertices that the left edge of a pair took up, for the right one.
+void add_late_vertices(const Tracks& tracks, Loops& loops, int threads, const Progress* progress) {
+    std::vector<std::vector<LateVertex>> found(tracks.paired.size());
+    parallel_chunks(found.size(), threads, progress, [&](std::size_t chunk) {
+        for (const EdgePair& pair : tracks.paired[chunk].passing) {
+            const std::uint32_t first = loops.edge_begin[pair.left] + 1;
+            for (std::uint32_t e = loops.edge_begin[pair.left + 1]; e-- > first;) {
+                if (loops.vertices[e] >= 0)
+                    found[chunk].push_back({loops.edge_begin[pair.right], loops.vertices[e]});
+            }
+        }
+    });
+    for (const auto& some : found)
+        loops.late.insert(loops.late.end(), some.begin(), some.end());
+    std::stable_sort(loops.late.begin(), loops.late.end(),
+                     [](const LateVertex& a, const LateVertex& b) { return a.entry < b.entry; });
+}
+
 }  // namespace
 
 Loops find_loops(const PlanGeometry& geometry, const FaceList& faces, const Places& places,
@@ -171,9 +184,8 @@ Loops find_loops(const PlanGeometry& geometry, const FaceList& faces, const Plac
     number_entries(faces, tracks, loops, threads, progress);
     FacesOnPlaces on;
     {
-        const auto place =
-            places_of_entries(tracks, loops, loops.face_offsets[faces.size()], threads, progress);
-        tracks.places = {};
+        const auto place = places_of_entries(faces, places, tracks, loops,
+                                             loops.face_offsets[faces.size()], threads, progress);
         tracks.passed = {};
         name_entries(tracks, loops, threads, progress);
         on = sort_by_place(faces, place, places.size(), loops, threads, progress);
@@ -183,7 +195,7 @@ Loops find_loops(const PlanGeometry& geometry, const FaceList& faces, const Plac
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t p = begin; p < end; ++p) {
                             for (auto i = on.offsets[p]; i < on.offsets[p + 1]; ++i)
-                                on.values[i] += loops.place_offsets[p];
+                                on.values[i] += on.values[i] < 0 ? 0 : loops.place_offsets[p];
                         }
                     });
     parallel_ranges(loops.vertices.size(), kEntries, threads, progress,
@@ -196,6 +208,7 @@ Loops find_loops(const PlanGeometry& geometry, const FaceList& faces, const Plac
                             loops.vertices[i] = vertex(i);
                         }
                     });
+    add_late_vertices(tracks, loops, threads, progress);
     return loops;
 }
 

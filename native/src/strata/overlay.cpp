@@ -118,6 +118,8 @@ private:
         const auto first_cell = static_cast<std::int32_t>(result_.cell_block.size());
         result_.cell_block.resize(result_.cell_block.size() + static_cast<std::size_t>(cells),
                                   envelope_.pending[facet]);
+        result_.cell_is_thick.resize(result_.cell_block.size(),
+                                     one_cell && pieces.is_clear ? 1 : 0);
         const auto begin = static_cast<std::size_t>(envelope_.face_offsets[facet]);
         const auto end = static_cast<std::size_t>(envelope_.face_offsets[facet + 1]);
         if (one_cell) {
@@ -214,13 +216,15 @@ Envelope overlay(PlanGeometry& geometry, const Envelope& envelope, const Layer& 
     return next;
 }
 
-void finish(const Envelope& envelope, std::optional<PlaneId> base, Construction& construction) {
+void finish(const Envelope& envelope, std::optional<PlaneId> base, bool is_thick,
+            Construction& construction) {
     for (std::size_t f = 0; f < envelope.size(); ++f) {
         const bool based = base.has_value() && envelope.pending[f] == 0;
         std::int32_t cell = kOutsideCell;
         if (based) {
             cell = static_cast<std::int32_t>(construction.cell_block.size());
             construction.cell_block.push_back(0);
+            construction.cell_is_thick.push_back(is_thick ? 1 : 0);
             construction.faces.add(envelope.outlines[f], *base, -1, cell, kOutsideCell);
         }
         for (auto g = envelope.face_offsets[f]; g < envelope.face_offsets[f + 1]; ++g) {

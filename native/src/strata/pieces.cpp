@@ -128,10 +128,30 @@ void PieceFinder::add_common(std::int32_t polygon, PolygonView common, const Fac
             add(polygon, Side::kBelow, common);
         } else if (heights.low >= facet.heights.high) {
             add(polygon, Side::kNotBelow, common);
+            return;
         } else {
             classify(polygon, facet.plane, common);
         }
+        note_room(surface, facet, heights, common);
     }
+}
+
+/// Notes whether there is room between the facet and a piece beneath it.
+void PieceFinder::note_room(PlaneId surface, const Facet& facet, const HeightRange& heights,
+                            PolygonView common) {
+    const HeightRange& above = facet.heights;
+    const double margin =
+        scope_.shared().clear_height(std::max({std::abs(heights.low), std::abs(heights.high),
+                                               std::abs(above.low), std::abs(above.high)}));
+    if (!pieces_.is_clear || heights.high + margin < above.low) return;
+    if (pieces_.list.back().side != Side::kBelow) {
+        pieces_.is_clear = false;
+        return;
+    }
+    const auto trace = scope_.shared().trace_filter(surface, facet.plane);
+    pieces_.is_clear = std::all_of(common.begin(), common.end(), [&](const Corner& corner) {
+        return scope_.is_right_by(trace, corner.point, margin);
+    });
 }
 
 void PieceFinder::classify(std::int32_t polygon, PlaneId facet_plane, PolygonView common) {

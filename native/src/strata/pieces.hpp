@@ -31,12 +31,14 @@ struct Pieces {
     std::vector<Piece> list;
     std::vector<Corner> corners;
     std::vector<std::uint8_t>
-        touches;  ///< for each corner: 1 where facet and surface are equally high
+        touches;           ///< for each corner: 1 where facet and surface are equally high
+    bool is_clear = true;  ///< all lie below the facet by far more than rounding moves heights
 
     void clear() {
         list.clear();
         corners.clear();
         touches.clear();
+        is_clear = true;
     }
     PolygonView outline(const Piece& piece) const {
         return {corners.data() + piece.first, static_cast<std::size_t>(piece.last - piece.first)};
@@ -72,6 +74,8 @@ private:
         return layer_.polygons[static_cast<std::size_t>(polygon)];
     }
     bool is_higher(std::int32_t polygon, const Facet& facet) const;
+    void note_room(PlaneId surface, const Facet& facet, const HeightRange& heights,
+                   PolygonView common);
     bool find_candidates(PolygonView outline);
     bool begin(const Facet& facet);
     void add_all(std::span<const std::int32_t> polygons, const Facet& facet);

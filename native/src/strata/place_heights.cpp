@@ -17,36 +17,86 @@ constexpr std::size_t kFew = 24;  // up to here looking through all is quickest
 void PlaceHeights::find(PointId point, std::span<std::int32_t> planes) {
     find_distinct(point, planes);
     rank_levels(point);
-    const bool few = planes_.size() <= kFew;
+    if (!tentative_.empty()) settle_tentative(point);
+    separate();
     for (std::int32_t& plane : planes) {
-        const auto at =
-            few ? std::find_if(planes_.begin(), planes_.end(),
-                               [&](const Plane& p) { return p.plane == plane; })
-                : std::lower_bound(planes_.begin(), planes_.end(), plane,
-                                   [](const Plane& p, PlaneId q) { return p.plane < q; });
-        plane = levels_[static_cast<std::size_t>(at->level)].rank;
+        if (plane >= 0) {
+            plane = rank_of(plane);
+            continue;
+        }
+        const auto at = std::find_if(tentative_.begin(), tentative_.end(),
+                                     [&](const Plane& p) { return p.plane == ~plane; });
+        plane = at->level < 0 ? -1 : levels_[static_cast<std::size_t>(at->level)].rank;
     }
+}
+
+std::int32_t PlaceHeights::rank_of(PlaneId plane) const {
+    const auto at = planes_.size() <= kFew
+                        ? std::find_if(planes_.begin(), planes_.end(),
+                                       [&](const Plane& p) { return p.plane == plane; })
+                        : std::lower_bound(planes_.begin(), planes_.end(), plane,
+                                           [](const Plane& p, PlaneId q) { return p.plane < q; });
+    return levels_[static_cast<std::size_t>(at->level)].rank;
 }
 
 void PlaceHeights::find_distinct(PointId point, std::span<const std::int32_t> planes) {
     planes_.clear();
+    tentative_.clear();
     levels_.clear();
-    for (const PlaneId plane : planes) {
-        const std::size_t near = std::min(planes_.size(), kFew);
+    for (const std::int32_t given : planes) {
+        std::vector<Plane>& kind = given < 0 ? tentative_ : planes_;
+        const PlaneId plane = given < 0 ? ~given : given;
+        const std::size_t near = given < 0 ? kind.size() : std::min(kind.size(), kFew);
         bool known = false;
         for (std::size_t i = 0; i < near && !known; ++i)
-            known = planes_[i].plane == plane;
-        if (!known) planes_.push_back({plane, -1});
+            known = kind[i].plane == plane;
+        if (!known) kind.push_back({plane, -1});
     }
     // The order in which planes come is left to chance where threads share the work.
-    std::sort(planes_.begin(), planes_.end(),
-              [](const Plane& a, const Plane& b) { return a.plane < b.plane; });
+    const auto in_order = [](const Plane& a, const Plane& b) { return a.plane < b.plane; };
+    std::sort(planes_.begin(), planes_.end(), in_order);
+    std::sort(tentative_.begin(), tentative_.end(), in_order);
     if (planes_.size() > kFew) {
         const auto same = [](const Plane& a, const Plane& b) { return a.plane == b.plane; };
         planes_.erase(std::unique(planes_.begin(), planes_.end(), same), planes_.end());
     }
     for (Plane& plane : planes_)
         plane.level = level_of(point, plane.plane);
+}
+
+/// Whether a plane is as high as one of some levels, or so near that this would have to be asked
+/// exactly. There is room between what takes up a vertex here and what passes by.
+bool PlaceHeights::is_near(PointId id, PlaneId plane, std::span<const Level> levels) const {
+    const exact::PlanGeometry& geometry = scope_.shared();
+    const exact::SpaceVertex& corner = geometry.space(geometry.plane(plane).corner[0]);
+    const exact::Point &from = geometry.point(corner.plan), &to = geometry.point(id);
+    const exact::PlaneFilter& gradient = geometry.plane_filter(plane);
+    const double dx = to.x - from.x, dy = to.y - from.y;
+    const double rise_x = gradient.gx * dx, rise_y = gradient.gy * dy;
+    const double z = corner.z + rise_x + rise_y;
+    const double size = std::abs(corner.z) + std::abs(rise_x) + std::abs(rise_y);
+    const double error = gradient.error_x * std::abs(dx) + gradient.error_y * std::abs(dy) +
+                         (std::abs(gradient.gx) + std::abs(gradient.gy)) * to.error() +
+                         0x1p-50 * size + 1e-290;
+    return std::any_of(levels.begin(), levels.end(), [&](const Level& level) {
+        const double margin = 64 * error + geometry.clear_height(size + std::abs(level.z));
+        return !(std::abs(z - level.z) > margin);
+    });
+}
+
+/// Gives tentative planes the level that they take up, if there is one. A plane that counts after
+/// all may be near to the next, so they are asked until none is.
+void PlaceHeights::settle_tentative(PointId point) {
+    for (bool again = true; again;) {
+        again = false;
+        const std::size_t known = levels_.size();
+        for (Plane& plane : tentative_) {
+            if (plane.level >= 0 || !is_near(point, plane.plane, {levels_.data(), known})) continue;
+            plane.level = level_of(point, plane.plane);
+            again = true;
+        }
+        if (levels_.size() > known) rank_levels(point);
+    }
 }
 
 std::int32_t PlaceHeights::level_of(PointId point, PlaneId plane) {
@@ -84,7 +134,6 @@ void PlaceHeights::rank_levels(PointId point) {
         if (i == 0 || lower(order_[i - 1], order_[i])) heights_.push_back(level(order_[i]).z);
         level(order_[i]).rank = static_cast<std::int32_t>(heights_.size()) - 1;
     }
-    separate();
 }
 
 /// Whether a height is known to be a double: that of an input vertex, of a level edge or plane.

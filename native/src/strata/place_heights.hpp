@@ -16,7 +16,11 @@ public:
     explicit PlaceHeights(const exact::PlanGeometry& geometry) : scope_(geometry) {}
 
     /// Finds the heights of planes above a point.
-    /// @param planes  of each of them; in its place comes which of the heights it has
+    /// @param planes  of each of them; in its place comes which of the heights it has. Those given
+    /// by
+    ///     their complement are tentative: they make no height, but take up that of another plane
+    ///     which is as high, and where they are so near to one that rounding could make a
+    ///     difference they count like the others. What takes up none gets -1.
     void find(PointId point, std::span<std::int32_t> planes);
 
     /// The heights, rounded, each a different double. Where several round to one, those that are
@@ -40,11 +44,15 @@ private:
     std::int32_t level_of(PointId point, PlaneId plane);
     void find_distinct(PointId point, std::span<const std::int32_t> planes);
     void rank_levels(PointId point);
+    void settle_tentative(PointId point);
+    bool is_near(PointId point, PlaneId plane, std::span<const Level> levels) const;
+    std::int32_t rank_of(PlaneId plane) const;
     bool is_double(std::size_t rank) const;
     void separate();
 
     Scope scope_;
-    std::vector<Plane> planes_;  ///< each once; ascending where there are many
+    std::vector<Plane> planes_;     ///< each once, ascending
+    std::vector<Plane> tentative_;  ///< each once; without a level until they take up one
     std::vector<Level> levels_;
     std::vector<std::int32_t> order_;  ///< of the levels, ascending
     std::vector<double> heights_;

@@ -214,10 +214,10 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
         next(0.2, "joining points");
         const Places places = find_places(geometry, faces, extra, threads, progress);
         next(0.4, "joining edges");
-        Tracks tracks = find_tracks(geometry, faces, places, extra, threads, progress);
+        Tracks tracks = find_tracks(geometry, faces, places, extra, &construction.cell_is_thick,
+                                    threads, progress);
         next(0.3, "rounding");
         Loops loops = find_loops(geometry, faces, places, tracks, threads, progress);
-        loops.edge_begin = {};
         next(0.1, "building walls");
         std::vector<ExtraPoint> missing;
         auto walls = find_walls(geometry, faces, tracks, loops, missing, threads, progress);
@@ -226,6 +226,7 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
             continue;
         }
         tracks = {};
+        loops.edge_begin = {};
         begin(progress, done, 1.0 - done, "putting the cells together");
         place_vertices(places, loops, threads, progress);
         make_distinct(geometry, faces, places, loops, threads, progress);
@@ -285,9 +286,15 @@ void build_rock(Site& site, EnteredRock& rock, double start, double share) {
                                                   site.construction, site.threads, site.progress);
         layers.give_back(std::move(layer));
     }
-    if (rock.base)
-        check_base(lowest_place(site.geometry, envelope), *rock.base_elevation, rock.first_surface);
-    finish(envelope, rock.base, site.construction);
+    bool is_far_above = false;
+    if (rock.base) {
+        const auto lowest = lowest_place(site.geometry, envelope);
+        const double base = *rock.base_elevation;
+        check_base(lowest, base, rock.first_surface);
+        is_far_above = lowest[2] - base >
+                       site.geometry.clear_height(std::max(std::abs(lowest[2]), std::abs(base)));
+    }
+    finish(envelope, rock.base, is_far_above, site.construction);
     auto& block = site.construction.cell_block;
     for (std::size_t c = first_cell; c < block.size(); ++c)
         block[c] += rock.first_surface;

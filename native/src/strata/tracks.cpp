@@ -139,10 +139,149 @@ void gather_edges(const FaceList& faces, const Places& places,
         });
 }
 
+/// Asks for what pairing will want to know of the edges after one.
+[[gnu::always_inline]] inline void prefetch_edge(const FaceList& faces, const Tracks& tracks,
+                                                 std::size_t edge) {
+    const auto far =
+        static_cast<std::size_t>(tracks.edges[std::min(edge + 32, tracks.edges.size() - 1)].face);
+    prefetch(&faces.plane[far]);
+    prefetch(&faces.above[far]);
+    prefetch(&faces.below[far]);
+    prefetch(&faces.polygons.offsets[far]);
+}
+
+/// Leaves only the tracks that are not paired.
+void leave_out_paired(Tracks& tracks, const FlatArray<std::uint8_t>& is_paired, int threads,
+                      const Progress* progress) {
+    std::vector<std::size_t> first_track((tracks.size() + kTracks - 1) / kTracks),
+        first_edge(first_track.size());
+    const auto for_kept = [&](std::size_t begin, std::size_t end, const auto& visit) {
+        for (std::size_t t = begin; t < end; ++t) {
+            if (is_paired[t] == 0) visit(t, tracks.edge_offsets[t], tracks.edge_offsets[t + 1]);
+        }
+    };
+    parallel_ranges(tracks.size(), kTracks, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for_kept(begin, end, [&](std::size_t, auto first, auto last) {
+                            ++first_track[begin / kTracks];
+                            first_edge[begin / kTracks] += last - first;
+                        });
+                    });
+    Tracks kept;
+    kept.representative = FlatArray<LineId>(count_before(first_track));
+    kept.edge_offsets = FlatArray<std::uint32_t>(kept.size() + 1);
+    kept.edges = FlatArray<TrackEdge>(count_before(first_edge));
+    kept.edge_offsets[kept.size()] = static_cast<std::uint32_t>(kept.edges.size());
+    parallel_ranges(
+        tracks.size(), kTracks, threads, progress, [&](std::size_t begin, std::size_t end) {
+            std::size_t track = first_track[begin / kTracks], edge = first_edge[begin / kTracks];
+            for_kept(begin, end, [&](std::size_t t, auto first, auto last) {
+                kept.representative[track] = tracks.representative[t];
+                kept.edge_offsets[track++] = static_cast<std::uint32_t>(edge);
+                std::copy(tracks.edges.begin() + first, tracks.edges.begin() + last,
+                          kept.edges.begin() + edge);
+                edge += last - first;
+            });
+        });
+    tracks.representative = std::move(kept.representative);
+    tracks.edge_offsets = std::move(kept.edge_offsets);
+    tracks.edges = std::move(kept.edges);
+}
+
+/// Puts the places of some tracks in order, and finds which of them edges pass.
+class TrackChunk {
+public:
+    TrackChunk(const PlanGeometry& geometry, const FaceList& faces, const Places& places,
+               Tracks& tracks, PassedPlaces& passed)
+        : faces_(faces),
+          tracks_(tracks),
+          passed_(passed),
+          on_track_(geometry, places),
+          pairing_(geometry, faces) {}
+
+    /// @param extra  places that the track must pass besides the ends of its edges
+    void put_in_order(std::size_t track, std::span<const std::pair<std::int32_t, PlaceId>> extra) {
+        on_track_.clear();
+        for (const auto& [_, place] : extra)
+            on_track_.add(place);
+        for (TrackEdge& edge : edges(track)) {
+            edge.from = on_track_.add(edge.from);
+            edge.to = on_track_.add(edge.to);
+        }
+        on_track_.sort(tracks_.representative[track]);
+        for (TrackEdge& edge : edges(track)) {
+            edge.from = on_track_.rank(edge.from);
+            edge.to = on_track_.rank(edge.to);
+        }
+    }
+
+    void pass_all(std::size_t track) {
+        for (const TrackEdge& edge : edges(track))
+            pass(edge, 1);
+    }
+
+    /// Where the cells on both sides of a pair are thick, no other face is as high as the pair
+    /// where it passes a place: around it all columns have one of its two faces.
+    /// @return whether all edges of the track are pairs
+    bool pass_in_pairs(std::size_t track, const GrowingArray<std::uint8_t>& cell_is_thick,
+                       PairedEdges& paired) {
+        if (!pairing_.pair(edges(track), tracks_.representative[track])) return false;
+        pairing_.add_walls(paired);
+        for (const auto& [left, right] : pairing_.pairs()) {
+            const bool none = left->to - left->from == 1 || (is_between(*left, cell_is_thick) &&
+                                                             is_between(*right, cell_is_thick));
+            pass(*left, none ? 0 : -1);
+            pass(*right, 0);
+            if (!none) paired.passing.push_back({left->begin, right->begin});
+        }
+        return true;
+    }
+
+    void prefetch(std::size_t track) const {
+        for (auto e = tracks_.edge_offsets[track]; e < tracks_.edge_offsets[track + 1]; ++e)
+            prefetch_edge(faces_, tracks_, e);
+    }
+
+private:
+    std::span<TrackEdge> edges(std::size_t track) {
+        return {tracks_.edges.begin() + tracks_.edge_offsets[track],
+                tracks_.edges.begin() + tracks_.edge_offsets[track + 1]};
+    }
+    /// @param sign  0 where the places between the ends of the edge are left out, or that of their
+    ///     count
+    void pass(const TrackEdge& edge, std::int32_t sign) {
+        const std::int32_t between = sign == 0 ? 0 : std::abs(edge.to - edge.from) - 1;
+        tracks_.entries[edge.begin] = static_cast<std::uint32_t>(between) + 1;
+        if (between == 0) return;
+        passed_.push_back(static_cast<std::int32_t>(edge.begin));
+        passed_.push_back(sign * between);
+        const PlaceId* place = on_track_.in_order().data() + edge.from;
+        for (std::int32_t i = 0, step = edge.from < edge.to ? 1 : -1; i < between; ++i)
+            passed_.push_back(*(place += step));
+    }
+
+    /// Whether a face lies between thick cells, or those and the outside.
+    bool is_between(const TrackEdge& edge, const GrowingArray<std::uint8_t>& cell_is_thick) const {
+        const auto face = static_cast<std::size_t>(edge.face);
+        const auto is_thick = [&](std::int32_t cell) {
+            return cell == kOutsideCell || cell_is_thick[static_cast<std::size_t>(cell)] != 0;
+        };
+        return is_thick(faces_.above[face]) && is_thick(faces_.below[face]);
+    }
+
+    const FaceList& faces_;
+    Tracks& tracks_;
+    PassedPlaces& passed_;
+    PlacesOnTrack on_track_;
+    TrackPairing pairing_;
+};
+
 }  // namespace
 
 Tracks find_tracks(const PlanGeometry& geometry, const FaceList& faces, const Places& places,
-                   const std::vector<ExtraPoint>& extra, int threads, const Progress* progress) {
+                   const std::vector<ExtraPoint>& extra,
+                   const GrowingArray<std::uint8_t>* cell_is_thick, int threads,
+                   const Progress* progress) {
     Tracks tracks;
     std::vector<std::pair<std::int32_t, PlaceId>> extra_places;  // track and place, ascending
     {
@@ -155,42 +294,38 @@ Tracks find_tracks(const PlanGeometry& geometry, const FaceList& faces, const Pl
         }
         std::sort(extra_places.begin(), extra_places.end());
     }
-    // Each edge has two ends, so that many places have room; a chunk puts its own side by side.
-    tracks.places = FlatArray<PlaceId>(2 * tracks.edges.size() + extra_places.size());
-    tracks.passed = FlatArray<PassedPlaces>(tracks.edges.size());
+    const auto extra_from = [&](std::size_t track) {
+        const auto first = std::pair(static_cast<std::int32_t>(track), PlaceId{-1});
+        return static_cast<std::size_t>(
+            std::lower_bound(extra_places.begin(), extra_places.end(), first) -
+            extra_places.begin());
+    };
+    tracks.entries = FlatArray<std::uint32_t>(tracks.edges.size() + 1);
+    tracks.entries[tracks.edges.size()] = 0;
+    tracks.passed.resize((tracks.size() + kTracks - 1) / kTracks);
+    tracks.paired.resize(tracks.passed.size());
+    const bool pairs = cell_is_thick != nullptr;
+    FlatArray<std::uint8_t> is_paired(pairs ? tracks.size() : 0);
     parallel_ranges(
         tracks.size(), kTracks, threads, progress, [&](std::size_t begin, std::size_t end) {
-            PlacesOnTrack on_track(geometry, places);
-            auto next_extra =
-                std::lower_bound(extra_places.begin(), extra_places.end(),
-                                 std::pair(static_cast<std::int32_t>(begin), PlaceId{-1}));
-            std::size_t next = 2 * std::size_t{tracks.edge_offsets[begin]} +
-                               static_cast<std::size_t>(next_extra - extra_places.begin());
+            TrackChunk chunk(geometry, faces, places, tracks, tracks.passed[begin / kTracks]);
+            std::size_t next_extra = extra_from(begin);
             for (std::size_t t = begin; t < end; ++t) {
-                on_track.clear();
-                for (; next_extra != extra_places.end() &&
-                       next_extra->first == static_cast<std::int32_t>(t);
-                     ++next_extra)
-                    on_track.add(next_extra->second);
-                for (auto e = tracks.edge_offsets[t]; e < tracks.edge_offsets[t + 1]; ++e) {
-                    TrackEdge& edge = tracks.edges[e];
-                    edge.from = on_track.add(edge.from);
-                    edge.to = on_track.add(edge.to);
-                }
-                on_track.sort(tracks.representative[t]);
-                for (auto e = tracks.edge_offsets[t]; e < tracks.edge_offsets[t + 1]; ++e) {
-                    TrackEdge& edge = tracks.edges[e];
-                    edge.from = on_track.rank(edge.from);
-                    edge.to = on_track.rank(edge.to);
-                    tracks.passed[edge.begin] = {
-                        static_cast<std::uint32_t>(next + static_cast<std::size_t>(edge.from)),
-                        edge.to - edge.from};
-                }
-                const auto& in_order = on_track.in_order();
-                std::copy(in_order.begin(), in_order.end(), tracks.places.begin() + next);
-                next += in_order.size();
+                const std::size_t first_extra = next_extra;
+                while (next_extra < extra_places.size() &&
+                       extra_places[next_extra].first == static_cast<std::int32_t>(t))
+                    ++next_extra;
+                if (pairs) chunk.prefetch(t);
+                chunk.put_in_order(
+                    t, {extra_places.begin() + first_extra, extra_places.begin() + next_extra});
+                const bool in_pairs =
+                    pairs && first_extra == next_extra &&
+                    chunk.pass_in_pairs(t, *cell_is_thick, tracks.paired[begin / kTracks]);
+                if (!in_pairs) chunk.pass_all(t);
+                if (pairs) is_paired[t] = in_pairs ? 1 : 0;
             }
         });
+    if (pairs) leave_out_paired(tracks, is_paired, threads, progress);
     return tracks;
 }
 

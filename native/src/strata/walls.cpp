@@ -118,6 +118,84 @@ private:
     OpenWalls open_, growing_;
 };
 
+/// The walls of tracks on which all edges are pairs.
+class PlannedWalls {
+public:
+    PlannedWalls(const Loops& loops, WallBatch& walls) : loops_(loops), walls_(walls) {}
+
+    void add(const PairedEdges& paired) {
+        const std::int32_t* next = paired.walls.data();
+        const std::int32_t* const end = next + paired.walls.size();
+        while (next < end) {
+            for (std::ptrdiff_t ahead = 0; ahead < 8; ++ahead)
+                prefetch_corner(next[std::min<std::ptrdiff_t>(48 + ahead, end - 1 - next)]);
+            const std::array cells{next[0], next[1]};
+            const std::int32_t above = next[2], beneath = next[3];
+            next = collect(next + 4, above, upper_);
+            next = collect(next, beneath, lower_);
+            add_parts(cells);
+        }
+    }
+
+private:
+    void prefetch_corner(std::int32_t corner) const {
+        // a count or a cell is the number of some corner too, or of none
+        const auto c = static_cast<std::size_t>(std::max(corner, 0));
+        prefetch(&loops_.edge_begin[std::min(c, loops_.edge_begin.size() - 1)]);
+    }
+
+    /// The vertices along some edges that follow each other.
+    /// @return what comes after them in the plan
+    const std::int32_t* collect(const std::int32_t* corner, std::int32_t count,
+                                std::vector<std::int32_t>& vertices) const {
+        vertices.clear();
+        for (std::int32_t i = 0; i < count; ++i, ++corner) {
+            const auto c = static_cast<std::size_t>(*corner);
+            for (auto e = loops_.edge_begin[c]; e < loops_.edge_begin[c + 1]; ++e) {
+                if (loops_.vertices[e] >= 0) vertices.push_back(loops_.vertices[e]);
+            }
+        }
+        const auto end = static_cast<std::size_t>(*corner);
+        vertices.push_back(loops_.vertices[loops_.edge_begin[end]]);
+        return corner + 1;
+    }
+
+    /// Adds the wall between upper_ and lower_, divided where these touch on the way.
+    void add_parts(const std::array<std::int32_t, 2>& cells) {
+        std::size_t u = 0, l = 0;
+        while (u + 1 < upper_.size() && l + 1 < lower_.size()) {
+            const auto [next_u, next_l] = next_contact(u, l);
+            const bool is_flat = next_u == u + 1 && next_l == l + 1 && upper_[u] == lower_[l] &&
+                                 upper_[next_u] == lower_[next_l];
+            if (!is_flat) {
+                auto& loop = walls_.vertices;
+                const std::size_t first = loop.size();
+                add_wall_loop(std::span(lower_).subspan(l, next_l - l + 1),
+                              std::span(upper_).subspan(u, next_u - u + 1), loop,
+                              [](std::int32_t) { return true; });
+                walls_.sizes.push_back(static_cast<std::int32_t>(loop.size() - first));
+                walls_.cells.push_back(cells);
+            }
+            u = next_u;
+            l = next_l;
+        }
+    }
+
+    /// Where upper_ and lower_ have a vertex in common next, or end.
+    std::pair<std::size_t, std::size_t> next_contact(std::size_t u, std::size_t l) const {
+        for (std::size_t i = u + 1; i < upper_.size(); ++i) {
+            const auto at = std::find(lower_.begin() + static_cast<std::ptrdiff_t>(l) + 1,
+                                      lower_.end(), upper_[i]);
+            if (at != lower_.end()) return {i, static_cast<std::size_t>(at - lower_.begin())};
+        }
+        return {upper_.size() - 1, lower_.size() - 1};
+    }
+
+    const Loops& loops_;
+    WallBatch& walls_;
+    std::vector<std::int32_t> upper_, lower_;
+};
+
 }  // namespace
 
 std::vector<WallBatch> find_walls(PlanGeometry& geometry, const FaceList& faces,
@@ -145,6 +223,14 @@ std::vector<WallBatch> find_walls(PlanGeometry& geometry, const FaceList& faces,
             missing.push_back({e.line, batch->scope.shared_point(e.point)});
     }
     if (!missing.empty()) return {};
+    walls.resize(chunks + tracks.paired.size());
+    parallel_chunks(tracks.paired.size(), threads, progress, [&](std::size_t chunk) {
+        const PairedEdges& paired = tracks.paired[chunk];
+        WallBatch& batch = walls[chunks + chunk];
+        batch.sizes.reserve(paired.wall_count);
+        batch.cells.reserve(paired.wall_count);
+        PlannedWalls(loops, batch).add(paired);
+    });
     return walls;
 }
 

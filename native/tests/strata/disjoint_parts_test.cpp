@@ -41,7 +41,8 @@ TEST(DisjointParts, ManyThreadsJoinTheSameSets) {
     parallel_ranges(kPairs, 64, 4, nullptr, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             parts.join(pairs[i].first, pairs[i].second);
-            EXPECT_EQ(parts.find(pairs[i].first), parts.find(pairs[i].second));
+            // between two questions another thread may join the set to one with a lower member
+            EXPECT_LE(parts.find(pairs[i].second), pairs[i].first);
         }
     });
     std::size_t large = 0;

@@ -58,6 +58,27 @@ void check(const PlanGeometry& geometry, Scope& scope, PointId point,
     }
 }
 
+/// The same with every other plane tentative: those take up heights that are there.
+void check_tentative(const PlanGeometry& geometry, Scope& scope, PointId point,
+                     const std::vector<PlaneId>& planes) {
+    PlaceHeights of_place(geometry);
+    std::vector<std::int32_t> ranks = planes;
+    for (std::size_t i = 1; i < ranks.size(); i += 2)
+        ranks[i] = ~ranks[i];
+    of_place.find(point, ranks);
+    const auto& heights = of_place.heights();
+    EXPECT_TRUE(std::is_sorted(heights.begin(), heights.end()));
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        bool is_taken = i % 2 == 0;
+        for (std::size_t j = 0; j < planes.size(); j += 2)
+            is_taken |= scope.compare_heights(planes[i], planes[j], point) == 0;
+        ASSERT_EQ(is_taken, ranks[i] >= 0);
+        if (!is_taken) continue;
+        EXPECT_EQ(heights[static_cast<std::size_t>(ranks[i])],
+                  scope.rounded_height(planes[i], point));
+    }
+}
+
 class PlaceHeightsOf : public testing::TestWithParam<int> {};
 
 // Few planes are looked through, many are sorted; whole heights make ties, others hardly any.
@@ -77,8 +98,10 @@ TEST_P(PlaceHeightsOf, AgreesWithEachPairOfPlanes) {
             if (a != b) edges.push_back(exact::line_of(geometry.add_edge(a, b)));
         }
         Scope scope(geometry);
-        for (VertexId v = 0; v < geometry.vertex_count(); ++v)
+        for (VertexId v = 0; v < geometry.vertex_count(); ++v) {
             check(geometry, scope, v, planes);
+            check_tentative(geometry, scope, v, planes);
+        }
         // crossings belong to the geometry before others may ask for them
         Scope maker(geometry);
         std::vector<PointId> points;
@@ -98,12 +121,40 @@ TEST_P(PlaceHeightsOf, AgreesWithEachPairOfPlanes) {
         }
         maker.hand_over(geometry);
         ASSERT_FALSE(points.empty());
-        for (const PointId point : points)
+        for (const PointId point : points) {
             check(geometry, scope, maker.shared_point(point), planes);
+            check_tentative(geometry, scope, maker.shared_point(point), planes);
+        }
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(Numbers, PlaceHeightsOf, testing::Values(4, 12, 60));
+
+// Where rounding could make a difference a tentative plane counts like the others, and then what is
+// near to it does, too.
+TEST(PlaceHeights, WhatIsNearCounts) {
+    PlanGeometry geometry;
+    const auto level = [&](double z) {
+        std::array<SpaceId, 3> corner;
+        const std::array<std::array<double, 2>, 3> plan{{{0, 0}, {1, 0}, {0, 1}}};
+        for (std::size_t i = 0; i < 3; ++i)
+            corner[i] = geometry.add_space_vertex(geometry.add_vertex(plan[i][0], plan[i][1]), z);
+        return corner;
+    };
+    const std::vector<std::array<SpaceId, 3>> corners{level(0), level(0x1p-30), level(0x1.8p-29),
+                                                      level(0x1p-20)};
+    geometry.freeze_vertices();
+    std::vector<std::int32_t> ranks;
+    for (const auto& corner : corners)
+        ranks.push_back(~geometry.add_plane(corner));
+    ranks[0] = ~ranks[0];
+    ASSERT_LT(0x1p-30, geometry.clear_height(0));
+    ASSERT_GT(0x1.8p-29, geometry.clear_height(1));
+    PlaceHeights of_place(geometry);
+    of_place.find(0, ranks);
+    EXPECT_EQ(ranks, (std::vector<std::int32_t>{0, 1, 2, -1}));
+    EXPECT_EQ(of_place.heights(), (std::vector<double>{0, 0x1p-30, 0x1.8p-29}));
+}
 
 // Heights that round to that of a flat base leave it where it is.
 TEST(PlaceHeights, LevelPlanesKeepTheirHeight) {

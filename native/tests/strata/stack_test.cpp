@@ -247,6 +247,75 @@ TEST(Stack, BadNumbersAndIndicesAreRefused) {
     EXPECT_THROW(build({t}), InputError);
 }
 
+/// Whether a vertex is a corner of a face: edges of some length that meet there at an angle.
+std::vector<bool> corners_of_faces(const CellComplex& c) {
+    std::vector<bool> is_corner(c.vertices.size(), false);
+    for (std::size_t f = 0; f < c.face_cells.size(); ++f) {
+        const auto begin = c.face_offsets[f], size = c.face_offsets[f + 1] - begin;
+        for (std::int64_t i = 0; i < size; ++i) {
+            const auto vertex = [&](std::int64_t j) {
+                return static_cast<std::size_t>(
+                    c.face_vertices[static_cast<std::size_t>(begin + j % size)]);
+            };
+            const auto &p = c.vertices[vertex(i)], &q = c.vertices[vertex(i + 1)],
+                       &r = c.vertices[vertex(i + 2)];
+            std::array<double, 3> u, v;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                u[axis] = q[axis] - p[axis];
+                v[axis] = r[axis] - q[axis];
+            }
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+                if (std::abs(u[a] * v[b] - u[b] * v[a]) > 1e-12) is_corner[vertex(i + 1)] = true;
+            }
+        }
+    }
+    return is_corner;
+}
+
+TEST(Stack, VerticesStandWhereAFaceHasACorner) {
+    const auto wave = [](double height, double phase) {
+        return [=](double x, double y) {
+            return height + 0.1 * std::sin(3 * x + phase) * std::cos(2 * y - phase);
+        };
+    };
+    // grids that have no inner line in common
+    const auto c =
+        build({grid(7, 6, 0, 0, 1, 1, wave(0, 0)), grid(5, 7, 0, 0, 1, 1, wave(1, 1), true),
+               grid(8, 9, 0, 0, 1, 1, wave(2, 2)), grid(11, 5, 0, 0, 1, 1, wave(3, 3))});
+    expect_valid(c);
+    // On the border, where only one side has columns, all heights are joined up.
+    const std::vector<bool> is_corner = corners_of_faces(c);
+    std::size_t inside = 0;
+    for (std::size_t v = 0; v < c.vertices.size(); ++v) {
+        const auto& [x, y, z] = c.vertices[v];
+        if (x == 0 || x == 1 || y == 0 || y == 1) continue;
+        EXPECT_TRUE(is_corner[v]) << x << " " << y << " " << z;
+        ++inside;
+    }
+    EXPECT_GT(inside, 400u);
+}
+
+TEST(Stack, EdgesThatTouchWhereTheyCross) {
+    // The ridge of the older and the valley of the younger surface meet in one point of theirs.
+    for (const double room : {0.0, 1e-12, 1e-3}) {
+        const auto c = build(
+            {flat(-2, true),
+             grid(2, 1, 0, 0, 1, 1, [](double x, double) { return -std::abs(x - 0.5); }),
+             grid(1, 2, 0, 0, 1, 1, [&](double, double y) { return room + std::abs(y - 0.5); })});
+        expect_valid(c);
+        EXPECT_NEAR(c.volumes[2], 0.5 + room, 1e-15);
+        std::set<double> heights;
+        for (const auto& v : c.vertices) {
+            if (v[0] == 0.5 && v[1] == 0.5) heights.insert(v[2]);
+        }
+        // Nobody needs a vertex of the ridge beneath the valley's edge, nor on the edge over it,
+        // but where they are that near.
+        EXPECT_EQ(heights.count(0.0), 1u);
+        EXPECT_EQ(heights.count(room), 1u - (room > 1e-6 ? 1u : 0u));
+    }
+}
+
 TEST(Stack, AnyNumberOfThreadsGivesTheSame) {
     std::vector<OwnedSurface> surfaces;
     for (int k = 0; k < 5; ++k) {

@@ -275,6 +275,13 @@ public:
 
     const PlanReach& reach() const { return reach_; }
 
+    /// A difference of heights beside which nothing that rounding does shows. Where faces are so
+    /// far apart, they need no vertices at each other's: a wall between them with rounded corners
+    /// on one side only still stands upright to 2^-22.
+    double clear_height(double largest_height) const {
+        return 0x1p-40 * largest_height + 0x1p24 * reach_.point_error;
+    }
+
     /// Binary exponents that make every x and y, and every z, a whole number.
     int plan_exponent() const { return plan_exponent_; }
     int height_exponent() const { return height_exponent_; }
@@ -350,6 +357,9 @@ public:
     bool is_left_for_certain(const LineFilter& line, PointId id) const {
         return filtered_side(line, point(id)) == 1;
     }
+    /// Whether a point lies to the right of a trace by more than a difference of heights and many
+    /// times what rounding makes of it.
+    bool is_right_by(const LineFilter& trace, PointId id, double difference) const;
     /// Whether two points are in the same place.
     bool same_place(PointId a, PointId b);
     /// Whether two lines run through the same places.
