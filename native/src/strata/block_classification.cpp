@@ -63,9 +63,12 @@ bool are_apart(const PlanGeometry& geometry, const PlanTriangle& a, const PlanTr
 Standing compare_over(const PlanGeometry& geometry, PlaneId lower, PlaneId upper, const PlanBox& a,
                       const PlanBox& b, double margin) {
     const exact::LineFilter d = geometry.trace_filter(lower, upper);  // lower less upper
-    const double low_x = std::max(a.low_x, b.low_x), high_x = std::min(a.high_x, b.high_x);
-    const double low_y = std::max(a.low_y, b.low_y), high_y = std::min(a.high_y, b.high_y);
-    const double x = 0.5 * (low_x + high_x) - d.x0, y = 0.5 * (low_y + high_y) - d.y0;
+    // Beside its origin, for the middle of large coordinates is rounded by more than these differ.
+    const double low_x = std::max(a.low_x, b.low_x) - d.x0;
+    const double high_x = std::min(a.high_x, b.high_x) - d.x0;
+    const double low_y = std::max(a.low_y, b.low_y) - d.y0;
+    const double high_y = std::min(a.high_y, b.high_y) - d.y0;
+    const double x = 0.5 * (low_x + high_x), y = 0.5 * (low_y + high_y);
     const double half_x = 0.5 * (high_x - low_x), half_y = 0.5 * (high_y - low_y);
     const double middle = d.a * x + d.b * y + d.c;
     const double reach_x = std::abs(x) + half_x, reach_y = std::abs(y) + half_y;
