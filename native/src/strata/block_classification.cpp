@@ -69,7 +69,10 @@ Standing compare_over(const PlanGeometry& geometry, PlaneId lower, PlaneId upper
     const double low_y = std::max(a.low_y, b.low_y) - d.y0;
     const double high_y = std::min(a.high_y, b.high_y) - d.y0;
     const double x = 0.5 * (low_x + high_x), y = 0.5 * (low_y + high_y);
-    const double half_x = 0.5 * (high_x - low_x), half_y = 0.5 * (high_y - low_y);
+    // boxes of parts are those of rounded corners
+    const exact::PlanReach& reach = geometry.reach();
+    const double half_x = 0.5 * (high_x - low_x) + reach.point_error;
+    const double half_y = 0.5 * (high_y - low_y) + reach.point_error;
     const double middle = d.a * x + d.b * y + d.c;
     const double reach_x = std::abs(x) + half_x, reach_y = std::abs(y) + half_y;
     const double error =
