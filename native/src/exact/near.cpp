@@ -109,24 +109,32 @@ NearGradient near_gradient(const PlanGeometry& g, PlaneId plane) {
     return {value, kUnit * size(value)};
 }
 
-/// Where two edges cross, relative to the first one's first vertex.
-NearPoint near_crossing(const PlanGeometry& g, const Line& l, const Line& m) {
+/// Which share of the way along the first of two edges lies before their crossing.
+[[gnu::always_inline]] inline Near share_of_way(const PlanGeometry& g, const Line& l,
+                                                const Line& m) {
     const Point &o = g.point(l.first), &p = g.point(l.second);
     const Point &s = g.point(m.first), &t = g.point(m.second);
     const Extended along_x = Extended(p.x) - o.x, along_y = Extended(p.y) - o.y;
     const Extended other_x = Extended(t.x) - s.x, other_y = Extended(t.y) - s.y;
     const Extended way_x = Extended(s.x) - o.x, way_y = Extended(s.y) - o.y;
-    // the crossing is that share of the way along the first edge
-    const Near share = quotient(determinant(way_x, other_y, way_y, other_x),
-                                determinant(along_x, other_y, along_y, other_x));
-    const auto part = [&](Extended along) {
-        const Extended value = share.value * along;
-        const bool exact = along == 0 || (share.error == 0 && value == 0);
-        return Near{value, exact ? 0
-                                 : size(along) * share.error * (1 + 0x1p-40) +
-                                       3 * kUnit * size(value) + kTiny};
-    };
-    return {l.first, part(along_x), part(along_y)};
+    return quotient(determinant(way_x, other_y, way_y, other_x),
+                    determinant(along_x, other_y, along_y, other_x));
+}
+
+/// That share of a difference of two doubles.
+[[gnu::always_inline]] inline Near part_of(const Near& share, Extended along) {
+    const Extended value = share.value * along;
+    const bool exact = along == 0 || (share.error == 0 && value == 0);
+    return Near{
+        value,
+        exact ? 0 : size(along) * share.error * (1 + 0x1p-40) + 3 * kUnit * size(value) + kTiny};
+}
+
+/// Where two edges cross, relative to the first one's first vertex.
+NearPoint near_crossing(const PlanGeometry& g, const Line& l, const Line& m) {
+    const Point &o = g.point(l.first), &p = g.point(l.second);
+    const Near share = share_of_way(g, l, m);
+    return {l.first, part_of(share, Extended(p.x) - o.x), part_of(share, Extended(p.y) - o.y)};
 }
 
 }  // namespace
@@ -179,6 +187,20 @@ std::optional<double> near_edge_height(const PlanGeometry& g, SpaceId from, Spac
     const bool exact = error == 0 && product == 0;
     return nearest_sum(s.z,
                        quotient({product, exact ? 0 : error + kTiny}, is_x ? along_x : along_y));
+}
+
+std::optional<double> near_height_of_crossing(const PlanGeometry& g, SpaceId from, SpaceId to,
+                                              const Line& l, const Line& m) {
+    const SpaceVertex &s = g.space(from), &t = g.space(to);
+    const bool is_first = s.plan == l.first || s.plan == l.second;
+    const Line &edge = is_first ? l : m, &other = is_first ? m : l;
+    const bool is_forward = s.plan == edge.first;
+    if (edge.kind != Line::Kind::kEdge || other.kind != Line::Kind::kEdge ||
+        s.plan != (is_forward ? edge.first : edge.second) ||
+        t.plan != (is_forward ? edge.second : edge.first))
+        return std::nullopt;
+    const double low = is_forward ? s.z : t.z, high = is_forward ? t.z : s.z;
+    return nearest_sum(low, part_of(share_of_way(g, edge, other), Extended(high) - low));
 }
 
 std::optional<std::array<double, 3>> near_line_key(const NearLine& l) {

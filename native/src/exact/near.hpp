@@ -31,6 +31,11 @@ std::optional<double> near_height(const PlanGeometry& geometry, PlaneId plane,
 std::optional<double> near_edge_height(const PlanGeometry& geometry, SpaceId from, SpaceId to,
                                        const NearPoint& point);
 
+/// The same at the crossing of two lines, where both are input edges and one of them is that edge:
+/// no more than the share of the way along it is asked for.
+std::optional<double> near_height_of_crossing(const PlanGeometry& geometry, SpaceId from,
+                                              SpaceId to, const Line& first, const Line& second);
+
 /// Scope::line_key of a line relative to the origin of the keys, likewise.
 std::optional<std::array<double, 3>> near_line_key(const NearLine& line);
 

@@ -58,6 +58,12 @@ double Scope::rounded_height(PlaneId plane, PointId id) {
     return rounded_height(plane, id, near(id));
 }
 
+std::optional<double> Scope::rounded_height_of_crossing(const HeightName& name, PointId id) const {
+    if (name.first < 0 || is_vertex(id)) return std::nullopt;
+    const Point& p = point(id);
+    return near_height_of_crossing(shared_, name.first, name.second, line(p.first), line(p.second));
+}
+
 double Scope::rounded_height(PlaneId plane, const HeightName& name, PointId id,
                              const NearPoint& close) {
     if (name.first >= 0) {

@@ -113,6 +113,8 @@ void PlaceHeights::rank_levels(PointId point) {
     for (Level& level : levels_) {
         if (level.name.first >= 0 && level.name.first == level.name.second) {
             level.z = scope_.shared().space(level.name.first).z;
+        } else if (const auto z = scope_.rounded_height_of_crossing(level.name, point)) {
+            level.z = *z;
         } else {
             if (!near) near = scope_.near(point);
             level.z = scope_.rounded_height(level.plane, level.name, point, *near);

@@ -32,7 +32,7 @@ TEST(Near, HeightsAreThoseOfRationalsAndNearlyAlwaysKnown) {
     std::mt19937_64 random(3);
     const auto uniform = [&] { return std::uniform_real_distribution<double>(0, 1)(random); };
     for (const double origin : {0.0, 5.3e6}) {
-        int asked = 0, known = 0, known_on_edge = 0;
+        int asked = 0, known = 0, known_on_edge = 0, known_by_share = 0;
         for (int round = 0; round < 300; ++round) {
             PlanGeometry g;
             std::array<std::array<double, 3>, 7> p;
@@ -82,12 +82,26 @@ TEST(Near, HeightsAreThoseOfRationalsAndNearlyAlwaysKnown) {
                 ++known_on_edge;
                 EXPECT_EQ(*close, nearest(on_edge));
             }
+            // the edge may be either of the two, and its lower vertex either of its ends
+            const mpq_class of_other = (wx * uy - wy * ux) / (ux * vy - uy * vx);
+            const mpq_class on_other = e[5][2] + of_other * (e[6][2] - e[5][2]);
+            const std::array<std::pair<HeightName, mpq_class>, 3> names{
+                {{{s[3], s[4]}, on_edge}, {{s[4], s[3]}, on_edge}, {{s[5], s[6]}, on_other}}};
+            for (const auto& [name, height] : names) {
+                if (const auto close = scope.rounded_height_of_crossing(name, point)) {
+                    ++known_by_share;
+                    EXPECT_EQ(*close, nearest(height));
+                }
+            }
+            EXPECT_FALSE(scope.rounded_height_of_crossing({s[3], s[5]}, point));
+            EXPECT_FALSE(scope.rounded_height_of_crossing({-1, plane}, point));
         }
         EXPECT_GT(asked, 200);
         // elsewhere there may be no such numbers: then nothing is known, and that is right too
         if (nearest_sum(1.0, {0.0L, 0.0})) {
             EXPECT_GT(known, asked * 9 / 10);
             EXPECT_GT(known_on_edge, asked * 9 / 10);
+            EXPECT_GT(known_by_share, 3 * asked * 9 / 10);
         }
     }
 }
