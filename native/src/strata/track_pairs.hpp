@@ -46,9 +46,8 @@ public:
     /// Pairs the edges of a track.
     /// @param edges  with their ends counted along the track
     /// @param line  the line of the track
-    /// @return whether all are pairs and the walls between them follow from that; if so, pairs()
-    /// and
-    ///     walls() are those of this track
+    /// @return whether all are pairs and the walls between them follow from that; then pairs() and
+    ///     add_walls() are of this track
     bool pair(std::span<const TrackEdge> edges, LineId line);
 
     struct Pair {
