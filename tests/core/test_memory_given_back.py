@@ -24,7 +24,8 @@ def project(quads, base):
     return Project("p", [Rock("r", surfaces, base_elevation=base)])
 
 build(project(4, None))  # what the first build leaves behind for all later ones is there now
-given = project(80, 0.0 if sys.argv[3] == "refused" else None)  # base_elevation is looked at last of all
+# large enough that the tens of megabytes which allocators keep for their threads are a small share
+given = project(200, 0.0 if sys.argv[3] == "refused" else None)  # base_elevation is looked at last of all
 before = resident()
 told = []
 try:
@@ -53,5 +54,5 @@ def test_memory_is_given_back(how):
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     assert found["how"] == how
-    assert found["taken"] > 50 * MEGABYTE, "enough to tell"
+    assert found["taken"] > 300 * MEGABYTE, "enough to tell"
     assert found["kept"] < 0.2 * found["taken"]
