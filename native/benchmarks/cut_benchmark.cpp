@@ -21,7 +21,7 @@
 
 namespace {
 
-using realmodel::cutting::ComplexView;
+using realmodel::cutting::view;
 
 struct Surface {
     std::vector<double> vertices;
@@ -66,18 +66,6 @@ realmodel::strata::CellComplex make_model(int quads, bool lattice, double shift,
     for (const Surface& s : made)
         input.surfaces.push_back({s.vertices, s.triangles});
     return realmodel::strata::build_stack(input, threads, nullptr);
-}
-
-ComplexView view(const realmodel::strata::CellComplex& c) {
-    ComplexView v;
-    v.vertices = {c.vertices.data()->data(), 3 * c.vertices.size()};
-    v.face_offsets = c.face_offsets;
-    v.face_vertices = c.face_vertices;
-    v.face_cells = {c.face_cells.data()->data(), 2 * c.face_cells.size()};
-    v.face_surface = c.face_surface;
-    v.cell_block = c.cell_block;
-    v.blocks = c.volumes.size();
-    return v;
 }
 
 /// FNV-1a of the bytes of arrays.

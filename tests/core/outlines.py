@@ -3,6 +3,20 @@
 
 import numpy as np
 
+# A project file of one flat surface, for `region` in TOML.
+PROJECT_OF_REGION = """format = 1
+name = "x"
+[[rock]]
+name = "r"
+region = {region}
+edge_length = 1
+base_elevation = -1
+[[rock.surface]]
+name = "S0"
+method = "constant"
+value = 0
+"""
+
 
 def area(ring):
     """Signed area of a ring."""

@@ -11,6 +11,7 @@ import sys
 import numpy as np
 import pytest
 from conftest import ROOT
+from outlines import PROJECT_OF_REGION
 from realmodel.core import BuildFailed, InputRefused, MapLayer, build, load_project
 from realmodel.core.readers import read_region, read_shapes
 from realmodel.core.readers.map_input import map_companions
@@ -100,19 +101,6 @@ def package(tmp_path):
     )
 
 
-PROJECT = """format = 1
-name = "x"
-[[rock]]
-name = "r"
-region = {region}
-edge_length = 1
-base_elevation = -1
-[[rock.surface]]
-name = "S0"
-method = "constant"
-value = 0
-"""
-
 REGIONS = {
     "wkt": '"multi.wkt"',
     "collection of wkt": '"collection.txt"',
@@ -157,7 +145,7 @@ def files(write, package, tmp_path):
 def test_polygons_of_several_parts(files, write, kind):
     if shapefile is None and "shapefile" in kind:
         pytest.skip("addon/realmodel/vendor has no pyshp")
-    project = load_project(write("p.toml", PROJECT.format(region=REGIONS[kind])))
+    project = load_project(write("p.toml", PROJECT_OF_REGION.format(region=REGIONS[kind])))
     assert build(project).volume == pytest.approx(AREA)
 
 
@@ -165,7 +153,7 @@ def test_by_the_batch_program(package, write, tmp_path):
     """The layer must be said, and what is there is told; lines beside the polygons are told, too."""
 
     def run(region):
-        path = write("p.toml", PROJECT.format(region=region))
+        path = write("p.toml", PROJECT_OF_REGION.format(region=region))
         command = [sys.executable, ROOT / "build_model.py", path, "--quiet", "--report", tmp_path / "r.json"]
         return subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
 
@@ -184,7 +172,7 @@ def test_by_the_batch_program(package, write, tmp_path):
 def test_a_part_is_named_where_it_is_wrong(write):
     """Of two parts of one feature that cross, each has its number."""
     across = {"type": "MultiPolygon", "coordinates": [COORDINATES[0], [closed([(7, 7), (9, 7), (9, 9)])]]}
-    path = write("p.toml", PROJECT.format(region='"a.geojson"'))
+    path = write("p.toml", PROJECT_OF_REGION.format(region='"a.geojson"'))
     write("a.geojson", json.dumps(geojson(across)))
     words = "feature 1, polygon 1: the outline crosses feature 1, polygon 2"
     with pytest.raises(InputRefused, match=words):

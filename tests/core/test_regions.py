@@ -6,7 +6,7 @@ import struct
 
 import numpy as np
 import pytest
-from outlines import ACCEPTED, REFUSED, SQUARE, area, squares_in_squares, star
+from outlines import ACCEPTED, PROJECT_OF_REGION, REFUSED, SQUARE, area, squares_in_squares, star
 from realmodel.core import (
     BuildFailed,
     InputRefused,
@@ -321,20 +321,6 @@ def test_pleasant_lakes_are_holes(tmp_path):
     assert areas.sum() == pytest.approx(np.prod(high - low) - water, rel=1e-9)
 
 
-PROJECT = """format = 1
-name = "x"
-[[rock]]
-name = "r"
-region = {region}
-edge_length = 1
-base_elevation = -1
-[[rock.surface]]
-name = "S0"
-method = "constant"
-value = 0
-"""
-
-
 def test_regions_of_the_project_file(write, tmp_path):
     write("r.wkt", WKT[0])
     write_geopackage(
@@ -348,13 +334,13 @@ def test_regions_of_the_project_file(write, tmp_path):
         "[[[0, 0], [4, 0], [4, 4]], [[1, 0.5], [2, 0.5], [2, 1]]]",
         '{ file = "r.wkt", units = "m" }',
     ):
-        project = load_project(write("p.toml", PROJECT.format(region=region)))
+        project = load_project(write("p.toml", PROJECT_OF_REGION.format(region=region)))
         model = build(project)
         assert model.volume == pytest.approx(7.75)
         assert build(model.project).volume == pytest.approx(7.75)  # from the arrays that were read
         if "gpkg" in region:
             assert tmp_path / "a.gpkg" in project.input_files()
-    feet = load_project(write("p.toml", PROJECT.format(region='{ file = "r.wkt", units = "ft" }')))
+    feet = load_project(write("p.toml", PROJECT_OF_REGION.format(region='{ file = "r.wkt", units = "ft" }')))
     assert build(feet).volume == pytest.approx(7.75 * 0.3048**2)
 
 
@@ -381,7 +367,7 @@ def test_regions_of_the_project_file(write, tmp_path):
 )
 def test_regions_of_the_project_file_refused(write, region, line, words):
     write("r.wkt", WKT[0])
-    path = write("p.toml", PROJECT.format(region=region))
+    path = write("p.toml", PROJECT_OF_REGION.format(region=region))
     with pytest.raises(InputRefused) as raised:
         build(load_project(path))
     assert words.split(": ")[-1] in str(raised.value)

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "complex_view.hpp"
+#include "../strata/complex_checks.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/cutting/cut.hpp"
 

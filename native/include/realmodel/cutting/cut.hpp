@@ -39,6 +39,20 @@ struct ComplexView {
     }
 };
 
+/// A built complex as the cutting takes it.
+inline ComplexView view(const strata::CellComplex& c, bool blocks = false) {
+    ComplexView v;
+    v.vertices = {c.vertices.data()->data(), 3 * c.vertices.size()};
+    v.face_offsets = c.face_offsets;
+    v.face_vertices = c.face_vertices;
+    v.face_cells = {c.face_cells.data()->data(), 2 * c.face_cells.size()};
+    v.face_surface = c.face_surface;
+    v.cell_block = c.cell_block;
+    v.blocks = c.volumes.size();
+    v.cells_are_blocks = blocks;
+    return v;
+}
+
 /// A plane through `point`; "above" is where `normal` points. The normal may have any length.
 struct Plane {
     std::array<double, 3> point, normal;
