@@ -155,7 +155,7 @@ class StackRows:
                 yield self._done(row)
 
     def against_blender(self):
-        for quads in (100, 400):
+        for quads, pairs in ((100, 5), (400, 1)):
             spec = StackSpec(2, quads, "shared", "half")
             work = f"two layers, {2 * quads * quads + 8 * quads:,} triangles each, coinciding over half"
 
@@ -165,7 +165,8 @@ class StackRows:
                 return peers.blender(spec, "EXACT", _SECONDS, self.limits.memory)
 
             row = Row(work, "Blender, Boolean EXACT", 1 / 50, 1 / 150)
-            yield self._done(compared(row, self._ours(spec, "columns", base=-5.0), theirs, 1))
+            ours = self._ours(spec, "columns", base=-5.0)
+            yield self._done(compared(row, ours, theirs, self.limits.pairs or pairs))
 
     def against_cgal(self):
         for surfaces, seconds in ((3, 180.0), (6, 180.0), (10, 180.0)):
@@ -176,7 +177,7 @@ class StackRows:
                 return peers.cgal(spec, seconds, self.limits.memory)
 
             row = Row(f"{surfaces} x 20,000, all cells", "CGAL, exact corefinement of all pairs", 1.0, 1 / 10)
-            yield self._done(compared(row, self._ours(spec, "columns"), theirs, 1))
+            yield self._done(compared(row, self._ours(spec, "columns"), theirs, self.limits.pairs or 3))
 
     def against_ourselves(self):
         """Comparisons of RealModel with itself: growth, degenerate input, threads."""
