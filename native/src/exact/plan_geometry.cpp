@@ -155,6 +155,15 @@ void PlanGeometry::forget_names() {
     names_forgotten_ = true;
 }
 
+void PlanGeometry::forget_all() {
+    forget_names();
+    points_ = {};
+    space_ = {};
+    planes_ = {};
+    plane_filters_ = {};
+    lines_ = {};
+}
+
 void PlanGeometry::remember_names() {
     names_forgotten_ = false;
     line_table_.reserve(lines_.size());

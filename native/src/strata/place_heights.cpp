@@ -2,9 +2,9 @@
 #include "place_heights.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 namespace realmodel::strata {
 
@@ -15,6 +15,7 @@ constexpr std::size_t kFew = 24;  // up to here looking through all is quickest
 }  // namespace
 
 void PlaceHeights::find(PointId point, std::span<std::int32_t> planes) {
+    if (find_single(point, planes)) return;
     find_distinct(point, planes);
     rank_levels(point);
     if (!tentative_.empty()) settle_tentative(point);
@@ -28,6 +29,25 @@ void PlaceHeights::find(PointId point, std::span<std::int32_t> planes) {
                                      [&](const Plane& p) { return p.plane == ~plane; });
         plane = at->level < 0 ? -1 : levels_[static_cast<std::size_t>(at->level)].rank;
     }
+}
+
+/// Where what the place is made of tells that all planes are equally high, as on most places, there
+/// is nothing to put in order.
+/// @return whether that is so, and all is done
+bool PlaceHeights::find_single(PointId point, std::span<std::int32_t> planes) {
+    if (planes.empty() || planes[0] < 0) return false;
+    Level level{scope_.height_name(planes[0], point), planes[0], 0.0, 0};
+    std::array known{planes[0], planes[0]};
+    for (const std::int32_t plane : planes.subspan(1)) {
+        if (plane == known[0] || plane == known[1]) continue;
+        if (plane < 0 || scope_.height_name(plane, point) != level.name) return false;
+        known = {plane, known[0]};
+        level.plane = std::min(level.plane, plane);
+    }
+    std::optional<exact::NearPoint> near;
+    heights_.assign(1, rounded(level, point, near));
+    std::fill(planes.begin(), planes.end(), 0);
+    return true;
 }
 
 std::int32_t PlaceHeights::rank_of(PlaneId plane) const {
@@ -108,18 +128,20 @@ std::int32_t PlaceHeights::level_of(PointId point, PlaneId plane) {
     return static_cast<std::int32_t>(levels_.size()) - 1;
 }
 
+/// @param near  where the point lies, found for the first level that asks for it
+double PlaceHeights::rounded(const Level& level, PointId point,
+                             std::optional<exact::NearPoint>& near) {
+    if (level.name.first >= 0 && level.name.first == level.name.second)
+        return scope_.shared().space(level.name.first).z;
+    if (const auto z = scope_.rounded_height_of_crossing(level.name, point)) return *z;
+    if (!near) near = scope_.near(point);
+    return scope_.rounded_height(level.plane, level.name, point, *near);
+}
+
 void PlaceHeights::rank_levels(PointId point) {
     std::optional<exact::NearPoint> near;
-    for (Level& level : levels_) {
-        if (level.name.first >= 0 && level.name.first == level.name.second) {
-            level.z = scope_.shared().space(level.name.first).z;
-        } else if (const auto z = scope_.rounded_height_of_crossing(level.name, point)) {
-            level.z = *z;
-        } else {
-            if (!near) near = scope_.near(point);
-            level.z = scope_.rounded_height(level.plane, level.name, point, *near);
-        }
-    }
+    for (Level& level : levels_)
+        level.z = rounded(level, point, near);
     const auto level = [&](std::int32_t i) -> Level& {
         return levels_[static_cast<std::size_t>(i)];
     };

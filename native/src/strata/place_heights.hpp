@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -41,6 +42,8 @@ private:
         std::int32_t level;
     };
 
+    bool find_single(PointId point, std::span<std::int32_t> planes);
+    double rounded(const Level& level, PointId point, std::optional<exact::NearPoint>& near);
     std::int32_t level_of(PointId point, PlaneId plane);
     void find_distinct(PointId point, std::span<const std::int32_t> planes);
     void rank_levels(PointId point);

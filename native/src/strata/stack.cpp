@@ -194,6 +194,8 @@ void check_base(const std::array<double, 3>& lowest, double base, std::int32_t o
     }
 }
 
+/// Joins the faces of a construction to a complex. Gives back what is done with on the way, so that
+/// afterwards only the geometry's counts are there.
 CellComplex conform(PlanGeometry& geometry, Construction& construction,
                     const std::vector<std::int32_t>& surface_of_plane, int threads,
                     Progress* progress) {
@@ -202,7 +204,7 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
     constexpr std::size_t kManyPoints = 1000000;
     if (geometry.point_count() > kManyPoints) give_back_memory();
     std::vector<ExtraPoint> extra;
-    const FaceList& faces = construction.faces;
+    FaceList& faces = construction.faces;
     double done = kEnterShare + kOverlayShare;
     for (int round = 0;; ++round) {
         const auto next = [&](double of_round, const char* text) {
@@ -212,7 +214,7 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
             done += share;
         };
         next(0.2, "joining points");
-        const Places places = find_places(geometry, faces, extra, threads, progress);
+        Places places = find_places(geometry, faces, extra, threads, progress);
         next(0.4, "joining edges");
         Tracks tracks = find_tracks(geometry, faces, places, extra, &construction.cell_is_thick,
                                     threads, progress);
@@ -225,11 +227,16 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
             extra.insert(extra.end(), missing.begin(), missing.end());
             continue;
         }
+        // What comes out takes the memory of what it was made of.
         tracks = {};
         loops.edge_begin = {};
+        geometry.forget_all();
+        faces.layer = {};
         begin(progress, done, 1.0 - done, "putting the cells together");
         place_vertices(places, loops, threads, progress);
         make_distinct(geometry, faces, places, loops, threads, progress);
+        places = {};
+        faces.polygons = {};
         return assemble(faces, surface_of_plane, std::move(loops), std::move(walls),
                         std::move(construction.cell_block), threads, progress);
     }

@@ -219,6 +219,9 @@ public:
     /// Gives back the memory that finds lines and points by name, for when hardly any will be asked
     /// for; it is made again for the first that is.
     void forget_names();
+    /// Gives all memory back, for when nothing but the vertex count and the counts of decisions
+    /// will be asked for.
+    void forget_all();
 
     /// The line through two plan vertices, made where it is new, directed from `from` to `to`.
     DirectedLine add_edge(VertexId from, VertexId to);
