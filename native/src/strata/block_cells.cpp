@@ -145,7 +145,7 @@ private:
             }
             is_needed_.assign(loops_.positions.size(), 0);
             for (std::size_t c = 0; c < faces.polygons.corners.size(); ++c) {
-                const std::int32_t v = loops_.vertices[loops_.edge_begin[c]];
+                const std::int32_t v = loops_.vertices[loops_.entries.first(c)];
                 is_needed_[static_cast<std::size_t>(v)] = 1;
             }
             std::vector<std::uint8_t> may_bend(loops_.positions.size(), 0);
@@ -282,7 +282,7 @@ private:
                          corner < last; ++corner) {
                         const PointId point = faces.polygons.corners[corner].point;
                         if (point >= geometry_.vertex_count()) continue;
-                        const auto v = loops_.vertices[loops_.edge_begin[corner]];
+                        const auto v = loops_.vertices[loops_.entries.first(corner)];
                         const std::int32_t number = number_[static_cast<std::size_t>(v)];
                         if (base_ && faces.plane[f] == *base_) {
                             set(of_base[static_cast<std::size_t>(point)], number);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "entry_numbers.hpp"
 #include "envelope.hpp"
 #include "flat_array.hpp"
 #include "realmodel/strata/stack.hpp"
@@ -37,20 +38,12 @@ struct Places {
 Places find_places(const exact::PlanGeometry& geometry, const FaceList& faces,
                    const std::vector<ExtraPoint>& extra, int threads, const Progress* progress);
 
-/// The places that face edges pass between their ends, one edge after another: the corner that it
-/// leaves, how many there are, and they themselves in its order. Where a count is negative, they
-/// are taken up only if something else needs a vertex there.
-using PassedPlaces = std::vector<std::int32_t>;
-
 /// The lines in use, those that run through the same places taken together, each with the face
 /// edges on it. A track runs to rising x, or to rising y where x does not change.
 struct Tracks {
     FlatArray<LineId> representative;  ///< the lowest line of each track; tracks are in its order
     FlatArray<std::uint32_t> edge_offsets;
     FlatArray<TrackEdge> edges;
-    /// For each corner how many places the edge that leaves it has, its far end left out; and a
-    /// last one to make these totals.
-    FlatArray<std::uint32_t> entries;
     std::vector<PassedPlaces> passed;  ///< by the edges of so many tracks each
     std::vector<PairedEdges> paired;   ///< of the tracks that are left out above
 
@@ -74,7 +67,7 @@ struct LateVertex {
 /// for each height that a corner or an edge needs there, ascending.
 struct Loops {
     FlatArray<std::uint32_t> face_offsets;  ///< entries of each face
-    FlatArray<std::uint32_t> edge_begin;    ///< first entry of the edge that leaves a corner
+    EntryNumbers entries;                   ///< of each corner
     /// Of each entry, counter-clockwise in plan; -1 where an edge passes a place tentatively and
     /// nothing else is as high there.
     FlatArray<std::int32_t> vertices;
@@ -85,8 +78,8 @@ struct Loops {
     static constexpr std::size_t kPlacesTogether = 1 << 11;
     GrowingArray<std::array<double, 3>> positions;  ///< empty until place_vertices
 };
-/// Takes what it needs of the tracks: their `entries` and `passed` are given back, and their edges
-/// name the first of their entries from here on.
+/// Takes what it needs of the tracks: what they have `passed` is given back, and their edges name
+/// the first of their entries from here on.
 Loops find_loops(const exact::PlanGeometry& geometry, const FaceList& faces, const Places& places,
                  Tracks& tracks, int threads, const Progress* progress);
 

@@ -24,39 +24,37 @@ struct FacesOnPlaces {
 };
 
 /// Numbers the entries: each edge has one for each place that it takes up, but for its far end.
-void number_entries(const FaceList& faces, Tracks& tracks, Loops& loops, int threads,
+void number_entries(const FaceList& faces, const Tracks& tracks, Loops& loops, int threads,
                     const Progress* progress) {
-    loops.edge_begin = std::move(tracks.entries);
-    running_totals(loops.edge_begin, UINT32_MAX, threads, progress);
+    loops.entries = EntryNumbers(tracks.passed, faces.polygons.corners.size(), threads, progress);
     loops.face_offsets = FlatArray<std::uint32_t>(faces.size() + 1);
-    parallel_ranges(faces.size() + 1, kFaces, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f) {
-                            const auto corner = static_cast<std::size_t>(faces.polygons.offsets[f]);
-                            loops.face_offsets[f] = loops.edge_begin[corner];
-                        }
-                    });
+    parallel_ranges(
+        faces.size() + 1, kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f) {
+                loops.face_offsets[f] =
+                    loops.entries.first(static_cast<std::size_t>(faces.polygons.offsets[f]));
+            }
+        });
 }
 
 /// The places that faces pass, entry by entry; their complement where they are passed tentatively.
 FlatArray<PlaceId> places_of_entries(const FaceList& faces, const Places& places,
-                                     const Tracks& tracks, const Loops& loops, std::size_t entries,
-                                     int threads, const Progress* progress) {
-    FlatArray<PlaceId> place(entries);
+                                     const Tracks& tracks, const Loops& loops, int threads,
+                                     const Progress* progress) {
+    FlatArray<PlaceId> place(loops.face_offsets[faces.size()]);
     const auto& corners = faces.polygons.corners;
-    parallel_ranges(corners.size(), 4 * kFaces, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t c = begin; c < end; ++c) {
-                            place[loops.edge_begin[c]] =
-                                places.of_point[static_cast<std::size_t>(corners[c].point)];
-                        }
-                    });
+    parallel_ranges(
+        corners.size(), 4 * kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
+            loops.entries.for_each(begin, end, [&](std::size_t c, std::size_t entry) {
+                place[entry] = places.of_point[static_cast<std::size_t>(corners[c].point)];
+            });
+        });
     parallel_chunks(tracks.passed.size(), threads, progress, [&](std::size_t chunk) {
         const PassedPlaces& passed = tracks.passed[chunk];
         for (std::size_t i = 0; i < passed.size();) {
             const auto corner = static_cast<std::size_t>(passed[i++]);
             const std::int32_t count = passed[i++];
-            PlaceId* to = place.begin() + loops.edge_begin[corner];
+            PlaceId* to = place.begin() + loops.entries.first(corner);
             for (std::int32_t n = std::abs(count); n > 0; --n, ++i)
                 *++to = count < 0 ? ~passed[i] : passed[i];
         }
@@ -64,43 +62,71 @@ FlatArray<PlaceId> places_of_entries(const FaceList& faces, const Places& places
     return place;
 }
 
-/// Sorts the entries by place. Which of a place's entries comes first is left to chance;
-/// `loops.vertices` says where each stands.
-FacesOnPlaces sort_by_place(const FaceList& faces, const FlatArray<PlaceId>& place,
-                            std::size_t places, Loops& loops, int threads,
-                            const Progress* progress) {
-    FacesOnPlaces on;
-    on.offsets = zeros<std::uint32_t>(places + 1, threads, progress);
-    loops.vertices = FlatArray<std::int32_t>(place.size());
-    const auto offset_of = [&](std::size_t entry) -> std::uint32_t& {
+/// Counts entries on each place. Which of a place's entries comes first is left to chance, and few
+/// places have more than a byte can count.
+class PlaceCounts {
+public:
+    PlaceCounts(std::size_t places, std::size_t entries, int threads, const Progress* progress)
+        : counts_(zeros<std::uint32_t>(places + 1, threads, progress)),
+          number_(entries),
+          more_((entries + kEntries - 1) / kEntries) {}
+
+    void prefetch(std::size_t place) const { strata::prefetch(&counts_[place]); }
+    /// Counts an entry; all of kEntries by one thread, in order.
+    void count(std::size_t entry, std::size_t place) {
+        const std::uint32_t before = count_one(counts_[place]);
+        number_[entry] = static_cast<std::uint8_t>(std::min(before, kMore));
+        if (before >= kMore) more_[entry / kEntries].push_back({entry, before});
+    }
+    /// How many of its place were counted before an entry.
+    std::uint32_t number(std::size_t entry) const {
+        if (number_[entry] < kMore) return number_[entry];
+        const auto& more = more_[entry / kEntries];
+        return std::lower_bound(more.begin(), more.end(), std::pair(entry, 0U))->second;
+    }
+    FlatArray<std::uint32_t>& counts() { return counts_; }
+
+private:
+    static constexpr std::uint32_t kMore = 255;
+
+    FlatArray<std::uint32_t> counts_;
+    FlatArray<std::uint8_t> number_;
+    std::vector<std::vector<std::pair<std::size_t, std::uint32_t>>> more_;
+};
+
+/// Sorts the entries by place.
+/// @param place  of each entry; turned to where it stands among the others
+FacesOnPlaces sort_by_place(const FaceList& faces, FlatArray<PlaceId>& place, std::size_t places,
+                            const Loops& loops, int threads, const Progress* progress) {
+    PlaceCounts counts(places, place.size(), threads, progress);
+    const auto place_of = [&](std::size_t entry) {
         const PlaceId p = place[entry];
-        return on.offsets[static_cast<std::size_t>(p < 0 ? ~p : p)];
-    };
-    const auto prefetch_offset = [&](std::size_t entry) {
-        prefetch(&offset_of(std::min(entry + 32, place.size() - 1)));
+        return static_cast<std::size_t>(p < 0 ? ~p : p);
     };
     parallel_ranges(place.size(), kEntries, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t i = begin; i < end; ++i) {
-                            prefetch_offset(i);
-                            loops.vertices[i] = static_cast<std::int32_t>(count_one(offset_of(i)));
+                            counts.prefetch(place_of(std::min(i + 32, end - 1)));
+                            counts.count(i, place_of(i));
                         }
                     });
-    running_totals(on.offsets, UINT32_MAX, threads, progress);
+    running_totals(counts.counts(), UINT32_MAX, threads, progress);
+    FacesOnPlaces on;
     on.values = FlatArray<std::int32_t>(place.size());
     parallel_ranges(
         faces.size(), kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
+            const std::size_t last = loops.face_offsets[end] - 1;
             for (std::size_t f = begin; f < end; ++f) {
                 const PlaneId plane = faces.plane[f];
-                for (auto i = loops.face_offsets[f]; i < loops.face_offsets[f + 1]; ++i) {
-                    prefetch_offset(i);
-                    const std::uint32_t at =
-                        offset_of(i) + static_cast<std::uint32_t>(loops.vertices[i]);
+                for (std::size_t i = loops.face_offsets[f]; i < loops.face_offsets[f + 1]; ++i) {
+                    counts.prefetch(place_of(std::min(i + 32, last)));
+                    const std::uint32_t at = counts.counts()[place_of(i)] + counts.number(i);
                     on.values[at] = place[i] < 0 ? ~plane : plane;
-                    loops.vertices[i] = static_cast<std::int32_t>(at);
+                    place[i] = static_cast<std::int32_t>(at);
                 }
             }
         });
+    on.offsets = std::move(counts.counts());
     return on;
 }
 
@@ -132,7 +158,8 @@ void find_heights(const PlanGeometry& geometry, const Places& places, FacesOnPla
     parallel_ranges(
         places.size(), kPlaces, threads, progress, [&](std::size_t begin, std::size_t end) {
             PlaceHeights of_place(geometry);
-            auto& all = loops.heights[begin / kPlaces];
+            std::vector<double> all;
+            all.reserve(2 * kPlaces);
             for (std::size_t p = begin; p < end; ++p) {
                 prefetch_points(geometry, places, p);
                 of_place.find(places.representative[p], {on.values.begin() + on.offsets[p],
@@ -141,6 +168,7 @@ void find_heights(const PlanGeometry& geometry, const Places& places, FacesOnPla
                 all.insert(all.end(), found.begin(), found.end());
                 loops.place_offsets[p] = static_cast<std::int32_t>(found.size());
             }
+            loops.heights[begin / kPlaces].assign(all.begin(), all.end());  // without room for more
         });
     running_totals(loops.place_offsets, INT32_MAX, threads, progress);
 }
@@ -150,11 +178,8 @@ void find_heights(const PlanGeometry& geometry, const Places& places, FacesOnPla
 void name_entries(Tracks& tracks, const Loops& loops, int threads, const Progress* progress) {
     parallel_ranges(tracks.edges.size(), kEntries, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t e = begin; e < end; ++e) {
-                            const std::size_t ahead = std::min(e + 32, end - 1);
-                            prefetch(&loops.edge_begin[tracks.edges[ahead].begin]);
-                            tracks.edges[e].begin = loops.edge_begin[tracks.edges[e].begin];
-                        }
+                        for (std::size_t e = begin; e < end; ++e)
+                            tracks.edges[e].begin = loops.entries.first(tracks.edges[e].begin);
                     });
 }
 
@@ -163,10 +188,10 @@ void add_late_vertices(const Tracks& tracks, Loops& loops, int threads, const Pr
     std::vector<std::vector<LateVertex>> found(tracks.paired.size());
     parallel_chunks(found.size(), threads, progress, [&](std::size_t chunk) {
         for (const EdgePair& pair : tracks.paired[chunk].passing) {
-            const std::uint32_t first = loops.edge_begin[pair.left] + 1;
-            for (std::uint32_t e = loops.edge_begin[pair.left + 1]; e-- > first;) {
+            const std::uint32_t first = loops.entries.first(pair.left) + 1;
+            for (std::uint32_t e = loops.entries.first(pair.left + 1); e-- > first;) {
                 if (loops.vertices[e] >= 0)
-                    found[chunk].push_back({loops.edge_begin[pair.right], loops.vertices[e]});
+                    found[chunk].push_back({loops.entries.first(pair.right), loops.vertices[e]});
             }
         }
     });
@@ -182,14 +207,11 @@ Loops find_loops(const PlanGeometry& geometry, const FaceList& faces, const Plac
                  Tracks& tracks, int threads, const Progress* progress) {
     Loops loops;
     number_entries(faces, tracks, loops, threads, progress);
-    FacesOnPlaces on;
-    {
-        const auto place = places_of_entries(faces, places, tracks, loops,
-                                             loops.face_offsets[faces.size()], threads, progress);
-        tracks.passed = {};
-        name_entries(tracks, loops, threads, progress);
-        on = sort_by_place(faces, place, places.size(), loops, threads, progress);
-    }
+    loops.vertices = places_of_entries(faces, places, tracks, loops, threads, progress);
+    tracks.passed = {};
+    name_entries(tracks, loops, threads, progress);
+    FacesOnPlaces on =
+        sort_by_place(faces, loops.vertices, places.size(), loops, threads, progress);
     find_heights(geometry, places, on, loops, threads, progress);
     parallel_ranges(places.size(), kPlaces, threads, progress,
                     [&](std::size_t begin, std::size_t end) {

@@ -229,7 +229,7 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
         }
         // What comes out takes the memory of what it was made of.
         tracks = {};
-        loops.edge_begin = {};
+        loops.entries = {};
         geometry.forget_all();
         faces.layer = {};
         begin(progress, done, 1.0 - done, "putting the cells together");

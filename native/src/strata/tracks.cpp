@@ -251,7 +251,6 @@ private:
     ///     count
     void pass(const TrackEdge& edge, std::int32_t sign) {
         const std::int32_t between = sign == 0 ? 0 : std::abs(edge.to - edge.from) - 1;
-        tracks_.entries[edge.begin] = static_cast<std::uint32_t>(between) + 1;
         if (between == 0) return;
         passed_.push_back(static_cast<std::int32_t>(edge.begin));
         passed_.push_back(sign * between);
@@ -300,8 +299,6 @@ Tracks find_tracks(const PlanGeometry& geometry, const FaceList& faces, const Pl
             std::lower_bound(extra_places.begin(), extra_places.end(), first) -
             extra_places.begin());
     };
-    tracks.entries = FlatArray<std::uint32_t>(tracks.edges.size() + 1);
-    tracks.entries[tracks.edges.size()] = 0;
     tracks.passed.resize((tracks.size() + kTracks - 1) / kTracks);
     tracks.paired.resize(tracks.passed.size());
     const bool pairs = cell_is_thick != nullptr;

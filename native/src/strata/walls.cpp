@@ -127,8 +127,13 @@ public:
         const std::int32_t* next = paired.walls.data();
         const std::int32_t* const end = next + paired.walls.size();
         while (next < end) {
-            for (std::ptrdiff_t ahead = 0; ahead < 8; ++ahead)
-                prefetch_corner(next[std::min<std::ptrdiff_t>(48 + ahead, end - 1 - next)]);
+            for (std::ptrdiff_t ahead = 0; ahead < 8; ++ahead) {
+                const auto corner = [&](std::ptrdiff_t further) {
+                    return corner_of(next[std::min(further + ahead, end - 1 - next)]);
+                };
+                loops_.entries.prefetch(corner(96));
+                prefetch(&loops_.vertices[loops_.entries.first(corner(48))]);
+            }
             const std::array cells{next[0], next[1]};
             const std::int32_t above = next[2], beneath = next[3];
             next = collect(next + 4, above, upper_);
@@ -138,10 +143,10 @@ public:
     }
 
 private:
-    void prefetch_corner(std::int32_t corner) const {
-        // a count or a cell is the number of some corner too, or of none
-        const auto c = static_cast<std::size_t>(std::max(corner, 0));
-        prefetch(&loops_.edge_begin[std::min(c, loops_.edge_begin.size() - 1)]);
+    /// A number of the plan as that of a corner: counts and cells are those of some corner, too.
+    std::size_t corner_of(std::int32_t number) const {
+        const auto corner = static_cast<std::size_t>(std::max(number, 0));
+        return std::min(corner, loops_.entries.corners() - 1);
     }
 
     /// The vertices along some edges that follow each other.
@@ -151,12 +156,13 @@ private:
         vertices.clear();
         for (std::int32_t i = 0; i < count; ++i, ++corner) {
             const auto c = static_cast<std::size_t>(*corner);
-            for (auto e = loops_.edge_begin[c]; e < loops_.edge_begin[c + 1]; ++e) {
+            const std::uint32_t end = loops_.entries.first(c + 1);
+            for (std::uint32_t e = loops_.entries.first(c); e < end; ++e) {
                 if (loops_.vertices[e] >= 0) vertices.push_back(loops_.vertices[e]);
             }
         }
         const auto end = static_cast<std::size_t>(*corner);
-        vertices.push_back(loops_.vertices[loops_.edge_begin[end]]);
+        vertices.push_back(loops_.vertices[loops_.entries.first(end)]);
         return corner + 1;
     }
 
