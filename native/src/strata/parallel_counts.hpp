@@ -32,6 +32,15 @@ inline std::size_t count_before(std::vector<std::size_t>& counts) {
     return total;
 }
 
+/// @throws InputError kind too_large, where there are more vertices than so many
+inline void check_total(std::size_t vertices, std::uint64_t largest) {
+    if (vertices > largest) {
+        throw InputError("too_large", "the model needs more than " +
+                                          std::to_string(largest / 1000000) +
+                                          " million vertices; use coarser surfaces");
+    }
+}
+
 /// The same for many numbers; the last element becomes the sum of all.
 /// @throws InputError kind too_large, where the sum is more than `largest`
 template <class Number>
@@ -47,11 +56,7 @@ void running_totals(FlatArray<Number>& counts, std::uint64_t largest, int thread
         before[begin / kChunk] = sum;
     });
     const std::size_t total = count_before(before);
-    if (total > largest) {
-        throw InputError("too_large", "the model needs more than " +
-                                          std::to_string(largest / 1000000) +
-                                          " million vertices; use coarser surfaces");
-    }
+    check_total(total, largest);
     parallel_ranges(count, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
         std::size_t sum = before[begin / kChunk];
         for (std::size_t i = begin; i < end; ++i) {

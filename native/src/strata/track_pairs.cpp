@@ -13,30 +13,38 @@ std::uint64_t packed(std::int32_t high, std::int32_t low) {
 
 }  // namespace
 
+TrackPairing::Name TrackPairing::over(PlaneId plane, const exact::Line& line) const {
+    if (line.kind != exact::Line::Kind::kEdge) return {-1, -1};
+    const exact::Plane& triangle = geometry_.plane(plane);
+    const exact::SpaceId s = triangle.above(line.first);
+    return {s, s < 0 ? -1 : triangle.above(line.second)};
+}
+
 TrackPairing::Name TrackPairing::name(const TrackEdge& edge, const exact::Line& line) const {
     const PlaneId plane = plane_of(edge);
-    const exact::Plane& triangle = geometry_.plane(plane);
-    const auto over = [&](const exact::Line& of_edge) {
-        const bool is_edge = of_edge.kind == exact::Line::Kind::kEdge;
-        const exact::SpaceId s = is_edge ? triangle.above(of_edge.first) : -1;
-        return Name{s, s < 0 ? -1 : triangle.above(of_edge.second)};
-    };
-    const Name first = over(line);
+    const Name first = over(plane, line);
     if (first[1] >= 0) return first;
     // several edges in a row are one track, each on a line of its own
     const auto own = exact::line_of(faces_.polygons.corners[edge.begin].line);
-    const Name second = over(geometry_.line(own));
+    const Name second = over(plane, geometry_.line(own));
     return second[1] >= 0 ? second : Name{-1, plane};
 }
 
-/// Pairs edges of the same ends.
+/// Whether two edges of the same ends are one stretch of line in space.
+bool TrackPairing::are_one_line(const TrackEdge& left, const TrackEdge& right,
+                                const exact::Line& line) {
+    const std::array planes{plane_of(left), plane_of(right)};
+    if (planes[0] == planes[1] || planes == same_) return true;
+    const Name of_left = name(left, line);
+    if (of_left != name(right, line)) return false;
+    // Stretches that follow each other mostly lie between the same two triangles.
+    if (of_left == over(planes[0], line)) same_ = planes;
+    return true;
+}
+
+/// Pairs several edges of the same ends.
 bool TrackPairing::match(std::span<Stretch> left, std::span<Stretch> right,
                          const exact::Line& line) {
-    if (left.size() == 1) {
-        const TrackEdge &l = *left[0].edge, &r = *right[0].edge;
-        pairs_.push_back({&l, &r});
-        return plane_of(l) == plane_of(r) || name(l, line) == name(r, line);
-    }
     const auto find_names = [&](std::span<Stretch> stretches, auto& names) {
         names.clear();
         for (const Stretch& s : stretches)
@@ -57,45 +65,52 @@ bool TrackPairing::match(std::span<Stretch> left, std::span<Stretch> right,
 
 bool TrackPairing::find_pairs(std::span<const TrackEdge> edges, LineId line_id) {
     if (edges.size() % 2 != 0) return false;
-    left_.clear();
-    right_.clear();
+    stretches_.clear();
     for (const TrackEdge& edge : edges) {
-        if (edge.from < edge.to) {
-            left_.push_back({packed(edge.from, edge.to), &edge});
-        } else {
-            right_.push_back({packed(edge.to, edge.from), &edge});
-        }
+        const bool is_right = edge.from > edge.to;
+        const auto [low, high] = std::minmax(edge.from, edge.to);
+        stretches_.push_back({packed(low, high) << 1 | (is_right ? 1 : 0), &edge});
     }
-    if (left_.size() != right_.size()) return false;
-    const auto in_order = [](const Stretch& a, const Stretch& b) { return a.ends < b.ends; };
-    std::sort(left_.begin(), left_.end(), in_order);
-    std::sort(right_.begin(), right_.end(), in_order);
-    for (std::size_t i = 0; i < left_.size(); ++i) {
-        if (left_[i].ends != right_[i].ends) return false;
-    }
+    std::sort(stretches_.begin(), stretches_.end(),
+              [](const Stretch& a, const Stretch& b) { return a.ends_and_side < b.ends_and_side; });
     const exact::Line& line = geometry_.line(line_id);
     pairs_.clear();
-    for (std::size_t begin = 0, end = 0; begin < left_.size(); begin = end) {
-        for (end = begin + 1; end < left_.size() && left_[end].ends == left_[begin].ends;)
-            ++end;
-        const std::size_t count = end - begin;
-        if (!match({&left_[begin], count}, {&right_[begin], count}, line)) return false;
+    same_ = {-1, -1};
+    for (std::size_t begin = 0, end = 0; begin < stretches_.size(); begin = end) {
+        std::size_t right = begin;
+        for (end = begin;
+             end < stretches_.size() && stretches_[end].ends() == stretches_[begin].ends(); ++end)
+            right += stretches_[end].is_right() ? 0 : 1;
+        if (end - right != right - begin) return false;
+        if (end - right > 1) {
+            if (!match({&stretches_[begin], end - right}, {&stretches_[right], end - right}, line))
+                return false;
+            continue;
+        }
+        pairs_.push_back({stretches_[begin].edge, stretches_[right].edge});
+        if (!are_one_line(*pairs_.back().left, *pairs_.back().right, line)) return false;
     }
     return true;
 }
 
 void TrackPairing::find_bounds() {
     bounds_.clear();
+    beneath_.clear();
+    bool one_wall = true;
     for (const Pair& pair : pairs_) {
         const auto left = static_cast<std::size_t>(pair.left->face);
         const auto right = static_cast<std::size_t>(pair.right->face);
-        const auto add = [&](std::int32_t l, std::int32_t r, std::int32_t is_beneath) {
-            if (l != r)
-                bounds_.push_back({packed(l, r), packed(is_beneath, pair.left->from), pair.left});
+        const auto add = [&](std::int32_t l, std::int32_t r, std::int32_t is_beneath, auto& to) {
+            if (l == r) return;
+            to.push_back({packed(l, r), packed(is_beneath, pair.left->from), pair.left});
+            const Bound& first = bounds_.empty() ? beneath_[0] : bounds_[0];
+            one_wall = one_wall && to.back().cells == first.cells;
         };
-        add(faces_.above[left], faces_.above[right], 1);
-        add(faces_.below[left], faces_.below[right], 0);
+        add(faces_.above[left], faces_.above[right], 1, beneath_);
+        add(faces_.below[left], faces_.below[right], 0, bounds_);
     }
+    bounds_.insert(bounds_.end(), beneath_.begin(), beneath_.end());
+    if (one_wall) return;  // pairs are in order along the track
     std::sort(bounds_.begin(), bounds_.end(), [](const Bound& a, const Bound& b) {
         return a.cells != b.cells ? a.cells < b.cells : a.place < b.place;
     });
@@ -144,20 +159,25 @@ std::int32_t TrackPairing::end_corner(const TrackEdge& edge) const {
 }
 
 void TrackPairing::add_walls(PairedEdges& to) const {
+    std::size_t size = to.walls.size();
+    for (const Wall& wall : walls_)
+        size += 6 + (wall.above_end - wall.above) + (wall.beneath_end - wall.beneath);
+    std::size_t next = to.walls.size();
+    to.walls.resize(size);
+    const auto add = [&](std::int32_t number) { to.walls[next++] = number; };
     for (const Wall& wall : walls_) {
         const std::uint64_t cells = bounds_[wall.above].cells;
-        to.walls.insert(
-            to.walls.end(),
-            {static_cast<std::int32_t>(cells >> 32), static_cast<std::int32_t>(cells & 0xffffffff),
-             static_cast<std::int32_t>(wall.above_end - wall.above),
-             static_cast<std::int32_t>(wall.beneath_end - wall.beneath)});
-        const auto add = [&](std::size_t begin, std::size_t end) {
+        add(static_cast<std::int32_t>(cells >> 32));
+        add(static_cast<std::int32_t>(cells & 0xffffffff));
+        add(static_cast<std::int32_t>(wall.above_end - wall.above));
+        add(static_cast<std::int32_t>(wall.beneath_end - wall.beneath));
+        const auto add_corners = [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                to.walls.push_back(static_cast<std::int32_t>(bounds_[i].edge->begin));
-            to.walls.push_back(end_corner(*bounds_[end - 1].edge));
+                add(static_cast<std::int32_t>(bounds_[i].edge->begin));
+            add(end_corner(*bounds_[end - 1].edge));
         };
-        add(wall.above, wall.above_end);
-        add(wall.beneath, wall.beneath_end);
+        add_corners(wall.above, wall.above_end);
+        add_corners(wall.beneath, wall.beneath_end);
     }
     to.wall_count += walls_.size();
 }

@@ -13,7 +13,7 @@ namespace realmodel::strata {
 
 /// A face edge on its track.
 struct TrackEdge {
-    std::int32_t from, to;  ///< its ends, counted along the track
+    std::int32_t from, to;  ///< its ends, counted along the track; at first, the places there
     std::uint32_t begin;  ///< the corner, of all faces, that it leaves; for loops: its first entry
     std::int32_t face;
 };
@@ -32,7 +32,7 @@ struct PairedEdges {
     /// Walls one after another: the cells left and right of the track; how many edges are above
     /// and how many beneath; the corners that the edges above leave, on the left and along the
     /// track, and the corner where they end; the same for those beneath.
-    std::vector<std::int32_t> walls;
+    GrowingArray<std::int32_t> walls;
     std::size_t wall_count = 0;
     std::vector<EdgePair> passing;  ///< pairs that pass places tentatively
 };
@@ -44,7 +44,7 @@ public:
         : geometry_(geometry), faces_(faces) {}
 
     /// Pairs the edges of a track.
-    /// @param edges  with their ends counted along the track
+    /// @param edges  with their ends counted along the track, or places whose numbers rise along it
     /// @param line  the line of the track
     /// @return whether all are pairs and the walls between them follow from that; then pairs() and
     ///     add_walls() are of this track
@@ -58,10 +58,13 @@ public:
     void add_walls(PairedEdges& to) const;
 
 private:
-    /// An edge by its ends, in order along the track.
+    /// An edge by its ends, in order along the track, and its side.
     struct Stretch {
-        std::uint64_t ends;
+        std::uint64_t ends_and_side;
         const TrackEdge* edge;
+
+        std::uint64_t ends() const { return ends_and_side >> 1; }
+        bool is_right() const { return (ends_and_side & 1) != 0; }
     };
     /// What tells the line in space that an edge is on: the input edge over the line of the track
     /// (two space vertices), or its plane (-1 and the plane).
@@ -82,8 +85,10 @@ private:
     PlaneId plane_of(const TrackEdge& edge) const {
         return faces_.plane[static_cast<std::size_t>(edge.face)];
     }
+    Name over(PlaneId plane, const exact::Line& line) const;
     Name name(const TrackEdge& edge, const exact::Line& line) const;
     bool find_pairs(std::span<const TrackEdge> edges, LineId line);
+    bool are_one_line(const TrackEdge& left, const TrackEdge& right, const exact::Line& line);
     bool match(std::span<Stretch> left, std::span<Stretch> right, const exact::Line& line);
     void find_bounds();
     bool find_walls();
@@ -91,10 +96,11 @@ private:
 
     const exact::PlanGeometry& geometry_;
     const FaceList& faces_;
-    std::vector<Stretch> left_, right_;
+    std::vector<Stretch> stretches_;
+    std::array<PlaneId, 2> same_{-1, -1};  ///< planes that have the line of the track in common
     std::vector<std::pair<Name, const TrackEdge*>> left_names_, right_names_;
     std::vector<Pair> pairs_;
-    std::vector<Bound> bounds_;
+    std::vector<Bound> bounds_, beneath_;
     std::vector<Wall> walls_;
 };
 

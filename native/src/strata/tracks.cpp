@@ -5,15 +5,13 @@
 #include "conforming.hpp"
 #include "parallel_counts.hpp"
 #include "same_lines.hpp"
+#include "track_buckets.hpp"
 
 namespace realmodel::strata {
 
 using exact::PlanGeometry;
 
 namespace {
-
-constexpr std::size_t kFaces = 1 << 12, kTracks = 1 << 10;  // worked on at a time
-constexpr std::uint64_t kMostEdges = 2000000000;  // so that places on tracks can be numbered
 
 /// The places on one track, put in order. Rounded coordinates keep the order of places along a
 /// line, and exact ones decide where they are equal.
@@ -64,6 +62,11 @@ public:
     const std::vector<PlaceId>& in_order() const { return known_; }
     /// Which of them was added under a number.
     std::int32_t rank(std::int32_t number) const { return rank_[static_cast<std::size_t>(number)]; }
+    /// Which of them a place is, where no two have the same x.
+    std::int32_t number_of(PlaceId place) const {
+        return static_cast<std::int32_t>(std::lower_bound(known_.begin(), known_.end(), place) -
+                                         known_.begin());
+    }
 
 private:
     static constexpr std::size_t kFew = 16;
@@ -103,159 +106,129 @@ private:
     std::vector<std::int32_t> order_, rank_;
 };
 
-/// Finds the face edges of each track; their ends are the places themselves for now.
-void gather_edges(const FaceList& faces, const Places& places,
-                  const FlatArray<std::int32_t>& track_of_line, Tracks& tracks, int threads,
-                  const Progress* progress) {
-    const auto& corners = faces.polygons.corners;
-    const auto track_of = [&](const Corner& corner) {
-        return static_cast<std::size_t>(
-            track_of_line[static_cast<std::size_t>(exact::line_of(corner.line))]);
-    };
-    tracks.edge_offsets = zeros<std::uint32_t>(tracks.size() + 1, threads, progress);
-    FlatArray<std::uint32_t> number(corners.size());  // of each edge on its track
-    parallel_ranges(corners.size(), 4 * kFaces, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t c = begin; c < end; ++c)
-                            number[c] = count_one(tracks.edge_offsets[track_of(corners[c])]);
-                    });
-    running_totals(tracks.edge_offsets, kMostEdges, threads, progress);
-    tracks.edges = FlatArray<TrackEdge>(corners.size());
-    parallel_ranges(
-        faces.size(), kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t f = begin; f < end; ++f) {
-                const auto first = static_cast<std::size_t>(faces.polygons.offsets[f]);
-                const auto last = static_cast<std::size_t>(faces.polygons.offsets[f + 1]) - 1;
-                PlaceId from = places.of_point[static_cast<std::size_t>(corners[last].point)];
-                for (std::size_t next = first; next <= last; ++next) {
-                    const std::size_t c = next > first ? next - 1 : last;
-                    const PlaceId to =
-                        places.of_point[static_cast<std::size_t>(corners[next].point)];
-                    tracks.edges[tracks.edge_offsets[track_of(corners[c])] + number[c]] = {
-                        from, to, static_cast<std::uint32_t>(c), static_cast<std::int32_t>(f)};
-                    from = to;
-                }
-            }
-        });
-}
+/// Tracks that are not paired.
+struct KeptTracks {
+    std::vector<LineId> representative;
+    std::vector<std::uint32_t> edge_counts;
+    GrowingArray<TrackEdge> edges;
 
-/// Asks for what pairing will want to know of the edges after one.
-[[gnu::always_inline]] inline void prefetch_edge(const FaceList& faces, const Tracks& tracks,
-                                                 std::size_t edge) {
-    const auto far =
-        static_cast<std::size_t>(tracks.edges[std::min(edge + 32, tracks.edges.size() - 1)].face);
-    prefetch(&faces.plane[far]);
-    prefetch(&faces.above[far]);
-    prefetch(&faces.below[far]);
-    prefetch(&faces.polygons.offsets[far]);
-}
+    void add(LineId line, std::span<const TrackEdge> of_track) {
+        representative.push_back(line);
+        edge_counts.push_back(static_cast<std::uint32_t>(of_track.size()));
+        edges.append(of_track.begin(), of_track.end());
+    }
+};
 
-/// Leaves only the tracks that are not paired.
-void leave_out_paired(Tracks& tracks, const FlatArray<std::uint8_t>& is_paired, int threads,
-                      const Progress* progress) {
-    std::vector<std::size_t> first_track((tracks.size() + kTracks - 1) / kTracks),
-        first_edge(first_track.size());
-    const auto for_kept = [&](std::size_t begin, std::size_t end, const auto& visit) {
-        for (std::size_t t = begin; t < end; ++t) {
-            if (is_paired[t] == 0) visit(t, tracks.edge_offsets[t], tracks.edge_offsets[t + 1]);
+/// Puts the tracks that are left together, which are given back on the way.
+void join_kept(std::vector<KeptTracks> kept, Tracks& tracks, int threads,
+               const Progress* progress) {
+    std::vector<std::size_t> first_track, first_edge;
+    for (const KeptTracks& some : kept) {
+        first_track.push_back(some.representative.size());
+        first_edge.push_back(some.edges.size());
+    }
+    tracks.representative = FlatArray<LineId>(count_before(first_track));
+    tracks.edge_offsets = FlatArray<std::uint32_t>(tracks.size() + 1);
+    tracks.edges = FlatArray<TrackEdge>(count_before(first_edge));
+    tracks.edge_offsets[tracks.size()] = static_cast<std::uint32_t>(tracks.edges.size());
+    parallel_chunks(kept.size(), threads, progress, [&](std::size_t i) {
+        std::size_t track = first_track[i], edge = first_edge[i];
+        std::copy(kept[i].edges.begin(), kept[i].edges.end(), tracks.edges.begin() + edge);
+        for (std::size_t t = 0; t < kept[i].representative.size(); ++t, ++track) {
+            tracks.representative[track] = kept[i].representative[t];
+            tracks.edge_offsets[track] = static_cast<std::uint32_t>(edge);
+            edge += kept[i].edge_counts[t];
         }
-    };
-    parallel_ranges(tracks.size(), kTracks, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        for_kept(begin, end, [&](std::size_t, auto first, auto last) {
-                            ++first_track[begin / kTracks];
-                            first_edge[begin / kTracks] += last - first;
-                        });
-                    });
-    Tracks kept;
-    kept.representative = FlatArray<LineId>(count_before(first_track));
-    kept.edge_offsets = FlatArray<std::uint32_t>(kept.size() + 1);
-    kept.edges = FlatArray<TrackEdge>(count_before(first_edge));
-    kept.edge_offsets[kept.size()] = static_cast<std::uint32_t>(kept.edges.size());
-    parallel_ranges(
-        tracks.size(), kTracks, threads, progress, [&](std::size_t begin, std::size_t end) {
-            std::size_t track = first_track[begin / kTracks], edge = first_edge[begin / kTracks];
-            for_kept(begin, end, [&](std::size_t t, auto first, auto last) {
-                kept.representative[track] = tracks.representative[t];
-                kept.edge_offsets[track++] = static_cast<std::uint32_t>(edge);
-                std::copy(tracks.edges.begin() + first, tracks.edges.begin() + last,
-                          kept.edges.begin() + edge);
-                edge += last - first;
-            });
-        });
-    tracks.representative = std::move(kept.representative);
-    tracks.edge_offsets = std::move(kept.edge_offsets);
-    tracks.edges = std::move(kept.edges);
+        kept[i] = {};
+    });
 }
 
-/// Puts the places of some tracks in order, and finds which of them edges pass.
+/// Pairs the edges of some tracks, or puts their places in order, and finds which of them edges
+/// pass.
 class TrackChunk {
 public:
     TrackChunk(const PlanGeometry& geometry, const FaceList& faces, const Places& places,
-               Tracks& tracks, PassedPlaces& passed)
+               PassedPlaces& passed)
         : faces_(faces),
-          tracks_(tracks),
+          places_(places),
           passed_(passed),
           on_track_(geometry, places),
           pairing_(geometry, faces) {}
 
-    /// @param extra  places that the track must pass besides the ends of its edges
-    void put_in_order(std::size_t track, std::span<const std::pair<std::int32_t, PlaceId>> extra) {
-        on_track_.clear();
-        for (const auto& [_, place] : extra)
-            on_track_.add(place);
-        for (TrackEdge& edge : edges(track)) {
-            edge.from = on_track_.add(edge.from);
-            edge.to = on_track_.add(edge.to);
-        }
-        on_track_.sort(tracks_.representative[track]);
-        for (TrackEdge& edge : edges(track)) {
-            edge.from = on_track_.rank(edge.from);
-            edge.to = on_track_.rank(edge.to);
-        }
+    /// Begins with a track.
+    /// @param edges  its edges, whose ends are places
+    void begin(std::span<TrackEdge> edges, LineId line) {
+        edges_ = edges;
+        line_ = line;
+        is_ranked_ = false;
     }
 
-    void pass_all(std::size_t track) {
-        for (const TrackEdge& edge : edges(track))
-            pass(edge, 1);
+    /// Numbers the ends of the edges along the track; an edge passes all places between its ends.
+    /// @param extra  places that the track must pass besides the ends of its edges
+    void pass_all(std::span<const std::pair<std::int32_t, PlaceId>> extra) {
+        if (!is_ranked_) put_in_order(extra);
+        for (const TrackEdge& edge : edges_)
+            pass(edge, edge.from, edge.to, 1);
     }
 
     /// Where the cells on both sides of a pair are thick, no other face is as high as the pair
     /// where it passes a place: around it all columns have one of its two faces.
-    /// @return whether all edges of the track are pairs
-    bool pass_in_pairs(std::size_t track, const GrowingArray<std::uint8_t>& cell_is_thick,
-                       PairedEdges& paired) {
-        if (!pairing_.pair(edges(track), tracks_.representative[track])) return false;
+    /// @return whether all edges of the track are pairs; if not, nothing was passed
+    bool pass_in_pairs(const GrowingArray<std::uint8_t>& cell_is_thick, PairedEdges& paired) {
+        // Places have numbers in order of x, and hardly ever the same x. Each end of a pair is
+        // where an edge begins.
+        if (std::any_of(edges_.begin(), edges_.end(), [&](const TrackEdge& edge) {
+                return places_.same_x_next[static_cast<std::size_t>(edge.from)] != 0;
+            }))
+            put_in_order({});
+        if (!pairing_.pair(edges_, line_)) return false;
         pairing_.add_walls(paired);
+        bool all_known = is_ranked_;
         for (const auto& [left, right] : pairing_.pairs()) {
-            const bool none = left->to - left->from == 1 || (is_between(*left, cell_is_thick) &&
-                                                             is_between(*right, cell_is_thick));
-            pass(*left, none ? 0 : -1);
-            pass(*right, 0);
-            if (!none) paired.passing.push_back({left->begin, right->begin});
+            if (is_between(*left, cell_is_thick) && is_between(*right, cell_is_thick)) continue;
+            if (!all_known) find_places_of_pairs();
+            all_known = true;
+            const std::int32_t from = is_ranked_ ? left->from : on_track_.number_of(left->from);
+            const std::int32_t to = is_ranked_ ? left->to : on_track_.number_of(left->to);
+            if (to - from == 1) continue;
+            pass(*left, from, to, -1);
+            paired.passing.push_back({left->begin, right->begin});
         }
         return true;
     }
 
-    void prefetch(std::size_t track) const {
-        for (auto e = tracks_.edge_offsets[track]; e < tracks_.edge_offsets[track + 1]; ++e)
-            prefetch_edge(faces_, tracks_, e);
+private:
+    void put_in_order(std::span<const std::pair<std::int32_t, PlaceId>> extra) {
+        on_track_.clear();
+        for (const auto& [_, place] : extra)
+            on_track_.add(place);
+        for (TrackEdge& edge : edges_) {
+            edge.from = on_track_.add(edge.from);
+            edge.to = on_track_.add(edge.to);
+        }
+        on_track_.sort(line_);
+        for (TrackEdge& edge : edges_) {
+            edge.from = on_track_.rank(edge.from);
+            edge.to = on_track_.rank(edge.to);
+        }
+        is_ranked_ = true;
+    }
+    void find_places_of_pairs() {
+        on_track_.clear();
+        for (const TrackEdge& edge : edges_)
+            on_track_.add(edge.from);
+        on_track_.sort(line_);
     }
 
-private:
-    std::span<TrackEdge> edges(std::size_t track) {
-        return {tracks_.edges.begin() + tracks_.edge_offsets[track],
-                tracks_.edges.begin() + tracks_.edge_offsets[track + 1]};
-    }
-    /// @param sign  0 where the places between the ends of the edge are left out, or that of their
-    ///     count
-    void pass(const TrackEdge& edge, std::int32_t sign) {
-        const std::int32_t between = sign == 0 ? 0 : std::abs(edge.to - edge.from) - 1;
+    /// @param from, to  the ends of the edge, counted along the track
+    /// @param sign  that of the count of the places between them
+    void pass(const TrackEdge& edge, std::int32_t from, std::int32_t to, std::int32_t sign) {
+        const std::int32_t between = std::abs(to - from) - 1;
         if (between == 0) return;
         passed_.push_back(static_cast<std::int32_t>(edge.begin));
         passed_.push_back(sign * between);
-        const PlaceId* place = on_track_.in_order().data() + edge.from;
-        for (std::int32_t i = 0, step = edge.from < edge.to ? 1 : -1; i < between; ++i)
+        const PlaceId* place = on_track_.in_order().data() + from;
+        for (std::int32_t i = 0, step = from < to ? 1 : -1; i < between; ++i)
             passed_.push_back(*(place += step));
     }
 
@@ -269,10 +242,13 @@ private:
     }
 
     const FaceList& faces_;
-    Tracks& tracks_;
+    const Places& places_;
     PassedPlaces& passed_;
     PlacesOnTrack on_track_;
     TrackPairing pairing_;
+    std::span<TrackEdge> edges_;
+    LineId line_ = -1;
+    bool is_ranked_ = false;  ///< whether ends of edges are counted along the track
 };
 
 }  // namespace
@@ -281,48 +257,51 @@ Tracks find_tracks(const PlanGeometry& geometry, const FaceList& faces, const Pl
                    const std::vector<ExtraPoint>& extra,
                    const GrowingArray<std::uint8_t>* cell_is_thick, int threads,
                    const Progress* progress) {
-    Tracks tracks;
+    const LineTracks lines = join_lines(geometry, faces, threads, progress);
     std::vector<std::pair<std::int32_t, PlaceId>> extra_places;  // track and place, ascending
-    {
-        LineTracks lines = join_lines(geometry, faces, threads, progress);
-        tracks.representative = std::move(lines.representative);
-        gather_edges(faces, places, lines.of_line, tracks, threads, progress);
-        for (const ExtraPoint& e : extra) {
-            extra_places.emplace_back(lines.of_line[static_cast<std::size_t>(e.line)],
-                                      places.of_point[static_cast<std::size_t>(e.point)]);
-        }
-        std::sort(extra_places.begin(), extra_places.end());
+    for (const ExtraPoint& e : extra) {
+        extra_places.emplace_back(lines.of_line[static_cast<std::size_t>(e.line)],
+                                  places.of_point[static_cast<std::size_t>(e.point)]);
     }
+    std::sort(extra_places.begin(), extra_places.end());
     const auto extra_from = [&](std::size_t track) {
         const auto first = std::pair(static_cast<std::int32_t>(track), PlaceId{-1});
         return static_cast<std::size_t>(
             std::lower_bound(extra_places.begin(), extra_places.end(), first) -
             extra_places.begin());
     };
-    tracks.passed.resize((tracks.size() + kTracks - 1) / kTracks);
-    tracks.paired.resize(tracks.passed.size());
-    const bool pairs = cell_is_thick != nullptr;
-    FlatArray<std::uint8_t> is_paired(pairs ? tracks.size() : 0);
-    parallel_ranges(
-        tracks.size(), kTracks, threads, progress, [&](std::size_t begin, std::size_t end) {
-            TrackChunk chunk(geometry, faces, places, tracks, tracks.passed[begin / kTracks]);
+    Tracks tracks;
+    const TrackBuckets buckets(faces, lines, threads, progress);
+    tracks.passed.resize(buckets.size());
+    tracks.paired.resize(buckets.size());
+    std::vector<KeptTracks> kept(buckets.size());
+    parallel_chunks(
+        buckets.size(), threads, progress,
+        [&](std::size_t bucket) {
+            TrackEdges edges;
+            buckets.collect(bucket, places, edges);
+            TrackChunk chunk(geometry, faces, places, tracks.passed[bucket]);
+            PairedEdges paired;
+            const std::size_t begin = buckets.first_track(bucket);
             std::size_t next_extra = extra_from(begin);
-            for (std::size_t t = begin; t < end; ++t) {
+            for (std::size_t t = begin; t < buckets.first_track(bucket + 1); ++t) {
                 const std::size_t first_extra = next_extra;
                 while (next_extra < extra_places.size() &&
                        extra_places[next_extra].first == static_cast<std::int32_t>(t))
                     ++next_extra;
-                if (pairs) chunk.prefetch(t);
-                chunk.put_in_order(
-                    t, {extra_places.begin() + first_extra, extra_places.begin() + next_extra});
-                const bool in_pairs =
-                    pairs && first_extra == next_extra &&
-                    chunk.pass_in_pairs(t, *cell_is_thick, tracks.paired[begin / kTracks]);
-                if (!in_pairs) chunk.pass_all(t);
-                if (pairs) is_paired[t] = in_pairs ? 1 : 0;
+                const std::span<TrackEdge> of_track = edges[t - begin];
+                chunk.begin(of_track, lines.representative[t]);
+                if (cell_is_thick != nullptr && first_extra == next_extra &&
+                    chunk.pass_in_pairs(*cell_is_thick, paired))
+                    continue;
+                chunk.pass_all(
+                    {extra_places.begin() + first_extra, extra_places.begin() + next_extra});
+                kept[bucket].add(lines.representative[t], of_track);
             }
-        });
-    if (pairs) leave_out_paired(tracks, is_paired, threads, progress);
+            tracks.paired[bucket] = paired;  // without room for more
+        },
+        0.5);
+    join_kept(std::move(kept), tracks, threads, progress);
     return tracks;
 }
 
