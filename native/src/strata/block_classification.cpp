@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "parallel_counts.hpp"
+#include "tile_bins.hpp"
 
 namespace realmodel::strata {
 
@@ -12,7 +13,7 @@ using exact::VertexId;
 
 namespace {
 
-constexpr std::size_t kChunk = 4096;
+constexpr std::size_t kChunk = 512;
 
 std::int32_t merged_label(std::int32_t a, std::int32_t b) {
     if (a == kNoLabel || a == b) return b;
@@ -89,48 +90,6 @@ Standing compare_over(const PlanGeometry& geometry, PlaneId lower, PlaneId upper
                ? Standing::kApart
                : Standing::kUnclear;
 }
-
-/// Numbers of things by the tiles that their boxes meet.
-class TileBins {
-public:
-    /// span_of(number) is where each of `count` things is, or null where it does not count.
-    template <class SpanOf>
-    TileBins(const PlanTiles& tiles, const std::vector<std::uint8_t>& is_wanted, std::size_t count,
-             const SpanOf& span_of, int threads, const Progress* progress)
-        : offsets_(zeros<std::uint32_t>(tiles.size() + 1, threads, progress)) {
-        // Calls visit(tile, number), from several threads.
-        const auto for_all = [&](const auto& visit) {
-            parallel_ranges(count, kChunk, threads, progress,
-                            [&](std::size_t begin, std::size_t end) {
-                                for (std::size_t i = begin; i < end; ++i) {
-                                    const TileSpan* span = span_of(i);
-                                    if (span == nullptr) continue;
-                                    tiles.for_each(*span, [&](std::size_t tile) {
-                                        if (is_wanted[tile] != 0) visit(tile, i);
-                                    });
-                                }
-                            });
-        };
-        for_all([&](std::size_t tile, std::size_t) { count_one(offsets_[tile]); });
-        running_totals(offsets_, UINT32_MAX, threads, progress);
-        items_ = FlatArray<std::int32_t>(offsets_[tiles.size()]);
-        auto filled = zeros<std::uint32_t>(tiles.size(), threads, progress);
-        for_all([&](std::size_t tile, std::size_t i) {
-            items_[offsets_[tile] + count_one(filled[tile])] = static_cast<std::int32_t>(i);
-        });
-    }
-    /// Calls test(number) for the things in a tile, in no order that may matter, until it is false;
-    /// whether it never was.
-    template <class Test>
-    bool all(std::size_t tile, const Test& test) const {
-        return std::all_of(items_.begin() + offsets_[tile], items_.begin() + offsets_[tile + 1],
-                           test);
-    }
-
-private:
-    FlatArray<std::uint32_t> offsets_;
-    FlatArray<std::int32_t> items_;
-};
 
 }  // namespace
 
@@ -329,7 +288,7 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
             above &= standing == Standing::kAbove;
             return label != kSeveral && (below || above);
         };
-        tiles().any(span, [&](std::size_t tile) { return !bins.all(tile, goes_on); });
+        bins.all(span, goes_on);
         if (label == kSeveral || !covered || below == above) return;
         c.label[t] = label;
         c.surface[t] = below ? Classified::kBelow : Classified::kGone;
@@ -421,25 +380,21 @@ void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
         const bool beside = borders_.near(at.span);
         const auto middle = middle_of(geometry_.plane(facet).plan, point);
         bool below = true, above = true, covers = !beside;
-        const bool unclear = tiles().any(at.span, [&](std::size_t tile) {
-            return !bins.all(tile, [&](std::int32_t t) {
-                const PlaneId plane = layer.first_plane + t;
-                const PlanBox& other = surface_at_[static_cast<std::size_t>(t)].bounds.box;
-                if (!box.meets(other)) return true;
-                if (c.surface[static_cast<std::size_t>(t)] == Classified::kUnclear)
-                    return are_apart(geometry_, geometry_.plane(plane).plan,
-                                     geometry_.plane(facet).plan);
-                const Standing standing =
-                    compare_over(geometry_, plane, facet, box, other, margin_);
-                if (standing == Standing::kApart) return true;
-                covers =
-                    covers || side_of_border(geometry_, geometry_.plane(plane).plan, middle) > 0;
-                below &= standing == Standing::kBelow;
-                above &= standing == Standing::kAbove;
-                return below || above;
-            });
+        const bool clear = bins.all(at.span, [&](std::int32_t t) {
+            const PlaneId plane = layer.first_plane + t;
+            const PlanBox& other = surface_at_[static_cast<std::size_t>(t)].bounds.box;
+            if (!box.meets(other)) return true;
+            if (c.surface[static_cast<std::size_t>(t)] == Classified::kUnclear)
+                return are_apart(geometry_, geometry_.plane(plane).plan,
+                                 geometry_.plane(facet).plan);
+            const Standing standing = compare_over(geometry_, plane, facet, box, other, margin_);
+            if (standing == Standing::kApart) return true;
+            covers = covers || side_of_border(geometry_, geometry_.plane(plane).plan, middle) > 0;
+            below &= standing == Standing::kBelow;
+            above &= standing == Standing::kAbove;
+            return below || above;
         });
-        if (unclear || below == above || !covers) return Classified::kExact;
+        if (!clear || below == above || !covers) return Classified::kExact;
         if (beside) made_.is_exact[static_cast<std::size_t>(facet)] = 1;
         return below ? Classified::kClosed : Classified::kKept;
     };

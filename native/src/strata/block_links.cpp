@@ -17,7 +17,7 @@ void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
     const auto first_node = c.first_closed;
     const auto whole_count = c.closed_whole.size();
     DisjointParts sets(whole_count);
-    constexpr std::size_t kFacets = 4096, kTriangles = 4096;
+    constexpr std::size_t kFacets = 1024, kTriangles = 1024;
     parallel_ranges(
         whole_count, kFacets, threads_, progress_, [&](std::size_t begin, std::size_t end) {
             const BlockLayer* of_plane = nullptr;  // facets of one surface mostly follow each other

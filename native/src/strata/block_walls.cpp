@@ -134,7 +134,7 @@ TrackContacts find_contacts(PlanGeometry& geometry, const FaceList& faces,
                             const std::vector<std::int32_t>& node_block, const Places& places,
                             const Tracks& tracks, const Loops& loops, const BorderEdges& borders,
                             int threads, const Progress* progress) {
-    constexpr std::size_t kChunk = 2048;
+    constexpr std::size_t kChunk = 1024;
     const std::size_t chunks = (tracks.size() + kChunk - 1) / kChunk;
     std::vector<std::unique_ptr<ContactBatch>> batches(chunks);
     parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {

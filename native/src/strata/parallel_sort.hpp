@@ -12,20 +12,22 @@ namespace realmodel::strata {
 /// their order is not kept.
 template <class Array, class Less>
 void parallel_sort(Array& elements, const Less& less, int threads, const Progress* progress) {
-    constexpr std::size_t kRun = 1 << 16;
+    // runs that fit the cache, and of few elements enough runs for several threads
+    constexpr std::size_t kLongest = 1 << 16, kShortest = 1 << 12;
     const std::size_t count = elements.size();
+    const std::size_t run_length = std::clamp(count / 8, kShortest, kLongest);
     const auto at = [&](Array& of, std::size_t i) {
         return of.begin() + static_cast<std::ptrdiff_t>(std::min(i, count));
     };
-    parallel_chunks((count + kRun - 1) / kRun, threads, progress, [&](std::size_t run) {
-        std::sort(at(elements, run * kRun), at(elements, (run + 1) * kRun), less);
+    parallel_chunks((count + run_length - 1) / run_length, threads, progress, [&](std::size_t run) {
+        std::sort(at(elements, run * run_length), at(elements, (run + 1) * run_length), less);
     });
-    if (count <= kRun) return;
+    if (count <= run_length) return;
     Array merged(count);
-    for (std::size_t width = kRun; width < count; width *= 2) {
+    for (std::size_t width = run_length; width < count; width *= 2) {
         // Each pair of runs is merged in pieces of about one run, cut where a value of the first
         // run would stand in the second, so that the last merges are shared between threads too.
-        const std::size_t pieces_of_pair = 2 * width / kRun;
+        const std::size_t pieces_of_pair = 2 * width / run_length;
         const std::size_t pairs = (count + 2 * width - 1) / (2 * width);
         parallel_chunks(pairs * pieces_of_pair, threads, progress, [&](std::size_t chunk) {
             const std::size_t begin = chunk / pieces_of_pair * 2 * width;

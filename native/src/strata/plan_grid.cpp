@@ -10,7 +10,8 @@ namespace realmodel::strata {
 
 namespace {
 
-constexpr std::size_t kRange = 8192;
+/// Worked on at a time. Polygons around a border are few, and each lies in many cells.
+constexpr std::size_t kBoxes = 4096, kPolygons = 128;
 
 }  // namespace
 
@@ -47,7 +48,7 @@ void PolygonCells::fill(const exact::PlanGeometry& geometry, const PolygonPool& 
                                     threads, progress);
     // Calls visit(cell, polygon), from several threads.
     const auto for_all = [&](const auto& visit) {
-        parallel_ranges(chosen.size(), kRange, threads, progress,
+        parallel_ranges(chosen.size(), kPolygons, threads, progress,
                         [&](std::size_t begin, std::size_t end) {
                             const Scope scope(geometry);
                             for (std::size_t c = begin; c < end; ++c) {
@@ -177,7 +178,7 @@ PlanGrid::PlanGrid(const exact::PlanGeometry& geometry, const PolygonPool& polyg
     for (std::size_t i = 0; i < polygons.size(); ++i)
         (is_inner[i] != 0 ? inner : outer).push_back(static_cast<std::int32_t>(i));
     boxes_.resize(polygons.size());
-    parallel_ranges(polygons.size(), kRange, threads, progress,
+    parallel_ranges(polygons.size(), kBoxes, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         const Scope scope(geometry);
                         for (std::size_t i = begin; i < end; ++i)

@@ -19,7 +19,7 @@ constexpr double kLargest = 1e50;
 
 constexpr exact::SpaceId kNotEntered = -1;
 
-constexpr std::size_t kRange = 1 << 14;  // looked at at a time
+constexpr std::size_t kRange = 1 << 12;  // looked at at a time
 
 std::array<double, 3> vertex_of(const SurfaceView& surface, std::int64_t v) {
     const auto i = static_cast<std::size_t>(v) * 3;
