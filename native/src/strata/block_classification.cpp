@@ -128,31 +128,29 @@ TriangleBounds bounds_of(const PlanGeometry& geometry, PlaneId plane) {
 /// Finds the bounds of everything that meets while a surface is added.
 void BlockOverlay::locate(const BlockLayer& layer) {
     surface_at_.resize(layer.size());
-    parallel_ranges(layer.size(), kChunk, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t t = begin; t < end; ++t) {
-                            const PlaneId plane = layer.first_plane + static_cast<PlaneId>(t);
-                            surface_at_[t] = located(bounds_of(geometry_, plane));
-                        }
-                    });
     whole_at_.resize(whole_.size());
-    parallel_ranges(whole_.size(), kChunk, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t f = begin; f < end; ++f)
-                            whole_at_[f] = located(bounds_of(geometry_, whole_[f].plane));
-                    });
     part_at_.resize(parts_.size());
-    parallel_ranges(parts_.size(), kChunk, threads_, progress_,
+    const std::size_t triangles = layer.size() + whole_.size();
+    parallel_ranges(triangles + parts_.size(), kChunk, threads_, progress_,
                     [&](std::size_t begin, std::size_t end) {
                         const Scope scope(geometry_);
-                        for (std::size_t f = begin; f < end; ++f) {
-                            TriangleBounds bounds{box_of(scope, parts_.outlines[f]), 0, 0};
-                            if (parts_.plane[f] >= 0) {
-                                const auto whole = bounds_of(geometry_, parts_.plane[f]);
-                                bounds.low = whole.low;
-                                bounds.high = whole.high;
+                        for (std::size_t i = begin; i < end; ++i) {
+                            if (i < layer.size()) {
+                                const PlaneId plane = layer.first_plane + static_cast<PlaneId>(i);
+                                surface_at_[i] = located(bounds_of(geometry_, plane));
+                            } else if (i < triangles) {
+                                const std::size_t f = i - layer.size();
+                                whole_at_[f] = located(bounds_of(geometry_, whole_[f].plane));
+                            } else {
+                                const std::size_t f = i - triangles;
+                                TriangleBounds bounds{box_of(scope, parts_.outlines[f]), 0, 0};
+                                if (parts_.plane[f] >= 0) {
+                                    const auto whole = bounds_of(geometry_, parts_.plane[f]);
+                                    bounds.low = whole.low;
+                                    bounds.high = whole.high;
+                                }
+                                part_at_[f] = located(bounds);
                             }
-                            part_at_[f] = located(bounds);
                         }
                     });
 }
@@ -195,59 +193,67 @@ BlockOverlay::EnvelopeTiles BlockOverlay::envelope_tiles() const {
     return envelope;
 }
 
+/// Whether heights did not tell about a triangle: it lies beside a border, or under rock only.
+bool BlockOverlay::is_to_compare(const Classified& c, std::size_t triangle) {
+    return c.surface[triangle] == Classified::kUnclear &&
+           (c.label[triangle] >= 0 || c.label[triangle] == kBesideBorder);
+}
+
+/// Marks tiles, from any thread.
+void BlockOverlay::mark_tiles(const TileSpan& span, std::vector<std::uint8_t>& marks) const {
+    tiles().for_each(span, [&](std::size_t tile) { mark(marks[tile]); });
+}
+
 void BlockOverlay::classify_surface(const BlockLayer& layer, const EnvelopeTiles& envelope,
                                     Classified& c) {
     c.surface.assign(layer.size(), Classified::kUnclear);
     c.label.assign(layer.size(), kSeveral);
     c.node.assign(layer.size(), kOutsideCell);
-    parallel_chunks((layer.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
-        for (std::size_t t = k * kChunk; t < std::min(layer.size(), (k + 1) * kChunk); ++t) {
-            const TriangleBounds& b = surface_at_[t].bounds;
-            double low = HUGE_VAL, high = -HUGE_VAL;
-            std::int32_t label = kNoLabel;
-            if (borders_.near(surface_at_[t].span)) {
-                c.label[t] = kBesideBorder;  // heights in tiles tell nothing there
-                continue;
-            }
-            const bool mixed = tiles().any(surface_at_[t].span, [&](std::size_t tile) {
-                if (cover_[tile] == kOutsideOnly) {
-                    low = -HUGE_VAL;
-                    label = merged_label(label, kOutsideLabel);
-                } else if (cover_[tile] == kSkyOnly) {
-                    high = HUGE_VAL;
-                    label = merged_label(label, kSkyLabel);
-                } else {
-                    low = std::min(low, envelope.low[tile]);
-                    high = std::max(high, envelope.high[tile]);
-                    label = merged_label(label, envelope.label[tile]);
-                }
-                return label == kSeveral;
-            });
-            if (mixed || label == kNoLabel) continue;
-            c.label[t] = label;
-            if (b.high + margin_ < low) {
-                c.surface[t] = Classified::kBelow;
-            } else if (b.low > high + margin_) {
-                c.surface[t] = Classified::kGone;
-            }
+    const auto classify = [&](std::size_t t) {
+        const auto& [b, span] = surface_at_[t];
+        if (borders_.near(span)) {
+            c.label[t] = kBesideBorder;  // heights in tiles tell nothing there
+            return;
         }
-    });
-    compare_surface(layer, c);
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        std::int32_t label = kNoLabel;
+        const bool mixed = tiles().any(span, [&](std::size_t tile) {
+            if (cover_[tile] == kOutsideOnly) {
+                low = -HUGE_VAL;
+                label = merged_label(label, kOutsideLabel);
+            } else if (cover_[tile] == kSkyOnly) {
+                high = HUGE_VAL;
+                label = merged_label(label, kSkyLabel);
+            } else {
+                low = std::min(low, envelope.low[tile]);
+                high = std::max(high, envelope.high[tile]);
+                label = merged_label(label, envelope.label[tile]);
+            }
+            return label == kSeveral;
+        });
+        if (mixed || label == kNoLabel) return;
+        c.label[t] = label;
+        if (b.high + margin_ < low) {
+            c.surface[t] = Classified::kBelow;
+        } else if (b.low > high + margin_) {
+            c.surface[t] = Classified::kGone;
+        }
+    };
+    std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
+    parallel_ranges(layer.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t t = begin; t < end; ++t) {
+                            classify(t);
+                            if (is_to_compare(c, t)) mark_tiles(surface_at_[t].span, is_wanted);
+                        }
+                    });
+    compare_surface(layer, is_wanted, c);
 }
 
 /// Compares triangles that heights alone do not tell about with the facets near them, plane by
 /// plane.
-void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
-    std::vector<std::int32_t> unclear;
-    std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
-    for (std::size_t t = 0; t < layer.size(); ++t) {
-        poll(progress_, t);
-        const bool beside = c.label[t] == kBesideBorder;
-        if (c.surface[t] != Classified::kUnclear || (c.label[t] < 0 && !beside)) continue;
-        unclear.push_back(static_cast<std::int32_t>(t));
-        tiles().for_each(surface_at_[t].span, [&](std::size_t tile) { is_wanted[tile] = 1; });
-    }
-    if (unclear.empty()) return;
+void BlockOverlay::compare_surface(const BlockLayer& layer,
+                                   const std::vector<std::uint8_t>& is_wanted, Classified& c) {
     // whole facets first, then parts
     const auto span_of = [&](std::size_t i) -> const TileSpan* {
         if (i < whole_.size()) return &whole_at_[i].span;
@@ -294,27 +300,25 @@ void BlockOverlay::compare_surface(const BlockLayer& layer, Classified& c) {
         c.surface[t] = below ? Classified::kBelow : Classified::kGone;
         if (beside) made_.is_exact[static_cast<std::size_t>(plane)] = 1;
     };
-    parallel_chunks(
-        (unclear.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
-            for (std::size_t i = k * kChunk; i < std::min(unclear.size(), (k + 1) * kChunk); ++i)
-                compare(static_cast<std::size_t>(unclear[i]));
-        });
+    c.is_unclear.assign(tiles().size(), 0);
+    parallel_ranges(layer.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t t = begin; t < end; ++t) {
+                            if (is_to_compare(c, t)) compare(t);
+                            if (c.surface[t] == Classified::kUnclear)
+                                mark_tiles(surface_at_[t].span, c.is_unclear);
+                        }
+                    });
 }
 
 void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& surface,
                                    Classified& c) {
-    std::vector<std::uint8_t> is_unclear(tiles().size(), 0);
-    for (std::size_t t = 0; t < layer.size(); ++t) {
-        poll(progress_, t);
-        if (c.surface[t] != Classified::kUnclear) continue;
-        tiles().for_each(surface_at_[t].span, [&](std::size_t tile) { is_unclear[tile] = 1; });
-    }
     const auto classify = [&](const TileBounds& at) {
         const TriangleBounds& b = at.bounds;
         double low = HUGE_VAL, high = -HUGE_VAL;
         bool any_empty = false, any_rock = false, near_unclear = false;
         const bool mixed = tiles().any(at.span, [&](std::size_t tile) {
-            near_unclear |= is_unclear[tile] != 0;
+            near_unclear |= c.is_unclear[tile] != 0;
             if (surface.is_empty[tile] != 0) {
                 any_empty = true;
             } else {
@@ -330,45 +334,38 @@ void BlockOverlay::classify_facets(const BlockLayer& layer, const SurfaceTiles& 
         if (high + margin_ < b.low) return Classified::kClosed;
         return b.high + margin_ < low ? Classified::kKept : Classified::kToCompare;
     };
+    const auto classify_whole = [&](std::size_t f) {
+        const TileSpan& span = whole_at_[f].span;
+        if (!borders_.near(span)) return classify(whole_at_[f]);
+        const PlanTriangle& corners = geometry_.plane(whole_[f].plane).plan;
+        return borders_.divide(geometry_, corners, span) ? Classified::kExact
+                                                         : Classified::kToCompare;
+    };
+    const auto classify_part = [&](std::size_t f) {
+        return parts_.plane[f] < 0 || borders_.near(part_at_[f].span) ? Classified::kExact
+                                                                      : classify(part_at_[f]);
+    };
     c.whole.resize(whole_.size());
-    parallel_chunks((whole_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
-        for (std::size_t f = k * kChunk; f < std::min(whole_.size(), (k + 1) * kChunk); ++f) {
-            const TileSpan& span = whole_at_[f].span;
-            if (!borders_.near(span)) {
-                c.whole[f] = classify(whole_at_[f]);
-            } else {
-                const PlanTriangle& corners = geometry_.plane(whole_[f].plane).plan;
-                c.whole[f] = borders_.divide(geometry_, corners, span) ? Classified::kExact
-                                                                       : Classified::kToCompare;
-            }
-        }
-    });
     c.part.resize(parts_.size());
-    parallel_chunks((parts_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
-        for (std::size_t f = k * kChunk; f < std::min(parts_.size(), (k + 1) * kChunk); ++f)
-            c.part[f] = parts_.plane[f] < 0 || borders_.near(part_at_[f].span)
-                            ? Classified::kExact
-                            : classify(part_at_[f]);
-    });
-    compare_facets(layer, c);
+    std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
+    parallel_ranges(whole_.size() + parts_.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                            const bool is_whole = i < whole_.size();
+                            const std::size_t f = is_whole ? i : i - whole_.size();
+                            const auto facet = is_whole ? classify_whole(f) : classify_part(f);
+                            (is_whole ? c.whole : c.part)[f] = facet;
+                            if (facet == Classified::kToCompare)
+                                mark_tiles((is_whole ? whole_at_ : part_at_)[f].span, is_wanted);
+                        }
+                    });
+    compare_facets(layer, is_wanted, c);
 }
 
 /// Compares facets that heights alone do not tell about with the triangles near them. A facet has
 /// to be looked at exactly where a triangle has to be, for the triangle's parts to be complete.
-void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
-    std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
-    bool any = false;
-    const auto want = [&](const TileBounds& at) {
-        any = true;
-        tiles().for_each(at.span, [&](std::size_t tile) { is_wanted[tile] = 1; });
-    };
-    for (std::size_t f = 0; f < whole_.size(); ++f) {
-        if (c.whole[f] == Classified::kToCompare) want(whole_at_[f]);
-    }
-    for (std::size_t f = 0; f < parts_.size(); ++f) {
-        if (c.part[f] == Classified::kToCompare) want(part_at_[f]);
-    }
-    if (!any) return;
+void BlockOverlay::compare_facets(const BlockLayer& layer,
+                                  const std::vector<std::uint8_t>& is_wanted, Classified& c) {
     const TileBins bins(
         tiles(), is_wanted, layer.size(), [&](std::size_t t) { return &surface_at_[t].span; },
         threads_, progress_);
@@ -398,18 +395,17 @@ void BlockOverlay::compare_facets(const BlockLayer& layer, Classified& c) {
         if (beside) made_.is_exact[static_cast<std::size_t>(facet)] = 1;
         return below ? Classified::kClosed : Classified::kKept;
     };
-    parallel_chunks((whole_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
-        for (std::size_t f = k * kChunk; f < std::min(whole_.size(), (k + 1) * kChunk); ++f) {
-            if (c.whole[f] == Classified::kToCompare)
-                c.whole[f] = compare(whole_[f].plane, whole_at_[f]);
-        }
-    });
-    parallel_chunks((parts_.size() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t k) {
-        for (std::size_t f = k * kChunk; f < std::min(parts_.size(), (k + 1) * kChunk); ++f) {
-            if (c.part[f] == Classified::kToCompare)
-                c.part[f] = compare(parts_.plane[f], part_at_[f]);
-        }
-    });
+    parallel_ranges(whole_.size() + parts_.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                            const bool is_whole = i < whole_.size();
+                            const std::size_t f = is_whole ? i : i - whole_.size();
+                            auto& facet = (is_whole ? c.whole : c.part)[f];
+                            if (facet != Classified::kToCompare) continue;
+                            facet = compare(is_whole ? whole_[f].plane : parts_.plane[f],
+                                            (is_whole ? whole_at_ : part_at_)[f]);
+                        }
+                    });
 }
 
 }  // namespace realmodel::strata

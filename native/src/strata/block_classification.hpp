@@ -43,10 +43,11 @@ struct BlockOverlay::EnvelopeTiles : TileHeights {
 struct BlockOverlay::Classified {
     enum Surface : std::uint8_t { kBelow, kGone, kUnclear };
     enum Facet : std::uint8_t { kClosed, kKept, kKeptBare, kExact, kToCompare };
-    std::vector<Surface> surface;       ///< of each triangle
-    std::vector<std::int32_t> label;    ///< of each triangle below: the block above it
-    std::vector<std::int32_t> node;     ///< of each triangle below: the node above it
-    std::vector<Facet> whole, part;     ///< of each facet
+    std::vector<Surface> surface;          ///< of each triangle
+    std::vector<std::int32_t> label;       ///< of each triangle below: the block above it
+    std::vector<std::int32_t> node;        ///< of each triangle below: the node above it
+    std::vector<Facet> whole, part;        ///< of each facet
+    std::vector<std::uint8_t> is_unclear;  ///< of each tile: an unclear triangle meets it
     std::vector<std::int32_t> polygon;  ///< of each triangle: in the part overlaid exactly, or -1
     std::vector<std::uint8_t> is_divided;  ///< of each polygon of that part
     std::vector<LoweredPiece> lowered;

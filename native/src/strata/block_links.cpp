@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "block_classification.hpp"
 #include "block_overlay.hpp"
@@ -66,16 +67,20 @@ void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
              first_node + static_cast<std::int32_t>(whole_count + i));
     }
     if (waiting.empty()) return;
-    std::stable_sort(waiting.begin(), waiting.end(),
-                     [](const Waiting& a, const Waiting& b) { return a.tile < b.tile; });
-    struct InTile {
-        std::uint32_t first = 0, last = 0;  ///< of those that wait
-    };
-    std::vector<InTile> in_tile(tiles().size());
-    for (std::size_t w = 0; w < waiting.size(); ++w) {
-        InTile& here = in_tile[waiting[w].tile];
-        if (here.last == 0) here.first = static_cast<std::uint32_t>(w);
-        here.last = static_cast<std::uint32_t>(w) + 1;
+    // by tiles; most tiles have none, and that is asked of bytes
+    std::vector<std::uint32_t> first(tiles().size() + 1, 0);
+    std::vector<std::uint8_t> is_waited_in(tiles().size(), 0);
+    for (const Waiting& w : waiting) {
+        ++first[w.tile + 1];
+        is_waited_in[w.tile] = 1;
+    }
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    {
+        std::vector<Waiting> sorted(waiting.size());
+        auto free = first;
+        for (const Waiting& w : waiting)
+            sorted[free[w.tile]++] = w;
+        waiting.swap(sorted);
     }
     // The middle of a convex outline is inside it, so a triangle that it is in for certain shares
     // an area with the outline. The exact test is for the few middles near an edge.
@@ -88,7 +93,8 @@ void BlockOverlay::link_closed(const BlockLayer& layer, const Classified& c) {
                 const auto number = static_cast<std::int32_t>(t);
                 const auto& triangle = geometry_.plane(layer.first_plane + number).plan;
                 tiles().for_each(surface_at_[t].span, [&](std::size_t tile) {
-                    for (auto w = in_tile[tile].first; w < in_tile[tile].last; ++w) {
+                    if (is_waited_in[tile] == 0) return;
+                    for (auto w = first[tile]; w < first[tile + 1]; ++w) {
                         const int side = side_of_border(geometry_, triangle, waiting[w].middle);
                         if (side == 0) near[begin / kTriangles].emplace_back(w, number);
                         // a place is well inside one triangle at the most

@@ -64,6 +64,46 @@ void BlockOverlay::add_outlines(std::span<const PlaneId> planes, PolygonPool& po
     }
 }
 
+/// Those of triangles of one surface. The line of an edge that a triangle before has is known.
+void BlockOverlay::add_outlines(const BlockLayer& layer, const std::vector<std::int32_t>& polygon,
+                                Layer& part) {
+    constexpr std::size_t kAhead = 8;
+    const std::size_t count = part.plane.size();
+    GrowingArray<Corner>& corners = part.polygons.corners;
+    const auto known = [&](std::size_t p, std::size_t i) -> const Corner* {
+        const auto t = static_cast<std::size_t>(part.plane[p] - layer.first_plane);
+        const std::int32_t neighbour = layer.neighbour[t][i];
+        if (neighbour < 0 || static_cast<std::size_t>(neighbour) > t) return nullptr;
+        const std::int32_t there = polygon[static_cast<std::size_t>(neighbour)];
+        return there < 0 ? nullptr : &corners[3 * static_cast<std::size_t>(there)];
+    };
+    corners.reserve(3 * count);
+    for (std::size_t ahead = 0; ahead < count + kAhead; ++ahead) {
+        if (ahead < count) {
+            const PlanTriangle& v = geometry_.plane(part.plane[ahead]).plan;
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (known(ahead, i) == nullptr) geometry_.prefetch_edge(v[i], v[(i + 1) % 3]);
+            }
+        }
+        if (ahead < kAhead) continue;
+        const std::size_t p = ahead - kAhead;
+        const PlanTriangle& v = geometry_.plane(part.plane[p]).plan;
+        std::array<Corner, 3> outline;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const PointId to = v[(i + 1) % 3];
+            const Corner* other = known(p, i);
+            if (other == nullptr) {
+                outline[i] = {v[i], geometry_.add_edge(v[i], to)};
+                continue;
+            }
+            while (other->point != to)
+                ++other;
+            outline[i] = {v[i], exact::opposite(other->line)};
+        }
+        part.polygons.add(outline);
+    }
+}
+
 void BlockOverlay::start_region(const std::vector<PlanTriangle>& region,
                                 const std::vector<PlanTriangle>& outside) {
     started_ = true;
@@ -107,18 +147,25 @@ Layer BlockOverlay::needed_part(const BlockLayer& layer, Classified& c) {
     for (std::size_t f = 0; f < parts_.size(); ++f) {
         if (c.part[f] == Classified::kExact && parts_.plane[f] >= 0) need(part_at_[f].span);
     }
-    Layer part;
+    constexpr std::size_t kTriangles = 1 << 10;
     c.polygon.assign(layer.size(), -1);
+    parallel_ranges(layer.size(), kTriangles, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t t = begin; t < end; ++t) {
+                            if (c.surface[t] == Classified::kUnclear ||
+                                tiles().any(surface_at_[t].span,
+                                            [&](std::size_t tile) { return is_needed[tile] != 0; }))
+                                c.polygon[t] = 0;
+                        }
+                    });
+    Layer part;
     for (std::size_t t = 0; t < layer.size(); ++t) {
         poll(progress_, t);
-        if (c.surface[t] != Classified::kUnclear &&
-            !tiles().any(surface_at_[t].span,
-                         [&](std::size_t tile) { return is_needed[tile] != 0; }))
-            continue;
+        if (c.polygon[t] < 0) continue;
         c.polygon[t] = static_cast<std::int32_t>(part.plane.size());
         part.plane.push_back(layer.first_plane + static_cast<PlaneId>(t));
     }
-    add_outlines(part.plane, part.polygons);
+    add_outlines(layer, c.polygon, part);
     for (const PlanTriangle& t : layer.empty) {
         part.polygons.add(triangle_outline(geometry_, t));
         part.plane.push_back(kVoid);

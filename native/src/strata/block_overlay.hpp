@@ -100,9 +100,15 @@ private:
     EnvelopeTiles envelope_tiles() const;
     void start_sky(const BlockLayer& layer);
     void classify_surface(const BlockLayer& layer, const EnvelopeTiles& envelope, Classified& c);
-    void compare_surface(const BlockLayer& layer, Classified& c);
+    static bool is_to_compare(const Classified& c, std::size_t triangle);
+    void mark_tiles(const TileSpan& span, std::vector<std::uint8_t>& marks) const;
+    void compare_surface(const BlockLayer& layer, const std::vector<std::uint8_t>& is_wanted,
+                         Classified& c);
     void classify_facets(const BlockLayer& layer, const SurfaceTiles& surface, Classified& c);
-    void compare_facets(const BlockLayer& layer, Classified& c);
+    void compare_facets(const BlockLayer& layer, const std::vector<std::uint8_t>& is_wanted,
+                        Classified& c);
+    void add_outlines(const BlockLayer& layer, const std::vector<std::int32_t>& polygon,
+                      Layer& part);
     Layer needed_part(const BlockLayer& layer, Classified& c);
     void overlay_exactly(const BlockLayer& layer, const Layer& part, const SurfaceTiles& surface,
                          Classified& c);
@@ -133,7 +139,7 @@ private:
     std::vector<WholeFacet> whole_, next_whole_;
     Envelope parts_, next_parts_;  ///< facets that are parts of triangles; the sky, the outside
     /// Of the triangles of the surface that is being added, and of the facets.
-    std::vector<TileBounds> surface_at_, whole_at_, part_at_;
+    GrowingArray<TileBounds> surface_at_, whole_at_, part_at_;
     std::vector<std::uint8_t>
         cover_;  ///< of each tile without a border: what the envelope is there
 };

@@ -84,8 +84,18 @@ bool BorderEdges::divide(const PlanGeometry& geometry, const PlanTriangle& trian
         return {geometry.point(v).x, geometry.point(v).y};
     };
     const std::array corners{position(triangle[0]), position(triangle[1]), position(triangle[2])};
+    Position low = corners[0], high = corners[0];
+    for (const Position& p : corners) {
+        low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
+        high = {std::max(high[0], p[0]), std::max(high[1], p[1])};
+    }
     return any_in(span, [&](const Segment& segment) {
         const Position from = position(segment.from), to = position(segment.to);
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            if (std::max(from[axis], to[axis]) <= low[axis] ||
+                std::min(from[axis], to[axis]) >= high[axis])
+                return false;
+        }
         return reaches_inside(
             segment, corners.size(),
             [&](std::size_t i) { return exact::turn(from, to, corners[i]); },
