@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arithmetic.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -13,15 +14,18 @@ static_assert(sizeof(long) == 8, "whole numbers have to go into GMP in two halve
 
 namespace {
 
-// A finite double as mantissa * 2^exponent with an odd mantissa (0 for zero).
+// A finite double as mantissa * 2^exponent with an odd mantissa; 0 for zero, whose exponent is left
+// as it is.
 std::int64_t odd_mantissa(double value, int& exponent) {
-    const double fraction = std::frexp(value, &exponent);
-    auto mantissa = static_cast<std::int64_t>(std::ldexp(fraction, 53));
-    exponent -= 53;
-    if (mantissa == 0) return 0;
-    const int zeros = std::countr_zero(static_cast<std::uint64_t>(mantissa));
-    exponent += zeros;
-    return mantissa / (std::int64_t{1} << zeros);
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    constexpr std::uint64_t kHidden = std::uint64_t{1} << 52;
+    const int biased = static_cast<int>(bits >> 52) & 0x7ff;
+    const std::uint64_t all = (bits & (kHidden - 1)) | (biased == 0 ? 0 : kHidden);
+    if (all == 0) return 0;
+    const int zeros = std::countr_zero(all);
+    exponent = std::max(biased, 1) - 1075 + zeros;
+    const auto mantissa = static_cast<std::int64_t>(all >> zeros);
+    return std::signbit(value) ? -mantissa : mantissa;
 }
 
 }  // namespace

@@ -54,9 +54,7 @@ BlockRegion make_block_region(const PlanGeometry& geometry,
                               const std::vector<PlanTriangle>& triangles, const Frame& frame,
                               const Progress* progress) {
     BlockRegion region;
-    region.border = link_triangles(
-                        triangles.size(), [&](std::size_t t) { return triangles[t]; }, progress)
-                        .border;
+    region.border = link_triangles(triangles, progress).border;
     const FrameTriangles filling = fill_frame(geometry, region.border, frame);
     for (std::size_t t = 0; t < filling.triangles.size(); ++t)
         (filling.covered[t] == 0 ? region.outside : region.inside).push_back(filling.triangles[t]);

@@ -39,12 +39,14 @@ struct Mesh {
     std::optional<std::array<std::int32_t, 3>> corners(std::size_t t) const {
         const std::array<std::int32_t, 3> v{triangles[3 * t], triangles[3 * t + 1],
                                             triangles[3 * t + 2]};
-        for (const std::int32_t i : v) {
-            if (i < 0 || static_cast<std::size_t>(i) >= vertices.size() / columns) return {};
-            const PlanPosition p = position(i);
-            if (!std::isfinite(p[0]) || !std::isfinite(p[1])) return {};
+        std::array<PlanPosition, 3> p;
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (v[i] < 0 || (static_cast<std::size_t>(v[i]) + 1) * columns > vertices.size())
+                return {};
+            p[i] = position(v[i]);
+            if (!std::isfinite(p[i][0]) || !std::isfinite(p[i][1])) return {};
         }
-        if (exact::turn(position(v[0]), position(v[1]), position(v[2])) == 0) return {};
+        if (exact::turn(p[0], p[1], p[2]) == 0) return {};
         return v;
     }
 };

@@ -193,9 +193,10 @@ std::vector<SurfacePlan> plan_surfaces(const PlanGeometry& geometry,
     std::vector<SurfacePlan> plans(surfaces.size());
     parallel_chunks(surfaces.size(), threads, progress, [&](std::size_t k) {
         const auto& triangles = surfaces[k];
-        plans[k].links = link_triangles(
-            triangles.size(), [&](std::size_t t) { return plan_of(geometry, triangles[t]); },
-            progress);
+        FlatArray<PlanTriangle> corners(triangles.size());
+        for (std::size_t t = 0; t < triangles.size(); ++t)
+            corners[t] = plan_of(geometry, triangles[t]);
+        plans[k].links = link_triangles({corners.begin(), corners.size()}, progress);
         plans[k].filling = cover_frame(geometry, plans[k].links.border, frame);
     });
     return plans;
@@ -248,8 +249,7 @@ Layer make_region(PlanGeometry& geometry, const std::vector<PlanTriangle>& trian
         add_triangle(geometry, layer.polygons, triangle);
         layer.plane.push_back(kSky);
     }
-    const auto corners = [&](std::size_t t) { return triangles[t]; };
-    const PlanLinks links = link_triangles(triangles.size(), corners, progress);
+    const PlanLinks links = link_triangles(triangles, progress);
     add_empty(geometry, layer, fill_frame(geometry, links.border, frame), kOutside);
     return layer;
 }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "flat_array.hpp"
 #include "parallel_chunks.hpp"
 #include "realmodel/exact/turn.hpp"
 #include "realmodel/meshing/triangulation.hpp"
@@ -16,12 +17,39 @@ using exact::VertexId;
 
 namespace {
 
-/// A pass of a triangle along a plan edge, kept with the edge's lower vertex.
-struct Pass {
-    VertexId high;
-    std::int32_t half_edge;  ///< triangle * 3 + edge
-    bool upward;             ///< from the lower vertex to the higher one
-};
+/// A pass of a triangle along a plan edge, kept with the edge's lower vertex: from the top its
+/// higher vertex, the half-edge (3 triangle + edge), and whether it runs from the lower vertex to
+/// the higher one. As numbers passes are in order of the edges, and along one of the half-edges.
+using Pass = std::uint64_t;
+
+Pass pass_of(VertexId high, std::size_t half_edge, bool upward) {
+    return static_cast<Pass>(high) << 33 | static_cast<Pass>(half_edge) << 1 | (upward ? 1 : 0);
+}
+VertexId high_of(Pass pass) {
+    return static_cast<VertexId>(pass >> 33);
+}
+std::size_t half_edge_of(Pass pass) {
+    return static_cast<std::uint32_t>(pass >> 1);
+}
+bool is_upward(Pass pass) {
+    return (pass & 1) != 0;
+}
+
+/// Sorts what is mostly very few.
+void sort_few(Pass* begin, Pass* end) {
+    constexpr std::ptrdiff_t kFew = 24;
+    if (end - begin > kFew) {
+        std::sort(begin, end);
+        return;
+    }
+    for (Pass* next = begin; next < end; ++next) {
+        const Pass own = *next;
+        Pass* to = next;
+        for (; to > begin && to[-1] > own; --to)
+            *to = to[-1];
+        *to = own;
+    }
+}
 
 struct VertexRange {
     VertexId first = std::numeric_limits<VertexId>::max(), last = -1;
@@ -32,61 +60,58 @@ struct VertexRange {
 
 }  // namespace
 
-PlanLinks link_triangles(std::size_t count, const std::function<PlanTriangle(std::size_t)>& corners,
-                         const Progress* progress) {
+PlanLinks link_triangles(std::span<const PlanTriangle> triangles, const Progress* progress) {
+    const std::size_t count = triangles.size();
     PlanLinks links;
     links.neighbour.assign(count, {-1, -1, -1});
     VertexRange range;
     for (std::size_t t = 0; t < count; ++t) {
         poll(progress, t);
-        for (const VertexId v : corners(t)) {
+        for (const VertexId v : triangles[t]) {
             range.first = std::min(range.first, v);
             range.last = std::max(range.last, v);
         }
     }
     const auto row = [&](VertexId v) { return static_cast<std::size_t>(v - range.first); };
-    std::vector<std::int32_t> offsets(range.size() + 1, 0);
-    for (std::size_t t = 0; t < count; ++t) {
-        poll(progress, t);
-        const PlanTriangle v = corners(t);
-        for (std::size_t i = 0; i < 3; ++i)
-            ++offsets[row(std::min(v[i], v[(i + 1) % 3])) + 1];
-    }
-    for (std::size_t r = 1; r < offsets.size(); ++r)
-        offsets[r] += offsets[r - 1];
-    std::vector<Pass> passes(3 * count);
-    {
-        std::vector<std::int32_t> free(offsets.begin(), offsets.end() - 1);
+    // Calls visit(row of the lower vertex, pass) for every pass, in order.
+    const auto for_all = [&](const auto& visit) {
         for (std::size_t t = 0; t < count; ++t) {
             poll(progress, t);
-            const PlanTriangle v = corners(t);
+            const PlanTriangle& v = triangles[t];
             for (std::size_t i = 0; i < 3; ++i) {
-                const VertexId from = v[i], to = v[(i + 1) % 3];
-                passes[static_cast<std::size_t>(free[row(std::min(from, to))]++)] = {
-                    std::max(from, to), static_cast<std::int32_t>(3 * t + i), from < to};
+                const VertexId from = v[i], to = v[i < 2 ? i + 1 : 0];
+                visit(row(std::min(from, to)), pass_of(std::max(from, to), 3 * t + i, from < to));
             }
         }
+    };
+    std::vector<std::int32_t> offsets(range.size() + 1, 0);
+    for_all([&](std::size_t lower, Pass) { ++offsets[lower + 1]; });
+    for (std::size_t r = 1; r < offsets.size(); ++r)
+        offsets[r] += offsets[r - 1];
+    FlatArray<Pass> passes(3 * count);
+    {
+        std::vector<std::int32_t> free(offsets.begin(), offsets.end() - 1);
+        for_all([&](std::size_t lower, Pass pass) {
+            passes[static_cast<std::size_t>(free[lower]++)] = pass;
+        });
     }
     for (std::size_t r = 0; r + 1 < offsets.size(); ++r) {
         poll(progress, r);
-        const auto begin = passes.begin() + offsets[r], end = passes.begin() + offsets[r + 1];
-        std::sort(begin, end, [](const Pass& a, const Pass& b) {
-            return std::tie(a.high, a.half_edge) < std::tie(b.high, b.half_edge);
-        });
-        for (auto first = begin; first != end;) {
-            auto last = first;
+        Pass *const begin = passes.begin() + offsets[r], *const end =
+                                                             passes.begin() + offsets[r + 1];
+        sort_few(begin, end);
+        for (Pass* first = begin; first != end;) {
+            Pass* last = first;
             std::int32_t net = 0;
-            for (; last != end && last->high == first->high; ++last)
-                net += last->upward ? 1 : -1;
+            for (; last != end && high_of(*last) == high_of(*first); ++last)
+                net += is_upward(*last) ? 1 : -1;
             if (last - first == 2 && net == 0) {
-                const auto link = [&](std::int32_t from, std::int32_t to) {
-                    links.neighbour[static_cast<std::size_t>(from / 3)]
-                                   [static_cast<std::size_t>(from % 3)] = to / 3;
-                };
-                link(first->half_edge, first[1].half_edge);
-                link(first[1].half_edge, first->half_edge);
+                const std::size_t a = half_edge_of(first[0]), b = half_edge_of(first[1]);
+                links.neighbour[a / 3][a % 3] = static_cast<std::int32_t>(b / 3);
+                links.neighbour[b / 3][b % 3] = static_cast<std::int32_t>(a / 3);
             } else if (net != 0) {
-                links.border.push_back({range.first + static_cast<VertexId>(r), first->high, net});
+                links.border.push_back(
+                    {range.first + static_cast<VertexId>(r), high_of(*first), net});
             }
             first = last;
         }

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -29,9 +28,8 @@ struct PlanLinks {
 
 using PlanTriangle = std::array<exact::VertexId, 3>;
 
-/// Links `count` triangles; `corners(t)` gives the plan vertices of triangle t.
-PlanLinks link_triangles(std::size_t count, const std::function<PlanTriangle(std::size_t)>& corners,
-                         const Progress* progress);
+/// Links triangles.
+PlanLinks link_triangles(std::span<const PlanTriangle> triangles, const Progress* progress);
 
 /// Plan vertices around everything: the four corners of a rectangle, counter-clockwise, then others
 /// on its sides.

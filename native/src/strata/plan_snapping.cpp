@@ -126,7 +126,7 @@ bool share_one_plan(std::span<const StackInput> rocks) {
     });
 }
 
-double AxisSnapping::operator()(double value) const {
+double AxisSnapping::changed(double value) const {
     const auto at = std::lower_bound(changes_.begin(), changes_.end(), value,
                                      [](const auto& change, double v) { return change.first < v; });
     return at != changes_.end() && at->first == value ? at->second : value;
@@ -136,6 +136,11 @@ PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads,
                            const Progress* progress) {
     std::array<std::vector<double>, 2> values;
     std::array<double, 2> largest{0, 0};
+    std::size_t vertices = 0;
+    for (const PlanMesh& mesh : meshes_of(rocks))
+        vertices += mesh.size();
+    for (auto& of_axis : values)
+        of_axis.reserve(vertices);
     for_each_vertex(rocks, progress, [&](const PlanPosition& p) {
         for (std::size_t axis = 0; axis < 2; ++axis) {
             values[axis].push_back(p[axis]);

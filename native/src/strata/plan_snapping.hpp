@@ -16,11 +16,13 @@ public:
     explicit AxisSnapping(std::vector<std::pair<double, double>> changes)
         : changes_(std::move(changes)) {}
 
-    double operator()(double value) const;
+    double operator()(double value) const { return empty() ? value : changed(value); }
     bool empty() const { return changes_.empty(); }
     std::size_t size() const { return changes_.size(); }
 
 private:
+    double changed(double value) const;
+
     std::vector<std::pair<double, double>> changes_;
 };
 

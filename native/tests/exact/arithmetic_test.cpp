@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exact/arithmetic.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace realmodel::exact {
+namespace {
+
+constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+
+TEST(Arithmetic, FinestExponentIsThatOfTheLastBit) {
+    EXPECT_EQ(finest_exponent(1.0, 100), 0);
+    EXPECT_EQ(finest_exponent(-1.0, 100), 0);
+    EXPECT_EQ(finest_exponent(12.0, 100), 2);
+    EXPECT_EQ(finest_exponent(0.75, 100), -2);
+    EXPECT_EQ(finest_exponent(0x1.0000000000001p0, 100), -52);
+    EXPECT_EQ(finest_exponent(kLeast, 100), -1074);
+    EXPECT_EQ(finest_exponent(-6 * kLeast, 100), -1073);
+    EXPECT_EQ(finest_exponent(std::numeric_limits<double>::min(), 100), -1022);
+    EXPECT_EQ(finest_exponent(std::numeric_limits<double>::max(), 1000), 971);
+    EXPECT_EQ(finest_exponent(12.0, -5), -5);
+    EXPECT_EQ(finest_exponent(0.0, 7), 7);
+    EXPECT_EQ(finest_exponent(-0.0, 7), 7);
+}
+
+TEST(Arithmetic, WholeNumbersAreTheDoublesInUnitsOfTheFinest) {
+    std::mt19937_64 random(1);
+    for (int i = 0; i < 10000; ++i) {
+        const auto bits = static_cast<std::int64_t>(random() >> (11 + random() % 40));
+        const double value = std::ldexp(static_cast<double>(random() % 2 == 0 ? bits : -bits),
+                                        static_cast<int>(random() % 200) - 1074);
+        const int unit = finest_exponent(value, 1000);
+        const mpz_class whole = whole_number(value, unit);
+        EXPECT_EQ(std::ldexp(whole.get_d(), unit), value);
+        EXPECT_EQ(mpz_odd_p(whole.get_mpz_t()) != 0, value != 0);
+    }
+}
+
+}  // namespace
+}  // namespace realmodel::exact
