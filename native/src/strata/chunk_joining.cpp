@@ -40,12 +40,19 @@ void make_room(PolygonPool& pool, std::size_t facets) {
     make_room(pool.corners, facets * kCornersOfFacet + kSome);
 }
 
-/// Whether there is room for the polygons up to somewhere, and for the lists that go with them.
+/// Makes memory ready for so many elements where there is room for them without moving any.
+template <class Array>
+bool has_room(Array& array, std::size_t size) {
+    if (size > array.capacity()) return false;
+    array.make_ready(size);
+    return true;
+}
+/// The same for the polygons up to somewhere, and for the lists that go with them.
 template <class Lists>
-bool has_room(const PolygonPool& pool, const Lists& lists, const PoolStart& end) {
-    return end.polygon < pool.offsets.capacity() && end.corner <= pool.corners.capacity() &&
+bool has_room(PolygonPool& pool, const Lists& lists, const PoolStart& end) {
+    return has_room(pool.offsets, end.polygon + 1) && has_room(pool.corners, end.corner) &&
            std::all_of(lists.begin(), lists.end(),
-                       [&](const auto* list) { return end.polygon <= list->capacity(); });
+                       [&](auto* list) { return has_room(*list, end.polygon); });
 }
 
 void resize(PolygonPool& pool, const PoolStart& end) {
@@ -101,11 +108,11 @@ ChunkJoining::ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, st
     make_room(next.face_above, polygons);
 }
 
-bool ChunkJoining::has_room() const {
+bool ChunkJoining::has_room() {
     const auto cells = static_cast<std::size_t>(end_.cell);
-    return cells <= construction_.cell_block.capacity() &&
-           cells <= construction_.cell_is_thick.capacity() &&
-           end_.facet.polygon < next_.face_offsets.capacity() &&
+    return strata::has_room(construction_.cell_block, cells) &&
+           strata::has_room(construction_.cell_is_thick, cells) &&
+           strata::has_room(next_.face_offsets, end_.facet.polygon + 1) &&
            strata::has_room(construction_.faces.polygons, lists_of(construction_.faces),
                             end_.face) &&
            strata::has_room(lowered_.outlines, lists_of(lowered_), end_.lowered) &&

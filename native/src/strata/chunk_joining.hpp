@@ -68,7 +68,7 @@ public:
     void finish(int threads, const Progress* progress);
 
 private:
-    bool has_room() const;
+    bool has_room();
     void put(std::size_t chunk);
 
     std::vector<std::unique_ptr<ChunkResult>>& chunks_;

@@ -3,14 +3,19 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <memory>
+#include <new>
 #include <type_traits>
 #include <utility>
+
+#include "realmodel/base/page_store.hpp"
 
 namespace realmodel::strata {
 
 /// An array of numbers whose size is set once. Its elements are not set when it is made, so that
-/// the threads that fill it touch its memory first, and what is never filled takes none.
+/// the threads that fill it touch its memory first. A large one has pages of its own
+/// (page_store.hpp).
 template <class Element>
 class FlatArray {
     static_assert(std::is_trivially_copyable_v<Element> &&
@@ -19,7 +24,7 @@ class FlatArray {
 public:
     FlatArray() = default;
     explicit FlatArray(std::size_t size)
-        : elements_(std::make_unique_for_overwrite<Element[]>(size)), size_(size) {}
+        : elements_(allocate(size), Dropper{size * sizeof(Element)}), size_(size) {}
 
     FlatArray(const FlatArray& other) : FlatArray(other.size_) {
         std::copy(other.begin(), other.end(), begin());
@@ -41,7 +46,29 @@ public:
     const Element* end() const { return elements_.get() + size_; }
 
 private:
-    std::unique_ptr<Element[]> elements_;
+    struct Dropper {
+        std::size_t bytes = 0;
+        void operator()(Element* elements) const noexcept {
+            if (bytes < page_store::kLargeArray) {
+                std::free(elements);
+                return;
+            }
+            const std::size_t blocks = page_store::in_blocks(bytes);
+            page_store::drop(elements, blocks, blocks);
+        }
+    };
+
+    static Element* allocate(std::size_t size) {
+        if (size > PTRDIFF_MAX / 4 / sizeof(Element)) throw std::bad_alloc();
+        const std::size_t bytes = size * sizeof(Element);
+        void* memory = bytes < page_store::kLargeArray
+                           ? std::malloc(std::max(bytes, std::size_t{1}))
+                           : page_store::take(page_store::in_blocks(bytes));
+        if (memory == nullptr) throw std::bad_alloc();
+        return static_cast<Element*>(memory);
+    }
+
+    std::unique_ptr<Element[], Dropper> elements_;
     std::size_t size_ = 0;
 };
 

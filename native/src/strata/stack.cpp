@@ -16,6 +16,7 @@
 #include "plan_snapping.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/memory.hpp"
+#include "realmodel/base/page_store.hpp"
 #include "realmodel/exact/turn.hpp"
 #include "rock_footprints.hpp"
 #include "rules.hpp"
@@ -430,6 +431,7 @@ CellComplex build_snapped(std::span<const StackInput> rocks, const PlanSnapping&
 
 CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Progress* progress,
                               CellKind cells) {
+    const page_store::Keeper keeper;
     if (share_one_plan(rocks)) return build_snapped(rocks, {}, cells, threads, progress);
     begin(progress, 0.0, kBorderShare, "comparing the borders");
     const PlanSnapping snapping = find_snapping(rocks, threads, progress);

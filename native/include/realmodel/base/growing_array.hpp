@@ -11,12 +11,14 @@
 #include <type_traits>
 #include <utility>
 
+#include "realmodel/base/page_store.hpp"
+
 namespace realmodel {
 
 /// A vector of numbers, or of what is nothing but numbers, that differs from std::vector in two
 /// ways where it is large. Elements that resize() adds are not set: the threads that fill them are
-/// the first to touch their memory. And it grows by realloc, so the system moves pages of memory
-/// rather than bytes, and what is reserved but never filled takes none.
+/// the first to touch their memory. And it grows by whole pages (page_store.hpp): what is there is
+/// not copied, and what is reserved takes no memory before it is filled or made ready to be.
 template <class Element>
 class GrowingArray {
     static_assert(std::is_trivially_copyable_v<Element> &&
@@ -47,7 +49,7 @@ public:
         GrowingArray(std::move(other)).swap(*this);
         return *this;
     }
-    ~GrowingArray() { std::free(elements_); }
+    ~GrowingArray() { drop(); }
 
     std::size_t size() const { return size_; }
     std::size_t capacity() const { return capacity_; }
@@ -66,7 +68,7 @@ public:
     const Element& back() const { return elements_[size_ - 1]; }
 
     void push_back(const Element& element) {
-        if (size_ == capacity_) {
+        if (size_ == ready_) {
             const Element own = element;  // it may be one of these
             grow(size_ + 1);
             elements_[size_++] = own;
@@ -78,13 +80,13 @@ public:
     template <class Iterator>
     void append(Iterator first, Iterator last) {
         const auto count = static_cast<std::size_t>(std::distance(first, last));
-        if (size_ + count > capacity_) grow(size_ + count);
+        if (size_ + count > ready_) grow(size_ + count);
         std::copy(first, last, elements_ + size_);
         size_ += count;
     }
     /// New elements are not set.
     void resize(std::size_t size) {
-        if (size > capacity_) grow(size);
+        if (size > ready_) grow(size);
         size_ = size;
     }
     void resize(std::size_t size, const Element& value) {
@@ -98,13 +100,19 @@ public:
         clear();
         resize(size, own);
     }
+    /// Elements stay where they are while there are no more than `capacity`.
     void reserve(std::size_t capacity) {
         if (capacity > capacity_) move_to(capacity);
+    }
+    /// Makes memory ready for elements that are set before resize() counts them.
+    void make_ready(std::size_t size) {
+        if (size > ready_) grow(size);
     }
     void clear() { size_ = 0; }
     void swap(GrowingArray& other) noexcept {
         std::swap(elements_, other.elements_);
         std::swap(size_, other.size_);
+        std::swap(ready_, other.ready_);
         std::swap(capacity_, other.capacity_);
     }
 
@@ -113,17 +121,64 @@ public:
     }
 
 private:
-    void grow(std::size_t least) { move_to(std::max({least, capacity_ * 2, std::size_t{4}})); }
+    static constexpr std::size_t kMost = PTRDIFF_MAX / 4 / sizeof(Element);
+
+    static bool is_large(std::size_t elements) {
+        return elements * sizeof(Element) >= page_store::kLargeArray;
+    }
+    static std::size_t blocks_of(std::size_t elements) {
+        return page_store::in_blocks(elements * sizeof(Element));
+    }
+
+    /// Makes more than what is ready so.
+    void grow(std::size_t least) {
+        if (least > capacity_) move_to(std::max({least, capacity_ * 2, std::size_t{4}}));
+        if (least > ready_) get_blocks(std::max(least, std::min(ready_ + ready_ / 16, capacity_)));
+    }
+
     void move_to(std::size_t capacity) {
-        if (capacity > PTRDIFF_MAX / sizeof(Element)) throw std::bad_alloc();
+        if (capacity > kMost) throw std::bad_alloc();
+        if (is_large(capacity)) {
+            move_to_blocks(capacity);
+            return;
+        }
         void* moved = std::realloc(static_cast<void*>(elements_), capacity * sizeof(Element));
         if (moved == nullptr) throw std::bad_alloc();
         elements_ = static_cast<Element*>(moved);
-        capacity_ = capacity;
+        ready_ = capacity_ = capacity;
+    }
+    void move_to_blocks(std::size_t capacity) {
+        GrowingArray moved;
+        moved.elements_ = static_cast<Element*>(page_store::reserve(blocks_of(capacity)));
+        moved.capacity_ = blocks_of(capacity) / sizeof(Element);
+        if (is_large(capacity_)) {
+            page_store::move(elements_, blocks_of(ready_), blocks_of(capacity_), moved.elements_);
+            moved.ready_ = blocks_of(ready_) / sizeof(Element);
+            moved.size_ = size_;
+            elements_ = nullptr;
+        } else {
+            moved.append(begin(), end());
+        }
+        swap(moved);
+    }
+    /// Puts blocks of pages that are kept where elements are going to be.
+    void get_blocks(std::size_t elements) {
+        const std::size_t there = blocks_of(ready_), wanted = blocks_of(elements);
+        page_store::give_blocks(reinterpret_cast<char*>(elements_) + there, wanted - there);
+        ready_ = wanted / sizeof(Element);
+    }
+
+    void drop() noexcept {
+        if (is_large(capacity_) && elements_ != nullptr) {
+            page_store::drop(elements_, blocks_of(ready_), blocks_of(capacity_));
+        } else {
+            std::free(elements_);
+        }
     }
 
     Element* elements_ = nullptr;
-    std::size_t size_ = 0, capacity_ = 0;
+    std::size_t size_ = 0, ready_ = 0;  ///< up to where memory is ready
+    std::size_t capacity_ = 0;          ///< up to where there is room
 };
 
 }  // namespace realmodel

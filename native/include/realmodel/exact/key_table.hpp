@@ -5,7 +5,8 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <vector>
+
+#include "realmodel/base/growing_array.hpp"
 
 namespace realmodel::exact {
 
@@ -81,7 +82,7 @@ private:
 
     void grow() { resize(slots_.empty() ? 64 : slots_.size() * 2); }
     void resize(std::size_t slots) {
-        std::vector<Slot> old(slots);
+        GrowingArray<Slot> old(slots, Slot{});
         std::swap(old, slots_);
         mask_ = slots - 1;
         for (const Slot& from : old) {
@@ -93,7 +94,7 @@ private:
         }
     }
 
-    std::vector<Slot> slots_;
+    GrowingArray<Slot> slots_;
     std::size_t mask_ = 0;
     std::int32_t size_ = 0;
 };

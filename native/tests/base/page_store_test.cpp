@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/base/page_store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "realmodel/base/growing_array.hpp"
+#include "strata/flat_array.hpp"
+
+namespace realmodel {
+namespace {
+
+using page_store::kBlock;
+using strata::FlatArray;
+
+constexpr std::size_t kLarge = 5 * kBlock / sizeof(std::uint64_t);  // elements
+
+class PageStore : public testing::Test {
+protected:
+    void SetUp() override {
+        if (!page_store::kIsThere)
+            GTEST_SKIP() << "arrays come from malloc here (AddressSanitizer, or not Linux)";
+    }
+};
+
+std::uint64_t mixed(std::uint64_t i) {
+    return i * 0x9E3779B97F4A7C15u;
+}
+
+template <class Array>
+void fill(Array& array, std::uint64_t seed) {
+    for (std::size_t i = 0; i < array.size(); ++i)
+        array[i] = mixed(i + seed);
+}
+template <class Array>
+bool is_filled(const Array& array, std::uint64_t seed) {
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        if (array[i] != mixed(i + seed)) return false;
+    }
+    return true;
+}
+
+TEST_F(PageStore, KeepsBlocksOnlyWhileSomebodyAsksForIt) {
+    { const FlatArray<std::uint64_t> array(kLarge); }
+    EXPECT_EQ(page_store::kept(), 0u);
+    {
+        const page_store::Keeper keeper;
+        {
+            const page_store::Keeper another;
+            const FlatArray<std::uint64_t> array(kLarge);
+        }
+        EXPECT_EQ(page_store::kept(), 5 * kBlock);
+    }
+    EXPECT_EQ(page_store::kept(), 0u);
+}
+
+TEST_F(PageStore, AnArrayTakesTheBlocksOfOthers) {
+    const page_store::Keeper keeper;
+    FlatArray<std::uint64_t> first(kLarge), between(kLarge), third(kLarge);
+    fill(between, 7);
+    first = {};
+    third = {};
+    EXPECT_EQ(page_store::kept(), 10 * kBlock);
+    FlatArray<std::uint64_t> wide(2 * kLarge + kLarge / 5);  // more than either, and than both
+    EXPECT_EQ(page_store::kept(), 0u);
+    fill(wide, 3);
+    EXPECT_TRUE(is_filled(between, 7));
+    EXPECT_TRUE(is_filled(wide, 3));
+    wide = {};
+    EXPECT_EQ(page_store::kept(), 11 * kBlock);
+    FlatArray<std::uint64_t> part(kLarge / 5 * 4);
+    EXPECT_EQ(page_store::kept(), 7 * kBlock);
+    fill(part, 1);
+    EXPECT_TRUE(is_filled(part, 1));
+    EXPECT_TRUE(is_filled(between, 7));
+}
+
+TEST_F(PageStore, AGrowingArrayMovesWithItsBlocks) {
+    const page_store::Keeper keeper;
+    GrowingArray<std::uint64_t> array;
+    for (std::size_t i = 0; i < 6 * kLarge; ++i) {
+        array.push_back(mixed(i));
+        if (i % kLarge == 0) FlatArray<std::uint64_t>{kLarge};  // whose blocks it takes
+    }
+    EXPECT_TRUE(is_filled(array, 0));
+    const GrowingArray<std::uint64_t> copy = array;
+    array.resize(3);
+    array.resize(kLarge, 1);
+    EXPECT_EQ(array[2], mixed(2));
+    EXPECT_EQ(array[kLarge - 1], 1u);
+    EXPECT_TRUE(is_filled(copy, 0));
+}
+
+TEST_F(PageStore, ElementsOfOddSizesKeepTheirPlaces) {
+    struct Odd {
+        std::uint8_t bytes[7];
+    };
+    GrowingArray<Odd> array;
+    for (std::size_t i = 0; i < 5 * kBlock / 7; ++i)
+        array.push_back(
+            {{static_cast<std::uint8_t>(i), 0, 0, 0, 0, 0, static_cast<std::uint8_t>(i >> 8U)}});
+    for (std::size_t i = 0; i < array.size(); ++i) {
+        ASSERT_EQ(array[i].bytes[0], static_cast<std::uint8_t>(i));
+        ASSERT_EQ(array[i].bytes[6], static_cast<std::uint8_t>(i >> 8U));
+    }
+}
+
+TEST_F(PageStore, WhatIsReservedTakesNoBlocksBeforeItIsReady) {
+    const page_store::Keeper keeper;
+    FlatArray<std::uint64_t>{kLarge};
+    GrowingArray<std::uint64_t> array;
+    array.reserve(kLarge);
+    const auto* const there = array.data();
+    EXPECT_EQ(page_store::kept(), 5 * kBlock);
+    array.make_ready(kLarge / 5);
+    EXPECT_EQ(page_store::kept(), 4 * kBlock);
+    array.data()[kLarge / 5 - 1] = 17;  // set before it is counted
+    array.make_ready(kLarge);
+    EXPECT_EQ(page_store::kept(), 0u);
+    array.resize(kLarge);
+    EXPECT_EQ(array.data(), there);
+    EXPECT_EQ(array[kLarge / 5 - 1], 17u);
+}
+
+TEST_F(PageStore, ThreadsTakeAndDropAtOnce) {
+    const page_store::Keeper keeper;
+    std::vector<std::thread> threads;
+    std::vector<int> wrong(4);
+    for (std::size_t t = 0; t < wrong.size(); ++t) {
+        threads.emplace_back([t, &wrong] {
+            for (std::uint64_t round = 0; round < 40; ++round) {
+                FlatArray<std::uint64_t> flat((2 + (round * (t + 3)) % 5) * kLarge / 5);
+                fill(flat, round);
+                GrowingArray<std::uint64_t> growing(kLarge / 5 * 2);
+                fill(growing, t);
+                growing.resize((3 + (round + t) % 4) * kLarge / 5);
+                fill(growing, t);
+                wrong[t] += is_filled(flat, round) && is_filled(growing, t) ? 0 : 1;
+            }
+        });
+    }
+    for (std::thread& thread : threads)
+        thread.join();
+    EXPECT_EQ(std::accumulate(wrong.begin(), wrong.end(), 0), 0);
+}
+
+}  // namespace
+}  // namespace realmodel
