@@ -134,6 +134,18 @@ private:
         return static_cast<std::size_t>(places_.of_point[static_cast<std::size_t>(corner.point)]);
     }
 
+    /// Asks for what will be read of the faces after one: mostly that of two corners.
+    [[gnu::always_inline]] void prefetch_face(std::size_t face) const {
+        const auto first_corner = [&](std::size_t ahead) {
+            const std::size_t f = std::min(face + ahead, faces_.size() - 1);
+            return faces_.polygons.corners.data() + faces_.polygons.offsets[f];
+        };
+        prefetch(&places_.of_point[static_cast<std::size_t>(first_corner(24)->point)]);
+        const Corner* const near = first_corner(12);
+        prefetch(&places_.position[place_of(near[0])]);
+        prefetch(&places_.position[place_of(near[1])]);
+    }
+
     bool is_flat(PolygonView face) const {
         const PlanPosition& first = spreader_.at(place_of(face[0]));
         bool same_x = true, same_y = true;
@@ -152,6 +164,7 @@ private:
         parallel_ranges(faces_.size(), kFaces, threads_, progress_,
                         [&](std::size_t begin, std::size_t end) {
                             for (std::size_t f = begin; f < end; ++f) {
+                                prefetch_face(f);
                                 if (!is_flat(faces_.polygons[f])) continue;
                                 for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
                                     if (cell != kOutsideCell) found[begin / kFaces].push_back(cell);

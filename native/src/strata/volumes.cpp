@@ -35,12 +35,13 @@ Projection project(const CellComplex& complex, std::size_t face) {
     const std::int64_t begin = complex.face_offsets[face], end = complex.face_offsets[face + 1];
     const auto corners = static_cast<std::int64_t>(complex.face_vertices.size());
     constexpr std::int64_t kAhead = 40;  // corners
+    for (std::int64_t i = begin + kAhead; i < std::min(end + kAhead, corners); ++i)
+        prefetch(&corner(i));
     const auto& origin = corner(begin);
     Projection sum;
     const auto* last = &corner(begin + 1);
     double x = (*last)[0] - origin[0], y = (*last)[1] - origin[1], z = (*last)[2] - origin[2];
     for (std::int64_t i = begin + 2; i < end; ++i) {
-        prefetch(&corner(std::min(i + kAhead, corners - 1)));
         const auto& next = corner(i);
         const double u = next[0] - origin[0], v = next[1] - origin[1], w = next[2] - origin[2];
         const double twice_area = x * v - u * y;
