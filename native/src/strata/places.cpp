@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
+#include "bucket_sort.hpp"
 #include "conforming.hpp"
 #include "parallel_counts.hpp"
-#include "parallel_sort.hpp"
 
 namespace realmodel::strata {
 
@@ -12,7 +13,7 @@ using exact::PlanGeometry;
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 14;
+constexpr std::size_t kChunk = 1 << 14, kMostChunks = 64;
 
 /// A point with its rounded position.
 struct Rounded {
@@ -21,6 +22,40 @@ struct Rounded {
 
     bool in_position_of(const Rounded& other) const { return x == other.x && y == other.y; }
 };
+
+/// A range of x.
+struct XRange {
+    double low = HUGE_VAL, high = -HUGE_VAL, scale = 0;
+
+    void include(double x) {
+        low = std::min(low, x);
+        high = std::max(high, x);
+    }
+    /// How much of it lies before x, from 0 to 1.
+    double share(double x) const { return std::clamp((x - low) * scale, 0.0, 1.0); }
+};
+
+/// Where the vertices in use are, and nearly all points with them.
+XRange range_of_vertices(const PlanGeometry& geometry, const FlatArray<std::uint8_t>& used,
+                         int threads, const Progress* progress) {
+    const auto vertices = static_cast<std::size_t>(geometry.vertex_count());
+    std::vector<XRange> ranges((vertices + kChunk - 1) / kChunk);
+    parallel_ranges(vertices, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+            if (used[v] != 0)
+                ranges[begin / kChunk].include(geometry.point(static_cast<PointId>(v)).x);
+        }
+    });
+    XRange all;
+    for (const XRange& range : ranges) {
+        all.include(range.low);
+        all.include(range.high);
+    }
+    const double width = all.high - all.low;
+    if (!std::isfinite(width) || !std::isnormal(1 / width)) return {0, 0, 0};  // nothing is known
+    all.scale = 1 / width;
+    return all;
+}
 
 /// The points that faces use and the extra ones, in order of position.
 GrowingArray<Rounded> points_in_use(const PlanGeometry& geometry, const FaceList& faces,
@@ -35,28 +70,23 @@ GrowingArray<Rounded> points_in_use(const PlanGeometry& geometry, const FaceList
                     });
     for (const ExtraPoint& e : extra)
         used[static_cast<std::size_t>(e.point)] = 1;
-
-    std::vector<std::size_t> before((used.size() + kChunk - 1) / kChunk);
-    parallel_ranges(
-        used.size(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
-            before[begin / kChunk] =
-                static_cast<std::size_t>(std::count(used.begin() + begin, used.begin() + end, 1));
-        });
-    GrowingArray<Rounded> points(count_before(before));
-    parallel_ranges(used.size(), kChunk, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        std::size_t next = before[begin / kChunk];
-                        for (std::size_t p = begin; p < end; ++p) {
-                            if (used[p] == 0) continue;
-                            const auto id = static_cast<PointId>(p);
-                            points[next++] = {geometry.point(id).x, geometry.point(id).y, id};
-                        }
-                    });
+    const XRange range = range_of_vertices(geometry, used, threads, progress);
+    const auto share = [range](const Rounded& p) { return range.share(p.x); };
     const auto in_order = [](const Rounded& a, const Rounded& b) {
         return std::tie(a.x, a.y, a.point) < std::tie(b.x, b.y, b.point);
     };
-    parallel_sort(points, in_order, threads, progress);  // input vertices have the lowest ids
-    return points;
+    const std::size_t chunks = std::clamp<std::size_t>(used.size() / kChunk, 1, kMostChunks);
+    const auto produce = [&](std::size_t chunk, const auto& take) {
+        const std::size_t end = used.size() * (chunk + 1) / chunks;
+        for (std::size_t p = used.size() * chunk / chunks; p < end; ++p) {
+            if (used[p] == 0) continue;
+            const auto id = static_cast<PointId>(p);
+            take(Rounded{geometry.point(id).x, geometry.point(id).y, id});
+        }
+    };
+    // input vertices have the lowest ids
+    return BucketSort<Rounded, decltype(share), decltype(in_order)>(share, in_order)
+        .sorted(chunks, used.size(), produce, threads, progress);
 }
 
 /// Calls visit(begin, end) for the groups of points in equal positions that begin in a range.

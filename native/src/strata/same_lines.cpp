@@ -4,8 +4,8 @@
 #include <bit>
 #include <tuple>
 
+#include "bucket_sort.hpp"
 #include "parallel_counts.hpp"
-#include "parallel_sort.hpp"
 
 namespace realmodel::strata {
 
@@ -13,7 +13,7 @@ using exact::PlanGeometry;
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 13;
+constexpr std::size_t kChunk = 1 << 13, kMostChunks = 64;
 
 /// A line with a number that is equal for lines that run through the same places, and hardly ever
 /// for others.
@@ -72,7 +72,18 @@ std::vector<Follower> find_followers(const PlanGeometry& geometry, GrowingArray<
     const auto in_order = [](const Keyed& a, const Keyed& b) {
         return std::tie(a.key, a.line) < std::tie(b.key, b.line);
     };
-    parallel_sort(lines, in_order, threads, progress);
+    // Keys are spread evenly.
+    const auto share = [](const Keyed& line) { return static_cast<double>(line.key) * 0x1p-64; };
+    {
+        const std::size_t chunks = std::clamp<std::size_t>(lines.size() / kChunk, 1, kMostChunks);
+        const auto produce = [&](std::size_t chunk, const auto& take) {
+            const std::size_t end = lines.size() * (chunk + 1) / chunks;
+            for (std::size_t i = lines.size() * chunk / chunks; i < end; ++i)
+                take(lines[i]);
+        };
+        lines = BucketSort<Keyed, decltype(share), decltype(in_order)>(share, in_order)
+                    .sorted(chunks, lines.size(), produce, threads, progress);
+    }
     std::vector<std::vector<Follower>> found((lines.size() + kChunk - 1) / kChunk);
     parallel_ranges(
         lines.size(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
