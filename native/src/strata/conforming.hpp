@@ -27,13 +27,18 @@ struct ExtraPoint {
 
 /// The points in use, those in the same position taken together, in order of rounded x, then y.
 struct Places {
-    FlatArray<PlaceId> of_point;          ///< -1 for points that no face uses
-    FlatArray<PointId> representative;    ///< an input vertex where one is there
-    FlatArray<PlanPosition> position;     ///< rounded
-    FlatArray<std::uint8_t> same_x_next;  ///< 1 where the next place rounds to the same x
+    FlatArray<PlaceId> of_point;           ///< -1 for points that no face uses
+    FlatArray<PointId> representative;     ///< an input vertex where one is there
+    FlatArray<PlanPosition> position;      ///< rounded
+    FlatArray<std::uint64_t> same_x_bits;  ///< of 64 places each: see has_same_x_next
     std::vector<PlaceId> crowded;  ///< those that round to the position of the place before them
 
     std::size_t size() const { return representative.size(); }
+    /// Whether the next place rounds to the same x.
+    bool has_same_x_next(PlaceId place) const {
+        const auto p = static_cast<std::size_t>(place);
+        return (same_x_bits[p / 64] >> (p % 64) & 1) != 0;
+    }
 };
 Places find_places(const exact::PlanGeometry& geometry, const FaceList& faces,
                    const std::vector<ExtraPoint>& extra, int threads, const Progress* progress);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <tuple>
 
@@ -139,7 +140,7 @@ Places find_places(const PlanGeometry& geometry, const FaceList& faces,
     const std::size_t count = count_before(before);
     places.representative = FlatArray<PointId>(count);
     places.position = FlatArray<PlanPosition>(count);
-    places.same_x_next = zeros<std::uint8_t>(count, threads, progress);
+    places.same_x_bits = zeros<std::uint64_t>(count / 64 + 1, threads, progress);
     places.of_point = FlatArray<PlaceId>(geometry.point_count());
     parallel_ranges(places.of_point.size(), 1 << 18, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
@@ -163,8 +164,11 @@ Places find_places(const PlanGeometry& geometry, const FaceList& faces,
                         place = static_cast<PlaceId>(next);
                         places.representative[next] = points[i].point;
                         places.position[next] = {points[i].x, points[i].y};
-                        if (next > 0 && points[i - 1].x == points[i].x)
-                            places.same_x_next[next - 1] = 1;
+                        if (next > 0 && points[i - 1].x == points[i].x) {
+                            std::atomic_ref(places.same_x_bits[(next - 1) / 64])
+                                .fetch_or(std::uint64_t{1} << (next - 1) % 64,
+                                          std::memory_order_relaxed);
+                        }
                         if (i > begin) crowded[range_begin / kChunk].push_back(place);
                         ++next;
                     }

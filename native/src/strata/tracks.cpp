@@ -80,8 +80,8 @@ private:
     bool same_x() const {
         for (std::size_t i = 1; i < order_.size(); ++i) {
             const PlaceId a = added(order_[i - 1]), b = added(order_[i]);
-            const bool perhaps = places_.same_x_next[static_cast<std::size_t>(a)] != 0;
-            if (perhaps && a != b && position(a)[0] == position(b)[0]) return true;
+            if (places_.has_same_x_next(a) && a != b && position(a)[0] == position(b)[0])
+                return true;
         }
         return false;
     }
@@ -177,10 +177,10 @@ public:
     bool pass_in_pairs(const GrowingArray<std::uint8_t>& cell_is_thick, PairedEdges& paired) {
         // Places have numbers in order of x, and hardly ever the same x. Each end of a pair is
         // where an edge begins.
-        if (std::any_of(edges_.begin(), edges_.end(), [&](const TrackEdge& edge) {
-                return places_.same_x_next[static_cast<std::size_t>(edge.from)] != 0;
-            }))
-            put_in_order({});
+        bool same_x = false;
+        for (const TrackEdge& edge : edges_)
+            same_x |= places_.has_same_x_next(edge.from);
+        if (same_x) put_in_order({});
         if (!pairing_.pair(edges_, line_)) return false;
         pairing_.add_walls(paired);
         bool all_known = is_ranked_;
