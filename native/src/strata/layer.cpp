@@ -188,15 +188,11 @@ bool meet_in_height(const PlanGeometry& geometry, PlaneId plane, std::size_t i, 
 }
 
 std::vector<SurfacePlan> plan_surfaces(const PlanGeometry& geometry,
-                                       const std::vector<std::vector<UsedTriangle>>& surfaces,
-                                       const Frame& frame, int threads, const Progress* progress) {
+                                       std::vector<EnteredSurface>& surfaces, const Frame& frame,
+                                       int threads, const Progress* progress) {
     std::vector<SurfacePlan> plans(surfaces.size());
     parallel_chunks(surfaces.size(), threads, progress, [&](std::size_t k) {
-        const auto& triangles = surfaces[k];
-        FlatArray<PlanTriangle> corners(triangles.size());
-        for (std::size_t t = 0; t < triangles.size(); ++t)
-            corners[t] = plan_of(geometry, triangles[t]);
-        plans[k].links = link_triangles({corners.begin(), corners.size()}, progress);
+        plans[k].links = std::move(surfaces[k].links);
         plans[k].filling = cover_frame(geometry, plans[k].links.border, frame);
     });
     return plans;

@@ -50,12 +50,20 @@ struct UsedTriangle {
     std::array<exact::SpaceId, 3> corner;  ///< counter-clockwise in plan
 };
 
-/// Checks a surface and enters its vertices; leaves out triangles without area (with a warning).
+/// A checked surface, and how its triangles hang together in plan.
+struct EnteredSurface {
+    std::vector<UsedTriangle> triangles;
+    PlanLinks links;
+};
+
+/// Checks surfaces, enters their vertices and links their triangles; leaves out triangles without
+/// area (with a warning). The first of them is number `first_index` of all.
 /// @throws InputError kinds not_finite, bad_index, vertical_triangle
-std::vector<UsedTriangle> enter_surface(exact::PlanGeometry& geometry, const SurfaceView& surface,
-                                        int index, const PlanSnapping& snapping,
-                                        std::vector<Warning>& warnings, int threads,
-                                        const Progress* progress);
+std::vector<EnteredSurface> enter_surfaces(exact::PlanGeometry& geometry,
+                                           std::span<const SurfaceView> surfaces, int first_index,
+                                           const PlanSnapping& snapping,
+                                           std::vector<Warning>& warnings, int threads,
+                                           const Progress* progress);
 
 /// A triangle that turns counter-clockwise as a polygon; its lines are made where they are new.
 std::array<Corner, 3> triangle_outline(exact::PlanGeometry& geometry, const PlanTriangle& v);
@@ -71,10 +79,10 @@ struct SurfacePlan {
     std::optional<FrameTriangles> filling;
 };
 
-/// How checked surfaces lie in plan.
+/// How checked surfaces lie in plan; their links are taken.
 std::vector<SurfacePlan> plan_surfaces(const exact::PlanGeometry& geometry,
-                                       const std::vector<std::vector<UsedTriangle>>& surfaces,
-                                       const Frame& frame, int threads, const Progress* progress);
+                                       std::vector<EnteredSurface>& surfaces, const Frame& frame,
+                                       int threads, const Progress* progress);
 
 /// Planes of triangles, one after another; the first of them.
 PlaneId make_planes(exact::PlanGeometry& geometry, const std::vector<UsedTriangle>& triangles,

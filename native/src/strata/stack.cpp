@@ -103,7 +103,7 @@ Frame enter_frame(PlanGeometry& geometry) {
 /// A rock mass whose vertices are entered.
 struct EnteredRock {
     std::int32_t first_surface = 0;  ///< counted through all rock masses
-    std::vector<std::vector<UsedTriangle>> surfaces;
+    std::vector<EnteredSurface> surfaces;
     std::vector<Rule> rules;
     std::optional<std::vector<std::array<VertexId, 3>>> region;
     std::optional<double> base_elevation;
@@ -152,8 +152,8 @@ public:
 private:
     Layer surface(std::size_t k) {
         const auto number = rock_.first_surface + static_cast<std::int32_t>(k);
-        Layer layer = make_layer(site_.geometry, rock_.surfaces[k], plans_[k], similar_, number,
-                                 site_.threads, site_.progress);
+        Layer layer = make_layer(site_.geometry, rock_.surfaces[k].triangles, plans_[k], similar_,
+                                 number, site_.threads, site_.progress);
         rock_.surfaces[k] = {};
         plans_[k] = {};
         site_.surface_of_plane.resize(site_.geometry.plane_count(), number);
@@ -254,11 +254,8 @@ EnteredRock enter_rock(PlanGeometry& geometry, const StackInput& input, std::int
         throw InputError("not_finite", "the base elevation is not a finite number", first_surface);
     }
     rock.base_elevation = input.base_elevation;
-    for (std::size_t k = 0; k < input.surfaces.size(); ++k) {
-        rock.surfaces.push_back(enter_surface(geometry, input.surfaces[k],
-                                              first_surface + static_cast<std::int32_t>(k),
-                                              snapping, warnings, threads, progress));
-    }
+    rock.surfaces = enter_surfaces(geometry, input.surfaces, first_surface, snapping, warnings,
+                                   threads, progress);
     if (input.region) rock.region = enter_region(geometry, *input.region, snapping);
     return rock;
 }
@@ -321,9 +318,9 @@ CellComplex build_plain_blocks(Site& site, EnteredRock& rock) {
     std::vector<BlockLayer> layers;
     for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
         if (site.progress != nullptr) site.progress->check();
-        layers.push_back(make_block_layer(site.geometry, rock.surfaces[k], std::move(plans[k]),
-                                          static_cast<std::int32_t>(k), site.threads,
-                                          site.progress));
+        layers.push_back(make_block_layer(site.geometry, rock.surfaces[k].triangles,
+                                          std::move(plans[k]), static_cast<std::int32_t>(k),
+                                          site.threads, site.progress));
         site.surface_of_plane.resize(site.geometry.plane_count(), static_cast<std::int32_t>(k));
         rock.surfaces[k] = {};
     }
