@@ -25,28 +25,29 @@ void FacetClipper::begin(PolygonView facet) {
     lines_.clear();
     if (facet.size() > exact::kRowLength) return;
     for (std::size_t i = 0; i < facet.size(); ++i) {
-        scope_.add_to(corners_, facet[i].point);
-        scope_.add_to(lines_, edge_of(facet, i));
+        corners_.add(scope_, facet[i].point);
+        lines_.add(scope_, edge_of(facet, i));
     }
 }
 
-const FacetClipper::KnownPoint& FacetClipper::known_point(PointId point) {
+[[gnu::always_inline]] inline Sides FacetClipper::sides_of_point(PointId point) {
     KnownPoint& known = points_[static_cast<std::size_t>(point) % kKnown];
     if (known.point != point || known.facet != number_)
-        known = {point, number_, scope_.sides(lines_, point)};
-    return known;
+        known = {point, number_, sides_of(scope_, lines_, point)};
+    return known.sides;
 }
 
-FacetClipper::KnownLine& FacetClipper::known_line(PolygonView window, std::size_t edge) {
+[[gnu::always_inline]] inline FacetClipper::KnownLine& FacetClipper::known_line(PolygonView window,
+                                                                                std::size_t edge) {
     const LineId line = exact::line_of(window[edge].line);
     KnownLine& known = known_lines_[static_cast<std::size_t>(line) % kKnown];
     if (known.line != line || known.facet != number_) {
+        const exact::DirectedEdge along = edge_of(window, edge);
+        const Sides sides = sides_of(scope_, along, corners_);
         known.line = line;
         known.facet = number_;
-        const exact::DirectedEdge along = edge_of(window, edge);
-        known.sides = scope_.sides(along, corners_);
-        if (exact::is_reversed(along.line)) std::swap(known.sides.left, known.sides.right);
-        known.crossing.fill(-1);
+        known.sides = exact::is_reversed(along.line) ? sides.turned() : sides;
+        known.crossings = 0;
     }
     return known;
 }
@@ -62,25 +63,28 @@ bool FacetClipper::meets(PolygonView window) {
 }
 
 /// Finds where the corners of facet and window lie against the lines of the other; false where one
-/// of these lines has all of one to its left and nothing of the other.
+/// of these lines has all of one to its left and nothing of the other. Corners come first: more of
+/// the polygons of a layer meet in a corner than along a line.
 bool FacetClipper::compare(PolygonView window) {
-    const std::uint32_t all = (1U << facet_.size()) - 1U;
-    on_line_ = false;
+    const std::uint32_t all = exact::all_of_row(facet_.size());
+    std::uint32_t reached = 0, beside = all;
+    for (std::size_t j = 0; j < window.size(); ++j) {
+        const Sides lines = sides_of_point(window[j].point);
+        window_corners_[j] = lines;
+        reached |= lines.left();
+        beside &= lines.either();
+    }
+    if (reached != all) return false;
     for (std::size_t j = 0; j < window.size(); ++j) {
         KnownLine& known = known_line(window, j);
-        Sides corners = known.sides;
-        if (exact::is_reversed(window[j].line)) std::swap(corners.left, corners.right);
-        if (corners.left == 0) return false;
-        on_line_ |= (corners.left | corners.right) != all;
+        const Sides corners =
+            exact::is_reversed(window[j].line) ? known.sides.turned() : known.sides;
+        if (corners.left() == 0) return false;
+        beside &= corners.either();
         edges_[j] = {&known, corners};
     }
-    std::uint32_t reached = 0;
-    for (std::size_t j = 0; j < window.size(); ++j) {
-        window_corners_[j] = known_point(window[j].point).sides;
-        reached |= window_corners_[j].left;
-        on_line_ |= (window_corners_[j].left | window_corners_[j].right) != all;
-    }
-    return reached == all;
+    on_line_ = beside != all;
+    return true;
 }
 
 PointId FacetClipper::crossing(std::size_t i, std::size_t j, PolygonView window) {
@@ -89,40 +93,48 @@ PointId FacetClipper::crossing(std::size_t i, std::size_t j, PolygonView window)
     // two lines of the window may have the same place
     if (known.line != line)
         return scope_.crossing_between_ends(exact::line_of(facet_[i].line), line);
-    PointId& point = known.crossing[i];
-    if (point < 0) point = scope_.crossing_between_ends(exact::line_of(facet_[i].line), line);
-    return point;
+    if (!bit(known.crossings, i)) {
+        known.crossing[i] = scope_.crossing_between_ends(exact::line_of(facet_[i].line), line);
+        known.crossings |= 1U << i;
+    }
+    return known.crossing[i];
 }
 
 /// Goes around the facet, and from each edge where it leaves the window around the window until
 /// that leaves the facet, where the facet comes in again. No corner lies on a line of the other.
 PolygonView FacetClipper::follow(PolygonView window) {
     const std::size_t m = facet_.size(), n = window.size();
-    const std::uint32_t all = (1U << m) - 1U;
-    std::uint32_t inside = all;  // the facet's corners in the window
-    for (std::size_t j = 0; j < n; ++j)
-        inside &= edges_[j].corners.left;
+    const std::uint32_t all = exact::all_of_row(m);
+    // The facet's corners in the window, and its edges where it comes in and goes out.
+    std::uint32_t inside = all, in = 0, out = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+        const std::uint32_t left = edges_[j].corners.left();
+        const std::uint32_t next_left = left >> 1 | (left & 1U) << (m - 1);
+        const std::uint32_t crossed =
+            (left ^ next_left) &
+            (window_corners_[j].left() ^ window_corners_[j + 1 < n ? j + 1 : 0].left());
+        crossed_[j] = crossed;
+        inside &= left;
+        out |= crossed & left;
+        in |= crossed & ~left;
+    }
     if (inside == all) return facet_;
     result_.clear();
+    const auto edge_crossed = [&](std::size_t i, bool outwards) {
+        std::size_t j = 0;
+        while (!bit(crossed_[j], i) || bit(edges_[j].corners.left(), i) != outwards)
+            ++j;
+        return j;
+    };
     for (std::size_t i = 0; i < m; ++i) {
-        const std::size_t to = i + 1 < m ? i + 1 : 0;
         if (bit(inside, i)) result_.push_back(facet_[i]);
-        std::size_t out = n;
-        for (std::size_t j = 0; j < n; ++j) {
-            const bool here = bit(edges_[j].corners.left, i);
-            if (here == bit(edges_[j].corners.left, to)) continue;
-            const std::size_t next = j + 1 < n ? j + 1 : 0;
-            if (bit(window_corners_[j].left, i) == bit(window_corners_[next].left, i)) continue;
-            if (here) {
-                out = j;
-            } else {
-                result_.push_back({crossing(i, j, window), facet_[i].line});
-            }
-        }
-        if (out == n) continue;
-        result_.push_back({crossing(i, out, window), window[out].line});
-        for (std::size_t j = out + 1 < n ? out + 1 : 0; window_corners_[j].left == all && j != out;
-             j = j + 1 < n ? j + 1 : 0)
+        if (bit(in, i))
+            result_.push_back({crossing(i, edge_crossed(i, false), window), facet_[i].line});
+        if (!bit(out, i)) continue;
+        const std::size_t left_at = edge_crossed(i, true);
+        result_.push_back({crossing(i, left_at, window), window[left_at].line});
+        for (std::size_t j = left_at + 1 < n ? left_at + 1 : 0;
+             window_corners_[j].left() == all && j != left_at; j = j + 1 < n ? j + 1 : 0)
             result_.push_back(window[j]);
     }
     if (result_.empty()) result_.assign(window.begin(), window.end());  // it lies in the facet
@@ -146,7 +158,7 @@ PolygonView FacetClipper::cut_by_lines(PolygonView window) {
                 side = scope_.side(line, at.point);
             } else {
                 const auto i = static_cast<std::size_t>(at.of_facet);
-                side = bit(known.left, i) ? 1 : (bit(known.right, i) ? -1 : 0);
+                side = bit(known.left(), i) ? 1 : (bit(known.right(), i) ? -1 : 0);
             }
             any_left |= side > 0;
             any_right |= side < 0;

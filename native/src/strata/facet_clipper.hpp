@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "polygon.hpp"
+#include "realmodel/exact/side_rows.hpp"
 
 namespace realmodel::strata {
 
@@ -39,8 +40,9 @@ private:
     struct KnownLine {
         LineId line = -1;
         std::uint32_t facet = 0;
-        exact::Sides sides;  ///< of the facet's corners, seen along the line
-        std::array<PointId, exact::kRowLength> crossing;  ///< with each edge; -1: not yet
+        exact::Sides sides;           ///< of the facet's corners, seen along the line
+        std::uint32_t crossings = 0;  ///< a bit for each edge whose crossing is known
+        std::array<PointId, exact::kRowLength> crossing;
     };
     /// A window's edge: what is known of its line, turned to its direction.
     struct Edge {
@@ -48,7 +50,7 @@ private:
         exact::Sides corners;
     };
 
-    const KnownPoint& known_point(PointId point);
+    exact::Sides sides_of_point(PointId point);
     KnownLine& known_line(PolygonView window, std::size_t edge);
     PolygonView follow(PolygonView window);
     PolygonView cut_by_lines(PolygonView window);
@@ -64,6 +66,7 @@ private:
     std::array<KnownLine, kKnown> known_lines_;
     std::array<Edge, exact::kRowLength> edges_;
     std::array<exact::Sides, exact::kRowLength> window_corners_;
+    std::array<std::uint32_t, exact::kRowLength> crossed_;  ///< the facet's edges, by a window's
     bool on_line_ = false;  ///< whether a corner of one lies on a line of the other
     Polygon result_;
     /// A corner of what lines have left of the facet.

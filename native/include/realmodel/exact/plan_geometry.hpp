@@ -13,7 +13,6 @@
 
 #include "realmodel/base/growing_array.hpp"
 #include "realmodel/exact/key_table.hpp"
-#include "realmodel/exact/side_rows.hpp"
 
 namespace realmodel::exact {
 
@@ -346,12 +345,6 @@ public:
     /// On which side of a directed line a point lies: 1 left, 0 on it, -1 right. The predicate that
     /// every decision comes down to: the sign of a 3 x 3 determinant of plan lines.
     int side(DirectedLine line, PointId point);
-    /// Adds a point, or a line, to a row that has room.
-    void add_to(PointRow& row, PointId point) const;
-    void add_to(LineRow& row, const DirectedEdge& edge) const;
-    /// The same as `side` of all points of a row, or of a point and all lines of a row.
-    Sides sides(const DirectedEdge& edge, const PointRow& points);
-    Sides sides(const LineRow& lines, PointId point);
     /// The sign of the height of plane `upper` less that of plane `lower` above a point.
     int compare_heights(PlaneId upper, PlaneId lower, PointId point);
     /// The same with the filter of their trace at hand; the trace itself need not exist.
@@ -402,6 +395,8 @@ public:
     /// Slope and offset of a line, rounded: equal for lines that run through the same places.
     std::array<double, 3> line_key(LineId line);
 
+    /// Counts signs that were told without `side`.
+    void count_decisions(std::size_t count) { decisions_ += count; }
     /// How many decisions of this scope floating point left to exact arithmetic.
     std::uint64_t exact_decisions() const { return exact_; }
 
@@ -428,14 +423,6 @@ public:
     PointId shared_point(PointId id) { return id < kLocal ? id : shared_local_point(id); }
 
 private:
-    /// A directed line as a (x - x0) + b (y - y0) + c, with one bound for its error at all points
-    /// within reach of the input vertices.
-    struct RowFilter {
-        double a, b, c, x0, y0, bound;
-    };
-    RowFilter row_filter(DirectedLine line) const;
-    RowFilter row_filter_between(const Point& from, const Point& to) const;
-    Sides sides(const RowFilter& filter, DirectedLine line, const PointRow& points);
     void ask_for_local_line(LineId id);
     void ask_for_local_point(PointId id);
     LineId shared_local_line(LineId id);
