@@ -118,7 +118,7 @@ void add_empty(PlanGeometry& geometry, Layer& layer, const FrameTriangles& filli
         (triangles.size() + kChunk - 1) / kChunk, threads, progress, [&](std::size_t chunk) {
             Scope scope(geometry);
             Clipper clipper(scope);
-            std::vector<std::int32_t> candidates;
+            GrowingArray<std::int32_t> candidates;
             const std::size_t end = std::min(triangles.size(), (chunk + 1) * kChunk);
             for (std::size_t t = chunk * kChunk; t < end; ++t) {
                 layer.grid.candidates(scope, layer.polygons[t], candidates);

@@ -44,15 +44,15 @@ bool PieceFinder::find_candidates(PolygonView outline) {
     return false;
 }
 
-const std::vector<std::int32_t>& PieceFinder::overlapping(PolygonView outline) {
-    if (find_candidates(outline)) return candidates_;
+std::span<const std::int32_t> PieceFinder::overlapping(PolygonView outline) {
+    if (find_candidates(outline)) return {candidates_.begin(), candidates_.end()};
     overlapping_.clear();
     for (const std::int32_t c : candidates_) {
         if (clipper_.overlap(outline, layer_.polygons[static_cast<std::size_t>(c)])) {
             overlapping_.push_back(c);
         }
     }
-    return overlapping_;
+    return {overlapping_.begin(), overlapping_.end()};
 }
 
 /// Begins with a facet; true where one polygon of the layer is all that it meets, which is added.
@@ -73,7 +73,7 @@ void PieceFinder::add_all(std::span<const std::int32_t> polygons, const Facet& f
 
 const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
     const Facet facet = facet_of(outline, plane);
-    if (!begin(facet)) add_all(candidates_, facet);
+    if (!begin(facet)) add_all({candidates_.begin(), candidates_.end()}, facet);
     return pieces_;
 }
 
@@ -94,7 +94,7 @@ const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
             add(polygon, Side::kNotBelow, {});
         return pieces_;
     }
-    add_all(higher_, facet);
+    add_all({higher_.begin(), higher_.end()}, facet);
     add_all({c, candidates_.end()}, facet);
     return pieces_;
 }
@@ -184,7 +184,8 @@ void PieceFinder::classify(std::int32_t polygon, PlaneId facet_plane, PolygonVie
 /// Adds a piece that touches the facet nowhere.
 void PieceFinder::add(std::int32_t polygon, Side side, PolygonView outline) {
     const auto first = static_cast<std::int64_t>(pieces_.corners.size());
-    pieces_.corners.insert(pieces_.corners.end(), outline.begin(), outline.end());
+    pieces_.corners.resize(pieces_.corners.size() + outline.size());
+    copy_corners(outline, pieces_.corners.begin() + first);
     pieces_.touches.resize(pieces_.corners.size(), 0);
     pieces_.list.push_back(
         {polygon, side, first, static_cast<std::int64_t>(pieces_.corners.size())});

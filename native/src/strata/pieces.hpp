@@ -28,9 +28,9 @@ struct Piece {
 
 /// The overlay of one facet with the layer: convex pieces that tile the facet.
 struct Pieces {
-    std::vector<Piece> list;
-    std::vector<Corner> corners;
-    std::vector<std::uint8_t>
+    GrowingArray<Piece> list;
+    GrowingArray<Corner> corners;
+    GrowingArray<std::uint8_t>
         touches;           ///< for each corner: 1 where facet and surface are equally high
     bool is_clear = true;  ///< all lie below the facet by far more than rounding moves heights
 
@@ -58,7 +58,7 @@ public:
     /// the facet: it stays as it is.
     const Pieces& find_for_split(PolygonView outline, PlaneId plane);
     /// Polygons of the layer that share an area with the outline.
-    const std::vector<std::int32_t>& overlapping(PolygonView outline);
+    std::span<const std::int32_t> overlapping(PolygonView outline);
 
 private:
     /// A facet of the envelope.
@@ -90,7 +90,7 @@ private:
     const Layer& layer_;
     Pieces pieces_;
     std::vector<std::int8_t> signs_;  ///< of surface less facet at the corners of a piece
-    std::vector<std::int32_t> candidates_, overlapping_, higher_;
+    GrowingArray<std::int32_t> candidates_, overlapping_, higher_;
     std::size_t expected_ = 0;  ///< polygon after the last that was a facet: the next one's, often
 };
 

@@ -13,6 +13,22 @@ namespace {
 /// Worked on at a time. Polygons around a border are few, and each lies in many cells.
 constexpr std::size_t kBoxes = 4096, kPolygons = 128;
 
+/// Sorts numbers that are few and half in order already.
+void sort_few(GrowingArray<std::int32_t>& numbers) {
+    constexpr std::size_t kFew = 32;
+    if (numbers.size() > kFew) {
+        std::sort(numbers.begin(), numbers.end());
+        return;
+    }
+    for (std::size_t i = 1; i < numbers.size(); ++i) {
+        const std::int32_t number = numbers[i];
+        std::size_t at = i;
+        for (; at > 0 && numbers[at - 1] > number; --at)
+            numbers[at] = numbers[at - 1];
+        numbers[at] = number;
+    }
+}
+
 }  // namespace
 
 PlanBox box_of(const Scope& scope, PolygonView polygon) {
@@ -29,14 +45,12 @@ PlanBox box_of(const Scope& scope, PolygonView polygon) {
 
 std::int64_t PolygonCells::column(double x) const {
     const double c = (x - grid_.frame.low_x) / grid_.step_x;
-    return std::clamp(static_cast<std::int64_t>(std::clamp(c, 0.0, 1e9)), std::int64_t{0},
-                      grid_.columns - 1);
+    return static_cast<std::int64_t>(std::clamp(c, 0.0, static_cast<double>(grid_.columns - 1)));
 }
 
 std::int64_t PolygonCells::row(double y) const {
     const double r = (y - grid_.frame.low_y) / grid_.step_y;
-    return std::clamp(static_cast<std::int64_t>(std::clamp(r, 0.0, 1e9)), std::int64_t{0},
-                      grid_.rows - 1);
+    return static_cast<std::int64_t>(std::clamp(r, 0.0, static_cast<double>(grid_.rows - 1)));
 }
 
 void PolygonCells::fill(const exact::PlanGeometry& geometry, const PolygonPool& polygons,
@@ -140,7 +154,7 @@ void PolygonCells::for_each_cell(const Scope& scope, PolygonView polygon, const 
 
 bool PolygonCells::append(const Scope& scope, PolygonView polygon, const PlanBox& box,
                           const std::vector<PlanBox>& boxes,
-                          std::vector<std::int32_t>& found) const {
+                          GrowingArray<std::int32_t>& found) const {
     if (items_.size() == 0 || !box.meets(grid_.frame)) return true;
     const CellSpan span = span_of(box);
     bool is_once = true;
@@ -195,14 +209,16 @@ PlanGrid::PlanGrid(const exact::PlanGeometry& geometry, const PolygonPool& polyg
 }
 
 void PlanGrid::candidates(const Scope& scope, PolygonView polygon,
-                          std::vector<std::int32_t>& found) const {
+                          GrowingArray<std::int32_t>& found) const {
     found.clear();
     const PlanBox box = box_of(scope, polygon);
     small_.append(box, found);
     bool is_once = large_.append(scope, polygon, box, boxes_, found);
     is_once &= outer_.append(scope, polygon, box, boxes_, found);
-    std::sort(found.begin(), found.end());
-    if (!is_once) found.erase(std::unique(found.begin(), found.end()), found.end());
+    sort_few(found);
+    if (!is_once)
+        found.resize(
+            static_cast<std::size_t>(std::unique(found.begin(), found.end()) - found.begin()));
 }
 
 }  // namespace realmodel::strata

@@ -24,7 +24,7 @@ public:
     /// Appends the polygons whose cells and boxes meet those of `polygon`; whether none of them
     /// comes repeatedly.
     bool append(const Scope& scope, PolygonView polygon, const PlanBox& box,
-                const std::vector<PlanBox>& boxes, std::vector<std::int32_t>& found) const;
+                const std::vector<PlanBox>& boxes, GrowingArray<std::int32_t>& found) const;
 
 private:
     /// Columns and rows that a box meets.
@@ -66,7 +66,7 @@ public:
 
     /// Numbers of all polygons whose cells and boxes meet those of `polygon`, ascending.
     void candidates(const Scope& scope, PolygonView polygon,
-                    std::vector<std::int32_t>& found) const;
+                    GrowingArray<std::int32_t>& found) const;
 
 private:
     std::vector<PlanBox> boxes_;

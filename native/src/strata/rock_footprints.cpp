@@ -18,7 +18,7 @@ void RockFootprints::add(const exact::PlanGeometry& geometry, const FaceList& fa
     Scope scope(geometry);
     Clipper clipper(scope);
     const PlanGrid grid(geometry, own, std::vector<std::uint8_t>(own.size(), 1), 0, 1, progress);
-    std::vector<std::int32_t> candidates;
+    GrowingArray<std::int32_t> candidates;
     for (std::size_t r = 0; r < rocks_.size(); ++r) {
         for (std::size_t i = 0; i < rocks_[r].size(); ++i) {
             poll(progress, i);

@@ -6,6 +6,10 @@
 
 #include "parallel_counts.hpp"
 
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
 namespace realmodel::strata {
 
 namespace {
@@ -105,15 +109,29 @@ std::vector<std::int32_t> SmallBoxes::fill(const std::vector<PlanBox>& boxes,
                         for (std::size_t c = begin; c < end; ++c) {
                             if (within[c] == kOther) continue;
                             const CellBox box = box_in_cells(c);
-                            items_[offsets_[cell_of(box)] + within[c]] = {box, chosen[c]};
+                            items_[offsets_[cell_of(box)] + within[c]] = {
+                                {box.low_x, box.low_y, -box.high_x, -box.high_y}, chosen[c]};
                         }
                     });
     return others;
 }
 
-void SmallBoxes::append(const PlanBox& box, std::vector<std::int32_t>& found) const {
+inline std::uint32_t SmallBoxes::meets(const Item& item, const Limits& limits) {
+#if defined(__SSE__)
+    const __m128 within =
+        _mm_cmple_ps(_mm_loadu_ps(item.corners.data()), _mm_loadu_ps(limits.data()));
+    return _mm_movemask_ps(within) == 15 ? 1 : 0;
+#else
+    const auto& [a, b, c, d] = item.corners;
+    return static_cast<std::uint32_t>((a <= limits[0]) & (b <= limits[1]) & (c <= limits[2]) &
+                                      (d <= limits[3]));
+#endif
+}
+
+void SmallBoxes::append(const PlanBox& box, GrowingArray<std::int32_t>& found) const {
     if (items_.size() == 0 || !box.meets(grid_.frame)) return;
     const CellBox own = in_cells(box);
+    const Limits limits{own.high_x, own.high_y, -own.low_x, -own.low_y};
     const std::int64_t left = cell_at(own.low_x - reach_x_, grid_.columns);
     const std::int64_t right = cell_at(own.high_x, grid_.columns);
     const std::int64_t low = cell_at(own.low_y - reach_y_, grid_.rows);
@@ -127,7 +145,7 @@ void SmallBoxes::append(const PlanBox& box, std::vector<std::int32_t>& found) co
         std::int32_t* next = found.data() + before;
         for (; item != end; ++item) {
             *next = item->number;
-            next += item->box.meets(own) ? 1 : 0;
+            next += meets(*item, limits);
         }
         found.resize(static_cast<std::size_t>(next - found.data()));
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -44,22 +45,23 @@ public:
                                    const std::vector<std::int32_t>& chosen, std::size_t cells,
                                    int threads, const Progress* progress);
     /// Appends the numbers of all that meet a box; of those that all but meet it, some.
-    void append(const PlanBox& box, std::vector<std::int32_t>& found) const;
+    void append(const PlanBox& box, GrowingArray<std::int32_t>& found) const;
 
 private:
     /// A box in units of cells. All coordinates come here in the same way, which never changes
     /// their order: boxes that meet still do.
     struct CellBox {
         float low_x, low_y, high_x, high_y;
-        bool meets(const CellBox& other) const {  // without branches
-            return (low_x <= other.high_x) & (other.low_x <= high_x) & (low_y <= other.high_y) &
-                   (other.low_y <= high_y);
-        }
     };
+    /// A small box: its lower left corner, and the upper right one turned around, so that it meets
+    /// another where all four numbers are at most the other's four Limits.
     struct Item {
-        CellBox box;
+        std::array<float, 4> corners;
         std::int32_t number;
     };
+    using Limits = std::array<float, 4>;
+    /// Whether an item meets a box, 1 or 0, without branches.
+    static std::uint32_t meets(const Item& item, const Limits& limits);
     CellBox in_cells(const PlanBox& box) const;
     std::size_t cell_of(const CellBox& box) const;
 

@@ -76,7 +76,7 @@ public:
         : envelope_(envelope), at_(start), number_(number) {}
 
     void add_facet(PolygonView outline, PlaneId plane) {
-        std::copy(outline.begin(), outline.end(), envelope_.outlines.corners.begin() + at_.corners);
+        copy_corners(outline, envelope_.outlines.corners.begin() + at_.corners);
         const std::size_t facet = at_.facets;
         at_.add_facet(outline);
         envelope_.outlines.offsets[facet + 1] = static_cast<std::int64_t>(at_.corners);
@@ -87,8 +87,7 @@ public:
     }
     /// Adds a face to the facet added last.
     void add_face(PolygonView outline, std::int32_t cell_above) {
-        std::copy(outline.begin(), outline.end(),
-                  envelope_.face_polygons.corners.begin() + at_.face_corners);
+        copy_corners(outline, envelope_.face_polygons.corners.begin() + at_.face_corners);
         envelope_.face_above[at_.faces] = cell_above;
         at_.add_face(outline);
         envelope_.face_polygons.offsets[at_.faces] = static_cast<std::int64_t>(at_.face_corners);
