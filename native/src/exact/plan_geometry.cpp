@@ -36,7 +36,6 @@ void PlanGeometry::expect_planes(std::size_t count) {
 
 void PlanGeometry::expect_lines(std::size_t count) {
     lines_.reserve(count);
-    line_table_.reserve(count);
 }
 
 void PlanGeometry::make_room(std::size_t lines, std::size_t points) {
@@ -150,8 +149,8 @@ void PlanGeometry::freeze_vertices() {
 }
 
 void PlanGeometry::forget_names() {
-    line_table_ = {};
-    point_table_ = {};
+    edges_of_vertex_ = crossings_of_line_ = {};
+    line_table_ = point_table_ = {};
     names_forgotten_ = true;
 }
 
@@ -166,18 +165,44 @@ void PlanGeometry::forget_all() {
 
 void PlanGeometry::remember_names() {
     names_forgotten_ = false;
-    line_table_.reserve(lines_.size());
-    point_table_.reserve(points_.size() - vertex_count_);
-    const auto line_key = [&](std::int32_t number) {
-        return line_key_of(lines_[static_cast<std::size_t>(number)]);
-    };
-    const auto point_key = [&](std::int32_t number) {
-        return point_key_of(points_[vertex_count_ + static_cast<std::size_t>(number)]);
-    };
-    for (const Line& line : lines_)
-        line_table_.insert(line_key_of(line), line_key);
+    for (std::size_t l = 0; l < lines_.size(); ++l)
+        find_or_add_line(lines_[l], static_cast<std::int32_t>(l));
     for (std::size_t p = vertex_count_; p < points_.size(); ++p)
-        point_table_.insert(point_key_of(points_[p]), point_key);
+        find_or_add_crossing(points_[p], static_cast<std::int32_t>(p - vertex_count_));
+}
+
+/// The number of a line with this name, `next` where it is new.
+std::int32_t PlanGeometry::find_or_add_line(const Line& line, std::int32_t next) {
+    const auto line_at = [&](std::int32_t number) -> const Line& {
+        return lines_[static_cast<std::size_t>(number)];
+    };
+    if (line.kind == Line::Kind::kEdge) {
+        const std::int32_t number = edges_of_vertex_.find_or_add(
+            line.first, next, [&](std::int32_t n) { return line_at(n).second == line.second; });
+        if (number != OwnedNames::kElsewhere) return number;
+    }
+    return line_table_
+        .insert(line_key_of(line), next, [&](std::int32_t n) { return line_key_of(line_at(n)); })
+        .number;
+}
+
+/// The number of a crossing with this name, counted from the first, `next` where it is new.
+std::int32_t PlanGeometry::find_or_add_crossing(const Point& point, std::int32_t next) {
+    const auto point_at = [&](std::int32_t number) -> const Point& {
+        return points_[vertex_count_ + static_cast<std::size_t>(number)];
+    };
+    if (point.edge_from < 0) {
+        const LineId older = std::min(point.first, point.second);
+        const std::int32_t number = crossings_of_line_.find_or_add(
+            std::max(point.first, point.second), next, [&](std::int32_t n) {
+                return std::min(point_at(n).first, point_at(n).second) == older;
+            });
+        if (number != OwnedNames::kElsewhere) return number;
+    }
+    return point_table_
+        .insert(point_key_of(point), next,
+                [&](std::int32_t n) { return point_key_of(point_at(n)); })
+        .number;
 }
 
 DirectedLine PlanGeometry::add_edge(VertexId from, VertexId to) {
@@ -188,26 +213,24 @@ DirectedLine PlanGeometry::add_edge(VertexId from, VertexId to) {
 
 LineId PlanGeometry::add_line(const Line& line) {
     if (names_forgotten_) remember_names();
-    const auto found = line_table_.insert(line_key_of(line), [&](std::int32_t number) {
-        return line_key_of(lines_[static_cast<std::size_t>(number)]);
-    });
-    if (found.is_new) {
+    const auto next = static_cast<LineId>(lines_.size());
+    const LineId id = find_or_add_line(line, next);
+    if (id == next) {
         check_room(lines_.size(), "lines");
         lines_.push_back(line);
     }
-    return found.number;
+    return id;
 }
 
 PointId PlanGeometry::add_point(const Point& point) {
     if (names_forgotten_) remember_names();
-    const auto found = point_table_.insert(point_key_of(point), [&](std::int32_t number) {
-        return point_key_of(points_[vertex_count_ + static_cast<std::size_t>(number)]);
-    });
-    if (found.is_new) {
+    const auto next = static_cast<std::int32_t>(points_.size() - vertex_count_);
+    const std::int32_t number = find_or_add_crossing(point, next);
+    if (number == next) {
         check_room(points_.size(), "points");
         points_.push_back(point);
     }
-    return found.number + static_cast<PointId>(vertex_count_);
+    return number + static_cast<PointId>(vertex_count_);
 }
 
 LineFilter PlanGeometry::edge_filter(VertexId from, VertexId to) const {

@@ -28,13 +28,19 @@ public:
     /// the key of a number that was given before.
     template <class KeyOf>
     Found insert(const Key& key, const KeyOf& key_of) {
+        return insert(key, size_, key_of);
+    }
+    /// The same with numbers that the caller gives: a new key's is `next`.
+    template <class KeyOf>
+    Found insert(const Key& key, std::int32_t next, const KeyOf& key_of) {
         if ((static_cast<std::size_t>(size_) + 1) * 3 > slots_.size() * 2) grow();
         const std::uint32_t tag = hash(key);
         for (std::size_t slot = tag & mask_;; slot = (slot + 1) & mask_) {
             Slot& here = slots_[slot];
             if (here.number < 0) {
-                here = {tag, size_};
-                return {size_++, true};
+                here = {tag, next};
+                ++size_;
+                return {next, true};
             }
             if (here.tag == tag && same(key_of(here.number), key)) return {here.number, false};
         }

@@ -13,6 +13,7 @@
 
 #include "realmodel/base/growing_array.hpp"
 #include "realmodel/exact/key_table.hpp"
+#include "realmodel/exact/owned_names.hpp"
 
 namespace realmodel::exact {
 
@@ -245,11 +246,13 @@ public:
         prefetch(Line{Line::Kind::kEdge, std::min(from, to), std::max(from, to)});
     }
     [[gnu::always_inline]] void prefetch(const Line& line) const {
-        line_table_.prefetch(line_key_of(line));
+        __builtin_prefetch(line.kind == Line::Kind::kEdge ? edges_of_vertex_.place(line.first)
+                                                          : line_table_.place(line_key_of(line)));
     }
     /// What is to be fetched before a point is added.
     const void* place_of_name(const Point& point) const {
-        return point_table_.place(point_key_of(point));
+        return point.edge_from < 0 ? crossings_of_line_.place(std::max(point.first, point.second))
+                                   : point_table_.place(point_key_of(point));
     }
 
     VertexId vertex_count() const { return static_cast<VertexId>(vertex_count_); }
@@ -306,8 +309,14 @@ private:
     GrowingArray<PlaneFilter> plane_filters_;
     GrowingArray<Line> lines_;
     void remember_names();
+    std::int32_t find_or_add_line(const Line& line, std::int32_t next);
+    std::int32_t find_or_add_crossing(const Point& point, std::int32_t next);
 
-    KeyTable vertex_table_, space_table_, line_table_, point_table_;
+    KeyTable vertex_table_, space_table_;
+    /// Edges by their lower vertex and crossings by the younger line. The tables have other lines,
+    /// crossings with other names, and what their owners have too many of.
+    OwnedNames edges_of_vertex_, crossings_of_line_;
+    KeyTable line_table_, point_table_;
     bool names_forgotten_ = false;
     std::size_t vertex_count_ = 0;
     PlanReach reach_;
