@@ -12,9 +12,6 @@ namespace realmodel::exact {
 
 namespace {
 
-/// Instead of a shared id.
-constexpr std::int32_t kKept = -1, kAsked = -2;
-
 int sign_of(double value) {
     return value > 0.0 ? 1 : (value < 0.0 ? -1 : 0);
 }
@@ -287,7 +284,6 @@ PointId Scope::crossing_between_ends(LineId a, LineId b) {
 void Scope::ask_for_local_line(LineId id) {
     const auto local = static_cast<std::size_t>(id - kLocal);
     if (line_ids_.size() < lines_.size()) line_ids_.resize(lines_.size(), kKept);
-    if (line_ids_[local] != kKept) return;
     line_ids_[local] = kAsked;
     asked_lines_.push_back(static_cast<std::int32_t>(local));
 }
@@ -295,7 +291,6 @@ void Scope::ask_for_local_line(LineId id) {
 void Scope::ask_for_local_point(PointId id) {
     const auto local = static_cast<std::size_t>(id - kLocal);
     if (point_ids_.size() < points_.size()) point_ids_.resize(points_.size(), kKept);
-    if (point_ids_[local] != kKept) return;
     point_ids_[local] = kAsked;
     asked_points_.push_back(static_cast<std::int32_t>(local));
     ask_for_line(points_[local].first);

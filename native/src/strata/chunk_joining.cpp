@@ -74,6 +74,20 @@ void put(PolygonPool& to, const PoolStart& at, const PolygonPool& from, Scope& s
 
 }  // namespace
 
+ChunkResult::ChunkResult(const exact::PlanGeometry& geometry, std::size_t facets)
+    : scope(std::make_unique<Scope>(geometry)) {
+    // on surfaces of much the same resolution
+    constexpr std::size_t kPoints = 4, kPolygons = 6, kCorners = 4;
+    scope->expect_points(kPoints * facets);
+    for (PolygonPool* pool : {&faces.polygons, &lowered_outlines}) {
+        pool->offsets.reserve(kPolygons * facets);
+        pool->corners.reserve(kPolygons * kCorners * facets);
+    }
+    for (auto* list : lists_of(faces))
+        list->reserve(kPolygons * facets);
+    lowered.reserve(kPolygons * facets);
+}
+
 void ChunkStart::pass(const ChunkResult& chunk) {
     cell += static_cast<std::int64_t>(chunk.cell_block.size());
     strata::pass(face, chunk.faces.polygons);

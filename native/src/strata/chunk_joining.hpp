@@ -21,8 +21,8 @@ struct LoweredPiece {
 /// What one chunk of facets became. Lines and points are the scope's for as long as there is one;
 /// cells are counted from 0.
 struct ChunkResult {
-    explicit ChunkResult(const exact::PlanGeometry& geometry)
-        : scope(std::make_unique<Scope>(geometry)) {}
+    /// Makes room for what most chunks of so many facets become.
+    ChunkResult(const exact::PlanGeometry& geometry, std::size_t facets);
 
     std::unique_ptr<Scope> scope;
     GrowingArray<std::int32_t> cell_block;

@@ -21,8 +21,6 @@ namespace {
 /// Facets worked on at a time: fixed, so that the result does not depend on the number of threads.
 /// More find fewer points twice, on the edges between chunks, but have to stay in the cache.
 constexpr std::size_t kChunk = 1024;
-/// Points that a facet finds on surfaces of much the same resolution, hardly ever more.
-constexpr std::size_t kPointsOfFacet = 4;
 
 /// Works on the facets of one chunk.
 class FacetOverlay {
@@ -198,9 +196,8 @@ Envelope overlay(PlanGeometry& geometry, const Envelope& envelope, const Layer& 
     OrderedHandOver hand_over(geometry, chunks, envelope.size());
     const auto find_place = [&](std::size_t c) { joining.find_place(c); };
     parallel_chunks(chunks, threads, progress, [&](std::size_t c) {
-        results[c] = std::make_unique<ChunkResult>(geometry);
         const std::size_t begin = c * kChunk, end = std::min(envelope.size(), begin + kChunk);
-        results[c]->scope->expect_points(kPointsOfFacet * (end - begin));
+        results[c] = std::make_unique<ChunkResult>(geometry, end - begin);
         FacetOverlay facets(envelope, layer, number, whole, *results[c]);
         for (std::size_t f = begin; f < end; ++f)
             facets.process(f);

@@ -12,10 +12,10 @@ namespace {
 /// Whether two convex polygons have the same corners.
 bool same_corners(PolygonView a, PolygonView b) {
     if (a.size() != b.size()) return false;
-    const auto first =
-        std::find_if(b.begin(), b.end(), [&](const Corner& c) { return c.point == a[0].point; });
-    if (first == b.end()) return false;
-    auto j = static_cast<std::size_t>(first - b.begin());
+    std::size_t j = 0;
+    while (j < b.size() && b[j].point != a[0].point)
+        ++j;
+    if (j == b.size()) return false;
     for (const Corner& corner : a) {
         if (corner.point != b[j].point) return false;
         j = j + 1 < b.size() ? j + 1 : 0;

@@ -11,6 +11,7 @@ namespace realmodel::strata {
 namespace {
 
 constexpr std::size_t kPolygons = 1 << 12, kPieces = 1 << 14;  // worked on at a time
+constexpr std::size_t kAhead = 16;                             // pieces
 
 /// The pieces of each polygon.
 struct PiecesOfPolygons {
@@ -158,10 +159,21 @@ void add_surface_facets(const Layer& layer, const std::vector<std::uint8_t>& who
     parallel_ranges(
         polygons, kPolygons, threads, progress, [&](std::size_t begin, std::size_t end) {
             EnvelopeWriter writer(next, start[begin / kPolygons], number);
-            for (std::size_t p = begin; p < end; ++p)
+            const std::size_t last_piece = of_polygon.offsets[end];
+            for (std::size_t p = begin; p < end; ++p) {
+                // its pieces lie anywhere, so those of later polygons are fetched
+                for (std::size_t k = of_polygon.offsets[p] + kAhead,
+                                 to = of_polygon.offsets[p + 1] + kAhead;
+                     k < to && k + kAhead < last_piece; ++k) {
+                    prefetch(lowered.outlines.corners.begin() +
+                             lowered.outlines.offsets[of_polygon.pieces[k]]);
+                    prefetch(lowered.outlines.offsets.begin() + of_polygon.pieces[k + kAhead]);
+                    prefetch(lowered.cell_above.begin() + of_polygon.pieces[k + kAhead]);
+                }
                 visit(
                     p, [&](PolygonView o, PlaneId plane) { writer.add_facet(o, plane); },
                     [&](PolygonView o, std::int32_t above) { writer.add_face(o, above); });
+            }
         });
 }
 

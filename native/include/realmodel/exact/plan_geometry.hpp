@@ -411,10 +411,10 @@ public:
 
     /// Asks for a line or point, which may be local, to be handed over.
     void ask_for_line(LineId id) {
-        if (id >= kLocal) ask_for_local_line(id);
+        if (id >= kLocal && is_kept(line_ids_, id)) ask_for_local_line(id);
     }
     void ask_for_point(PointId id) {
-        if (id >= kLocal) ask_for_local_point(id);
+        if (id >= kLocal && is_kept(point_ids_, id)) ask_for_local_point(id);
     }
     /// Hands the local lines and points over to the geometry that were asked for; what nobody asks
     /// for stays behind. Nothing new may be found afterwards.
@@ -425,13 +425,27 @@ public:
     }
     /// The shared id of a line or point, which may be local; handed over now if nobody asked
     /// before.
-    LineId shared_line(LineId id) { return id < kLocal ? id : shared_local_line(id); }
+    LineId shared_line(LineId id) {
+        if (id < kLocal) return id;
+        const LineId shared = line_ids_[static_cast<std::size_t>(id - kLocal)];
+        return shared >= 0 ? shared : shared_local_line(id);
+    }
     DirectedLine shared_directed(DirectedLine id) {
         return directed(shared_line(line_of(id)), is_reversed(id));
     }
-    PointId shared_point(PointId id) { return id < kLocal ? id : shared_local_point(id); }
+    PointId shared_point(PointId id) {
+        if (id < kLocal) return id;
+        const PointId shared = point_ids_[static_cast<std::size_t>(id - kLocal)];
+        return shared >= 0 ? shared : shared_local_point(id);
+    }
 
 private:
+    /// Instead of a shared id.
+    static constexpr std::int32_t kKept = -1, kAsked = -2;
+    static bool is_kept(const std::vector<std::int32_t>& ids, std::int32_t id) {
+        const auto local = static_cast<std::size_t>(id - kLocal);
+        return local >= ids.size() || ids[local] == kKept;
+    }
     void ask_for_local_line(LineId id);
     void ask_for_local_point(PointId id);
     LineId shared_local_line(LineId id);
