@@ -100,9 +100,9 @@ struct WallBatch {
 };
 /// The walls between columns, in order of tracks, those of paired edges last; where columns left
 /// and right of a track cross in height, nothing but the points that the tracks must pass first are
-/// returned in `missing`.
+/// returned in `missing`. If there are none, the paired edges are given back on the way.
 std::vector<WallBatch> find_walls(exact::PlanGeometry& geometry, const FaceList& faces,
-                                  const Tracks& tracks, const Loops& loops,
+                                  Tracks& tracks, const Loops& loops,
                                   std::vector<ExtraPoint>& missing, int threads,
                                   const Progress* progress);
 

@@ -204,9 +204,8 @@ private:
 
 }  // namespace
 
-std::vector<WallBatch> find_walls(PlanGeometry& geometry, const FaceList& faces,
-                                  const Tracks& tracks, const Loops& loops,
-                                  std::vector<ExtraPoint>& missing, int threads,
+std::vector<WallBatch> find_walls(PlanGeometry& geometry, const FaceList& faces, Tracks& tracks,
+                                  const Loops& loops, std::vector<ExtraPoint>& missing, int threads,
                                   const Progress* progress) {
     const std::size_t chunks = (tracks.size() + kTracks - 1) / kTracks;
     std::vector<WallBatch> walls(chunks);
@@ -231,7 +230,7 @@ std::vector<WallBatch> find_walls(PlanGeometry& geometry, const FaceList& faces,
     if (!missing.empty()) return {};
     walls.resize(chunks + tracks.paired.size());
     parallel_chunks(tracks.paired.size(), threads, progress, [&](std::size_t chunk) {
-        const PairedEdges& paired = tracks.paired[chunk];
+        const PairedEdges paired = std::move(tracks.paired[chunk]);
         WallBatch& batch = walls[chunks + chunk];
         batch.sizes.reserve(paired.wall_count);
         batch.cells.reserve(paired.wall_count);
