@@ -23,26 +23,12 @@ struct FacesOnPlaces {
     FlatArray<std::int32_t> values;
 };
 
-/// Numbers the entries: each edge has one for each place that it takes up, but for its far end.
-void number_entries(const FaceList& faces, const Tracks& tracks, Loops& loops, int threads,
-                    const Progress* progress) {
-    loops.entries = EntryNumbers(tracks.passed, faces.polygons.corners.size(), threads, progress);
-    loops.face_offsets = FlatArray<std::uint32_t>(faces.size() + 1);
-    parallel_ranges(
-        faces.size() + 1, kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t f = begin; f < end; ++f) {
-                loops.face_offsets[f] =
-                    loops.entries.first(static_cast<std::size_t>(faces.polygons.offsets[f]));
-            }
-        });
-}
-
 /// The places that faces pass, entry by entry; their complement where they are passed tentatively.
 FlatArray<PlaceId> places_of_entries(const FaceList& faces, const Places& places,
                                      const Tracks& tracks, const Loops& loops, int threads,
                                      const Progress* progress) {
-    FlatArray<PlaceId> place(loops.face_offsets[faces.size()]);
     const auto& corners = faces.polygons.corners;
+    FlatArray<PlaceId> place(loops.entries.first(corners.size()));
     parallel_ranges(
         corners.size(), 4 * kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
             loops.entries.for_each(begin, end, [&](std::size_t c, std::size_t entry) {
@@ -60,6 +46,10 @@ FlatArray<PlaceId> places_of_entries(const FaceList& faces, const Places& places
         }
     });
     return place;
+}
+
+std::uint32_t first_entry(const FaceList& faces, const Loops& loops, std::size_t face) {
+    return loops.entries.first(static_cast<std::size_t>(faces.polygons.offsets[face]));
 }
 
 /// Counts entries on each place. Which of a place's entries comes first is left to chance, and few
@@ -115,10 +105,11 @@ FacesOnPlaces sort_by_place(const FaceList& faces, FlatArray<PlaceId>& place, st
     on.values = FlatArray<std::int32_t>(place.size());
     parallel_ranges(
         faces.size(), kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
-            const std::size_t last = loops.face_offsets[end] - 1;
+            std::size_t i = first_entry(faces, loops, begin);
+            const std::size_t last = first_entry(faces, loops, end) - 1;
             for (std::size_t f = begin; f < end; ++f) {
                 const PlaneId plane = faces.plane[f];
-                for (std::size_t i = loops.face_offsets[f]; i < loops.face_offsets[f + 1]; ++i) {
+                for (const std::size_t next = first_entry(faces, loops, f + 1); i < next; ++i) {
                     counts.prefetch(place_of(std::min(i + 32, last)));
                     const std::uint32_t at = counts.counts()[place_of(i)] + counts.number(i);
                     on.values[at] = place[i] < 0 ? ~plane : plane;
@@ -173,6 +164,16 @@ void find_heights(const PlanGeometry& geometry, const Places& places, FacesOnPla
     running_totals(loops.place_offsets, INT32_MAX, threads, progress);
 }
 
+/// What follows asks for faces, not for their corners.
+void number_faces(const FaceList& faces, Loops& loops, int threads, const Progress* progress) {
+    loops.face_offsets = FlatArray<std::uint32_t>(faces.size() + 1);
+    parallel_ranges(faces.size() + 1, kFaces, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f)
+                            loops.face_offsets[f] = first_entry(faces, loops, f);
+                    });
+}
+
 /// From here on the edges on tracks name their first entries: what follows asks for nothing else of
 /// a corner.
 void name_entries(Tracks& tracks, const Loops& loops, int threads, const Progress* progress) {
@@ -206,7 +207,7 @@ void add_late_vertices(const Tracks& tracks, Loops& loops, int threads, const Pr
 Loops find_loops(const PlanGeometry& geometry, const FaceList& faces, const Places& places,
                  Tracks& tracks, int threads, const Progress* progress) {
     Loops loops;
-    number_entries(faces, tracks, loops, threads, progress);
+    loops.entries = EntryNumbers(tracks.passed, faces.polygons.corners.size(), threads, progress);
     loops.vertices = places_of_entries(faces, places, tracks, loops, threads, progress);
     tracks.passed = {};
     name_entries(tracks, loops, threads, progress);
@@ -230,6 +231,8 @@ Loops find_loops(const PlanGeometry& geometry, const FaceList& faces, const Plac
                             loops.vertices[i] = vertex(i);
                         }
                     });
+    on = {};
+    number_faces(faces, loops, threads, progress);
     add_late_vertices(tracks, loops, threads, progress);
     return loops;
 }
