@@ -39,12 +39,8 @@ std::optional<PlaneAt> plane_at(const std::array<Point, 3>& corner, const Point&
     return PlaneAt{z.get_d(), std::hypot(along_x.get_d(), along_y.get_d())};
 }
 
-/// Whether a point lies on the plane of a triangle that is near in plan, up to rounding.
-bool on_some_plane(const Mesh& surface, const Point& point) {
-    double largest = std::max(std::abs(point[0]), std::abs(point[1]));
-    for (const Point& p : surface.vertices)
-        largest = std::max({largest, std::abs(p[0]), std::abs(p[1])});
-    const double reach = 64 * spacing(largest);
+/// Whether a point lies on the plane of a triangle that is within `reach` in plan, up to rounding.
+bool on_some_plane(const Mesh& surface, const Point& point, double reach) {
     for (const Triangle& t : surface.triangles) {
         std::array<Point, 3> corner;
         for (std::size_t i = 0; i < 3; ++i)
@@ -72,10 +68,16 @@ bool on_some_plane(const Mesh& surface, const Point& point) {
 
 std::vector<Defect> surface_defects(const strata::CellComplex& c, const StackCase& stack) {
     std::vector<const Mesh*> surfaces;
+    double largest =
+        0;  // of all: its rounding is what plan coordinates of any surface are joined by
     for (const RockCase& rock : stack.rocks) {
-        for (const Mesh& surface : rock.surfaces)
+        for (const Mesh& surface : rock.surfaces) {
             surfaces.push_back(&surface);
+            for (const Point& p : surface.vertices)
+                largest = std::max({largest, std::abs(p[0]), std::abs(p[1])});
+        }
     }
+    const double reach = 64 * spacing(largest);
     std::vector<Defect> defects;
     for (std::size_t f = 0; f < c.face_cells.size(); ++f) {
         const std::int32_t s = c.face_surface[f];
@@ -87,7 +89,7 @@ std::vector<Defect> surface_defects(const strata::CellComplex& c, const StackCas
             for (std::size_t axis = 0; axis < 3; ++axis)
                 middle[axis] += c.vertices[v][axis] / count;
         }
-        if (on_some_plane(*surfaces[static_cast<std::size_t>(s)], middle)) continue;
+        if (on_some_plane(*surfaces[static_cast<std::size_t>(s)], middle, reach)) continue;
         defects.push_back(
             {"off its surface", "face " + std::to_string(f) + " of surface " + std::to_string(s) +
                                     " at " + std::to_string(middle[0]) + " " +
