@@ -18,7 +18,7 @@ from realmodel.core import (
 )
 from realmodel.core import sample_windows as sample_windows_module
 from realmodel.core.coarse_blocks import coarse_blocks
-from realmodel.core.estimate import touching_vertices
+from realmodel.core.estimate import memory_text, touching_vertices
 from realmodel.core.measured_costs import COSTS
 from realmodel.core.sample_windows import Window, cut_out, sample_windows, within_rings
 
@@ -167,13 +167,14 @@ def test_a_stage_is_told_as_a_stage():
 
 def test_a_build_that_would_not_fit_is_refused_before_it_begins():
     project = waves()
+    limit = estimate(project).memory // 2
     with pytest.raises(NotEnoughMemory) as refused:
-        build(project, memory=20_000_000)
+        build(project, memory=limit)
     error = refused.value
     assert isinstance(error, BuildFailed)
-    assert error.available == 20_000_000 < error.needed
+    assert error.available == limit < error.needed
     assert within_factor(error.needed, estimate(project).memory)
-    assert "20 MB are allowed" in str(error)
+    assert f"{memory_text(limit)} are allowed" in str(error)
     assert "triangles in all instead of 25,000" in error.advice
     assert "\n" not in str(error)
 
