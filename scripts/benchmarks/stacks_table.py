@@ -19,7 +19,7 @@ Measure = Callable[[], dict]
 
 SIZES = {100: "10 x 20,000", 300: "10 x 180,000", 700: "10 x 980,000"}
 # Pairs by quads: what is short is measured more often. Two at least, so that each side is first as often: on
-# virtual machines memory that nobody had for a while comes from the host, 2 s a GB; the second finds it there.
+# virtual machines memory that nobody had for a while comes from the host, 2 s a GB; the second finds it.
 _GROWTH = {60: 5, 100: 5, 300: 4, 700: 2}
 _SECONDS = 900.0
 _SAME_VOLUME = 1e-6
