@@ -68,8 +68,8 @@ bool on_some_plane(const Mesh& surface, const Point& point, double reach) {
 
 std::vector<Defect> surface_defects(const strata::CellComplex& c, const StackCase& stack) {
     std::vector<const Mesh*> surfaces;
-    double largest =
-        0;  // of all: its rounding is what plan coordinates of any surface are joined by
+    // Plan coordinates of any surface are joined by the rounding of the largest of all.
+    double largest = 0;
     for (const RockCase& rock : stack.rocks) {
         for (const Mesh& surface : rock.surfaces) {
             surfaces.push_back(&surface);

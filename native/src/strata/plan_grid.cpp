@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "parallel_counts.hpp"
+#include "sort_few.hpp"
 
 namespace realmodel::strata {
 
@@ -12,22 +13,6 @@ namespace {
 
 /// Worked on at a time. Polygons around a border are few, and each lies in many cells.
 constexpr std::size_t kBoxes = 4096, kPolygons = 128;
-
-/// Sorts numbers that are few and half in order already.
-void sort_few(GrowingArray<std::int32_t>& numbers) {
-    constexpr std::size_t kFew = 32;
-    if (numbers.size() > kFew) {
-        std::sort(numbers.begin(), numbers.end());
-        return;
-    }
-    for (std::size_t i = 1; i < numbers.size(); ++i) {
-        const std::int32_t number = numbers[i];
-        std::size_t at = i;
-        for (; at > 0 && numbers[at - 1] > number; --at)
-            numbers[at] = numbers[at - 1];
-        numbers[at] = number;
-    }
-}
 
 }  // namespace
 
@@ -215,7 +200,7 @@ void PlanGrid::candidates(const Scope& scope, PolygonView polygon,
     small_.append(box, found);
     bool is_once = large_.append(scope, polygon, box, boxes_, found);
     is_once &= outer_.append(scope, polygon, box, boxes_, found);
-    sort_few(found);
+    sort_few(found.begin(), found.end());
     if (!is_once)
         found.resize(
             static_cast<std::size_t>(std::unique(found.begin(), found.end()) - found.begin()));

@@ -9,6 +9,7 @@
 #include "parallel_chunks.hpp"
 #include "realmodel/exact/turn.hpp"
 #include "realmodel/meshing/triangulation.hpp"
+#include "sort_few.hpp"
 
 namespace realmodel::strata {
 
@@ -33,22 +34,6 @@ std::size_t half_edge_of(Pass pass) {
 }
 bool is_upward(Pass pass) {
     return (pass & 1) != 0;
-}
-
-/// Sorts what is mostly very few.
-void sort_few(Pass* begin, Pass* end) {
-    constexpr std::ptrdiff_t kFew = 24;
-    if (end - begin > kFew) {
-        std::sort(begin, end);
-        return;
-    }
-    for (Pass* next = begin; next < end; ++next) {
-        const Pass own = *next;
-        Pass* to = next;
-        for (; to > begin && to[-1] > own; --to)
-            *to = to[-1];
-        *to = own;
-    }
 }
 
 struct VertexRange {
