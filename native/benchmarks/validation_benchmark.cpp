@@ -48,11 +48,12 @@ Surface make_surface(int quads, int number, std::mt19937_64& random) {
     return s;
 }
 
-std::span<const std::int32_t> pairs(const std::vector<std::array<std::int32_t, 2>>& rows) {
+std::span<const std::int32_t> pairs(
+    const realmodel::GrowingArray<std::array<std::int32_t, 2>>& rows) {
     return {rows.empty() ? nullptr : rows.front().data(), 2 * rows.size()};
 }
 
-std::span<const double> triples(const std::vector<std::array<double, 3>>& rows) {
+std::span<const double> triples(const realmodel::GrowingArray<std::array<double, 3>>& rows) {
     return {rows.empty() ? nullptr : rows.front().data(), 3 * rows.size()};
 }
 
