@@ -3,7 +3,7 @@
 
 file(GLOB fuzzing_sources CONFIGURE_DEPENDS fuzz/*.cpp)
 add_library(realmodel_fuzzing STATIC ${fuzzing_sources})
-target_include_directories(realmodel_fuzzing PUBLIC fuzz)
+target_include_directories(realmodel_fuzzing PUBLIC fuzz PRIVATE src)
 # Debian's property_tree includes a header that asks every reader to say so.
 set_source_files_properties(fuzz/case_file.cpp PROPERTIES COMPILE_DEFINITIONS BOOST_BIND_GLOBAL_PLACEHOLDERS)
 target_link_libraries(realmodel_fuzzing PUBLIC realmodel PRIVATE realmodel_warnings)

@@ -7,13 +7,13 @@
 #include <numeric>
 #include <set>
 
-#include "realmodel/exact/turn.hpp"
+#include "exact/orient2d.hpp"
 
 namespace realmodel::fuzz {
 
 namespace {
 
-using exact::turn;
+using exact::orient2d;
 
 std::int32_t add(PlanMesh& mesh, double x, double y) {
     mesh.vertices.push_back({x, y});
@@ -190,13 +190,13 @@ std::vector<Triangle> triangulated(const std::vector<PlanPoint>& points) {
     std::sort(order.begin(), order.end(),
               [&](std::int32_t a, std::int32_t b) { return at(a) < at(b); });
     std::size_t start = 2;
-    while (start < order.size() && turn(at(order[0]), at(order[1]), at(order[start])) == 0)
+    while (start < order.size() && orient2d(at(order[0]), at(order[1]), at(order[start])) == 0)
         ++start;
     if (start >= order.size()) return {};
     std::vector<std::int32_t> hull(order.begin(),
                                    order.begin() + static_cast<std::ptrdiff_t>(start));
     const std::int32_t tip = order[start];
-    if (turn(at(hull[0]), at(hull[1]), at(tip)) < 0) std::reverse(hull.begin(), hull.end());
+    if (orient2d(at(hull[0]), at(hull[1]), at(tip)) < 0) std::reverse(hull.begin(), hull.end());
     std::vector<Triangle> triangles;
     for (std::size_t i = 0; i + 1 < hull.size(); ++i)
         triangles.push_back({hull[i], hull[i + 1], tip});
@@ -205,7 +205,7 @@ std::vector<Triangle> triangulated(const std::vector<PlanPoint>& points) {
         const std::int32_t p = order[o];
         const std::size_t size = hull.size();
         const auto seen = [&](std::size_t i) {
-            return turn(at(hull[i % size]), at(hull[(i + 1) % size]), at(p)) < 0;
+            return orient2d(at(hull[i % size]), at(hull[(i + 1) % size]), at(p)) < 0;
         };
         std::size_t first = 0;
         while (!seen(first) || seen(first + size - 1))
@@ -239,7 +239,7 @@ void flip_edges(Chance& chance, PlanMesh& mesh, int count) {
         const auto [a, b] = chance.one_of(inner);
         const auto [i, c] = owner[{a, b}];
         const auto [j, d] = owner[{b, a}];
-        if (turn(at(c), at(a), at(d)) > 0 && turn(at(d), at(b), at(c)) > 0) {
+        if (orient2d(at(c), at(a), at(d)) > 0 && orient2d(at(d), at(b), at(c)) > 0) {
             mesh.triangles[i] = {c, a, d};
             mesh.triangles[j] = {d, b, c};
         }

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "polygons.hpp"
+#include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cell_cut.hpp"
+#include "cutting/cell_cut.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 
-#include "plane_cross.hpp"
+#include "cutting/plane_cross.hpp"
 
 namespace realmodel::cutting {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "pieces.hpp"
-#include "plane_points.hpp"
+#include "cutting/pieces.hpp"
+#include "cutting/plane_points.hpp"
 
 namespace realmodel::cutting {
 

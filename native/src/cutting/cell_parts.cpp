@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "box_tree.hpp"
-#include "cell_cut.hpp"
-#include "strata/disjoint_parts.hpp"
+#include "base/disjoint_sets.hpp"
+#include "cutting/box_tree.hpp"
+#include "cutting/cell_cut.hpp"
 
 namespace realmodel::cutting {
 
@@ -35,7 +35,7 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
     std::sort(uses_.begin() + static_cast<std::ptrdiff_t>(own), uses_.end(), by_edge);
     std::inplace_merge(uses_.begin(), uses_.begin() + static_cast<std::ptrdiff_t>(own), uses_.end(),
                        by_edge);
-    strata::DisjointParts sets(count);
+    DisjointSets sets(count);
     std::vector<const Use*> faces, caps;
     for (std::size_t begin = 0; begin < uses_.size();) {
         std::size_t end = begin + 1;

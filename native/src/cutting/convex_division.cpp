@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "plane_cross.hpp"
-#include "triangulate.hpp"
+#include "cutting/plane_cross.hpp"
+#include "cutting/triangulate.hpp"
 
 namespace realmodel::cutting {
 

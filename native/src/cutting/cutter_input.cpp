@@ -6,11 +6,11 @@
 #include <map>
 #include <optional>
 
-#include "box_tree.hpp"
-#include "cutter_surface.hpp"
+#include "cutting/box_tree.hpp"
+#include "cutting/cutter_surface.hpp"
+#include "cutting/triangulate.hpp"
+#include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/exact/turn.hpp"
-#include "triangulate.hpp"
 
 namespace realmodel::cutting {
 
@@ -30,7 +30,7 @@ double dot(const Position& a, const Position& b) {
 bool is_flat(const Position& a, const Position& b, const Position& c) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
-        if (exact::turn({a[k], a[l]}, {b[k], b[l]}, {c[k], c[l]}) != 0) return false;
+        if (exact::orient2d({a[k], a[l]}, {b[k], b[l]}, {c[k], c[l]}) != 0) return false;
     }
     return true;
 }

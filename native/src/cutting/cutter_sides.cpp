@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutter_sides.hpp"
+#include "cutting/cutter_sides.hpp"
 
 #include <algorithm>
 #include <numeric>
 
+#include "base/parallel_sort.hpp"
 #include "realmodel/base/errors.hpp"
-#include "strata/parallel_sort.hpp"
 
 namespace realmodel::cutting {
 
@@ -52,7 +52,7 @@ CutterSides::CutterSides(SurfaceOverlay& overlay, const CutterWinding& winding, 
     refuse_borders();
     hand_on(progress);
     for (std::size_t e = 0; e < winding.edge_count(); ++e) {
-        strata::poll(progress, e);
+        poll(progress, e);
         go_round(e);
     }
     settle();
@@ -130,7 +130,7 @@ void CutterSides::hand_on(const Progress* progress) {
         if (!overlay_.is_active(f))
             take(static_cast<std::int32_t>(overlay_.size() + f), f, std::array{model.face(f)});
     }
-    strata::parallel_sort(uses, std::less<>(), overlay_.threads(), progress);
+    parallel_sort(uses, std::less<>(), overlay_.threads(), progress);
     std::size_t edge = 0;
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         while (edge < winding_.edge_count() && winding_.edge(edge)[0].edge < uses[begin].edge)

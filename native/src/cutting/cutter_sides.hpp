@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "cutter_winding.hpp"
-#include "plane_sides.hpp"
+#include "cutting/cutter_winding.hpp"
+#include "cutting/plane_sides.hpp"
 
 namespace realmodel::cutting {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutter_surface.hpp"
+#include "cutting/cutter_surface.hpp"
 
 #include <algorithm>
 
-#include "plane_sides.hpp"
+#include "cutting/plane_sides.hpp"
+#include "cutting/triangulate.hpp"
 #include "realmodel/base/errors.hpp"
-#include "triangulate.hpp"
 
 namespace realmodel::cutting {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "box_tree.hpp"
+#include "cutting/box_tree.hpp"
 #include "realmodel/cutting/cut.hpp"
 
 namespace realmodel::cutting {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutter_winding.hpp"
+#include "cutting/cutter_winding.hpp"
 
 #include <algorithm>
 
-#include "strata/parallel_counts.hpp"
-#include "strata/parallel_sort.hpp"
+#include "base/parallel_counts.hpp"
+#include "base/parallel_sort.hpp"
 
 namespace realmodel::cutting {
 
@@ -44,7 +44,7 @@ CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : over
     // regions that reach beyond the model first: there is nothing around them
     for (const bool beyond : {true, false}) {
         for (std::size_t r = 0; r < overlay.size(); ++r) {
-            strata::poll(progress, r);
+            poll(progress, r);
             if (!counts(r) || winding_[2 * r] >= 0) continue;
             if (beyond) {
                 const auto& outline = overlay.loops(r)[0];
@@ -136,7 +136,7 @@ void CutterWinding::collect_uses(const Progress* progress) {
         if (!counts(r)) continue;
         each_edge(overlay_.loops(r), 0, [&](const EdgeUse& use) { edges.push_back(use.edge); });
     }
-    strata::parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
+    parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     for (std::size_t r = 0; r < count; ++r) {
         if (overlay_.of_cutter(r) && !counts(r)) continue;
@@ -144,7 +144,7 @@ void CutterWinding::collect_uses(const Progress* progress) {
             if (std::binary_search(edges.begin(), edges.end(), use.edge)) uses_.push_back(use);
         });
     }
-    strata::parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
+    parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
     edges_of_.resize(count);
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
         for (; end < uses_.size() && uses_[end].edge == uses_[begin].edge; ++end) {
@@ -158,11 +158,11 @@ void CutterWinding::collect_uses(const Progress* progress) {
 
 void CutterWinding::find_fans(const Progress* progress) {
     sectors_.resize(edge_count());
-    strata::parallel_ranges(sectors_.size(), 1 << 8, overlay_.threads(), progress,
-                            [this](std::size_t begin, std::size_t end) {
-                                for (std::size_t e = begin; e < end; ++e)
-                                    sectors_[e].fan = fan_of(overlay_, edge(e));
-                            });
+    parallel_ranges(sectors_.size(), 1 << 8, overlay_.threads(), progress,
+                    [this](std::size_t begin, std::size_t end) {
+                        for (std::size_t e = begin; e < end; ++e)
+                            sectors_[e].fan = fan_of(overlay_, edge(e));
+                    });
 }
 
 std::int32_t CutterWinding::number(Winding&& winding) {

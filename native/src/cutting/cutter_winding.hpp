@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "edge_fan.hpp"
+#include "cutting/edge_fan.hpp"
 
 namespace realmodel::cutting {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "distinct.hpp"
+#include "cutting/distinct.hpp"
 
 #include <algorithm>
 #include <cmath>

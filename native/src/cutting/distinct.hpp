@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "polygons.hpp"
+#include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {
 

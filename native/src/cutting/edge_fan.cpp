@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "edge_fan.hpp"
+#include "cutting/edge_fan.hpp"
 
 #include <algorithm>
 #include <numeric>

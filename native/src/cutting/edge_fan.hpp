@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "surface_overlay.hpp"
+#include "cutting/surface_overlay.hpp"
 
 namespace realmodel::cutting {
 
@@ -22,8 +22,8 @@ struct EdgeUse {
 };
 
 /// Calls visit(use) for all edges of some loops.
-template <class Loops, class Visit>
-void each_edge(const Loops& loops, std::int32_t item, const Visit& visit) {
+template <class ConformedFaces, class Visit>
+void each_edge(const ConformedFaces& loops, std::int32_t item, const Visit& visit) {
     for (const auto& loop : loops) {
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const NodeId a = loop[i], b = loop[i + 1 < loop.size() ? i + 1 : 0];

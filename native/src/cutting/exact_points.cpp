@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How points come to be known. What is asked of them is in exact_signs.cpp.
-#include "exact_points.hpp"
+#include "cutting/exact_points.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "cutting/fractions.hpp"
+#include "cutting/wide_places.hpp"
 #include "exact/arithmetic.hpp"
-#include "fractions.hpp"
-#include "wide_places.hpp"
 
 namespace realmodel::cutting {
 
-using exact::Ball;
+using exact::DoubleDoubleInterval;
 
 namespace {
 
@@ -125,31 +125,31 @@ NodeId ExactPoints::make(const Crossing& crossing) {
 
 /// The coordinates of a crossing of what is given by doubles. What lies across an axis has that
 /// coordinate exactly.
-std::array<Ball, 3> ExactPoints::place(const Crossing& crossing) const {
+std::array<DoubleDoubleInterval, 3> ExactPoints::place(const Crossing& crossing) const {
     const auto minus = [this](NodeId p, NodeId q) {
-        std::array<Ball, 3> way;
+        std::array<DoubleDoubleInterval, 3> way;
         for (std::size_t k = 0; k < 3; ++k)
-            way[k] = Ball::difference(rounded(p)[k], rounded(q)[k]);
+            way[k] = DoubleDoubleInterval::difference(rounded(p)[k], rounded(q)[k]);
         return way;
     };
     const auto [p, q, a, b, c] = crossing.of;
     const auto u = minus(b, a), v = minus(c, a), way = minus(q, p), start = minus(p, a);
-    Ball from, change;
+    DoubleDoubleInterval from, change;
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-        const Ball normal = u[l] * v[m] - u[m] * v[l];
+        const DoubleDoubleInterval normal = u[l] * v[m] - u[m] * v[l];
         from = from + normal * start[k];
         change = change + normal * way[k];
     }
-    const Ball share = -from / change;
-    std::array<Ball, 3> result;
+    const DoubleDoubleInterval share = -from / change;
+    std::array<DoubleDoubleInterval, 3> result;
     for (std::size_t k = 0; k < 3; ++k) {
         if (way[k].is_exact_zero()) {
-            result[k] = Ball(rounded(p)[k]);
+            result[k] = DoubleDoubleInterval(rounded(p)[k]);
         } else if (u[k].is_exact_zero() && v[k].is_exact_zero()) {
-            result[k] = Ball(rounded(a)[k]);
+            result[k] = DoubleDoubleInterval(rounded(a)[k]);
         } else {
-            result[k] = Ball(rounded(p)[k]) + share * way[k];
+            result[k] = DoubleDoubleInterval(rounded(p)[k]) + share * way[k];
         }
     }
     return result;

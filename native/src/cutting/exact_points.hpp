@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "fractions.hpp"
-#include "node_table.hpp"
-#include "polygons.hpp"
-#include "realmodel/exact/ball.hpp"
+#include "cutting/fractions.hpp"
+#include "cutting/node_table.hpp"
+#include "cutting/polygons.hpp"
+#include "exact/double_double_interval.hpp"
 
 namespace realmodel::cutting {
 
@@ -78,7 +78,7 @@ private:
     /// A crossing of what is given by doubles, and its coordinates to twice their precision.
     struct Made {
         Crossing crossing;
-        std::array<exact::Ball, 3> at;
+        std::array<exact::DoubleDoubleInterval, 3> at;
     };
     /// What a point is known by: its doubles, a crossing of `made_`, or one of `fractions_`.
     struct Source {
@@ -94,14 +94,14 @@ private:
         const Source& source = source_[index(p)];
         return source.kind == Source::Kind::kMade ? &made_[index(source.number)] : nullptr;
     }
-    std::array<exact::Ball, 3> place(const Crossing& crossing) const;
+    std::array<exact::DoubleDoubleInterval, 3> place(const Crossing& crossing) const;
     Fractions exact_crossing(const Crossing& crossing) const;
 
     double slack(NodeId a, NodeId b, NodeId c, NodeId d) const;
     bool lie_on_one_plane_by_name(const std::array<NodeId, 4>& points) const;
     bool lie_on_one_line_by_name(const std::array<NodeId, 3>& points) const;
     /// A coordinate to twice the precision of doubles; nothing of points given by fractions.
-    std::optional<exact::Ball> ball(NodeId p, std::size_t axis) const;
+    std::optional<exact::DoubleDoubleInterval> ball(NodeId p, std::size_t axis) const;
     std::optional<int> orientation_of_balls(const std::array<NodeId, 4>& points) const;
     std::optional<int> turn_of_balls(std::size_t axis, const std::array<NodeId, 3>& points) const;
     class Wide;  ///< places as whole numbers of fixed width

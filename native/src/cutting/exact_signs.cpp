@@ -3,20 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exact_points.hpp"
-#include "fractions.hpp"
-#include "wide_places.hpp"
+#include "cutting/exact_points.hpp"
+#include "cutting/fractions.hpp"
+#include "cutting/wide_places.hpp"
 
 namespace realmodel::cutting {
 
-using exact::Ball;
+using exact::DoubleDoubleInterval;
 
 namespace {
 
 /// The way from one coordinate to another: without error where both are doubles.
-Ball between(const Ball& from, const Ball& to) {
-    const auto is_double = [](const Ball& x) { return x.low == 0 && x.error == 0; };
-    if (is_double(from) && is_double(to)) return Ball::difference(to.high, from.high);
+DoubleDoubleInterval between(const DoubleDoubleInterval& from, const DoubleDoubleInterval& to) {
+    const auto is_double = [](const DoubleDoubleInterval& x) { return x.low == 0 && x.error == 0; };
+    if (is_double(from) && is_double(to))
+        return DoubleDoubleInterval::difference(to.high, from.high);
     return to - from;
 }
 
@@ -149,14 +150,14 @@ bool ExactPoints::lie_on_one_line_by_name(const std::array<NodeId, 3>& points) c
     return false;
 }
 
-std::optional<Ball> ExactPoints::ball(NodeId p, std::size_t axis) const {
+std::optional<DoubleDoubleInterval> ExactPoints::ball(NodeId p, std::size_t axis) const {
     if (const Made* made = this->made(p)) return made->at[axis];
-    if (is_double(p)) return Ball(rounded(p)[axis]);
+    if (is_double(p)) return DoubleDoubleInterval(rounded(p)[axis]);
     return std::nullopt;
 }
 
 std::optional<int> ExactPoints::orientation_of_balls(const std::array<NodeId, 4>& points) const {
-    std::array<std::array<Ball, 3>, 3> way;
+    std::array<std::array<DoubleDoubleInterval, 3>, 3> way;
     for (std::size_t k = 0; k < 3; ++k) {
         const auto from = ball(points[0], k);
         if (!from) return std::nullopt;
@@ -174,7 +175,7 @@ std::optional<int> ExactPoints::orientation_of_balls(const std::array<NodeId, 4>
 
 std::optional<int> ExactPoints::turn_of_balls(std::size_t axis,
                                               const std::array<NodeId, 3>& points) const {
-    std::array<std::array<Ball, 2>, 2> way;
+    std::array<std::array<DoubleDoubleInterval, 2>, 2> way;
     for (std::size_t k = 0; k < 2; ++k) {
         const auto from = ball(points[0], (axis + 1 + k) % 3);
         if (!from) return std::nullopt;

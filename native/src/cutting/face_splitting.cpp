@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "face_splitting.hpp"
+#include "cutting/face_splitting.hpp"
 
 #include <algorithm>
 #include <array>

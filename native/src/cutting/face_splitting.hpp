@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "plane_sides.hpp"
-#include "polygons.hpp"
-#include "triangulate.hpp"
+#include "cutting/plane_sides.hpp"
+#include "cutting/polygons.hpp"
+#include "cutting/triangulate.hpp"
 
 namespace realmodel::cutting {
 

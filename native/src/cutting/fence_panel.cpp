@@ -4,8 +4,8 @@
 #include <map>
 #include <utility>
 
-#include "plane_sides.hpp"
-#include "polygons.hpp"
+#include "cutting/plane_sides.hpp"
+#include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {
 

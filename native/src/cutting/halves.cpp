@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "halves.hpp"
+#include "cutting/halves.hpp"
 
 #include <algorithm>
 
-#include "strata/parallel_chunks.hpp"
-#include "strata/volumes.hpp"
+#include "base/parallel_chunks.hpp"
+#include "strata/cells/volumes.hpp"
 
 namespace realmodel::cutting {
 
@@ -52,7 +52,7 @@ void assemble(const ComplexView& model, const std::vector<Position>& new_positio
     Renumbering renumbered(model, new_positions, complex.vertices);
     complex.face_offsets.push_back(0);
     for (std::size_t p = 0; p < pieces.size(); ++p) {
-        strata::poll(progress, p);
+        poll(progress, p);
         std::array<std::int32_t, 2> own{-1, -1};
         for (std::size_t k = 0; k < 2; ++k) {
             if (parts[p][k] >= 0) own[k] = number[index(parts[p][k])];
@@ -79,7 +79,7 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
                     const Pieces& pieces, const PieceParts& parts,
                     const std::vector<HalfCell>& half_cells, int threads, Progress* progress) {
     Cut cut;
-    strata::parallel_chunks(3, threads, progress, [&](std::size_t which) {
+    parallel_chunks(3, threads, progress, [&](std::size_t which) {
         if (which == 0) {
             assemble(model, new_positions, pieces, parts, half_cells, kBelow, cut.below,
                      cut.below_cells, progress);

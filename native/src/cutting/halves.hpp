@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pieces.hpp"
+#include "cutting/pieces.hpp"
 #include "realmodel/cutting/cut.hpp"
 
 namespace realmodel::cutting {

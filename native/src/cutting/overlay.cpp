@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where triangles meet, and how the points that come of it reach all that share them.
-#include "overlay.hpp"
+#include "cutting/overlay.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numeric>
 
-#include "strata/parallel_counts.hpp"
-#include "strata/parallel_sort.hpp"
+#include "base/parallel_counts.hpp"
+#include "base/parallel_sort.hpp"
 
 namespace realmodel::cutting {
 
@@ -66,11 +66,11 @@ void Overlay::share(std::int32_t one, std::int32_t other, NodeId p, NodeId q) {
 /// Calls visit(number) for all triangles, those of a chunk one after another on one thread.
 template <class Visit>
 void Overlay::each_triangle(int threads, const Progress* progress, const Visit& visit) const {
-    strata::parallel_ranges(triangles_.size(), kChunk, threads, progress,
-                            [&](std::size_t begin, std::size_t end) {
-                                for (std::size_t i = begin; i < end; ++i)
-                                    visit(i);
-                            });
+    parallel_ranges(triangles_.size(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i)
+                            visit(i);
+                    });
 }
 
 Overlay::Sides Overlay::sides_of(const Triangle& own, const Triangle& plane) const {
@@ -374,11 +374,11 @@ void Overlay::spread_points(int threads, const Progress* progress) {
     std::iota(changed.begin(), changed.end(), 0);
     while (!changed.empty()) {
         std::vector<std::vector<Hand>> hands((changed.size() + kChunk - 1) / kChunk);
-        strata::parallel_ranges(changed.size(), kChunk, threads, progress,
-                                [&](std::size_t begin, std::size_t end) {
-                                    for (std::size_t i = begin; i < end; ++i)
-                                        hand_on(changed[i], hands[begin / kChunk]);
-                                });
+        parallel_ranges(changed.size(), kChunk, threads, progress,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t i = begin; i < end; ++i)
+                                hand_on(changed[i], hands[begin / kChunk]);
+                        });
         changed.clear();
         for (const auto& chunk : hands) {
             for (const Hand& hand : chunk) {
@@ -395,7 +395,7 @@ void Overlay::spread_points(int threads, const Progress* progress) {
 }
 
 void Overlay::divide(int threads, const Progress* progress) {
-    strata::parallel_sort(of_edge_, std::less<>(), threads, progress);
+    parallel_sort(of_edge_, std::less<>(), threads, progress);
     settle(threads, progress);
     exchange_segments();
     settle(threads, progress);

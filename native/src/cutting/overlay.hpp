@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "box_tree.hpp"
-#include "exact_points.hpp"
+#include "cutting/box_tree.hpp"
+#include "cutting/exact_points.hpp"
 #include "realmodel/base/progress.hpp"
 
 namespace realmodel::cutting {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "overlay.hpp"
+#include "cutting/overlay.hpp"
 
 namespace realmodel::cutting {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "distinct.hpp"
-#include "part_rounding.hpp"
+#include "cutting/distinct.hpp"
+#include "cutting/part_rounding.hpp"
 
 namespace realmodel::cutting {
 

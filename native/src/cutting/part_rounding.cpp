@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "part_rounding.hpp"
+#include "cutting/part_rounding.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "box_tree.hpp"
-#include "distinct.hpp"
+#include "cutting/box_tree.hpp"
+#include "cutting/distinct.hpp"
 
 namespace realmodel::cutting {
 

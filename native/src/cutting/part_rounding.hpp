@@ -4,7 +4,7 @@
 #include <set>
 #include <vector>
 
-#include "halves.hpp"
+#include "cutting/halves.hpp"
 
 namespace realmodel::cutting {
 

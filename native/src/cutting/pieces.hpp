@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "plane_sides.hpp"
-#include "polygons.hpp"
+#include "cutting/plane_sides.hpp"
+#include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {
 

@@ -7,21 +7,18 @@
 #include <set>
 #include <utility>
 
-#include "cell_cut.hpp"
-#include "cutter_surface.hpp"
-#include "face_splitting.hpp"
-#include "halves.hpp"
-#include "model_check.hpp"
-#include "part_rounding.hpp"
-#include "realmodel/exact/turn.hpp"
-#include "strata/parallel_chunks.hpp"
+#include "base/parallel_chunks.hpp"
+#include "cutting/cell_cut.hpp"
+#include "cutting/cutter_surface.hpp"
+#include "cutting/face_splitting.hpp"
+#include "cutting/halves.hpp"
+#include "cutting/model_check.hpp"
+#include "cutting/part_rounding.hpp"
+#include "exact/orient2d.hpp"
 
 namespace realmodel::cutting {
 
 namespace {
-
-using strata::parallel_chunks;
-using strata::poll;
 
 constexpr std::size_t kFaces = 1 << 14;
 constexpr std::size_t kCells = 1 << 10;
@@ -46,8 +43,8 @@ bool crosses_itself(std::span<const Position> corners) {
         const PlanePosition a = at(i), b = at(i + 1);
         for (std::size_t j = i + 2; j < n && j + 1 < n + i; ++j) {
             const PlanePosition p = at(j), q = at(j + 1);
-            if (exact::turn(a, b, p) * exact::turn(a, b, q) < 0 &&
-                exact::turn(p, q, a) * exact::turn(p, q, b) < 0)
+            if (exact::orient2d(a, b, p) * exact::orient2d(a, b, q) < 0 &&
+                exact::orient2d(p, q, a) * exact::orient2d(p, q, b) < 0)
                 return true;
         }
     }

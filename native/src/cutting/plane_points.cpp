@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "plane_points.hpp"
+#include "cutting/plane_points.hpp"
 
 #include <algorithm>
 #include <cmath>

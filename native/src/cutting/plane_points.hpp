@@ -3,8 +3,8 @@
 
 #include <gmpxx.h>
 
-#include "plane_sides.hpp"
-#include "triangulate.hpp"
+#include "cutting/plane_sides.hpp"
+#include "cutting/triangulate.hpp"
 
 namespace realmodel::cutting {
 

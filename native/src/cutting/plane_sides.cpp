@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "plane_sides.hpp"
+#include "cutting/plane_sides.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "base/parallel_chunks.hpp"
 #include "exact/arithmetic.hpp"
 #include "realmodel/base/errors.hpp"
-#include "strata/parallel_chunks.hpp"
 
 namespace realmodel::cutting {
 
 namespace {
 
-using exact::Ball;
+using exact::DoubleDoubleInterval;
 
 constexpr std::size_t kChunk = 1 << 14;
 /// Half a unit is the rounding of a coordinate; heights and planes that people compute with are
@@ -49,17 +49,18 @@ double PlaneDistance::rounding(const Position& p) const {
     return kUnits * sum;
 }
 
-Ball PlaneDistance::at(const Position& p) const {
-    Ball sum;
+DoubleDoubleInterval PlaneDistance::at(const Position& p) const {
+    DoubleDoubleInterval sum;
     for (std::size_t k = 0; k < 3; ++k)
-        sum = sum + Ball(normal_[k]) * Ball::difference(p[k], point_[k]);
+        sum = sum +
+              DoubleDoubleInterval(normal_[k]) * DoubleDoubleInterval::difference(p[k], point_[k]);
     return sum;
 }
 
 // A coordinate has to be right to its own last place, however much smaller than the ends of the
 // line it is: a cap is flat only if all of its corners are where the plane is, on every axis.
 Position PlaneDistance::crossing(const Position& p, const Position& q) const {
-    const Ball d = at(p), share = d / (d - at(q));
+    const DoubleDoubleInterval d = at(p), share = d / (d - at(q));
     std::optional<mpq_class> exact_share;
     Position result;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -67,7 +68,9 @@ Position PlaneDistance::crossing(const Position& p, const Position& q) const {
             result[k] = point_[k] + 0.0;  // of both zeros the one without a sign
             continue;
         }
-        if (const auto x = (Ball(p[k]) + share * Ball::difference(q[k], p[k])).rounded()) {
+        if (const auto x =
+                (DoubleDoubleInterval(p[k]) + share * DoubleDoubleInterval::difference(q[k], p[k]))
+                    .rounded()) {
             result[k] = *x + 0.0;
             continue;
         }
@@ -114,7 +117,7 @@ std::vector<std::int8_t> vertex_sides(const ComplexView& model, const PlaneDista
                                       int threads, const Progress* progress) {
     const std::size_t count = model.vertex_count();
     std::vector<std::int8_t> sides(count);
-    strata::parallel_chunks((count + kChunk - 1) / kChunk, threads, progress, [&](std::size_t c) {
+    parallel_chunks((count + kChunk - 1) / kChunk, threads, progress, [&](std::size_t c) {
         for (std::size_t v = c * kChunk; v < std::min(count, (c + 1) * kChunk); ++v)
             sides[v] = distance.side(model.vertex(static_cast<NodeId>(v)));
     });

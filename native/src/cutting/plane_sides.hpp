@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "polygons.hpp"
+#include "cutting/polygons.hpp"
+#include "exact/double_double_interval.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/cutting/cut.hpp"
-#include "realmodel/exact/ball.hpp"
 
 namespace realmodel::cutting {
 
@@ -27,7 +27,7 @@ public:
     double rounding(const Position& p) const;
     /// Whether the plane passes within half a unit in the last place of one of its coordinates.
     bool is_beside(const Position& p) const;
-    exact::Ball at(const Position& p) const;
+    exact::DoubleDoubleInterval at(const Position& p) const;
     mpq_class exact(const Position& p) const;
     /// The doubles nearest to where the line from p to q, which lie on different sides, passes
     /// through the plane.

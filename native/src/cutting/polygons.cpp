@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "polygons.hpp"
+#include "cutting/polygons.hpp"
 
 #include <algorithm>
 #include <cmath>

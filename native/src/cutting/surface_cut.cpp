@@ -3,11 +3,11 @@
 // halves.
 #include <algorithm>
 
-#include "model_check.hpp"
-#include "part_rounding.hpp"
+#include "base/parallel_chunks.hpp"
+#include "cutting/model_check.hpp"
+#include "cutting/part_rounding.hpp"
+#include "cutting/surface_parts.hpp"
 #include "realmodel/base/errors.hpp"
-#include "strata/parallel_chunks.hpp"
-#include "surface_parts.hpp"
 
 namespace realmodel::cutting {
 
@@ -57,7 +57,7 @@ Cut part_by_block(const ComplexView& model, std::int32_t block, int threads, Pro
         cells.push_back({cell, side(cell)});
     }
     for (std::size_t f = 0; f < model.face_count(); ++f) {
-        strata::poll(progress, f);
+        poll(progress, f);
         const std::array<std::int32_t, 2> own{model.cell(f, 0), model.cell(f, 1)};
         const std::array<std::int8_t, 2> sides{side(own[0]), side(own[1])};
         const bool bounds = (sides[0] == kBelow) != (sides[1] == kBelow);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The exact overlay of a model's faces with the triangles of a surface.
-#include "surface_overlay.hpp"
+#include "cutting/surface_overlay.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "realmodel/exact/turn.hpp"
-#include "strata/parallel_chunks.hpp"
+#include "base/parallel_chunks.hpp"
+#include "exact/orient2d.hpp"
 
 namespace realmodel::cutting {
 
@@ -56,7 +56,7 @@ void SurfaceOverlay::find_active_faces() {
     tree_ = std::make_unique<BoxTree>(std::move(boxes));
     active_.assign(model_.face_count(), 0);
     constexpr std::size_t kChunk = 1 << 12;
-    strata::parallel_chunks(
+    parallel_chunks(
         (model_.face_count() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t c) {
             for (std::size_t f = c * kChunk; f < std::min(active_.size(), (c + 1) * kChunk); ++f) {
                 Box box;
@@ -147,7 +147,7 @@ std::optional<NodeId> SurfaceOverlay::place_on_surface(const Position& p) {
         bool inside = true;
         const PlanePosition at = view(p);
         for (std::size_t i = 0; i < 3; ++i)
-            inside = inside && exact::turn(view(corner(t, i)), view(corner(t, i + 1)), at) > 0;
+            inside = inside && exact::orient2d(view(corner(t, i)), view(corner(t, i + 1)), at) > 0;
         if (!inside) continue;
         const auto found =
             confirmed(points_.dropped(coarsest(normal), points_.add(p), points_.add(corners[0]),
@@ -181,7 +181,7 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     for (const NodeId v : vertices)
         take(vertex_node_[index(v)] = points_.add(model_.vertex(v))) = 1;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-        strata::poll(progress_, 16 * i);
+        poll(progress_, 16 * i);
         NodeId& node = vertex_node_[index(vertices[i])];
         const auto place = place_on_surface(model_.vertex(vertices[i]));
         if (!place || *place == node || take(*place) != 0) continue;
@@ -248,7 +248,7 @@ void SurfaceOverlay::overlay_all() {
     constexpr std::size_t kChunk = 1 << 8;
     std::vector<std::vector<Overlay::Meeting>> meetings((count + kChunk - 1) / kChunk);
     if (progress_ != nullptr) progress_->begin(0.08, 0.15, "finding where surface and faces meet");
-    strata::parallel_chunks(meetings.size(), threads_, progress_, [&](std::size_t chunk) {
+    parallel_chunks(meetings.size(), threads_, progress_, [&](std::size_t chunk) {
         for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
             const auto t = static_cast<std::int32_t>(i);
             Box box;

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "box_tree.hpp"
-#include "cutter_surface.hpp"
-#include "overlay.hpp"
+#include "cutting/box_tree.hpp"
+#include "cutting/cutter_surface.hpp"
+#include "cutting/overlay.hpp"
 
 namespace realmodel::cutting {
 

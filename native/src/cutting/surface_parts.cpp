@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What bounds the parts of cells, and which of it belongs together.
-#include "surface_parts.hpp"
+#include "cutting/surface_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "strata/disjoint_parts.hpp"
-#include "strata/parallel_sort.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/parallel_sort.hpp"
 
 namespace realmodel::cutting {
 
@@ -68,7 +68,7 @@ void SurfaceParts::make_patches(Progress* progress) {
     constexpr std::size_t kCounted = 1 << 10;  // faces
     CountedLoop counted(progress, model.face_count() / kCounted, 1.0);
     for (std::size_t f = 0; f < model.face_count(); ++f) {
-        strata::poll(progress, f);
+        poll(progress, f);
         if (f % kCounted == kCounted - 1) counted.count();
         if (overlay_.is_active(f)) {
             divide_face(f, of_face[f]);
@@ -99,7 +99,7 @@ void SurfaceParts::divide_face(std::size_t face, std::span<const std::int32_t> r
             }
         }
     }
-    strata::DisjointParts joined(regions.size());
+    DisjointSets joined(regions.size());
     for (auto& [ends, users] : by_ends) {
         if (ends[0] > ends[1] || winding_.is_edge(ends)) continue;
         const auto against = by_ends.find({ends[1], ends[0]});
@@ -186,9 +186,9 @@ void SurfaceParts::join_parts(Progress* progress) {
         if (first[cell] < 0) first[cell] = static_cast<std::int32_t>(s);
         join(first[cell], static_cast<std::int32_t>(s));
     }
-    strata::parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
+    parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
-        strata::poll(progress, begin);
+        poll(progress, begin);
         while (end < uses_.size() && uses_[end].cell == uses_[begin].cell &&
                uses_[end].half == uses_[begin].half && uses_[end].use.edge == uses_[begin].use.edge)
             ++end;

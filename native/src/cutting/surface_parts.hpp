@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "cutter_sides.hpp"
-#include "halves.hpp"
+#include "cutting/cutter_sides.hpp"
+#include "cutting/halves.hpp"
 
 namespace realmodel::cutting {
 

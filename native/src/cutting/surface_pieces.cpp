@@ -2,10 +2,10 @@
 // The polygons around parts of cells.
 #include <algorithm>
 
-#include "strata/parallel_counts.hpp"
-#include "strata/parallel_sort.hpp"
-#include "surface_parts.hpp"
-#include "triangulate.hpp"
+#include "base/parallel_counts.hpp"
+#include "base/parallel_sort.hpp"
+#include "cutting/surface_parts.hpp"
+#include "cutting/triangulate.hpp"
 
 namespace realmodel::cutting {
 
@@ -150,14 +150,14 @@ void SurfaceParts::write_patches(const Progress* progress) {
         std::vector<std::size_t> ends;  ///< of each patch's polygons
     };
     std::vector<Divided> divided((patches_.size() + kChunk - 1) / kChunk);
-    strata::parallel_ranges(patches_.size(), kChunk, overlay_.threads(), progress,
-                            [&](std::size_t begin, std::size_t end) {
-                                Divided& own = divided[begin / kChunk];
-                                for (std::size_t i = begin; i < end; ++i) {
-                                    divide(patches_[i], own.polygons);
-                                    own.ends.push_back(own.polygons.size());
-                                }
-                            });
+    parallel_ranges(patches_.size(), kChunk, overlay_.threads(), progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        Divided& own = divided[begin / kChunk];
+                        for (std::size_t i = begin; i < end; ++i) {
+                            divide(patches_[i], own.polygons);
+                            own.ends.push_back(own.polygons.size());
+                        }
+                    });
     for (std::size_t i = 0; i < patches_.size(); ++i) {
         const Divided& own = divided[i / kChunk];
         const std::size_t first = i % kChunk == 0 ? 0 : own.ends[i % kChunk - 1];
@@ -238,7 +238,7 @@ void SurfaceParts::find_touches(const Progress* progress) {
     std::vector<std::array<std::int32_t, 3>> edges;  // part and ends
     for (const SlotUse& use : uses_)
         edges.push_back({part_[index(use.slot)], use.use.edge[0], use.use.edge[1]});
-    strata::parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
+    parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
     for (std::size_t i = 2; i < edges.size(); ++i) {
         if (edges[i] == edges[i - 2])
             touches[half_cells[index(edges[i][0])].side == kAbove ? 1 : 0] = true;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "cutting/exact_points.hpp"
 #include "exact/arithmetic.hpp"
-#include "exact/wide_integer.hpp"
-#include "exact_points.hpp"
+#include "exact/fixed_integer.hpp"
 
 namespace realmodel::cutting {
 
@@ -12,7 +12,7 @@ namespace realmodel::cutting {
 /// are not known.
 class ExactPoints::Wide {
 public:
-    using Integer = exact::WideInteger;
+    using Integer = exact::FixedInteger;
     struct Place {
         std::array<Integer, 3> at;
         Integer weight;

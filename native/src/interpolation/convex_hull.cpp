@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "exact/orient2d.hpp"
 #include "interpolation/data_points.hpp"
 #include "interpolation/node_chunks.hpp"
-#include "realmodel/exact/turn.hpp"
 
 namespace realmodel::interpolation {
 
@@ -14,7 +14,7 @@ ConvexHull::ConvexHull(std::vector<Place> places) {
     places.erase(std::unique(places.begin(), places.end()), places.end());
     const auto add = [](std::vector<Place>& chain, const Place& place, int outward) {
         while (chain.size() > 1 &&
-               exact::turn(chain[chain.size() - 2], chain.back(), place) != -outward) {
+               exact::orient2d(chain[chain.size() - 2], chain.back(), place) != -outward) {
             chain.pop_back();
         }
         chain.push_back(place);
@@ -30,12 +30,14 @@ bool ConvexHull::contains(const Place& place) const {
     const auto left_of = [](const Place& a, double x) { return a[0] < x; };
     const auto right_of = [](double x, const Place& a) { return x < a[0]; };
     const auto low = std::lower_bound(lower_.begin(), lower_.end(), place[0], left_of);
-    if ((*low)[0] == place[0] ? place[1] < (*low)[1] : exact::turn(*(low - 1), *low, place) < 0) {
+    if ((*low)[0] == place[0] ? place[1] < (*low)[1]
+                              : exact::orient2d(*(low - 1), *low, place) < 0) {
         return false;
     }
     const auto beyond = std::upper_bound(upper_.begin(), upper_.end(), place[0], right_of);
     const Place& before = *(beyond - 1);
-    return before[0] == place[0] ? place[1] <= before[1] : exact::turn(before, *beyond, place) <= 0;
+    return before[0] == place[0] ? place[1] <= before[1]
+                                 : exact::orient2d(before, *beyond, place) <= 0;
 }
 
 std::vector<ConvexHull::Place> ConvexHull::corners() const {

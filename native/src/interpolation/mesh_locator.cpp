@@ -6,10 +6,10 @@
 #include <limits>
 #include <string>
 
+#include "exact/orient2d.hpp"
 #include "interpolation/data_points.hpp"
 #include "interpolation/node_chunks.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/exact/turn.hpp"
 
 namespace realmodel::interpolation {
 
@@ -108,10 +108,10 @@ std::optional<MeshLocator::Found> MeshLocator::find(const Place& place) const {
         std::array<Place, 3> corner;
         for (std::size_t i = 0; i < 3; ++i)
             corner[i] = vertices_[static_cast<std::size_t>(triangle[i])];
-        const int way = exact::turn(corner[0], corner[1], corner[2]);
-        if (way == 0 || exact::turn(corner[0], corner[1], place) == -way ||
-            exact::turn(corner[1], corner[2], place) == -way ||
-            exact::turn(corner[2], corner[0], place) == -way) {
+        const int way = exact::orient2d(corner[0], corner[1], corner[2]);
+        if (way == 0 || exact::orient2d(corner[0], corner[1], place) == -way ||
+            exact::orient2d(corner[1], corner[2], place) == -way ||
+            exact::orient2d(corner[2], corner[0], place) == -way) {
             continue;
         }
         Found found{held_[k], {}};

@@ -5,26 +5,26 @@
 #include <cmath>
 #include <string>
 
-#include "block_cells.hpp"
-#include "block_layers.hpp"
-#include "border_joining.hpp"
-#include "conforming.hpp"
-#include "distinct_positions.hpp"
-#include "envelope.hpp"
-#include "layer.hpp"
-#include "parallel_chunks.hpp"
-#include "plan_snapping.hpp"
+#include "base/parallel_chunks.hpp"
+#include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/memory.hpp"
 #include "realmodel/base/page_store.hpp"
-#include "realmodel/exact/turn.hpp"
-#include "rock_footprints.hpp"
-#include "rules.hpp"
-#include "volumes.hpp"
+#include "strata/cells/block_cells.hpp"
+#include "strata/cells/distinct_positions.hpp"
+#include "strata/cells/volumes.hpp"
+#include "strata/conform/conforming.hpp"
+#include "strata/overlay/envelope.hpp"
+#include "strata/overlay/rock_footprints.hpp"
+#include "strata/repair/border_joining.hpp"
+#include "strata/repair/plan_snapping.hpp"
+#include "strata/tiling/block_tiling.hpp"
+#include "strata/tiling/rules.hpp"
+#include "strata/tiling/surface_tiling.hpp"
 
 namespace realmodel::strata {
 
-using exact::PlanGeometry;
+using exact::PlanArrangement;
 using exact::VertexId;
 
 namespace {
@@ -39,7 +39,8 @@ void begin(Progress* progress, double start, double share, const char* text) {
     progress->begin(start, start + share, text);
 }
 
-std::vector<std::array<VertexId, 3>> enter_region(PlanGeometry& geometry, const RegionView& region,
+std::vector<std::array<VertexId, 3>> enter_region(PlanArrangement& geometry,
+                                                  const RegionView& region,
                                                   const PlanSnapping& snapping) {
     for (const double c : region.vertices) {
         if (!std::isfinite(c))
@@ -57,7 +58,7 @@ std::vector<std::array<VertexId, 3>> enter_region(PlanGeometry& geometry, const 
             }
             p[i] = {snapping.x(region.vertices[row]), snapping.y(region.vertices[row + 1])};
         }
-        const int turn = exact::turn(p[0], p[1], p[2]);
+        const int turn = exact::orient2d(p[0], p[1], p[2]);
         if (turn == 0) continue;
         if (turn < 0) std::swap(p[1], p[2]);
         std::array<VertexId, 3> v;
@@ -69,7 +70,7 @@ std::vector<std::array<VertexId, 3>> enter_region(PlanGeometry& geometry, const 
 }
 
 /// Corners of a box that lies well outside of all input.
-Frame enter_frame(PlanGeometry& geometry) {
+Frame enter_frame(PlanArrangement& geometry) {
     std::array<double, 2> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
     for (VertexId v = 0; v < static_cast<VertexId>(geometry.point_count()); ++v) {
         const std::array<double, 2> p{geometry.point(v).x, geometry.point(v).y};
@@ -112,7 +113,7 @@ struct EnteredRock {
 
 /// What all rock masses share while they are built.
 struct Site {
-    PlanGeometry geometry;
+    PlanArrangement geometry;
     Frame frame;
     std::vector<std::int32_t> surface_of_plane;  ///< kBase for the flat bases
     Construction construction;
@@ -121,9 +122,9 @@ struct Site {
 };
 
 /// The layers e_k of a rock mass, handed out from the youngest to the oldest.
-class LayerSequence {
+class TilingSequence {
 public:
-    LayerSequence(Site& site, EnteredRock& rock)
+    TilingSequence(Site& site, EnteredRock& rock)
         : site_(site),
           rock_(rock),
           plans_(plan_surfaces(site.geometry, rock.surfaces, site.frame, site.threads,
@@ -140,20 +141,21 @@ public:
 
     /// Takes the outlines of a layer that was taken before and is done with: the next one may be
     /// on the same mesh.
-    void give_back(Layer layer) { similar_ = std::move(layer.polygons); }
+    void give_back(SurfaceTiling layer) { similar_ = std::move(layer.polygons); }
 
-    Layer take(std::int32_t k) {
+    SurfaceTiling take(std::int32_t k) {
         if (replayed_.empty()) return surface(static_cast<std::size_t>(k));
-        Layer layer = std::move(replayed_.back());
+        SurfaceTiling layer = std::move(replayed_.back());
         replayed_.pop_back();
         return layer;
     }
 
 private:
-    Layer surface(std::size_t k) {
+    SurfaceTiling surface(std::size_t k) {
         const auto number = rock_.first_surface + static_cast<std::int32_t>(k);
-        Layer layer = make_layer(site_.geometry, rock_.surfaces[k].triangles, plans_[k], similar_,
-                                 number, site_.threads, site_.progress);
+        SurfaceTiling layer =
+            make_surface_tiling(site_.geometry, rock_.surfaces[k].triangles, plans_[k], similar_,
+                                number, site_.threads, site_.progress);
         rock_.surfaces[k] = {};
         plans_[k] = {};
         site_.surface_of_plane.resize(site_.geometry.plane_count(), number);
@@ -164,12 +166,12 @@ private:
     EnteredRock& rock_;
     std::vector<SurfacePlan> plans_;
     PolygonPool similar_;
-    std::vector<Layer> replayed_;
+    std::vector<SurfaceTiling> replayed_;
 };
 
 /// The lowest place of the envelope.
-std::array<double, 3> lowest_place(const PlanGeometry& geometry, const Envelope& envelope) {
-    Scope scope(geometry);
+std::array<double, 3> lowest_place(const PlanArrangement& geometry, const Envelope& envelope) {
+    LocalArrangement scope(geometry);
     std::array<double, 3> lowest{0, 0, HUGE_VAL};
     for (std::size_t f = 0; f < envelope.size(); ++f) {
         if (envelope.plane[f] < 0) continue;
@@ -197,7 +199,7 @@ void check_base(const std::array<double, 3>& lowest, double base, std::int32_t o
 
 /// Joins the faces of a construction to a complex. Gives back what is done with on the way, so that
 /// afterwards only the geometry's counts are there.
-CellComplex conform(PlanGeometry& geometry, Construction& construction,
+CellComplex conform(PlanArrangement& geometry, Construction& construction,
                     const std::vector<std::int32_t>& surface_of_plane, int threads,
                     Progress* progress) {
     // The peak of memory is still to come, and what chunks of overlays were made in is free.
@@ -215,12 +217,12 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
             done += share;
         };
         next(0.2, "joining points");
-        Places places = find_places(geometry, faces, extra, threads, progress);
+        PlanVertices places = find_plan_vertices(geometry, faces, extra, threads, progress);
         next(0.4, "joining edges");
-        Tracks tracks = find_tracks(geometry, faces, places, extra, &construction.cell_is_thick,
-                                    threads, progress);
+        CollinearEdges tracks = find_collinear_edges(
+            geometry, faces, places, extra, &construction.cell_is_thick, threads, progress);
         next(0.3, "rounding");
-        Loops loops = find_loops(geometry, faces, places, tracks, threads, progress);
+        ConformedFaces loops = conform_faces(geometry, faces, places, tracks, threads, progress);
         next(0.1, "building walls");
         std::vector<ExtraPoint> missing;
         auto walls = find_walls(geometry, faces, tracks, loops, missing, threads, progress);
@@ -234,7 +236,7 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
         geometry.forget_all();
         faces.layer = {};
         begin(progress, done, 1.0 - done, "putting the cells together");
-        place_vertices(places, loops, threads, progress);
+        set_vertex_positions(places, loops, threads, progress);
         make_distinct(geometry, faces, places, loops, threads, progress);
         places = {};
         faces.polygons = {};
@@ -244,9 +246,9 @@ CellComplex conform(PlanGeometry& geometry, Construction& construction,
 }
 
 /// Enters the vertices of a rock mass.
-EnteredRock enter_rock(PlanGeometry& geometry, const StackInput& input, std::int32_t first_surface,
-                       const PlanSnapping& snapping, std::vector<Warning>& warnings, int threads,
-                       const Progress* progress) {
+EnteredRock enter_rock(PlanArrangement& geometry, const StackInput& input,
+                       std::int32_t first_surface, const PlanSnapping& snapping,
+                       std::vector<Warning>& warnings, int threads, const Progress* progress) {
     EnteredRock rock;
     rock.first_surface = first_surface;
     rock.rules = input.rules;
@@ -279,13 +281,13 @@ void build_rock(Site& site, EnteredRock& rock, double start, double share) {
     Envelope envelope;
     if (rock.region) {
         envelope = initial_envelope(
-            make_region(site.geometry, *rock.region, site.frame, site.progress), -1);
+            make_region_tiling(site.geometry, *rock.region, site.frame, site.progress), -1);
     }
-    LayerSequence layers(site, rock);
+    TilingSequence layers(site, rock);
     for (std::int32_t k = count - 1; k >= 0; --k) {
         begin(site.progress, start + share * static_cast<double>(count - 1 - k) / count,
               share / count, "intersecting the surfaces");
-        Layer layer = layers.take(k);
+        SurfaceTiling layer = layers.take(k);
         envelope = envelope.size() == 0 ? initial_envelope(layer, k)
                                         : overlay(site.geometry, envelope, layer, k,
                                                   site.construction, site.threads, site.progress);
@@ -315,12 +317,12 @@ bool is_plain(const std::vector<EnteredRock>& rocks) {
 CellComplex build_plain_blocks(Site& site, EnteredRock& rock) {
     std::vector<SurfacePlan> plans =
         plan_surfaces(site.geometry, rock.surfaces, site.frame, site.threads, site.progress);
-    std::vector<BlockLayer> layers;
+    std::vector<BlockTiling> layers;
     for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
         if (site.progress != nullptr) site.progress->check();
-        layers.push_back(make_block_layer(site.geometry, rock.surfaces[k].triangles,
-                                          std::move(plans[k]), static_cast<std::int32_t>(k),
-                                          site.threads, site.progress));
+        layers.push_back(make_block_tiling(site.geometry, rock.surfaces[k].triangles,
+                                           std::move(plans[k]), static_cast<std::int32_t>(k),
+                                           site.threads, site.progress));
         site.surface_of_plane.resize(site.geometry.plane_count(), static_cast<std::int32_t>(k));
         rock.surfaces[k] = {};
     }

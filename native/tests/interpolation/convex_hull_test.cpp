@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "dense_kriging.hpp"
+#include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/exact/turn.hpp"
 
 namespace realmodel::interpolation {
 namespace {
@@ -46,9 +46,9 @@ TEST(ConvexHull, EveryPointIsInItAndEveryTurnIsLeft) {
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const auto& a = corners[i];
         const auto& b = corners[(i + 1) % corners.size()];
-        EXPECT_EQ(exact::turn(a, b, corners[(i + 2) % corners.size()]), 1);
+        EXPECT_EQ(exact::orient2d(a, b, corners[(i + 2) % corners.size()]), 1);
         for (const auto& p : places)
-            ASSERT_GE(exact::turn(a, b, p), 0);
+            ASSERT_GE(exact::orient2d(a, b, p), 0);
         EXPECT_TRUE(hull.contains(a));
         EXPECT_FALSE(hull.contains({a[0] + (a[0] - 4e5 - 5), a[1] + (a[1] - 5e6 - 5)}));
     }
