@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "minimise.hpp"
+#include "minimize.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@ namespace realmodel::fuzz {
 
 namespace {
 
-class Minimiser {
+class Minimizer {
 public:
-    Minimiser(StackCase stack, const std::function<bool(const StackCase&)>& fails,
+    Minimizer(StackCase stack, const std::function<bool(const StackCase&)>& fails,
               std::size_t steps)
         : best_(std::move(stack)), fails_(fails), steps_(steps) {}
 
@@ -184,9 +184,9 @@ private:
 
 }  // namespace
 
-StackCase minimised(StackCase stack, const std::function<bool(const StackCase&)>& fails,
+StackCase minimized(StackCase stack, const std::function<bool(const StackCase&)>& fails,
                     std::size_t steps) {
-    return Minimiser(std::move(stack), fails, steps).run();
+    return Minimizer(std::move(stack), fails, steps).run();
 }
 
 }  // namespace realmodel::fuzz

@@ -110,7 +110,7 @@ def _same(one, other):
     return parts(one) == parts(other)
 
 
-def minimise(stack, still_fails, acceptable, steps=2000):
+def minimize(stack, still_fails, acceptable, steps=2000):
     """The smallest stack found by greedy steps for which still_fails(stack) holds.
 
     acceptable(stack): whether a stack is valid input at all (a step that makes it refused proves nothing).

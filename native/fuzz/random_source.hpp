@@ -10,12 +10,12 @@ namespace realmodel::fuzz {
 
 /// Where the generators' choices come from: a seed, or bytes that a coverage-guided fuzzer makes.
 /// The same on every machine and with every compiler, unlike the distributions of <random>.
-class Chance {
+class RandomSource {
 public:
-    explicit Chance(std::uint64_t seed) : state_(seed) {}
+    explicit RandomSource(std::uint64_t seed) : state_(seed) {}
 
     /// Every choice uses up bytes; where they are used up the first possibility is taken.
-    explicit Chance(std::span<const std::uint8_t> bytes) : bytes_(bytes), from_bytes_(true) {}
+    explicit RandomSource(std::span<const std::uint8_t> bytes) : bytes_(bytes), from_bytes_(true) {}
 
     /// 0 ... count - 1; count > 0.
     std::size_t below(std::size_t count) {
