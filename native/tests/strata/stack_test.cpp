@@ -402,7 +402,7 @@ TEST(Stack, TrianglesBesideABorderStayWholeInBlocks) {
     EXPECT_GT(faces(holed), 2 * 36 + 2 * 16 - 1);
 }
 
-TEST(Stack, MergedColumnsHaveTheSameVolumes) {
+TEST(Stack, BlocksAreMergedColumns) {
     std::vector<OwnedSurface> surfaces;
     for (int k = 0; k < 4; ++k) {
         surfaces.push_back(grid(
@@ -412,8 +412,15 @@ TEST(Stack, MergedColumnsHaveTheSameVolumes) {
     }
     const auto columns = build(surfaces, -1.0);
     expect_valid(columns);
-    const auto blocks = merge_columns(columns);
+    const auto merged = merge_columns(columns);
+    expect_valid(merged, true);
+    StackInput input;
+    for (const OwnedSurface& s : surfaces)
+        input.surfaces.push_back(s.view());
+    input.base_elevation = -1.0;
+    const auto blocks = build_stack(input, 1, nullptr, CellKind::kBlocks);
     expect_valid(blocks, true);
+    EXPECT_EQ(cells_of_blocks(blocks), cells_of_blocks(merged));
     for (std::size_t k = 0; k < 4; ++k)
         EXPECT_NEAR(blocks.volumes[k], columns.volumes[k], 1e-12);
 }

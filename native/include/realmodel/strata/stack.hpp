@@ -94,8 +94,4 @@ CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Pr
 CellComplex build_stack(const StackInput& input, int threads, Progress* progress,
                         CellKind cells = CellKind::kColumns);
 
-/// The same model with each connected part of a block as one cell: walls between cells of one block
-/// are left out.
-CellComplex merge_columns(const CellComplex& columns, const Progress* progress = nullptr);
-
 }  // namespace realmodel::strata

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/cells/assembly.hpp"
+
 #include <algorithm>
+#include <cassert>
 
 #include "base/parallel_counts.hpp"
-#include "strata/conform/conforming.hpp"
 
 namespace realmodel::strata {
 

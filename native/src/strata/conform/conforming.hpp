@@ -96,25 +96,4 @@ ConformedFaces conform_faces(const exact::PlanArrangement& geometry, const FaceL
 void set_vertex_positions(const PlanVertices& places, ConformedFaces& loops, int threads,
                           const Progress* progress);
 
-/// Some of the vertical faces between columns. Loops counter-clockwise seen from the right of their
-/// track.
-struct WallBatch {
-    std::vector<std::int32_t> sizes;  ///< corners of each wall
-    std::vector<std::int32_t> vertices;
-    std::vector<std::array<std::int32_t, 2>> cells;  ///< left and right of the track, -1 outside
-};
-/// The walls between columns, in order of tracks, those of paired edges last; where columns left
-/// and right of a track cross in height, nothing but the points that the tracks must pass first are
-/// returned in `missing`. If there are none, the paired edges are given back on the way.
-std::vector<WallBatch> find_walls(exact::PlanArrangement& geometry, const FaceList& faces,
-                                  CollinearEdges& tracks, const ConformedFaces& loops,
-                                  std::vector<ExtraPoint>& missing, int threads,
-                                  const Progress* progress);
-
-/// The complex (docs/geometry.md) from finished faces, conforming loops and walls, which are given
-/// back as they are used.
-CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
-                     ConformedFaces loops, std::vector<WallBatch> walls,
-                     GrowingArray<std::int32_t> cell_block, int threads, const Progress* progress);
-
 }  // namespace realmodel::strata

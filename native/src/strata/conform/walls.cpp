@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/conform/walls.hpp"
+
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <utility>
 
@@ -14,109 +17,127 @@ namespace {
 
 constexpr std::size_t kTracks = 1 << 10;  // worked on at a time
 
-/// What the walls of some tracks are found in.
+/// What the walls of some lines are found in.
 struct Batch {
     explicit Batch(const PlanArrangement& geometry) : scope(geometry) {}
     LocalArrangement scope;
     WallBatch walls;
-    std::vector<ExtraPoint> missing;
+    FoundWalls found;
 };
 
-/// The walls of one track after another.
-class TrackWalls {
+/// The walls of one line after another.
+class LineWalls {
 public:
-    TrackWalls(const FaceList& faces, const CollinearEdges& tracks, const ConformedFaces& loops,
-               Batch& batch)
-        : curves_(faces, tracks, loops), batch_(batch) {}
+    LineWalls(const FaceList& faces, const CollinearEdges& tracks, const ConformedFaces& loops,
+              const BlockLines* blocks, Batch& batch)
+        : loops_(loops), blocks_(blocks), curves_(faces, tracks, loops), batch_(batch) {}
 
-    void process(std::size_t track) {
-        curves_.collect(track);
+    void process(std::size_t line) {
+        const auto emit = [&](const OpenWall& wall) {
+            auto& loop = batch_.walls.vertices;
+            const std::size_t first = loop.size();
+            add_wall_loop(wall.lower, wall.upper, loop, [](std::int32_t) { return true; });
+            batch_.walls.sizes.push_back(static_cast<std::int32_t>(loop.size() - first));
+            batch_.walls.cells.push_back({wall.left, wall.right});
+        };
+        curves_.collect(line);
         for (std::size_t i = 0; i < curves_.intervals(); ++i) {
-            process_interval(track, curves_.of_interval(i));
-            // what did not go on in this interval is finished
-            finish_open();
-            std::swap(open_, growing_);
+            process_interval(line, i, curves_.of_interval(i));
+            joining_.end_interval(emit);
         }
-        finish_open();
+        joining_.end_line(emit);
     }
 
 private:
-    void process_interval(std::size_t track, std::span<const Curve> curves) {
-        // The common case: one face edge on either side, the same cells above and below.
+    /// Whether no wall stands between two cells: they are the same column, or of one block.
+    bool is_same(std::int32_t a, std::int32_t b) const {
+        return a == b || (blocks_ != nullptr && block(a) == block(b));
+    }
+    std::int32_t block(std::int32_t node) const {
+        return node < 0 ? kOutsideCell : blocks_->node_block[static_cast<std::size_t>(node)];
+    }
+    void link(std::int32_t a, std::int32_t b) {
+        if (blocks_ != nullptr && a != b && a >= 0 && b >= 0 && block(a) == block(b))
+            batch_.found.links.emplace_back(a, b);
+    }
+
+    void process_interval(std::size_t line, std::size_t interval, std::span<const Curve> curves) {
+        if (curves.empty()) return;
+        // The common case: one face edge on either side, the same cells above and below. They hang
+        // together whether walls may stand here or not.
         if (curves.size() == 2) {
             const Curve &a = curves[0], &b = curves[1];
-            if (a.left != b.left && a.as_high_as(b) && a.above == b.above && a.below == b.below) {
+            if (a.left != b.left && a.as_high_as(b) && is_same(a.above, b.above) &&
+                is_same(a.below, b.below)) {
+                link(a.above, b.above);
+                link(a.below, b.below);
                 return;
             }
         }
-        const std::size_t known = batch_.missing.size();
-        curves_.find_crossings(track, curves, batch_.scope, batch_.missing);
-        if (batch_.missing.size() > known) return;
+        if (blocks_ != nullptr && !may_have_walls(curves.front())) {
+            continue_faces(curves);
+            return;
+        }
+        auto& missing = batch_.found.missing;
+        const std::size_t known = missing.size();
+        curves_.find_crossings(line, curves, batch_.scope, missing);
+        if (missing.size() > known) return;
         for_each_gap(curves, [&](const Curve& low, const Curve& high, std::int32_t left,
                                  std::int32_t right) {
-            if (left != right) add_wall(low, high, left, right);
+            const std::array lower{low.start, low.end}, upper{high.start, high.end};
+            if (is_same(left, right)) {
+                link(left, right);
+            } else if (blocks_ == nullptr) {
+                joining_.add(lower, upper, left, right, low.start != high.start);
+            } else {
+                batch_.found.stretches.push_back({static_cast<std::int32_t>(line),
+                                                  static_cast<std::int32_t>(interval), lower, upper,
+                                                  left, right});
+            }
         });
     }
 
-    /// A wall between two cells that may go on in the next interval.
-    struct OpenWall {
-        std::int32_t left = kOutsideCell, right = kOutsideCell;
-        std::vector<std::int32_t> lower, upper;  ///< vertices along the track
-    };
+    bool may_have_walls(const Curve& curve) {
+        const PlanVertices& places = blocks_->places;
+        const std::size_t from = place_of(curve.start), to = place_of(curve.end);
+        const PlanPosition &p = places.position[from], &q = places.position[to];
+        const TileSpan span =
+            blocks_->borders.tiles().span({std::min(p[0], q[0]), std::min(p[1], q[1]),
+                                           std::max(p[0], q[0]), std::max(p[1], q[1])});
+        return blocks_->borders.near(span) &&
+               blocks_->borders.run_between(batch_.scope, places.representative[from],
+                                            places.representative[to], span);
+    }
+    std::size_t place_of(std::int32_t vertex) const {
+        const auto& first = loops_.place_offsets;
+        return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), vertex) -
+                                        first.begin()) -
+               1;
+    }
 
-    /// Walls that keep their memory when they are removed.
-    struct OpenWalls {
-        std::vector<OpenWall> all;
-        std::size_t count = 0;
-
-        OpenWall& add() {
-            if (count == all.size()) all.emplace_back();
-            return all[count++];
+    /// No wall: what is above the uppermost face at a height, and what is below the lowest one,
+    /// goes on beyond the line.
+    void continue_faces(std::span<const Curve> curves) {
+        for (std::size_t i = 0; i < curves.size();) {
+            std::size_t left = i;  // the first curve to the left of the line at this height
+            while (left < curves.size() && curves[left].as_high_as(curves[i]) && !curves[left].left)
+                ++left;
+            std::size_t level = left;
+            while (level < curves.size() && curves[level].as_high_as(curves[i]))
+                ++level;
+            if (i < left && left < level) {
+                link(curves[left - 1].above, curves[level - 1].above);
+                link(curves[i].below, curves[left].below);
+            }
+            i = level;
         }
-        OpenWall* begin() { return all.data(); }
-        OpenWall* end() { return all.data() + count; }
-    };
-
-    // Walls of neighbouring intervals between the same cells are one face where they share a whole
-    // vertical edge: it would bound nothing.
-    void add_wall(const Curve& low, const Curve& high, std::int32_t left, std::int32_t right) {
-        const auto continues = [&](const OpenWall& wall) {
-            return wall.left == left && wall.right == right && wall.lower.back() == low.start &&
-                   wall.upper.back() == high.start && low.start != high.start;
-        };
-        OpenWall* before = std::find_if(open_.begin(), open_.end(), continues);
-        OpenWall& wall = growing_.add();
-        if (before == open_.end()) {
-            wall.left = left;
-            wall.right = right;
-            wall.lower.assign({low.start, low.end});
-            wall.upper.assign({high.start, high.end});
-            return;
-        }
-        std::swap(wall, *before);
-        std::rotate(before, before + 1, open_.end());
-        --open_.count;
-        wall.lower.push_back(low.end);
-        wall.upper.push_back(high.end);
     }
 
-    void finish_open() {
-        for (const OpenWall& wall : open_)
-            emit(wall);
-        open_.count = 0;
-    }
-
-    void emit(const OpenWall& wall) {
-        auto& loop = batch_.walls.vertices;
-        const std::size_t first = loop.size();
-        add_wall_loop(wall.lower, wall.upper, loop, [](std::int32_t) { return true; });
-        batch_.walls.sizes.push_back(static_cast<std::int32_t>(loop.size() - first));
-        batch_.walls.cells.push_back({wall.left, wall.right});
-    }
-
+    const ConformedFaces& loops_;
+    const BlockLines* blocks_;
     IntervalCurves curves_;
     Batch& batch_;
-    OpenWalls open_, growing_;
+    WallJoining joining_;
 };
 
 /// The walls of tracks on which all edges are pairs.
@@ -205,40 +226,42 @@ private:
 
 }  // namespace
 
-std::vector<WallBatch> find_walls(PlanArrangement& geometry, const FaceList& faces,
-                                  CollinearEdges& tracks, const ConformedFaces& loops,
-                                  std::vector<ExtraPoint>& missing, int threads,
-                                  const Progress* progress) {
+FoundWalls find_walls(PlanArrangement& geometry, const FaceList& faces, CollinearEdges& tracks,
+                      const ConformedFaces& loops, const BlockLines* blocks, int threads,
+                      const Progress* progress) {
     const std::size_t chunks = (tracks.size() + kTracks - 1) / kTracks;
-    std::vector<WallBatch> walls(chunks);
-    std::vector<std::unique_ptr<Batch>> with_missing(chunks);
+    FoundWalls found;
+    found.walls.resize(chunks);
+    std::vector<std::unique_ptr<Batch>> batches(chunks);  // of which more is asked below
     parallel_ranges(tracks.size(), kTracks, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         auto batch = std::make_unique<Batch>(geometry);
-                        TrackWalls of_track(faces, tracks, loops, *batch);
+                        LineWalls of_line(faces, tracks, loops, blocks, *batch);
                         for (std::size_t t = begin; t < end; ++t)
-                            of_track.process(t);
-                        walls[begin / kTracks] = std::move(batch->walls);
-                        if (!batch->missing.empty())
-                            with_missing[begin / kTracks] = std::move(batch);
+                            of_line.process(t);
+                        found.walls[begin / kTracks] = std::move(batch->walls);
+                        if (blocks != nullptr || !batch->found.missing.empty())
+                            batches[begin / kTracks] = std::move(batch);
                     });
-    missing.clear();
-    for (const auto& batch : with_missing) {
+    for (const auto& batch : batches) {
         if (batch == nullptr) continue;
-        batch->scope.commit(geometry);
-        for (const ExtraPoint& e : batch->missing)
-            missing.push_back({e.line, batch->scope.shared_point(e.point)});
+        if (!batch->found.missing.empty()) batch->scope.commit(geometry);
+        for (const ExtraPoint& e : batch->found.missing)
+            found.missing.push_back({e.line, batch->scope.shared_point(e.point)});
+        const FoundWalls& own = batch->found;
+        found.links.insert(found.links.end(), own.links.begin(), own.links.end());
+        found.stretches.insert(found.stretches.end(), own.stretches.begin(), own.stretches.end());
     }
-    if (!missing.empty()) return {};
-    walls.resize(chunks + tracks.paired.size());
+    if (!found.missing.empty()) return {std::move(found.missing), {}, {}, {}};
+    found.walls.resize(chunks + tracks.paired.size());
     parallel_chunks(tracks.paired.size(), threads, progress, [&](std::size_t chunk) {
         const MatchedEdges paired = std::move(tracks.paired[chunk]);
-        WallBatch& batch = walls[chunks + chunk];
+        WallBatch& batch = found.walls[chunks + chunk];
         batch.sizes.reserve(paired.wall_count);
         batch.cells.reserve(paired.wall_count);
         PlannedWalls(loops, batch).add(paired);
     });
-    return walls;
+    return found;
 }
 
 }  // namespace realmodel::strata

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "base/parallel_chunks.hpp"
-#include "realmodel/base/errors.hpp"
 #include "strata/overlay/shared_polygons.hpp"
 
 namespace realmodel::strata {
@@ -23,11 +22,11 @@ void pass(PoolStart& start, const PolygonPool& pool) {
 auto lists_of(FaceList& faces) {
     return std::array{&faces.plane, &faces.layer, &faces.above, &faces.below};
 }
-auto lists_of(LoweredPieces& lowered) {
-    return std::array{&lowered.polygon, &lowered.cell_above};
+auto lists_of(PiecesBelow& below) {
+    return std::array{&below.polygon, &below.node_above};
 }
 auto lists_of(Envelope& envelope) {
-    return std::array{&envelope.plane, &envelope.layer, &envelope.pending};
+    return std::array{&envelope.plane, &envelope.layer, &envelope.block_beneath};
 }
 
 template <class Array>
@@ -79,42 +78,42 @@ ChunkResult::ChunkResult(const exact::PlanArrangement& geometry, std::size_t fac
     // on surfaces of much the same resolution
     constexpr std::size_t kPoints = 4, kPolygons = 6, kCorners = 4;
     scope->expect_points(kPoints * facets);
-    for (PolygonPool* pool : {&faces.polygons, &lowered_outlines}) {
+    for (PolygonPool* pool : {&faces.polygons, &below_outlines}) {
         pool->offsets.reserve(kPolygons * facets);
         pool->corners.reserve(kPolygons * kCorners * facets);
     }
     for (auto* list : lists_of(faces))
         list->reserve(kPolygons * facets);
-    lowered.reserve(kPolygons * facets);
+    below.reserve(kPolygons * facets);
 }
 
 void ChunkStart::pass(const ChunkResult& chunk) {
-    cell += static_cast<std::int64_t>(chunk.cell_block.size());
+    node += static_cast<std::int64_t>(chunk.node_block.size());
     strata::pass(face, chunk.faces.polygons);
-    strata::pass(lowered, chunk.lowered_outlines);
+    strata::pass(below, chunk.below_outlines);
     strata::pass(facet, chunk.kept.outlines);
     strata::pass(facet_face, chunk.kept.face_polygons);
 }
 
 ChunkJoining::ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, std::size_t facets,
-                           Construction& construction, Envelope& next, LoweredPieces& lowered)
+                           Construction& construction, Envelope& next, PiecesBelow& below)
     : chunks_(chunks),
       construction_(construction),
       next_(next),
-      lowered_(lowered),
+      below_(below),
       start_(chunks.size()),
       fits_(chunks.size()) {
-    end_.cell = static_cast<std::int64_t>(construction.cell_block.size());
+    end_.node = static_cast<std::int64_t>(construction.node_block.size());
     strata::pass(end_.face, construction.faces.polygons);
     for (PolygonPool* pool :
-         {&construction.faces.polygons, &lowered.outlines, &next.outlines, &next.face_polygons})
+         {&construction.faces.polygons, &below.outlines, &next.outlines, &next.face_polygons})
         make_room(*pool, facets);
     const std::size_t polygons = facets * kPolygonsOfFacet + kSome;
-    make_room(construction.cell_block, polygons);
-    make_room(construction.cell_is_thick, polygons);
+    make_room(construction.node_block, polygons);
+    make_room(construction.node_is_thick, polygons);
     for (auto* list : lists_of(construction.faces))
         make_room(*list, polygons);
-    for (auto* list : lists_of(lowered))
+    for (auto* list : lists_of(below))
         make_room(*list, polygons);
     for (auto* list : lists_of(next))
         make_room(*list, polygons);
@@ -123,24 +122,21 @@ ChunkJoining::ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, st
 }
 
 bool ChunkJoining::has_room() {
-    const auto cells = static_cast<std::size_t>(end_.cell);
-    return strata::has_room(construction_.cell_block, cells) &&
-           strata::has_room(construction_.cell_is_thick, cells) &&
+    const auto nodes = static_cast<std::size_t>(end_.node);
+    return strata::has_room(construction_.node_block, nodes) &&
+           strata::has_room(construction_.node_is_thick, nodes) &&
            strata::has_room(next_.face_offsets, end_.facet.polygon + 1) &&
            strata::has_room(construction_.faces.polygons, lists_of(construction_.faces),
                             end_.face) &&
-           strata::has_room(lowered_.outlines, lists_of(lowered_), end_.lowered) &&
+           strata::has_room(below_.outlines, lists_of(below_), end_.below) &&
            strata::has_room(next_.outlines, lists_of(next_), end_.facet) &&
            strata::has_room(next_.face_polygons, std::array{&next_.face_above}, end_.facet_face);
 }
 
-void ChunkJoining::find_place(std::size_t chunk) {
+void ChunkJoining::find_offset(std::size_t chunk) {
     start_[chunk] = end_;
     end_.pass(*chunks_[chunk]);
-    if (end_.cell > INT32_MAX) {
-        throw InputError("too_large",
-                         "the model has more than 2147 million cells; use coarser surfaces");
-    }
+    check_nodes(end_.node);
     fits_[chunk] = has_room() ? 1 : 0;
 }
 
@@ -149,14 +145,14 @@ void ChunkJoining::put_where_room(std::size_t chunk) {
 }
 
 void ChunkJoining::finish(int threads, const Progress* progress) {
-    construction_.cell_block.resize(static_cast<std::size_t>(end_.cell));
-    construction_.cell_is_thick.resize(static_cast<std::size_t>(end_.cell));
+    construction_.node_block.resize(static_cast<std::size_t>(end_.node));
+    construction_.node_is_thick.resize(static_cast<std::size_t>(end_.node));
     resize(construction_.faces.polygons, end_.face);
     for (auto* list : lists_of(construction_.faces))
         list->resize(end_.face.polygon);
-    resize(lowered_.outlines, end_.lowered);
-    for (auto* list : lists_of(lowered_))
-        list->resize(end_.lowered.polygon);
+    resize(below_.outlines, end_.below);
+    for (auto* list : lists_of(below_))
+        list->resize(end_.below.polygon);
     resize(next_.outlines, end_.facet);
     for (auto* list : lists_of(next_))
         list->resize(end_.facet.polygon);
@@ -172,28 +168,28 @@ void ChunkJoining::put(std::size_t c) {
     const ChunkResult& chunk = *chunks_[c];
     const ChunkStart& at = start_[c];
     LocalArrangement& scope = *chunk.scope;
-    const auto shared_cell = [&](std::int32_t cell) {
-        return cell == kOutsideCell ? cell : cell + static_cast<std::int32_t>(at.cell);
+    const auto shared_node = [&](std::int32_t node) {
+        return node == kOutsideCell ? node : node + static_cast<std::int32_t>(at.node);
     };
     FaceList& faces = construction_.faces;
-    strata::put(construction_.cell_block, static_cast<std::size_t>(at.cell), chunk.cell_block);
-    strata::put(construction_.cell_is_thick, static_cast<std::size_t>(at.cell),
-                chunk.cell_is_thick);
+    strata::put(construction_.node_block, static_cast<std::size_t>(at.node), chunk.node_block);
+    strata::put(construction_.node_is_thick, static_cast<std::size_t>(at.node),
+                chunk.node_is_thick);
     strata::put(faces.polygons, at.face, chunk.faces.polygons, scope);
     strata::put(faces.plane, at.face.polygon, chunk.faces.plane);
     strata::put(faces.layer, at.face.polygon, chunk.faces.layer);
     strata::put(faces.above, at.face.polygon, chunk.faces.above);
     std::transform(chunk.faces.below.begin(), chunk.faces.below.end(),
-                   faces.below.begin() + static_cast<std::ptrdiff_t>(at.face.polygon), shared_cell);
-    strata::put(lowered_.outlines, at.lowered, chunk.lowered_outlines, scope);
-    for (std::size_t i = 0; i < chunk.lowered.size(); ++i) {
-        lowered_.polygon[at.lowered.polygon + i] = chunk.lowered[i].polygon;
-        lowered_.cell_above[at.lowered.polygon + i] = shared_cell(chunk.lowered[i].cell_above);
+                   faces.below.begin() + static_cast<std::ptrdiff_t>(at.face.polygon), shared_node);
+    strata::put(below_.outlines, at.below, chunk.below_outlines, scope);
+    for (std::size_t i = 0; i < chunk.below.size(); ++i) {
+        below_.polygon[at.below.polygon + i] = chunk.below[i].polygon;
+        below_.node_above[at.below.polygon + i] = shared_node(chunk.below[i].node_above);
     }
     strata::put(next_.outlines, at.facet, chunk.kept.outlines, scope);
     strata::put(next_.plane, at.facet.polygon, chunk.kept.plane);
     strata::put(next_.layer, at.facet.polygon, chunk.kept.layer);
-    strata::put(next_.pending, at.facet.polygon, chunk.kept.pending);
+    strata::put(next_.block_beneath, at.facet.polygon, chunk.kept.block_beneath);
     for (std::size_t f = 1; f < chunk.kept.face_offsets.size(); ++f) {
         next_.face_offsets[at.facet.polygon + f] =
             static_cast<std::int64_t>(at.facet_face.polygon) + chunk.kept.face_offsets[f];

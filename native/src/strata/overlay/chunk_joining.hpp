@@ -13,27 +13,27 @@
 namespace realmodel::strata {
 
 /// A piece of the surface that becomes part of the envelope.
-struct LoweredPiece {
-    std::int32_t polygon;     ///< of the layer
-    std::int32_t cell_above;  ///< counted within the chunk, or kOutsideCell
+struct PieceBelow {
+    std::int32_t polygon;     ///< of the tiling
+    std::int32_t node_above;  ///< counted within the chunk, or kOutsideCell
 };
 
 /// What one chunk of facets became. Lines and points are the scope's for as long as there is one;
-/// cells are counted from 0.
+/// nodes are counted from 0.
 struct ChunkResult {
     /// Makes room for what most chunks of so many facets become.
     ChunkResult(const exact::PlanArrangement& geometry, std::size_t facets);
 
     std::unique_ptr<LocalArrangement> scope;
-    GrowingArray<std::int32_t> cell_block;
-    GrowingArray<std::uint8_t> cell_is_thick;
-    FaceList faces;  ///< finished; above is a shared cell, below one of the chunk's
-    PolygonPool lowered_outlines;
-    GrowingArray<LoweredPiece> lowered;
+    GrowingArray<std::int32_t> node_block;
+    GrowingArray<std::uint8_t> node_is_thick;
+    FaceList faces;  ///< finished; above is a shared node, below one of the chunk's
+    PolygonPool below_outlines;
+    GrowingArray<PieceBelow> below;
     Envelope kept;
 
     std::array<PolygonPool*, 4> pools() {
-        return {&faces.polygons, &lowered_outlines, &kept.outlines, &kept.face_polygons};
+        return {&faces.polygons, &below_outlines, &kept.outlines, &kept.face_polygons};
     }
 };
 
@@ -44,8 +44,8 @@ struct PoolStart {
 
 /// Where the elements of a chunk go.
 struct ChunkStart {
-    std::int64_t cell = 0;
-    PoolStart face, lowered, facet, facet_face;
+    std::int64_t node = 0;
+    PoolStart face, below, facet, facet_face;
 
     void pass(const ChunkResult& chunk);
 };
@@ -57,14 +57,14 @@ class ChunkJoining {
 public:
     /// Makes room for what becomes of most envelopes of so many facets.
     ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, std::size_t facets,
-                 Construction& construction, Envelope& next, LoweredPieces& lowered);
+                 Construction& construction, Envelope& next, PiecesBelow& below);
 
     /// Finds where a chunk goes; to be called once for each, in order, by one thread at a time.
-    /// @throws InputError kind too_large, where there are more cells than numbers for them
-    void find_place(std::size_t chunk);
-    /// Puts a chunk whose place was found there, if there is room; several threads may do so.
+    /// @throws InputError kind too_large, where there are more nodes than numbers for them
+    void find_offset(std::size_t chunk);
+    /// Puts a chunk whose offset was found there, if there is room; several threads may do so.
     void put_where_room(std::size_t chunk);
-    /// Puts what is left. To be called once, when all have their places.
+    /// Puts what is left. To be called once, when all have their offsets.
     void finish(int threads, const Progress* progress);
 
 private:
@@ -74,10 +74,10 @@ private:
     std::vector<std::unique_ptr<ChunkResult>>& chunks_;
     Construction& construction_;
     Envelope& next_;
-    LoweredPieces& lowered_;
+    PiecesBelow& below_;
     std::vector<ChunkStart> start_;
     std::vector<std::uint8_t> fits_;  ///< of each chunk, whether there is room for it
-    ChunkStart end_;                  ///< of the chunks that have their places
+    ChunkStart end_;                  ///< of the chunks that have their offsets
 };
 
 }  // namespace realmodel::strata

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "strata/overlay/polygon.hpp"
@@ -10,101 +12,96 @@
 
 namespace realmodel::strata {
 
+/// Instead of a node or a cell.
 inline constexpr std::int32_t kOutsideCell = -1;
 
 /// Faces that are finished: convex plan polygons, each in the plane of a triangle, between two
-/// cells.
+/// nodes.
 struct FaceList {
     PolygonPool polygons;
     GrowingArray<PlaneId> plane;
     GrowingArray<std::int32_t> layer;  ///< number of the surface that the face lies on, -1 the base
-    GrowingArray<std::int32_t> above;  ///< cell, or kOutsideCell
+    GrowingArray<std::int32_t> above;  ///< node, or kOutsideCell
     GrowingArray<std::int32_t> below;
 
     std::size_t size() const { return plane.size(); }
-    void add(PolygonView polygon, PlaneId in_plane, std::int32_t in_layer, std::int32_t cell_above,
-             std::int32_t cell_below) {
+    void add(PolygonView polygon, PlaneId in_plane, std::int32_t in_layer, std::int32_t node_above,
+             std::int32_t node_below) {
         polygons.add(polygon);
         plane.push_back(in_plane);
         layer.push_back(in_layer);
-        above.push_back(cell_above);
-        below.push_back(cell_below);
-    }
-    void append(const FaceList& other) {
-        polygons.append(other.polygons);
-        plane.append(other.plane.begin(), other.plane.end());
-        layer.append(other.layer.begin(), other.layer.end());
-        above.append(other.above.begin(), other.above.end());
-        below.append(other.below.begin(), other.below.end());
+        above.push_back(node_above);
+        below.push_back(node_below);
     }
 };
 
 /// The lower envelope of the surfaces seen so far, youngest first: what survives of them, as convex
-/// facets that tile the frame. Each facet lies in one plane and carries the faces that cells above
+/// facets that tile the frame. Each facet lies in one plane and carries the faces that nodes above
 /// it already have there; they tile the facet.
 struct Envelope {
     PolygonPool outlines;
-    GrowingArray<PlaneId> plane;         ///< kSky, kOutside, or the plane of a triangle
-    GrowingArray<std::int32_t> layer;    ///< surface of the facet, -1 for the sky
-    GrowingArray<std::int32_t> pending;  ///< the block beneath: last surface seen here, -1 the sky
+    GrowingArray<PlaneId> plane;               ///< kSky, kOutside, or the plane of a triangle
+    GrowingArray<std::int32_t> layer;          ///< surface of the facet, -1 for the sky
+    GrowingArray<std::int32_t> block_beneath;  ///< the last surface seen here, -1 the sky
     GrowingArray<std::int64_t> face_offsets{0};
     PolygonPool face_polygons;
-    GrowingArray<std::int32_t> face_above;  ///< cell above each face, or kOutsideCell
+    GrowingArray<std::int32_t> face_above;  ///< node above each face, or kOutsideCell
 
     std::size_t size() const { return plane.size(); }
+    std::pair<std::size_t, std::size_t> faces_of(std::size_t facet) const {
+        return {static_cast<std::size_t>(face_offsets[facet]),
+                static_cast<std::size_t>(face_offsets[facet + 1])};
+    }
     void add_facet(PolygonView outline, PlaneId in_plane, std::int32_t in_layer,
-                   std::int32_t block_beneath) {
+                   std::int32_t block) {
         outlines.add(outline);
         plane.push_back(in_plane);
         layer.push_back(in_layer);
-        pending.push_back(block_beneath);
+        block_beneath.push_back(block);
         face_offsets.push_back(face_offsets.back());
     }
     /// Adds a facet of another envelope, with its faces.
-    void add_facet_of(const Envelope& other, std::size_t facet, std::int32_t block_beneath) {
-        add_facet(other.outlines[facet], other.plane[facet], other.layer[facet], block_beneath);
-        for (auto f = other.face_offsets[facet]; f < other.face_offsets[facet + 1]; ++f) {
-            const auto i = static_cast<std::size_t>(f);
-            add_face(other.face_polygons[i], other.face_above[i]);
-        }
-    }
-    /// Adds all facets of another envelope.
-    void append(const Envelope& other) {
-        const auto faces_before = face_offsets.back();
-        outlines.append(other.outlines);
-        plane.append(other.plane.begin(), other.plane.end());
-        layer.append(other.layer.begin(), other.layer.end());
-        pending.append(other.pending.begin(), other.pending.end());
-        for (std::size_t i = 1; i < other.face_offsets.size(); ++i)
-            face_offsets.push_back(faces_before + other.face_offsets[i]);
-        face_polygons.append(other.face_polygons);
-        face_above.append(other.face_above.begin(), other.face_above.end());
+    void add_facet_of(const Envelope& other, std::size_t facet, std::int32_t block) {
+        add_facet(other.outlines[facet], other.plane[facet], other.layer[facet], block);
+        const auto [begin, end] = other.faces_of(facet);
+        for (std::size_t f = begin; f < end; ++f)
+            add_face(other.face_polygons[f], other.face_above[f]);
     }
     /// Adds a face to the facet added last.
-    void add_face(PolygonView polygon, std::int32_t cell_above) {
+    void add_face(PolygonView polygon, std::int32_t node_above) {
         face_polygons.add(polygon);
-        face_above.push_back(cell_above);
+        face_above.push_back(node_above);
         ++face_offsets.back();
     }
 };
 
-/// Cells and faces made so far.
+/// Nodes and faces made so far. A node is a piece of a block: a column, or what links join to the
+/// cell of a whole block.
 struct Construction {
     FaceList faces;
-    GrowingArray<std::int32_t> cell_block;
-    /// Of each cell: 1 where its top is above its bottom everywhere, its border included, by far
+    GrowingArray<std::int32_t> node_block;
+    /// Of each node: 1 where its top is above its bottom everywhere, its border included, by far
     /// more than rounding moves heights.
-    GrowingArray<std::uint8_t> cell_is_thick;
+    GrowingArray<std::uint8_t> node_is_thick;
+    std::vector<std::pair<std::int32_t, std::int32_t>> links;  ///< nodes of one block that touch
+
+    /// @throws InputError kind too_large, where there are more nodes than numbers for them
+    std::int32_t add_node(std::int32_t block, bool is_thick);
+    /// Finishes the faces of a facet: the node beneath it is known now.
+    void seal(const Envelope& envelope, std::size_t facet, std::int32_t node);
+    /// Counts the blocks of a rock mass, whose nodes begin at `first_node`, among those of all.
+    void count_blocks_from(std::size_t first_node, std::int32_t first_block);
 };
 
-/// The envelope before the first overlay: the youngest surface itself, or the region under the sky.
-Envelope initial_envelope(const SurfaceTiling& layer, std::int32_t number);
+/// @throws InputError kind too_large, where so many nodes have no numbers
+void check_nodes(std::int64_t count);
 
-/// Lays surface `number` under the envelope: where it is lower, a cell is closed between the two
-/// and the surface becomes the envelope; elsewhere it was eroded away and the envelope stays.
-Envelope overlay(exact::PlanArrangement& geometry, const Envelope& envelope,
-                 const SurfaceTiling& layer, std::int32_t number, Construction& construction,
-                 int threads, const Progress* progress);
+/// The envelope before the first overlay: the youngest surface itself, or the region under the sky.
+Envelope initial_envelope(const SurfaceTiling& tiling, std::int32_t number);
+
+/// The lowest position of the facets that lie on surfaces.
+std::array<double, 3> lowest_position(const exact::PlanArrangement& geometry,
+                                      const Envelope& envelope);
 
 /// Closes what is left: block 0 down to a flat base where there is one, the outside elsewhere.
 /// @param is_thick  whether the base is far below all, see Construction

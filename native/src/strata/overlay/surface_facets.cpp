@@ -2,7 +2,7 @@
 #include "strata/overlay/surface_facets.hpp"
 
 #include <algorithm>
-#include <span>
+#include <cassert>
 
 #include "base/parallel_counts.hpp"
 
@@ -12,42 +12,6 @@ namespace {
 
 constexpr std::size_t kPolygons = 1 << 12, kPieces = 1 << 14;  // worked on at a time
 constexpr std::size_t kAhead = 16;                             // pieces
-
-/// The pieces of each polygon.
-struct PiecesOfPolygons {
-    FlatArray<std::uint32_t> offsets;
-    FlatArray<std::uint32_t> pieces;  ///< ascending for each polygon
-
-    std::span<const std::uint32_t> operator[](std::size_t polygon) const {
-        return {pieces.begin() + offsets[polygon], pieces.begin() + offsets[polygon + 1]};
-    }
-};
-
-PiecesOfPolygons sort_by_polygon(const LoweredPieces& lowered, std::size_t polygons, int threads,
-                                 const Progress* progress) {
-    const std::size_t count = lowered.polygon.size();
-    PiecesOfPolygons of;
-    of.offsets = zeros<std::uint32_t>(polygons + 1, threads, progress);
-    FlatArray<std::uint32_t> number(count);
-    const auto for_all = [&](const auto& visit) {
-        parallel_ranges(count, kPieces, threads, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                visit(i, static_cast<std::size_t>(lowered.polygon[i]));
-        });
-    };
-    for_all([&](std::size_t i, std::size_t p) { number[i] = count_one(of.offsets[p]); });
-    running_totals(of.offsets, UINT32_MAX, threads, progress);
-    of.pieces = FlatArray<std::uint32_t>(count);
-    for_all([&](std::size_t i, std::size_t p) {
-        of.pieces[of.offsets[p] + number[i]] = static_cast<std::uint32_t>(i);
-    });
-    parallel_ranges(
-        polygons, kPolygons, threads, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t p = begin; p < end; ++p)
-                std::sort(of.pieces.begin() + of.offsets[p], of.pieces.begin() + of.offsets[p + 1]);
-        });
-    return of;
-}
 
 /// How much of an envelope there is up to somewhere.
 struct EnvelopeSize {
@@ -83,13 +47,13 @@ public:
         envelope_.outlines.offsets[facet + 1] = static_cast<std::int64_t>(at_.corners);
         envelope_.plane[facet] = plane;
         envelope_.layer[facet] = number_;
-        envelope_.pending[facet] = number_;
+        envelope_.block_beneath[facet] = number_;
         envelope_.face_offsets[facet + 1] = static_cast<std::int64_t>(at_.faces);
     }
     /// Adds a face to the facet added last.
-    void add_face(PolygonView outline, std::int32_t cell_above) {
+    void add_face(PolygonView outline, std::int32_t node_above) {
         copy_corners(outline, envelope_.face_polygons.corners.begin() + at_.face_corners);
-        envelope_.face_above[at_.faces] = cell_above;
+        envelope_.face_above[at_.faces] = node_above;
         at_.add_face(outline);
         envelope_.face_polygons.offsets[at_.faces] = static_cast<std::int64_t>(at_.face_corners);
         envelope_.face_offsets[at_.facets] = static_cast<std::int64_t>(at_.faces);
@@ -104,7 +68,7 @@ private:
 void resize(Envelope& envelope, const EnvelopeSize& size) {
     envelope.outlines.offsets.resize(size.facets + 1);
     envelope.outlines.corners.resize(size.corners);
-    for (auto* list : {&envelope.plane, &envelope.layer, &envelope.pending})
+    for (auto* list : {&envelope.plane, &envelope.layer, &envelope.block_beneath})
         list->resize(size.facets);
     envelope.face_offsets.resize(size.facets + 1);
     envelope.face_polygons.offsets.resize(size.faces + 1);
@@ -114,28 +78,55 @@ void resize(Envelope& envelope, const EnvelopeSize& size) {
 
 }  // namespace
 
-void add_surface_facets(const SurfaceTiling& layer, const std::vector<std::uint8_t>& whole,
-                        const LoweredPieces& lowered, std::int32_t number, Envelope& next,
-                        int threads, const Progress* progress) {
-    const std::size_t polygons = layer.plane.size();
-    const PiecesOfPolygons of_polygon = sort_by_polygon(lowered, polygons, threads, progress);
-    // Tells what a polygon becomes.
+PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons, int threads,
+                                 const Progress* progress) {
+    const std::size_t count = below.polygon.size();
+    PiecesOfPolygons of;
+    of.offsets = zeros<std::uint32_t>(polygons + 1, threads, progress);
+    FlatArray<std::uint32_t> number(count);
+    const auto for_all = [&](const auto& visit) {
+        parallel_ranges(count, kPieces, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                visit(i, static_cast<std::size_t>(below.polygon[i]));
+        });
+    };
+    for_all([&](std::size_t i, std::size_t p) { number[i] = count_one(of.offsets[p]); });
+    running_totals(of.offsets, UINT32_MAX, threads, progress);
+    of.pieces = FlatArray<std::uint32_t>(count);
+    for_all([&](std::size_t i, std::size_t p) {
+        of.pieces[of.offsets[p] + number[i]] = static_cast<std::uint32_t>(i);
+    });
+    parallel_ranges(
+        polygons, kPolygons, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p)
+                std::sort(of.pieces.begin() + of.offsets[p], of.pieces.begin() + of.offsets[p + 1]);
+        });
+    return of;
+}
+
+void add_surface_facets(const SurfaceTiling& tiling, const std::vector<std::uint8_t>& use,
+                        const PiecesBelow& below, const PiecesOfPolygons& of_polygon,
+                        std::int32_t number, Envelope& next, int threads,
+                        const Progress* progress) {
+    const std::size_t polygons = tiling.plane.size();
+    assert(use.size() == polygons && of_polygon.offsets.size() == polygons + 1);
+    // Says what a polygon becomes.
     const auto visit = [&](std::size_t p, const auto& add_facet, const auto& add_face) {
         const auto pieces = of_polygon[p];
-        if (pieces.empty()) return;
-        if (whole[p] != 0) {
-            add_facet(layer.polygons[p], layer.plane[p]);
+        if (pieces.empty() || use[p] == kElsewhere) return;
+        if (use[p] == kTogether) {
+            add_facet(tiling.polygons[p], tiling.plane[p]);
             const bool open = std::all_of(pieces.begin(), pieces.end(), [&](std::uint32_t i) {
-                return lowered.cell_above[i] == kOutsideCell;
+                return below.node_above[i] == kOutsideCell;
             });
             if (open) {  // nothing above needs the pieces
-                add_face(layer.polygons[p], kOutsideCell);
+                add_face(tiling.polygons[p], kOutsideCell);
                 return;
             }
         }
         for (const std::uint32_t i : pieces) {
-            if (whole[p] == 0) add_facet(lowered.outlines[i], layer.plane[p]);
-            add_face(lowered.outlines[i], lowered.cell_above[i]);
+            if (use[p] == kDivided) add_facet(below.outlines[i], tiling.plane[p]);
+            add_face(below.outlines[i], below.node_above[i]);
         }
     };
     std::vector<EnvelopeSize> start((polygons + kPolygons - 1) / kPolygons);
@@ -165,10 +156,10 @@ void add_surface_facets(const SurfaceTiling& layer, const std::vector<std::uint8
                 for (std::size_t k = of_polygon.offsets[p] + kAhead,
                                  to = of_polygon.offsets[p + 1] + kAhead;
                      k < to && k + kAhead < last_piece; ++k) {
-                    prefetch(lowered.outlines.corners.begin() +
-                             lowered.outlines.offsets[of_polygon.pieces[k]]);
-                    prefetch(lowered.outlines.offsets.begin() + of_polygon.pieces[k + kAhead]);
-                    prefetch(lowered.cell_above.begin() + of_polygon.pieces[k + kAhead]);
+                    prefetch(below.outlines.corners.begin() +
+                             below.outlines.offsets[of_polygon.pieces[k]]);
+                    prefetch(below.outlines.offsets.begin() + of_polygon.pieces[k + kAhead]);
+                    prefetch(below.node_above.begin() + of_polygon.pieces[k + kAhead]);
                 }
                 visit(
                     p, [&](PolygonView o, PlaneId plane) { writer.add_facet(o, plane); },

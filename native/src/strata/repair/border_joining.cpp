@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "base/keep_single.hpp"
@@ -345,6 +346,21 @@ JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping
         }
     }
     return joined;
+}
+
+Warning joined_by_rounding(const PlanSnapping& snapping, const JoinedBorders& borders) {
+    const std::size_t coordinates = snapping.x.size() + snapping.y.size();
+    std::string text;
+    if (coordinates > 0) {
+        text = "plan coordinates that differ by rounding only taken as one: " +
+               std::to_string(coordinates);
+    }
+    if (borders.divided > 0) {
+        text += (text.empty() ? "" : "; ") +
+                ("border edges divided at vertices within rounding of them: " +
+                 std::to_string(borders.divided));
+    }
+    return {"joined", -1, {}, text};
 }
 
 }  // namespace realmodel::strata

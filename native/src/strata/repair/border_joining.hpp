@@ -39,4 +39,7 @@ struct JoinedBorders {
 JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping& snapping,
                            int threads = 1, const Progress* progress = nullptr);
 
+/// What was done to the input before it was built.
+Warning joined_by_rounding(const PlanSnapping& snapping, const JoinedBorders& borders);
+
 }  // namespace realmodel::strata

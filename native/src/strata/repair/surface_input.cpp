@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/repair/surface_input.hpp"
+
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <string>
 
@@ -8,16 +9,13 @@
 #include "base/parallel_counts.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
-#include "strata/tiling/surface_tiling.hpp"
+#include "strata/repair/limits.hpp"
 
 namespace realmodel::strata {
 
 using exact::PlanArrangement;
 
 namespace {
-
-// Beyond these the products behind floating-point filters overflow or vanish.
-constexpr double kLargest = 1e50;
 
 constexpr exact::SpaceId kNotEntered = -1;
 
@@ -32,7 +30,7 @@ std::array<double, 3> vertex_of(const SurfaceView& surface, std::int64_t v) {
 void check_vertices(const SurfaceView& surface, int index, std::size_t begin, std::size_t end) {
     for (auto v = static_cast<std::int64_t>(begin); v < static_cast<std::int64_t>(end); ++v) {
         for (const double c : vertex_of(surface, v)) {
-            if (!(std::abs(c) <= kLargest)) {
+            if (!is_within_limits(c)) {
                 throw InputError("not_finite",
                                  "vertex " + std::to_string(v) +
                                      " has a coordinate that is not a number or is beyond 1e50",

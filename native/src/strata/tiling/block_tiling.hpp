@@ -3,49 +3,53 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "strata/tiling/surface_tiling.hpp"
 
 namespace realmodel::strata {
 
-class BlockOverlay;
-
-/// A surface while blocks are built: its triangles span the planes from `first_plane` on.
+/// A surface while blocks are built, or what rules raised it to: triangles as a whole, and parts of
+/// triangles, which overlays always cut exactly.
 struct BlockTiling {
-    std::int32_t number = 0;
-    PlaneId first_plane = 0;
-    /// Across edge i, from corner i to corner i + 1, the only other triangle there, at the same
-    /// heights; -1 where a wall may stand.
-    std::vector<std::array<std::int32_t, 3>> neighbour;
+    std::vector<PlaneId> whole;
+    PolygonPool parts;
+    std::vector<PlaneId> part_plane;  ///< kVoid where there is no surface
     std::vector<PlanTriangle> empty;  ///< where in the frame the surface is not
-    std::size_t size() const { return neighbour.size(); }
-    bool has(PlaneId plane) const {
-        return plane >= first_plane && plane < first_plane + static_cast<PlaneId>(size());
+    bool is_raised = false;           ///< triangles of older surfaces may be among these
+
+    /// Number of whole triangles and parts, counted in this order.
+    std::size_t size() const { return whole.size() + part_plane.size(); }
+    bool is_whole(std::size_t i) const { return i < whole.size(); }
+    PlaneId plane(std::size_t i) const {
+        return is_whole(i) ? whole[i] : part_plane[i - whole.size()];
+    }
+    void add_part(PolygonView outline, PlaneId in_plane) {
+        parts.add(outline);
+        part_plane.push_back(in_plane);
     }
 };
 
-/// The region in triangles, and what lies around it.
-struct BlockRegion {
-    std::vector<PlanTriangle> inside, outside;
-    std::vector<BorderEdge> border;
+/// How the triangles of surfaces hang together in space.
+struct TriangleLinks {
+    /// Of each plane: across edge i, from corner i to corner i + 1, the only other triangle of its
+    /// surface there, at the same heights; -1 where a wall may stand.
+    std::vector<std::array<PlaneId, 3>> neighbor;
+    /// The edges across which there is none, and borders of regions.
+    std::vector<std::pair<exact::VertexId, exact::VertexId>> border;
+
+    bool has(PlaneId plane) const { return static_cast<std::size_t>(plane) < neighbor.size(); }
+    const std::array<PlaneId, 3>& of(PlaneId plane) const {
+        return neighbor[static_cast<std::size_t>(plane)];
+    }
 };
 
-/// The layer of a checked surface from its linked triangles; its planes are made.
+/// A checked surface from its linked triangles; its planes are made, and their links added.
 /// @throws InputError kind double_valued, as make_surface_tiling does
 BlockTiling make_block_tiling(exact::PlanArrangement& geometry,
                               const std::vector<UsedTriangle>& triangles, SurfacePlan plan,
-                              std::int32_t number, int threads, const Progress* progress);
-
-BlockRegion make_block_region(const exact::PlanArrangement& geometry,
-                              const std::vector<PlanTriangle>& triangles, const Frame& frame,
+                              std::int32_t number, TriangleLinks& links, int threads,
                               const Progress* progress);
-
-/// An overlay of these layers (oldest first; they must outlive it) under the sky over the region.
-BlockOverlay make_block_overlay(exact::PlanArrangement& geometry,
-                                const std::vector<BlockTiling>& layers,
-                                const std::optional<BlockRegion>& region, int threads,
-                                const Progress* progress);
 
 }  // namespace realmodel::strata

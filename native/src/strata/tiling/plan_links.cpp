@@ -9,6 +9,7 @@
 #include "base/parallel_chunks.hpp"
 #include "base/sort_few.hpp"
 #include "exact/orient2d.hpp"
+#include "realmodel/base/errors.hpp"
 #include "realmodel/meshing/triangulation.hpp"
 
 namespace realmodel::strata {
@@ -179,10 +180,22 @@ private:
     std::vector<Edge> edges_;
 };
 
+/// Nothing where segments cross.
+std::optional<meshing::ConstrainedTriangulation> triangulate(
+    const std::vector<meshing::PlanPoint>& points,
+    const std::vector<std::array<std::int32_t, 2>>& segments) {
+    try {
+        return meshing::constrained_delaunay(points, segments);
+    } catch (const InputError& error) {
+        if (error.kind != "crossing") throw;
+        return std::nullopt;
+    }
+}
+
 }  // namespace
 
-FrameTriangles fill_frame(const PlanArrangement& geometry, std::span<const BorderEdge> border,
-                          const Frame& frame) {
+std::optional<FrameTriangles> fill_frame(const PlanArrangement& geometry,
+                                         std::span<const BorderEdge> border, const Frame& frame) {
     std::vector<VertexId> used(frame.begin(), frame.end());
     for (const BorderEdge& edge : border) {
         used.push_back(edge.low);
@@ -202,7 +215,9 @@ FrameTriangles fill_frame(const PlanArrangement& geometry, std::span<const Borde
     segments.reserve(border.size());
     for (const BorderEdge& edge : border)
         segments.push_back({local(edge.low), local(edge.high)});
-    const auto mesh = meshing::constrained_delaunay(points, segments);
+    const auto found = triangulate(points, segments);
+    if (!found) return std::nullopt;
+    const auto& mesh = *found;
     const NetAlongEdges net(mesh, points, segments, border);
 
     // Whatever has a corner of the frame lies outside of everything.

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,8 +45,8 @@ struct FrameTriangles {
 /// Where the linked triangles lie and where they do not. Outside of the border nothing is covered,
 /// and crossing an edge of it changes the number by its `net`: so it is known everywhere without
 /// looking at a single triangle.
-/// @throws InputError kind crossing where edges of the border cross: then triangles overlap
-FrameTriangles fill_frame(const exact::PlanArrangement& geometry,
-                          std::span<const BorderEdge> border, const Frame& frame);
+/// @return nothing where edges of the border cross: then triangles overlap
+std::optional<FrameTriangles> fill_frame(const exact::PlanArrangement& geometry,
+                                         std::span<const BorderEdge> border, const Frame& frame);
 
 }  // namespace realmodel::strata

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <memory>
 
 #include "base/parallel_chunks.hpp"
@@ -62,9 +63,13 @@ std::vector<std::unique_ptr<FoundFacets>> over_facets(PlanArrangement& geometry,
     return found;
 }
 
-/// The higher of a surface and a bound, where there is a surface.
-SurfaceTiling raise(PlanArrangement& geometry, const SurfaceTiling& surface,
-                    const SurfaceTiling& bound, int threads, const Progress* progress) {
+}  // namespace
+
+SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surface,
+                           const SurfaceTiling& bound, std::span<const std::uint8_t> given,
+                           int threads, const Progress* progress) {
+    assert(given.empty() || given.size() == surface.plane.size());
+    const auto is_given = [&](std::size_t p) { return !given.empty() && given[p] != 0; };
     std::vector<std::uint8_t> whole(surface.plane.size(), 1);
     const auto found = over_facets(
         geometry, bound, surface, threads, progress,
@@ -89,31 +94,22 @@ SurfaceTiling raise(PlanArrangement& geometry, const SurfaceTiling& surface,
         });
     SurfaceTiling raised;
     for (std::size_t p = 0; p < surface.plane.size(); ++p) {
-        if (surface.plane[p] >= 0 && whole[p] == 0) continue;
+        if (is_given(p) || (surface.plane[p] >= 0 && whole[p] == 0)) continue;
         raised.polygons.add(surface.polygons[p]);
         raised.plane.push_back(surface.plane[p]);
     }
     for (const auto& chunk : found) {
         for (std::size_t i = 0; i < chunk->plane.size(); ++i) {
-            const std::int32_t of = chunk->polygon[i];
-            if (of < 0 || whole[static_cast<std::size_t>(of)] == 0) append(*chunk, i, raised);
+            const auto of = static_cast<std::size_t>(chunk->polygon[i]);
+            if (chunk->polygon[i] < 0 || (whole[of] == 0 && !is_given(of)))
+                append(*chunk, i, raised);
         }
     }
-    raised.index(geometry, threads, progress);
     return raised;
 }
 
-/// The newer layer where it has a surface, the older elsewhere. `surface` has its surface where
-/// `newer` has: the same places, and void triangles for the rest.
-SurfaceTiling cover(PlanArrangement& geometry, const SurfaceTiling& older,
-                    const SurfaceTiling& newer, const SurfaceTiling& surface, int threads,
-                    const Progress* progress) {
-    SurfaceTiling covered;
-    for (std::size_t p = 0; p < newer.plane.size(); ++p) {
-        if (newer.plane[p] < 0) continue;
-        covered.polygons.add(newer.polygons[p]);
-        covered.plane.push_back(newer.plane[p]);
-    }
+SurfaceTiling uncovered_part(PlanArrangement& geometry, const SurfaceTiling& older,
+                             const SurfaceTiling& surface, int threads, const Progress* progress) {
     const auto found = over_facets(geometry, older, surface, threads, progress,
                                    [&](std::size_t f, PieceFinder& finder, FoundFacets& out) {
                                        // as a void, so that heights are not asked for
@@ -130,50 +126,32 @@ SurfaceTiling cover(PlanArrangement& geometry, const SurfaceTiling& older,
                                                out.add(pieces.outline(piece), older.plane[f], -1);
                                        }
                                    });
+    SurfaceTiling uncovered;
     for (const auto& chunk : found) {
         for (std::size_t i = 0; i < chunk->plane.size(); ++i)
-            append(*chunk, i, covered);
+            append(*chunk, i, uncovered);
+    }
+    return uncovered;
+}
+
+SurfaceTiling TilingRaising::raise(const SurfaceTiling& surface, const SurfaceTiling& bound) const {
+    SurfaceTiling raised = raise_tiling(geometry_, surface, bound, {}, threads_, progress_);
+    raised.index(geometry_, threads_, progress_);
+    return raised;
+}
+
+SurfaceTiling TilingRaising::cover(const SurfaceTiling& older, const SurfaceTiling& newer,
+                                   const SurfaceTiling& surface) const {
+    const SurfaceTiling rest = uncovered_part(geometry_, older, surface, threads_, progress_);
+    SurfaceTiling covered;
+    for (const SurfaceTiling* part : {&newer, &rest}) {
+        for (std::size_t p = 0; p < part->plane.size(); ++p) {
+            if (part == &newer && part->plane[p] < 0) continue;
+            covered.polygons.add(part->polygons[p]);
+            covered.plane.push_back(part->plane[p]);
+        }
     }
     return covered;
-}
-
-}  // namespace
-
-RuleReplay::RuleReplay(PlanArrangement& geometry, std::vector<Rule> rules, int threads,
-                       const Progress* progress)
-    : geometry_(geometry), rules_(std::move(rules)), threads_(threads), progress_(progress) {}
-
-bool RuleReplay::needs_top(std::size_t from) const {
-    return std::any_of(rules_.begin() + static_cast<std::ptrdiff_t>(from), rules_.end(),
-                       [](Rule r) { return !cuts(r); });
-}
-
-// The floor only matters to surfaces that cut: the top, which bounds the others, is never below it.
-bool RuleReplay::needs_floor(std::size_t from) const {
-    return std::any_of(rules_.begin() + static_cast<std::ptrdiff_t>(from), rules_.end(),
-                       [](Rule r) { return cuts(r); });
-}
-
-SurfaceTiling RuleReplay::add(SurfaceTiling surface) {
-    const Rule rule = rules_[next_++];
-    const std::optional<SurfaceTiling>& bound = cuts(rule) ? floor_ : top_;
-    std::optional<SurfaceTiling> raised;
-    if (bound) raised = raise(geometry_, surface, *bound, threads_, progress_);
-    const SurfaceTiling& e = raised ? *raised : surface;
-    const auto renew = [&](std::optional<SurfaceTiling>& kept) {
-        kept = kept ? cover(geometry_, *kept, e, surface, threads_, progress_) : e;
-    };
-    if (needs_top(next_)) {
-        renew(top_);
-    } else {
-        top_.reset();
-    }
-    if (!needs_floor(next_)) {
-        floor_.reset();
-    } else if (protects(rule)) {
-        renew(floor_);
-    }
-    return raised ? std::move(*raised) : std::move(surface);
 }
 
 }  // namespace realmodel::strata

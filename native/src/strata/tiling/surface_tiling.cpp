@@ -10,6 +10,7 @@
 #include "base/parallel_chunks.hpp"
 #include "base/parallel_counts.hpp"
 #include "realmodel/base/errors.hpp"
+#include "strata/tiling/triangle_outlines.hpp"
 
 namespace realmodel::strata {
 
@@ -20,12 +21,6 @@ namespace {
 
 constexpr std::size_t kRange = 8192;
 
-/// Whether the line of the edge between a triangle and its neighbour, if any, is known when the
-/// triangles are taken in order.
-bool is_known(std::int32_t neighbour, std::size_t triangle) {
-    return neighbour >= 0 && static_cast<std::size_t>(neighbour) < triangle;
-}
-
 void add_triangle(PlanArrangement& geometry, PolygonPool& pool, const PlanTriangle& triangle) {
     pool.add(triangle_outline(geometry, triangle));
 }
@@ -35,49 +30,6 @@ PlanTriangle plan_of(const PlanArrangement& geometry, const UsedTriangle& triang
     for (std::size_t i = 0; i < 3; ++i)
         v[i] = geometry.space(triangle.corner[i]).plan;
     return v;
-}
-
-/// Outlines of triangles that hang together: the line of an edge is asked for once, and not at all
-/// where the `similar` outlines have it.
-void add_outlines(PlanArrangement& geometry, PolygonPool& pool,
-                  const std::vector<UsedTriangle>& triangles, const PlanLinks& links,
-                  const PolygonPool& similar, const Progress* progress) {
-    constexpr std::size_t kAhead = 8;
-    constexpr DirectedLine kUnknown = -1;
-    const std::size_t count = triangles.size();
-    pool.corners.resize(3 * count);
-    pool.offsets.resize(count + 1);
-    for (std::size_t t = 0; t < count + kAhead; ++t) {
-        poll(progress, t);
-        if (t < count) {
-            const PlanTriangle v = plan_of(geometry, triangles[t]);
-            Corner* own = &pool.corners[3 * t];
-            const PolygonView like = t < similar.size() ? similar[t] : PolygonView();
-            const bool same = like.size() == 3 && like[0].point == v[0] && like[1].point == v[1] &&
-                              like[2].point == v[2];
-            for (std::size_t i = 0; i < 3; ++i) {
-                own[i] = {v[i], same ? like[i].line : kUnknown};
-                if (!same && !is_known(links.neighbour[t][i], t))
-                    geometry.prefetch_edge(v[i], v[(i + 1) % 3]);
-            }
-            pool.offsets[t + 1] = static_cast<std::int64_t>(3 * (t + 1));
-        }
-        if (t < kAhead) continue;
-        Corner* own = &pool.corners[3 * (t - kAhead)];
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (own[i].line != kUnknown) continue;
-            const PointId to = own[(i + 1) % 3].point;
-            const std::int32_t neighbour = links.neighbour[t - kAhead][i];
-            if (!is_known(neighbour, t - kAhead)) {
-                own[i].line = geometry.add_edge(own[i].point, to);
-                continue;
-            }
-            const Corner* other = &pool.corners[3 * static_cast<std::size_t>(neighbour)];
-            while (other->point != to)
-                ++other;
-            own[i].line = exact::opposite(other->line);
-        }
-    }
 }
 
 /// Void triangles (plane `empty`) where nothing is covered.
@@ -139,15 +91,12 @@ void add_empty(PlanArrangement& geometry, SurfaceTiling& layer, const FrameTrian
 std::optional<FrameTriangles> cover_frame(const PlanArrangement& geometry,
                                           const std::vector<BorderEdge>& border,
                                           const Frame& frame) {
-    try {
-        FrameTriangles filling = fill_frame(geometry, border, frame);
-        const auto [least, most] =
-            std::minmax_element(filling.covered.begin(), filling.covered.end());
-        if (*least < 0 || *most > 1) return std::nullopt;
-        return filling;
-    } catch (const InputError&) {
-        return std::nullopt;  // the border crosses itself
-    }
+    auto filling = fill_frame(geometry, border, frame);
+    if (!filling) return std::nullopt;
+    const auto [least, most] =
+        std::minmax_element(filling->covered.begin(), filling->covered.end());
+    if (*least < 0 || *most > 1) return std::nullopt;
+    return filling;
 }
 
 }  // namespace
@@ -218,7 +167,14 @@ SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
     const PlaneId first = make_planes(geometry, triangles, threads, progress);
     layer.plane.resize(triangles.size());
     std::iota(layer.plane.begin(), layer.plane.end(), first);
-    add_outlines(geometry, layer.polygons, triangles, plan.links, similar, progress);
+    add_outlines(
+        geometry, triangles.size(), [&](std::size_t t) { return plan_of(geometry, triangles[t]); },
+        [&](std::size_t t, std::size_t i) {
+            const std::int32_t n = plan.links.neighbour[t][i];
+            return n >= 0 && static_cast<std::size_t>(n) < t ? n : kNoOutline;
+        },
+        [&](std::size_t t) { return t < similar.size() ? similar[t] : PolygonView(); },
+        layer.polygons, progress);
     if (!plan.filling) {
         layer.index(geometry, threads, progress);
         refuse_overlap(geometry, layer, triangles, index, threads, progress);
@@ -241,15 +197,14 @@ SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
 }
 
 SurfaceTiling make_region_tiling(PlanArrangement& geometry,
-                                 const std::vector<PlanTriangle>& triangles, const Frame& frame,
-                                 const Progress* progress) {
+                                 const std::vector<PlanTriangle>& triangles,
+                                 const FrameTriangles& filling) {
     SurfaceTiling layer;
     for (const PlanTriangle& triangle : triangles) {
         add_triangle(geometry, layer.polygons, triangle);
         layer.plane.push_back(kSky);
     }
-    const PlanLinks links = link_triangles(triangles, progress);
-    add_empty(geometry, layer, fill_frame(geometry, links.border, frame), kOutside);
+    add_empty(geometry, layer, filling, kOutside);
     return layer;
 }
 

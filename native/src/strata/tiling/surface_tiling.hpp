@@ -9,7 +9,6 @@
 #include "realmodel/strata/stack.hpp"
 #include "strata/overlay/polygon.hpp"
 #include "strata/plan_grid.hpp"
-#include "strata/repair/plan_snapping.hpp"
 #include "strata/tiling/plan_links.hpp"
 
 namespace realmodel::strata {
@@ -56,15 +55,6 @@ struct EnteredSurface {
     PlanLinks links;
 };
 
-/// Checks surfaces, enters their vertices and links their triangles; leaves out triangles without
-/// area (with a warning). The first of them is number `first_index` of all.
-/// @throws InputError kinds not_finite, bad_index, vertical_triangle
-std::vector<EnteredSurface> enter_surfaces(exact::PlanArrangement& geometry,
-                                           std::span<const SurfaceView> surfaces, int first_index,
-                                           const PlanSnapping& snapping,
-                                           std::vector<Warning>& warnings, int threads,
-                                           const Progress* progress);
-
 /// A triangle that turns counter-clockwise as a polygon; its lines are made where they are new.
 std::array<Corner, 3> triangle_outline(exact::PlanArrangement& geometry, const PlanTriangle& v);
 
@@ -96,9 +86,9 @@ SurfaceTiling make_surface_tiling(exact::PlanArrangement& geometry,
                                   const SurfacePlan& plan, const PolygonPool& similar, int index,
                                   int threads, const Progress* progress);
 
-/// The region as a layer: plane kSky inside and kOutside outside.
+/// The region as a tiling: plane kSky inside and kOutside outside.
 SurfaceTiling make_region_tiling(exact::PlanArrangement& geometry,
-                                 const std::vector<PlanTriangle>& triangles, const Frame& frame,
-                                 const Progress* progress);
+                                 const std::vector<PlanTriangle>& triangles,
+                                 const FrameTriangles& filling);
 
 }  // namespace realmodel::strata

@@ -7,13 +7,14 @@ namespace {
 constexpr Rule kAll[] = {Rule::kErosional, Rule::kConformable, Rule::kBase, Rule::kDiscontinuous};
 
 CellComplex build_ruled(const std::vector<OwnedSurface>& surfaces, std::vector<Rule> rules,
-                        std::optional<double> base = std::nullopt) {
+                        std::optional<double> base = std::nullopt,
+                        CellKind cells = CellKind::kColumns) {
     StackInput input;
     for (const OwnedSurface& s : surfaces)
         input.surfaces.push_back(s.view());
     input.rules = std::move(rules);
     input.base_elevation = base;
-    return build_stack(input, 2, nullptr);
+    return build_stack(input, 2, nullptr, cells);
 }
 
 OwnedSurface flat(double z, bool other = false) {
@@ -116,9 +117,16 @@ TEST(Rules, MixturesOverCrossingSurfacesAreValid) {
     for (const Rule b : kAll) {
         for (const Rule c : kAll) {
             for (const Rule d : kAll) {
-                const auto built = build_ruled(surfaces, {Rule::kErosional, b, c, d}, -3.0);
+                const std::vector<Rule> rules{Rule::kErosional, b, c, d};
+                const auto built = build_ruled(surfaces, rules, -3.0);
                 expect_valid(built);
-                expect_valid(merge_columns(built), true);
+                const auto merged = merge_columns(built);
+                expect_valid(merged, true);
+                const auto blocks = build_ruled(surfaces, rules, -3.0, CellKind::kBlocks);
+                expect_valid(blocks, true);
+                EXPECT_EQ(cells_of_blocks(blocks), cells_of_blocks(merged));
+                for (std::size_t k = 0; k < built.volumes.size(); ++k)
+                    EXPECT_NEAR(blocks.volumes[k], built.volumes[k], 1e-12);
             }
         }
     }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
 #include "base/disjoint_sets.hpp"
-#include "base/parallel_chunks.hpp"
 #include "realmodel/strata/stack.hpp"
 
 namespace realmodel::strata {
 
-CellComplex merge_columns(const CellComplex& columns, const Progress* progress) {
+/// An independent way to the blocks of a model: columns with each connected part of a block as one
+/// cell; walls between cells of one block are left out.
+inline CellComplex merge_columns(const CellComplex& columns) {
     const auto block = [&](std::int32_t cell) {
         return columns.cell_block[static_cast<std::size_t>(cell)];
     };
@@ -14,14 +17,12 @@ CellComplex merge_columns(const CellComplex& columns, const Progress* progress) 
     };
     DisjointSets parts(columns.cell_block.size());
     for (std::size_t f = 0; f < columns.face_cells.size(); ++f) {
-        poll(progress, f);
         const auto& cells = columns.face_cells[f];
         if (within_block(cells)) parts.join(cells[0], cells[1]);
     }
     CellComplex merged;
     std::vector<std::int32_t> part_of(columns.cell_block.size(), -1);
     for (std::size_t c = 0; c < part_of.size(); ++c) {
-        poll(progress, c);
         const auto root = static_cast<std::size_t>(parts.find(static_cast<std::int32_t>(c)));
         if (part_of[root] < 0) {
             part_of[root] = static_cast<std::int32_t>(merged.cell_block.size());
@@ -32,7 +33,6 @@ CellComplex merge_columns(const CellComplex& columns, const Progress* progress) 
     std::vector<std::int32_t> vertex_of(columns.vertices.size(), -1);
     merged.face_offsets.push_back(0);
     for (std::size_t f = 0; f < columns.face_cells.size(); ++f) {
-        poll(progress, f);
         const auto& cells = columns.face_cells[f];
         if (within_block(cells)) continue;
         for (auto i = columns.face_offsets[f]; i < columns.face_offsets[f + 1]; ++i) {
