@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "exact/arithmetic.hpp"
 #include "realmodel/base/errors.hpp"
 

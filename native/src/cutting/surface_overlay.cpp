@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "exact/orient2d.hpp"
 
 namespace realmodel::cutting {

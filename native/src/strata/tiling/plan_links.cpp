@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "base/flat_array.hpp"
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "base/sort_few.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/meshing/triangulation.hpp"
