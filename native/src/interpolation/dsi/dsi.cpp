@@ -22,10 +22,10 @@ using Triangle = std::array<std::int32_t, 3>;
 // rounds of multipliers, and make each round slower.
 constexpr double hold = 8;
 constexpr double met = 1e-8;  // of the range of heights
-constexpr int most_rounds = 30;
-constexpr double first_tolerance = 1e-4, last_tolerance = 1e-9, weighted_tolerance = 1e-9;
+constexpr int kMostRounds = 30;
+constexpr double kFirstTolerance = 1e-4, kLastTolerance = 1e-9, kWeightedTolerance = 1e-9;
 // Of the mesh's stiffness against a tilt: what holds the tilt that the points leave open.
-constexpr double tilt_hold = 1e-6;
+constexpr double kTiltHold = 1e-6;
 
 enum class Kind { weighted, equal, least, most };
 
@@ -40,14 +40,14 @@ struct Condition {
     /// What the pull is after the present heights are seen: strength * (height - z) on top of it.
     double force(const Vector& z) const {
         const double sum = multiplier + wish.strength * (height - wish.of(z));
-        if (kind == Kind::least) return std::max(0.0, sum);
-        if (kind == Kind::most) return std::min(0.0, sum);
+        if (kind == Kind::kLeast) return std::max(0.0, sum);
+        if (kind == Kind::kMost) return std::min(0.0, sum);
         return sum;
     }
     double violation(const Vector& z) const {
         const double below = height - wish.of(z);
-        if (kind == Kind::least) return std::max(0.0, below);
-        if (kind == Kind::most) return std::max(0.0, -below);
+        if (kind == Kind::kLeast) return std::max(0.0, below);
+        if (kind == Kind::kMost) return std::max(0.0, -below);
         return std::abs(below);
     }
 };
@@ -80,7 +80,7 @@ double mean_edge(std::span<const Place> nodes, std::span<const Triangle> triangl
 }
 
 Mesh ordered_mesh(std::span<const Place> nodes, std::span<const Triangle> triangles) {
-    constexpr double cell_in_edges = 2;
+    constexpr double kCellInEdges = 2;
     Place low = nodes[0], high = nodes[0];
     for (const Place& p : nodes) {
         for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -91,7 +91,7 @@ Mesh ordered_mesh(std::span<const Place> nodes, std::span<const Triangle> triang
     const double unit = mean_edge(nodes, triangles);
     const Place extent{(high[0] - low[0]) / unit, (high[1] - low[1]) / unit};
     // No more cells than nodes, where the region fills little of its box.
-    double cell = std::max(cell_in_edges,
+    double cell = std::max(kCellInEdges,
                            std::sqrt(extent[0] * extent[1] / static_cast<double>(nodes.size())));
     cell = std::max(cell, std::max(extent[0], extent[1]) / static_cast<double>(nodes.size()));
     const auto cells = [&](double length) {
@@ -165,17 +165,17 @@ public:
           threads_(thread_count(options.threads)),
           progress_(progress),
           mesh_(ordered_mesh(nodes, triangles)) {
-        report(0.01, "triangles and their neighbours");
+        report(0.01, "triangles and their neighbors");
         check();
         const std::vector<Hinge> of_mesh = hinges(mesh_.nodes, mesh_.triangles);
         check();
         system_.emplace(mesh_.nodes, of_mesh, mesh_.grid, threads_, [this] { check(); });
         report(0.1, "points on the mesh");
         add_points(points, locator, triangles);
-        add_nodes(constraints.equal, Kind::equal);
+        add_nodes(constraints.equal, Kind::kEqual);
         take_plane_off();
-        add_nodes(constraints.least, Kind::least);
-        add_nodes(constraints.most, Kind::most);
+        add_nodes(constraints.least, Kind::kLeast);
+        add_nodes(constraints.most, Kind::kMost);
         hold_tilt();
     }
 
@@ -191,7 +191,7 @@ public:
         out.iterations = iterations_;
         out.converged = system_->converged();
         for (const Condition& c : conditions_) {
-            const bool point = c.kind == Kind::equal && !c.of_node;
+            const bool point = c.kind == Kind::kEqual && !c.of_node;
             if (!point || c.violation(z) <= 1e3 * met * range_) continue;
             ++out.missed;
             out.misfit = std::max(out.misfit, c.violation(z));
@@ -235,7 +235,7 @@ private:
             }
             const bool weighted = options_.weight > 0;
             wish.strength = (weighted ? options_.weight : hold) * system_->stiffness(wish.nodes);
-            add(wish, weighted ? Kind::weighted : Kind::equal, height);
+            add(wish, weighted ? Kind::kWeighted : Kind::kEqual, height);
         }
     }
 
@@ -247,7 +247,7 @@ private:
             const auto node = static_cast<std::int32_t>(i);
             Wish wish{{node, node, node}, {1, 0, 0}, 0};
             wish.strength = hold * system_->stiffness(wish.nodes);
-            add(wish, kind, kind == Kind::equal ? height : height - plane_at(mesh_.nodes[i]));
+            add(wish, kind, kind == Kind::kEqual ? height : height - plane_at(mesh_.nodes[i]));
             conditions_.back().of_node = true;
         }
     }
@@ -272,9 +272,9 @@ private:
         std::vector<Place> places;
         for (const Condition& c : conditions_)
             places.push_back(place_of(c.wish));
-        frame_.emplace(places, Drift::linear);
+        frame_.emplace(places, Drift::kLinear);
         const auto count = static_cast<Eigen::Index>(places.size());
-        Eigen::MatrixXd terms(count, drift_terms(Drift::linear));
+        Eigen::MatrixXd terms(count, drift_terms(Drift::kLinear));
         Eigen::VectorXd heights(count);
         base_ = conditions_[0].height;
         for (Eigen::Index k = 0; k < count; ++k) {
@@ -287,7 +287,7 @@ private:
         plane_ = [this, basis, fitted](const Place& place) {
             return base_ + basis.solve(frame_->terms(place)).dot(fitted);
         };
-        tilt_open_ = basis.size() < drift_terms(Drift::linear);
+        tilt_open_ = basis.size() < drift_terms(Drift::kLinear);
         double low = std::numeric_limits<double>::infinity(), high = -low;
         for (std::size_t k = 0; k < places.size(); ++k) {
             low = std::min(low, conditions_[k].height);
@@ -318,8 +318,8 @@ private:
             }
             const auto node = static_cast<std::int32_t>(far);
             Wish wish{{node, node, node}, {1, 0, 0}, 0};
-            wish.strength = tilt_hold * system_->stiffness(wish.nodes) / (reach * reach);
-            add(wish, Kind::weighted, 0);
+            wish.strength = kTiltHold * system_->stiffness(wish.nodes) / (reach * reach);
+            add(wish, Kind::kWeighted, 0);
         }
     }
 
@@ -328,16 +328,16 @@ private:
         bool holds = false, bounded = false;
         double largest = 0;
         for (Condition& c : conditions_) {
-            holds = holds || c.kind != Kind::weighted;
-            bounded = bounded || c.kind == Kind::least || c.kind == Kind::most;
-            c.active = c.kind == Kind::weighted || c.kind == Kind::equal || c.force(z) != 0;
+            holds = holds || c.kind != Kind::kWeighted;
+            bounded = bounded || c.kind == Kind::kLeast || c.kind == Kind::kMost;
+            c.active = c.kind == Kind::kWeighted || c.kind == Kind::kEqual || c.force(z) != 0;
             largest = std::max(largest, c.active ? std::abs(c.height) : 0.0);
         }
         if (largest == 0) return;  // the plane obeys everything
         double before = std::numeric_limits<double>::infinity();
-        double tolerance = holds ? first_tolerance : weighted_tolerance;
+        double tolerance = holds ? kFirstTolerance : kWeightedTolerance;
         bool changed = true;
-        for (int round = 0; round < most_rounds; ++round) {
+        for (int round = 0; round < kMostRounds; ++round) {
             if (changed) take_active();
             Vector right(z.size(), 0.0);
             for (const Condition& c : conditions_) {
@@ -356,10 +356,10 @@ private:
             double missing = 0;
             changed = false;
             for (Condition& c : conditions_) {
-                missing = std::max(missing, c.kind == Kind::weighted ? 0.0 : c.violation(z));
-                if (c.kind == Kind::weighted) continue;
+                missing = std::max(missing, c.kind == Kind::kWeighted ? 0.0 : c.violation(z));
+                if (c.kind == Kind::kWeighted) continue;
                 c.multiplier = c.force(z);
-                const bool active = c.kind == Kind::equal || c.multiplier != 0;
+                const bool active = c.kind == Kind::kEqual || c.multiplier != 0;
                 changed = changed || active != c.active;
                 c.active = active;
             }
@@ -367,13 +367,13 @@ private:
             // Points that contradict each other on this mesh are met as well as can be.
             if (!changed && !bounded && round > 2 && missing > 0.5 * before) return;
             before = missing;
-            tolerance = std::max(last_tolerance, std::min(0.1 * tolerance, missing / range_));
+            tolerance = std::max(kLastTolerance, std::min(0.1 * tolerance, missing / range_));
         }
     }
 
     /// What holds at nodes to the last digit: after the rounds only little is missing.
     void settle(Vector& z) const {
-        for (const Kind kind : {Kind::least, Kind::most, Kind::equal}) {
+        for (const Kind kind : {Kind::kLeast, Kind::kMost, Kind::kEqual}) {
             for (const Condition& c : conditions_) {
                 if (c.kind == kind && c.of_node && c.violation(z) > 0)
                     z[static_cast<std::size_t>(c.wish.nodes[0])] = c.height;

@@ -111,7 +111,7 @@ std::vector<Hinge> hinges(std::span<const Place> nodes, std::span<const Triangle
 
 SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int threads)
     : size_(nodes),
-      first_((nodes + side_by_side - 1) / side_by_side + 1, 0),
+      first_((nodes + kSideBySide - 1) / kSideBySide + 1, 0),
       diagonal_(nodes),
       rough_diagonal_(nodes) {
     // The hinges of each node, then its row from them.
@@ -160,12 +160,12 @@ SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int thr
         std::vector<Entry> entries;
         for (std::size_t slice = from; slice < to; ++slice) {
             std::size_t longest = 0;
-            for (std::size_t row = side_by_side * slice;
-                 row < std::min(side_by_side * (slice + 1), nodes); ++row) {
+            for (std::size_t row = kSideBySide * slice;
+                 row < std::min(kSideBySide * (slice + 1), nodes); ++row) {
                 row_of(row, entries);
                 longest = std::max(longest, entries.size());
             }
-            first_[slice + 1] = side_by_side * longest;
+            first_[slice + 1] = kSideBySide * longest;
         }
     });
     for (std::size_t slice = 0; slice < slices; ++slice)
@@ -175,10 +175,10 @@ SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int thr
     in_pieces(slices, threads, [&](std::size_t from, std::size_t to) {
         std::vector<Entry> entries;
         for (std::size_t slice = from; slice < to; ++slice) {
-            for (std::size_t side = 0; side < side_by_side; ++side) {
-                const std::size_t row = std::min(side_by_side * slice + side, nodes - 1);
+            for (std::size_t side = 0; side < kSideBySide; ++side) {
+                const std::size_t row = std::min(kSideBySide * slice + side, nodes - 1);
                 std::size_t k = first_[slice] + side;
-                if (row == side_by_side * slice + side) {
+                if (row == kSideBySide * slice + side) {
                     row_of(row, entries);
                     for (const Entry& e : entries) {
                         if (e.column == static_cast<std::int32_t>(row)) {
@@ -187,10 +187,10 @@ SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int thr
                         }
                         column_[k] = e.column;
                         value_[k] = e.value;
-                        k += side_by_side;
+                        k += kSideBySide;
                     }
                 }
-                for (; k < first_[slice + 1]; k += side_by_side)
+                for (; k < first_[slice + 1]; k += kSideBySide)
                     column_[k] = static_cast<std::int32_t>(row);
             }
         }
@@ -199,14 +199,14 @@ SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int thr
 }
 
 void SparseRows::make_sweep() {
-    constexpr std::size_t piece = most_rows;
+    constexpr std::size_t piece = kMostRows;
     std::vector<StagedSweep::Reach> reach;
     for (std::size_t begin = 0; begin < size(); begin += piece) {
         const auto from =
-            column_.begin() + static_cast<std::ptrdiff_t>(first_[begin / side_by_side]);
-        const std::size_t end = std::min(begin + most_rows, size());
+            column_.begin() + static_cast<std::ptrdiff_t>(first_[begin / kSideBySide]);
+        const std::size_t end = std::min(begin + kMostRows, size());
         const auto to = column_.begin() + static_cast<std::ptrdiff_t>(
-                                              first_[(end + side_by_side - 1) / side_by_side]);
+                                              first_[(end + kSideBySide - 1) / kSideBySide]);
         const auto [low, high] = std::minmax_element(from, to);
         reach.emplace_back(static_cast<std::size_t>(*low) / piece,
                            static_cast<std::size_t>(*high) / piece);
@@ -216,9 +216,9 @@ void SparseRows::make_sweep() {
 
 void SparseRows::add(std::int32_t row, std::int32_t column, double value) {
     const auto number = static_cast<std::size_t>(row);
-    std::size_t entry = first_[number / side_by_side] + number % side_by_side;
+    std::size_t entry = first_[number / kSideBySide] + number % kSideBySide;
     while (column_[entry] != column)
-        entry += side_by_side;
+        entry += kSideBySide;
     changed_.push_back({entry, value_[entry]});
     value_[entry] += value;
 }

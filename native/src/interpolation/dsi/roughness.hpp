@@ -51,9 +51,9 @@ public:
     /// Calls visit(column, value) for the entries of a row; what fills it up is 0 on the diagonal.
     template <class Visit>
     void for_entries(std::size_t row, Visit&& visit) const {
-        const std::size_t slice = row / side_by_side;
-        for (std::size_t k = first_[slice] + row % side_by_side; k < first_[slice + 1];
-             k += side_by_side) {
+        const std::size_t slice = row / kSideBySide;
+        for (std::size_t k = first_[slice] + row % kSideBySide; k < first_[slice + 1];
+             k += kSideBySide) {
             visit(column_[k], value_[k]);
         }
     }
@@ -66,22 +66,22 @@ public:
     }
 
     /// As Smoother wants it.
-    static constexpr std::size_t most_rows = 1024;
+    static constexpr std::size_t kMostRows = 1024;
     const StagedSweep& sweep() const { return sweep_; }
     std::array<std::size_t, 2> rows(std::ptrdiff_t piece) const {
-        const std::size_t begin = static_cast<std::size_t>(piece) * most_rows;
-        return {begin, std::min(begin + most_rows, size())};
+        const std::size_t begin = static_cast<std::size_t>(piece) * kMostRows;
+        return {begin, std::min(begin + kMostRows, size())};
     }
     void times(std::ptrdiff_t piece, const double* x, double* out) const {
         const auto [begin, end] = rows(piece);
-        for (std::size_t row = begin; row < end; row += side_by_side, out += side_by_side) {
-            const std::size_t slice = row / side_by_side;
-            std::array<double, side_by_side> sums{};
-            for (std::size_t k = first_[slice]; k < first_[slice + 1]; k += side_by_side) {
-                for (std::size_t side = 0; side < side_by_side; ++side)
+        for (std::size_t row = begin; row < end; row += kSideBySide, out += kSideBySide) {
+            const std::size_t slice = row / kSideBySide;
+            std::array<double, kSideBySide> sums{};
+            for (std::size_t k = first_[slice]; k < first_[slice + 1]; k += kSideBySide) {
+                for (std::size_t side = 0; side < kSideBySide; ++side)
                     sums[side] += value_[k + side] * x[column_[k + side]];
             }
-            std::copy_n(sums.data(), std::min(side_by_side, end - row), out);
+            std::copy_n(sums.data(), std::min(kSideBySide, end - row), out);
         }
     }
 
@@ -94,7 +94,7 @@ private:
 
     // Rows lie in slices of a few side by side, filled up to the longest, so that the processor
     // does not have to guess where each ends (SELL: Kreutzer and others 2014).
-    static constexpr std::size_t side_by_side = 4;
+    static constexpr std::size_t kSideBySide = 4;
     std::size_t size_;
     std::vector<std::size_t> first_;     // entry of each slice
     std::vector<std::size_t> diagonal_;  // entry of each row

@@ -9,9 +9,9 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr int most_iterations = 400;
-constexpr int iterations_before_factor = 60;
-constexpr std::size_t most_factored = 100'000;
+constexpr int kMostIterations = 400;
+constexpr int kIterationsBeforeFactor = 60;
+constexpr std::size_t kMostFactored = 100'000;
 constexpr double held =
     1e-13;  // of the diagonal: what nothing holds must not make a factor singular
 
@@ -162,12 +162,12 @@ int SmoothSystem::solve(Vector& z, const Vector& right, double tolerance,
         if (!(reference_ > 0)) return 0;
     }
     const double goal = tolerance * reference_;
-    const bool small = nodes_.size() <= most_factored;
+    const bool small = nodes_.size() <= kMostFactored;
     int iterations =
-        iterate(z, right, goal, small ? iterations_before_factor : most_iterations, report);
-    if (small && iterations == iterations_before_factor && !factor_) {
+        iterate(z, right, goal, small ? kIterationsBeforeFactor : kMostIterations, report);
+    if (small && iterations == kIterationsBeforeFactor && !factor_) {
         factor();
-        iterations += iterate(z, right, goal, most_iterations, report);
+        iterations += iterate(z, right, goal, kMostIterations, report);
     }
     return iterations;
 }

@@ -20,7 +20,7 @@ namespace realmodel::interpolation {
 ///
 /// A Matrix has sweep(), of its rows in pieces; rows(piece), the first of them and one beyond the
 /// last; times(piece, x, out), the products of these rows, put from out[0] on; no more than
-/// most_rows.
+/// kMostRows.
 class Smoother {
 public:
     static constexpr std::size_t degree = 3;
@@ -80,7 +80,7 @@ void Smoother::before(const Matrix& matrix, const Vector& right, Vector& x, int 
             }
             return;
         }
-        std::array<double, Matrix::most_rows> product;
+        std::array<double, Matrix::kMostRows> product;
         const Vector& last = steps_[stage - 1];
         matrix.times(piece, last.data(), product.data());
         for (std::size_t i = begin; i < end; ++i)
@@ -99,7 +99,7 @@ template <class Matrix>
 double Smoother::after(const Matrix& matrix, const Vector& right, Vector& x, int threads) {
     return matrix.sweep().sum(degree, threads, [&](std::size_t stage, std::ptrdiff_t piece) {
         const auto [begin, end] = matrix.rows(piece);
-        std::array<double, Matrix::most_rows> product;
+        std::array<double, Matrix::kMostRows> product;
         const Vector& last = stage == 0 ? correction() : steps_[stage - 1];
         matrix.times(piece, last.data(), product.data());
         if (stage == 0) {
@@ -141,7 +141,7 @@ double largest_eigenvalue(const Matrix& matrix, const Vector& inverse_diagonal, 
         const double scale = 1 / std::sqrt(squared);
         squared = matrix.sweep().sum(1, threads, [&](std::size_t, std::ptrdiff_t piece) {
             const auto [begin, end] = matrix.rows(piece);
-            std::array<double, Matrix::most_rows> product;
+            std::array<double, Matrix::kMostRows> product;
             matrix.times(piece, x.data(), product.data());
             double sum = 0;
             for (std::size_t i = begin; i < end; ++i) {

@@ -71,7 +71,7 @@ SplineStencils::SplineStencils(const SplineGrid& grid)
     : grid_(grid),
       width_(grid.columns() + 2),
       height_(grid.rows() + 2),
-      parts_((width_ + most_rows - 1) / most_rows),
+      parts_((width_ + kMostRows - 1) / kMostRows),
       entries_(25 * width_ * height_) {
     // Two rows, and two columns, up and down.
     std::vector<StagedSweep::Reach> reach;
@@ -86,14 +86,14 @@ SplineStencils::SplineStencils(const SplineGrid& grid)
 
 std::array<std::size_t, 2> SplineStencils::rows(std::ptrdiff_t piece) const {
     const auto number = static_cast<std::size_t>(piece);
-    const std::size_t column = number % parts_ * most_rows, row = number / parts_;
-    return {grid_.number(column, row), grid_.number(std::min(column + most_rows, width_), row)};
+    const std::size_t column = number % parts_ * kMostRows, row = number / parts_;
+    return {grid_.number(column, row), grid_.number(std::min(column + kMostRows, width_), row)};
 }
 
 void SplineStencils::times(std::ptrdiff_t piece, const double* x, double* out) const {
     const auto number = static_cast<std::size_t>(piece);
-    const std::size_t column = number % parts_ * most_rows, row = number / parts_;
-    const std::size_t count = std::min(most_rows, width_ - column), stride = grid_.stride();
+    const std::size_t column = number % parts_ * kMostRows, row = number / parts_;
+    const std::size_t count = std::min(kMostRows, width_ - column), stride = grid_.stride();
     std::fill(out, out + count, 0.0);
     const double* entries = entries_.data() + 25 * row * width_ + column;
     const double* at = x + grid_.number(column, row) - 2 * stride - 2;

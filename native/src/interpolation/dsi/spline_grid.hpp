@@ -79,7 +79,7 @@ public:
         return entries_[(25 * row + k) * width_ + column];
     }
 
-    static constexpr std::size_t most_rows = 512;
+    static constexpr std::size_t kMostRows = 512;
     const StagedSweep& sweep() const { return sweep_; }
     /// Numbers of coefficients: a part of a row of the grid.
     std::array<std::size_t, 2> rows(std::ptrdiff_t piece) const;

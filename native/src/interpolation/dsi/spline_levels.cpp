@@ -8,7 +8,7 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr std::size_t coarsest_coefficients = 300;
+constexpr std::size_t kCoarsestCoefficients = 300;
 // Of the mean roughness on the diagonal: what no roughness and no pull holds (outside the mesh, or
 // a tilt of all) is held by this much, in the preconditioner only.
 constexpr double held = 1e-10;
@@ -47,7 +47,7 @@ SplineLevels::SplineLevels(const SplineGrid& grid, std::span<const Place> nodes,
     });
     levels_.emplace_back(grid);
     fill_up(nodes, hinges);
-    while (levels_.back().stencils.grid().coefficients() > coarsest_coefficients)
+    while (levels_.back().stencils.grid().coefficients() > kCoarsestCoefficients)
         levels_.emplace_back(levels_.back().stencils.grid().coarser());
     for (Level& level : levels_) {
         const std::size_t length = level.stencils.grid().length();

@@ -19,7 +19,7 @@ namespace realmodel::interpolation {
 /// does not depend on the number of threads.
 class StagedSweep {
 public:
-    static constexpr std::size_t most_stages = 6;
+    static constexpr std::size_t kMostStages = 6;
 
     /// First and last piece that a piece's rows reach, itself included.
     using Reach = std::pair<std::ptrdiff_t, std::ptrdiff_t>;
@@ -50,16 +50,16 @@ private:
 
 template <class Work>
 void StagedSweep::run(std::size_t stages, int threads, Work&& work) const {
-    constexpr std::ptrdiff_t worth_a_thread = 16;
+    constexpr std::ptrdiff_t kWorthAThread = 16;
     const std::ptrdiff_t count = pieces();
     const auto team = static_cast<std::ptrdiff_t>(threads);
-#pragma omp parallel num_threads(threads) if (count >= worth_a_thread)
+#pragma omp parallel num_threads(threads) if (count >= kWorthAThread)
     {
         // The loop has as many turns as threads were asked for: however many there are, all of
         // them are done between two barriers.
         struct Range {
             std::ptrdiff_t begin, end;
-            std::array<std::ptrdiff_t, most_stages> from, next;
+            std::array<std::ptrdiff_t, kMostStages> from, next;
         };
         std::vector<Range> mine;
 #pragma omp for schedule(static)

@@ -3,60 +3,73 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "realmodel/base/errors.hpp"
+#include "realmodel/base/memory.hpp"
 
 namespace realmodel::interpolation {
 
 namespace {
 
-constexpr std::size_t looked_at = 64;       // times the points wanted, until octants may stay empty
-constexpr std::size_t most_in_order = 256;  // that the tree finds in their order in good time
+constexpr std::size_t kLookedAt = 64;      // times the points wanted, until octants may stay empty
+constexpr std::size_t kMostInOrder = 256;  // more are found faster by rings than by the tree
 
 }  // namespace
 
-void check_neighbourhood(const Neighbourhood& neighbourhood) {
-    if (neighbourhood.neighbours < 0) {
-        throw InputError("option", "the number of neighbours is negative; 0 means all points");
+void check_neighborhood(const Neighborhood& neighborhood) {
+    if (neighborhood.neighbors < 0) {
+        throw InputError("option", "the number of neighbors is negative; 0 means all points");
     }
-    if (neighbourhood.octants < 0) {
+    if (neighborhood.octants < 0) {
         throw InputError("option", "the number of points in an octant is negative; 0 means any");
     }
-    if (!(neighbourhood.radius >= 0) || !std::isfinite(neighbourhood.radius)) {
+    if (!(neighborhood.radius >= 0) || !std::isfinite(neighborhood.radius)) {
         throw InputError("option", "the radius is negative or infinite; 0 means no limit");
     }
 }
 
-NeighbourSearch::NeighbourSearch(const DataPoints& data, const spatial::NearestPoints& tree,
-                                 const Neighbourhood& neighbourhood)
+void require_memory(double bytes, double points, const char* what, int fewer) {
+    const double room = 0.9 * static_cast<double>(available_memory());
+    if (bytes <= room) return;
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "%s %.0f points would take %.3g GB; there are %.3g GB: use fewer neighbors, e.g. "
+                  "neighbours = %d",
+                  what, points, bytes / 1e9, room / 1e9, fewer);
+    throw InputError("too_large", text);
+}
+
+NeighborSearch::NeighborSearch(const DataPoints& data, const spatial::NearestPoints& tree,
+                                 const Neighborhood& neighborhood)
     : tree_(tree),
-      plain_(neighbourhood.plain()),
-      limit_(neighbourhood.neighbours > 0 ? static_cast<std::size_t>(neighbourhood.neighbours)
+      plain_(neighborhood.plain()),
+      limit_(neighborhood.neighbors > 0 ? static_cast<std::size_t>(neighborhood.neighbors)
                                           : data.local.size()),
-      octant_limit_(neighbourhood.octants > 0 ? static_cast<std::size_t>(neighbourhood.octants)
+      octant_limit_(neighborhood.octants > 0 ? static_cast<std::size_t>(neighborhood.octants)
                                               : data.local.size()),
-      squared_radius_(neighbourhood.radius > 0 ? neighbourhood.radius * neighbourhood.radius
+      squared_radius_(neighborhood.radius > 0 ? neighborhood.radius * neighborhood.radius
                                                : std::numeric_limits<double>::infinity()) {
     limit_ = std::min(limit_, 8 * std::min(octant_limit_, data.local.size()));
     const bool by_octants = octant_limit_ < limit_;
-    if (by_octants || (neighbourhood.radius > 0 && limit_ > most_in_order)) {
-        const std::size_t count = by_octants ? looked_at * limit_ + 1 : data.local.size();
+    if (by_octants || (neighborhood.radius > 0 && limit_ > kMostInOrder)) {
+        const std::size_t count = by_octants ? kLookedAt * limit_ + 1 : data.local.size();
         rings_.emplace(data.local,
                        OctantSearch::Wanted{octant_limit_, limit_, count, squared_radius_});
     }
 }
 
-bool NeighbourSearch::find(const Place& place, std::vector<spatial::Neighbour>& found,
+bool NeighborSearch::find(const Position& position, std::vector<spatial::Neighbour>& found,
                            std::int32_t left_out) {
-    if (plain_ && left_out == nobody) {
-        tree_.find(place, limit_, found);
+    if (plain_ && left_out == kNobody) {
+        tree_.find(position, limit_, found);
         return true;
     }
     if (rings_) {
-        rings_->find(place, left_out, found);
+        rings_->find(position, left_out, found);
     } else {
-        tree_.find(place, limit_ + 1, candidates_);  // the one left out is one too many
+        tree_.find(position, limit_ + 1, candidates_);  // the one left out is one too many
         found.clear();
         for (const spatial::Neighbour& candidate : candidates_) {
             if (candidate.squared_distance > squared_radius_ || found.size() == limit_) break;
@@ -64,7 +77,7 @@ bool NeighbourSearch::find(const Place& place, std::vector<spatial::Neighbour>& 
         }
     }
     if (!found.empty()) return true;
-    tree_.find(place, 2, candidates_);
+    tree_.find(position, 2, candidates_);
     for (const spatial::Neighbour& candidate : candidates_) {
         if (candidate.point == left_out) continue;
         found.push_back(candidate);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which points make a node's system. Private.
 #pragma once
 
 #include <cstdint>
@@ -13,31 +12,37 @@
 
 namespace realmodel::interpolation {
 
-/// What a user may ask of neighbours.
-struct Neighbourhood {
-    int neighbours = 16;  ///< at most so many; 0: no limit
+/// Which points make a node's system.
+struct Neighborhood {
+    int neighbors = 16;  ///< at most so many; 0: no limit
     int octants = 0;      ///< at most so many from each eighth of the directions; 0: no limit
     double radius = 0;    ///< none farther than this, in plan; 0: no limit
 
     bool plain() const { return octants == 0 && radius == 0; }
 };
 
-/// Throws InputError "option" for negative or infinite numbers.
-void check_neighbourhood(const Neighbourhood& neighbourhood);
+/// Refuses negative and infinite numbers.
+/// @throws InputError kind "option"
+void check_neighborhood(const Neighborhood& neighborhood);
 
-/// Finds the points of a neighbourhood. One for each thread.
-class NeighbourSearch {
+/// @param what   takes so much memory, e.g. "a spline through all of", followed by the points
+/// @param fewer  the number of neighbors to suggest instead
+/// @throws InputError kind "too_large" where there is less memory
+void require_memory(double bytes, double points, const char* what, int fewer);
+
+/// Finds the points of a neighborhood. One for each thread.
+class NeighborSearch {
 public:
-    NeighbourSearch(const DataPoints& data, const spatial::NearestPoints& tree,
-                    const Neighbourhood& neighbourhood);
+    NeighborSearch(const DataPoints& data, const spatial::NearestPoints& tree,
+                    const Neighborhood& neighborhood);
 
-    static constexpr std::int32_t nobody = -1;
+    static constexpr std::int32_t kNobody = -1;
 
-    /// The points around a place (local coordinates), nearest first, but for `left_out`. There is
-    /// always one, unless the one left out is all there is: where none lies within the radius the
-    /// nearest alone, and the answer is false.
-    bool find(const Place& place, std::vector<spatial::Neighbour>& found,
-              std::int32_t left_out = nobody);
+    /// Finds the points around a position (local coordinates), nearest first, without `left_out`:
+    /// at least one, unless the one left out is the only point.
+    /// @return false where none lies within the radius; the nearest alone is found then
+    bool find(const Position& position, std::vector<spatial::Neighbour>& found,
+              std::int32_t left_out = kNobody);
 
 private:
     const spatial::NearestPoints& tree_;

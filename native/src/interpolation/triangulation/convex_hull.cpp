@@ -9,39 +9,37 @@
 
 namespace realmodel::interpolation {
 
-ConvexHull::ConvexHull(std::vector<Place> places) {
-    std::sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-    const auto add = [](std::vector<Place>& chain, const Place& place, int outward) {
+ConvexHull::ConvexHull(std::vector<Position> positions) {
+    std::sort(positions.begin(), positions.end());
+    positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+    const auto add = [](std::vector<Position>& chain, const Position& position, int outward) {
         while (chain.size() > 1 &&
-               exact::orient2d(chain[chain.size() - 2], chain.back(), place) != -outward) {
+               exact::orient2d(chain[chain.size() - 2], chain.back(), position) != -outward) {
             chain.pop_back();
         }
-        chain.push_back(place);
+        chain.push_back(position);
     };
-    for (const Place& place : places) {
-        add(lower_, place, -1);
-        add(upper_, place, 1);
+    for (const Position& position : positions) {
+        add(lower_, position, -1);
+        add(upper_, position, 1);
     }
 }
 
-bool ConvexHull::contains(const Place& place) const {
-    if (lower_.empty() || place[0] < lower_.front()[0] || place[0] > lower_.back()[0]) return false;
-    const auto left_of = [](const Place& a, double x) { return a[0] < x; };
-    const auto right_of = [](double x, const Place& a) { return x < a[0]; };
-    const auto low = std::lower_bound(lower_.begin(), lower_.end(), place[0], left_of);
-    if ((*low)[0] == place[0] ? place[1] < (*low)[1]
-                              : exact::orient2d(*(low - 1), *low, place) < 0) {
+bool ConvexHull::contains(const Position& position) const {
+    if (lower_.empty() || position[0] < lower_.front()[0] || position[0] > lower_.back()[0]) return false;
+    const auto left_of = [](const Position& a, double x) { return a[0] < x; };
+    const auto right_of = [](double x, const Position& a) { return x < a[0]; };
+    const auto low = std::lower_bound(lower_.begin(), lower_.end(), position[0], left_of);
+    if ((*low)[0] == position[0] ? position[1] < (*low)[1] : exact::orient2d(*(low - 1), *low, position) < 0) {
         return false;
     }
-    const auto beyond = std::upper_bound(upper_.begin(), upper_.end(), place[0], right_of);
-    const Place& before = *(beyond - 1);
-    return before[0] == place[0] ? place[1] <= before[1]
-                                 : exact::orient2d(before, *beyond, place) <= 0;
+    const auto beyond = std::upper_bound(upper_.begin(), upper_.end(), position[0], right_of);
+    const Position& before = *(beyond - 1);
+    return before[0] == position[0] ? position[1] <= before[1] : exact::orient2d(before, *beyond, position) <= 0;
 }
 
-std::vector<ConvexHull::Place> ConvexHull::corners() const {
-    std::vector<Place> corners = lower_;
+std::vector<ConvexHull::Position> ConvexHull::corners() const {
+    std::vector<Position> corners = lower_;
     for (std::size_t i = upper_.size(); i > 2; --i)
         corners.push_back(upper_[i - 2]);
     return corners;
@@ -51,20 +49,16 @@ std::vector<std::uint8_t> outside_hull(std::span<const std::array<double, 3>> po
                                        std::span<const std::array<double, 2>> nodes, int threads,
                                        Progress* progress) {
     require_finite_nodes(nodes);
-    std::vector<Place> places;
-    places.reserve(points.size());
+    std::vector<Position> positions;
+    positions.reserve(points.size());
     for (const auto& [x, y, z] : points)
-        places.push_back({x, y});
-    require_finite_nodes(places);
-    const ConvexHull hull(std::move(places));
+        positions.push_back({x, y});
+    require_finite_nodes(positions);
+    const ConvexHull hull(std::move(positions));
     std::vector<std::uint8_t> outside(nodes.size());
-    const auto make = [&](const StopSign&) {
-        return [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                outside[i] = hull.contains(nodes[i]) ? 0 : 1;
-        };
-    };
-    for_chunks(nodes.size(), 4096, threads, progress, 0, nullptr, make);
+    const NodeLoop loop{nodes.size(), 4096, threads, progress};
+    loop.over_nodes([] { return 0; },
+                    [&](int, std::size_t i) { outside[i] = hull.contains(nodes[i]) ? 0 : 1; });
     return outside;
 }
 

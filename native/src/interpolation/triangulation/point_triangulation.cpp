@@ -14,16 +14,16 @@ namespace realmodel::interpolation {
 namespace {
 
 /// Gives CGAL's sort the point of a number.
-struct PlaceOfNumber {
+struct PositionOfNumber {
     using key_type = std::int32_t;
     using value_type = PointTriangulation::Kernel::Point_2;
     using reference = value_type;
     using category = boost::readable_property_map_tag;
 
-    const Place* places;
+    const Position* positions;
 
-    friend value_type get(const PlaceOfNumber& map, std::int32_t number) {
-        const Place& p = map.places[number];
+    friend value_type get(const PositionOfNumber& map, std::int32_t number) {
+        const Position& p = map.positions[number];
         return {p[0], p[1]};
     }
 };
@@ -34,16 +34,16 @@ PointTriangulation::PointTriangulation(const DataPoints& data, const Progress* p
     : data_(data), tree_(data.local), vertices_(data.local.size()) {
     std::vector<std::int32_t> order(data.local.size());
     std::iota(order.begin(), order.end(), 0);
-    const PlaceOfNumber map{data.local.data()};
+    const PositionOfNumber map{data.local.data()};
     CGAL::spatial_sort(order.begin(), order.end(),
-                       CGAL::Spatial_sort_traits_adapter_2<Kernel, PlaceOfNumber>(map));
+                       CGAL::Spatial_sort_traits_adapter_2<Kernel, PositionOfNumber>(map));
     Face last;
     std::size_t inserted = 0;
     for (const std::int32_t point : order) {
         if (++inserted % 1024 == 0 && progress != nullptr) progress->check();
         const Delaunay::Vertex_handle vertex = delaunay_.insert(get(map, point), last);
         vertex->info() = point;
-        vertices_[static_cast<std::size_t>(point)] = vertex;
+        vertices_[point] = vertex;
         last = vertex->face();
     }
     if (delaunay_.dimension() == 2) {
@@ -65,19 +65,19 @@ PointTriangulation::PointTriangulation(const DataPoints& data, const Progress* p
     }
 }
 
-PointTriangulation::Face PointTriangulation::near(const Place& place,
+PointTriangulation::Face PointTriangulation::near(const Position& position,
                                                   std::vector<spatial::Neighbour>& found) const {
     if (delaunay_.dimension() < 2) return {};
-    tree_.find(place, 1, found);
-    return vertices_[static_cast<std::size_t>(found[0].point)]->face();
+    tree_.find(position, 1, found);
+    return vertices_[found[0].point]->face();
 }
 
-double PointTriangulation::linear(const Place& place, Face face) const {
+double PointTriangulation::linear(const Position& position, Face face) const {
     std::array<double, 3> x{}, y{}, z{};
     for (int k = 0; k < 3; ++k) {
-        const auto point = static_cast<std::size_t>(face->vertex(k)->info());
-        x[k] = data_.local[point][0] - place[0];
-        y[k] = data_.local[point][1] - place[1];
+        const auto point = face->vertex(k)->info();
+        x[k] = data_.local[point][0] - position[0];
+        y[k] = data_.local[point][1] - position[1];
         z[k] = data_.values[point];
         if (x[k] == 0 && y[k] == 0) return z[k];
     }
@@ -96,13 +96,13 @@ double PointTriangulation::linear(const Place& place, Face face) const {
     return z[0] + wb * (z[1] - z[0]) + wc * (z[2] - z[0]);
 }
 
-double PointTriangulation::at_border(const Place& place) const {
+double PointTriangulation::at_border(const Position& position) const {
     double least = std::numeric_limits<double>::infinity(), value = 0;
     for (const auto& [first, second] : border_) {
-        const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
-        const Place& from = data_.local[a];
+        const auto a = first, b = second;
+        const Position& from = data_.local[a];
         const double ux = data_.local[b][0] - from[0], uy = data_.local[b][1] - from[1];
-        const double vx = place[0] - from[0], vy = place[1] - from[1];
+        const double vx = position[0] - from[0], vy = position[1] - from[1];
         const double length = ux * ux + uy * uy;
         const double t = length > 0 ? std::clamp((ux * vx + uy * vy) / length, 0.0, 1.0) : 0;
         const double dx = vx - t * ux, dy = vy - t * uy, squared = dx * dx + dy * dy;

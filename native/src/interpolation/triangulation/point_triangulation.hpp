@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Delaunay triangulation of data points. Private: CGAL stays behind it.
 #pragma once
 
 #include <CGAL/Delaunay_triangulation_2.h>
@@ -16,8 +15,8 @@
 
 namespace realmodel::interpolation {
 
-/// In local coordinates; the vertices know the numbers of their points. Several threads may ask at
-/// once.
+/// The Delaunay triangulation of data points, in local coordinates; its vertices have the numbers of
+/// their points. Several threads may ask at once.
 class PointTriangulation {
 public:
     using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -30,15 +29,15 @@ public:
 
     const Delaunay& delaunay() const { return delaunay_; }
 
-    /// A triangle at the point nearest to a place: where looking for it begins, so that what is
-    /// found on ties depends on the place alone. No triangle where the points lie in one line.
-    Face near(const Place& place, std::vector<spatial::Neighbour>& found) const;
+    /// A triangle at the point nearest to a position: where the search for it begins, so that what
+    /// is found on ties depends on the position alone. No triangle where the points lie in one line.
+    Face near(const Position& position, std::vector<spatial::Neighbour>& found) const;
 
-    /// Value at a place inside `face`, linear between its corners.
-    double linear(const Place& place, Face face) const;
+    /// Value at a position inside `face`, linear between its corners.
+    double linear(const Position& position, Face face) const;
 
-    /// Value at the place of the hull's border that is nearest.
-    double at_border(const Place& place) const;
+    /// Value at the nearest position of the hull's border.
+    double at_border(const Position& position) const;
 
 private:
     void add_border(std::int32_t a, std::int32_t b) { border_.push_back({a, b}); }

@@ -18,47 +18,44 @@ namespace {
 using Face = PointTriangulation::Face;
 using Delaunay = PointTriangulation::Delaunay;
 
-// Of the distances to the neighbours: where their weighted mean misses the node by more, the areas
+// Of the distances to the neighbors: where their weighted mean misses the node by more, the areas
 // are rounding.
-constexpr double areas_agree = 1e-7;
+constexpr double kAreasAgree = 1e-7;
 
-/// value(place, face, scratch) for each node that lies in a triangle; the border's value elsewhere.
+/// value(data, triangulation, node, face) for each node in a triangle; the border's value elsewhere.
 template <class Value>
 std::vector<double> on_triangulation(std::span<const std::array<double, 3>> points,
-                                     std::span<const Place> nodes, int threads, Progress* progress,
+                                     std::span<const Position> nodes, int threads, Progress* progress,
                                      const char* text, Value&& value) {
     require_finite_nodes(nodes);
     const DataPoints data = prepare_points(points);
     const PointTriangulation triangulation(data, progress);
     std::vector<double> z(nodes.size());
-    const auto make = [&](const StopSign& stop) {
-        return [&, found = std::vector<spatial::Neighbour>()](std::size_t begin,
-                                                              std::size_t end) mutable {
-            for (std::size_t i = begin; i < end && !stop(); ++i) {
-                const Place node = data.to_local(nodes[i]);
-                Delaunay::Locate_type kind = Delaunay::OUTSIDE_AFFINE_HULL;
-                int at = 0;
-                Face face = triangulation.near(node, found);
-                if (face != Face()) {
-                    face = triangulation.delaunay().locate({node[0], node[1]}, kind, at, face);
-                }
-                if (kind == Delaunay::VERTEX) {
-                    z[i] = data.values[static_cast<std::size_t>(face->vertex(at)->info())];
-                } else if (kind == Delaunay::FACE || kind == Delaunay::EDGE) {
-                    if (triangulation.delaunay().is_infinite(face)) face = face->neighbor(at);
-                    z[i] = value(data, triangulation, node, face);
-                } else {
-                    z[i] = triangulation.at_border(node);
-                }
+    const NodeLoop loop{nodes.size(), 256, threads, progress, text};
+    loop.over_nodes(
+        [] { return std::vector<spatial::Neighbour>(); },
+        [&](std::vector<spatial::Neighbour>& found, std::size_t i) {
+            const Position node = data.to_local(nodes[i]);
+            Delaunay::Locate_type kind = Delaunay::OUTSIDE_AFFINE_HULL;
+            int at = 0;
+            Face face = triangulation.near(node, found);
+            if (face != Face()) {
+                face = triangulation.delaunay().locate({node[0], node[1]}, kind, at, face);
             }
-        };
-    };
-    for_chunks(nodes.size(), 256, threads, progress, 0, text, make);
+            if (kind == Delaunay::VERTEX) {
+                z[i] = data.values[face->vertex(at)->info()];
+            } else if (kind == Delaunay::FACE || kind == Delaunay::EDGE) {
+                if (triangulation.delaunay().is_infinite(face)) face = face->neighbor(at);
+                z[i] = value(data, triangulation, node, face);
+            } else {
+                z[i] = triangulation.at_border(node);
+            }
+        });
     return z;
 }
 
 /// Sibson's coordinates, checked: their weighted mean must give the node back.
-double natural(const DataPoints& data, const PointTriangulation& triangulation, const Place& node,
+double natural(const DataPoints& data, const PointTriangulation& triangulation, const Position& node,
                Face face) {
     using Weight = std::pair<Delaunay::Vertex_handle, double>;
     thread_local std::vector<Weight> weights;
@@ -70,7 +67,7 @@ double natural(const DataPoints& data, const PointTriangulation& triangulation, 
     const double base =
         weights.empty() ? 0 : data.values[static_cast<std::size_t>(weights.front().first->info())];
     for (const auto& [vertex, weight] : weights) {
-        const auto point = static_cast<std::size_t>(vertex->info());
+        const auto point = vertex->info();
         const double dx = data.local[point][0] - node[0], dy = data.local[point][1] - node[1];
         sum += weight;
         x += weight * dx;
@@ -78,7 +75,7 @@ double natural(const DataPoints& data, const PointTriangulation& triangulation, 
         z += weight * (data.values[point] - base);
         reach += weight * std::hypot(dx, dy);
     }
-    if (!(sum > 0) || !(std::hypot(x, y) <= areas_agree * reach)) {
+    if (!(sum > 0) || !(std::hypot(x, y) <= kAreasAgree * reach)) {
         return triangulation.linear(node, face);
     }
     return base + z / sum;
@@ -91,14 +88,14 @@ std::vector<double> linear_on_triangulation(std::span<const std::array<double, 3
                                             int threads, Progress* progress) {
     return on_triangulation(
         points, nodes, threads, progress, "linear interpolation",
-        [](const DataPoints&, const PointTriangulation& triangulation, const Place& node,
+        [](const DataPoints&, const PointTriangulation& triangulation, const Position& node,
            Face face) { return triangulation.linear(node, face); });
 }
 
-std::vector<double> natural_neighbours(std::span<const std::array<double, 3>> points,
+std::vector<double> natural_neighbors(std::span<const std::array<double, 3>> points,
                                        std::span<const std::array<double, 2>> nodes, int threads,
                                        Progress* progress) {
-    return on_triangulation(points, nodes, threads, progress, "natural neighbours", natural);
+    return on_triangulation(points, nodes, threads, progress, "natural neighbors", natural);
 }
 
 }  // namespace realmodel::interpolation

@@ -10,18 +10,18 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr double largest_ratio = 4;
-constexpr double first_ratios[] = {1.4, 2.2};
-constexpr int directions = 6;
-constexpr double first_step = 0.25, last_step = 0.03;  // of the logarithm of the ratio
-constexpr double least_spread = 0.05;                  // across, of that along
+constexpr double kLargestRatio = 4;
+constexpr double kFirstRatios[] = {1.4, 2.2};
+constexpr int kDirections = 6;
+constexpr double kFirstStep = 0.25, kLastStep = 0.03;  // of the logarithm of the ratio
+constexpr double kLeastSpread = 0.05;                  // across, of that along
 
-/// The logarithm of the ratio as length, twice the azimuth as direction: without a seam, neither
-/// where the azimuth turns over nor where there is no anisotropy.
+/// The logarithm of the ratio as length, twice the azimuth as direction: continuous, also where the
+/// azimuth passes 180 degrees and where there is no anisotropy.
 using Vector = std::array<double, 2>;
 
 Anisotropy anisotropy_of(const Vector& v) {
-    const double length = std::min(std::hypot(v[0], v[1]), std::log(largest_ratio));
+    const double length = std::min(std::hypot(v[0], v[1]), std::log(kLargestRatio));
     double azimuth = std::atan2(v[1], v[0]) * 90 / std::numbers::pi;
     if (azimuth < 0) azimuth += 180;
     return {std::exp(length), length > 0 ? azimuth : 0};
@@ -34,11 +34,11 @@ CurveFit stretched(CurveFit fit, const Anisotropy& anisotropy) {
     return fit;
 }
 
-Anisotropy find_anisotropy(const LeftOutPoints& points, const CurveFit& fit, const Judge& judge) {
+Anisotropy find_anisotropy(const LeaveOneOut& points, const CurveFit& fit, const CappedSquare& square_of) {
     const auto square = [&](const Vector& v) {
         const Anisotropy anisotropy = anisotropy_of(v);
         const Variogram variogram = variogram_of(stretched(fit, anisotropy), anisotropy);
-        return judge(points.told_by(Covariance(variogram)).errors);
+        return square_of(points.errors(Covariance(variogram)).errors);
     };
     Vector best{0, 0};
     double least = square(best);
@@ -49,18 +49,18 @@ Anisotropy find_anisotropy(const LeftOutPoints& points, const CurveFit& fit, con
         best = v;
         return true;
     };
-    for (const double ratio : first_ratios) {
-        for (int k = 0; k < directions; ++k) {
-            const double angle = 2 * std::numbers::pi * k / directions;
+    for (const double ratio : kFirstRatios) {
+        for (int k = 0; k < kDirections; ++k) {
+            const double angle = 2 * std::numbers::pi * k / kDirections;
             attempt({std::log(ratio) * std::cos(angle), std::log(ratio) * std::sin(angle)});
         }
     }
     // Steps along the axes, shorter where none is better (Hooke and Jeeves 1961, the plain part).
-    for (double step = first_step; step > last_step;) {
+    for (double step = kFirstStep; step > kLastStep;) {
         bool better = false;
         for (const Vector& side : {Vector{1, 0}, Vector{0, 1}, Vector{-1, 0}, Vector{0, -1}}) {
             const Vector v{best[0] + step * side[0], best[1] + step * side[1]};
-            if (std::hypot(v[0], v[1]) <= std::log(largest_ratio)) better = attempt(v) || better;
+            if (std::hypot(v[0], v[1]) <= std::log(kLargestRatio)) better = attempt(v) || better;
         }
         if (!better) step /= 2;
     }
@@ -81,7 +81,7 @@ bool spread_in_plan(const DataPoints& data) {
     }
     // Eigenvalues of the matrix of second moments: squares of the spreads along and across.
     const double half = (xx + yy) / 2, apart = std::hypot((xx - yy) / 2, xy);
-    return half - apart > least_spread * least_spread * (half + apart);
+    return half - apart > kLeastSpread * kLeastSpread * (half + apart);
 }
 
 }  // namespace realmodel::interpolation

@@ -8,10 +8,10 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr double outlying = 20;      // deviations: errors beyond count as if there
-constexpr double within_two = 0.95;  // share of errors within two deviations where they are honest
-constexpr double surely = 2;         // standard errors of a mean difference of squares
-constexpr double worth_telling = 0.03;  // of the mean square: less is not worth another variogram
+constexpr double kOutlying = 20;     // deviations: larger errors count as this one
+constexpr double kWithinTwo = 0.95;  // share of errors within two deviations where they are honest
+constexpr double kSurely = 2;        // standard errors of a mean difference of squares
+constexpr double kWorthwhile = 0.03;  // of the mean square: less is not worth another variogram
 
 }  // namespace
 
@@ -22,7 +22,7 @@ double quantile(std::vector<double> values, double share) {
     return *at;
 }
 
-Judge::Judge(std::span<const double> errors) {
+CappedSquare::CappedSquare(std::span<const double> errors) {
     std::vector<double> sizes;
     double squares = 0;
     for (const double error : errors) {
@@ -31,18 +31,18 @@ Judge::Judge(std::span<const double> errors) {
     }
     const double deviation = 1.4826 * quantile(std::move(sizes), 0.5);
     const double limit =
-        std::max(outlying * deviation, std::sqrt(squares / static_cast<double>(errors.size())));
+        std::max(kOutlying * deviation, std::sqrt(squares / static_cast<double>(errors.size())));
     most_ = limit * limit;
 }
 
-double Judge::operator()(std::span<const double> errors) const {
+double CappedSquare::operator()(std::span<const double> errors) const {
     double sum = 0;
     for (const double error : errors)
         sum += std::min(error * error, most_);
     return sum / static_cast<double>(errors.size());
 }
 
-bool Judge::surely_less(std::span<const double> errors, std::span<const double> others) const {
+bool CappedSquare::surely_less(std::span<const double> errors, std::span<const double> others) const {
     const auto count = static_cast<double>(errors.size());
     double all = 0, sum = 0, squares = 0;
     for (std::size_t i = 0; i < errors.size(); ++i) {
@@ -54,17 +54,17 @@ bool Judge::surely_less(std::span<const double> errors, std::span<const double> 
     }
     const double mean = sum / count;
     const double deviation = std::sqrt(std::max(squares / count - mean * mean, 0.0) / count);
-    return mean > surely * deviation && sum > worth_telling * all;
+    return mean > kSurely * deviation && sum > kWorthwhile * all;
 }
 
-double honest_sill(const LeftOutErrors& told) {
+double honest_sill(const PredictionErrors& found) {
     std::vector<double> ratios;
-    for (std::size_t i = 0; i < told.errors.size(); ++i) {
-        // Where neighbours nearly coincide the variance is rounding: it must not decide.
-        const double variance = std::max(told.variances[i], 1e-9);
-        ratios.push_back(told.errors[i] * told.errors[i] / variance);
+    for (std::size_t i = 0; i < found.errors.size(); ++i) {
+        // Where neighbors nearly coincide the variance is rounding: it must not decide.
+        const double variance = std::max(found.variances[i], 1e-9);
+        ratios.push_back(found.errors[i] * found.errors[i] / variance);
     }
-    return quantile(std::move(ratios), within_two) / 4;
+    return quantile(std::move(ratios), kWithinTwo) / 4;
 }
 
 }  // namespace realmodel::interpolation

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The experimental semivariogram of points that are checked already. Private.
 #pragma once
 
 #include <span>
@@ -10,12 +9,13 @@
 
 namespace realmodel::interpolation {
 
+/// As for points that are not checked yet (variogram_fit.hpp).
 ExperimentalVariogram experimental_variogram(const DataPoints& data, const Anisotropy& anisotropy);
 
-/// Places turned and stretched so that their plain distances are those under the anisotropy.
-std::vector<Place> isotropic_places(const DataPoints& data, const Anisotropy& anisotropy);
+/// Positions rotated and stretched so that their plain distances are those under the anisotropy.
+std::vector<Position> isotropic_positions(const DataPoints& data, const Anisotropy& anisotropy);
 
-/// Of the box around places.
-double diagonal(std::span<const Place> places);
+/// Of the box around positions.
+double diagonal(std::span<const Position> positions);
 
 }  // namespace realmodel::interpolation

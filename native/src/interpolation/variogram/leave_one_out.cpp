@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "interpolation/kriging/drift_kriging.hpp"
+#include "interpolation/kriging/neighbor_kriging.hpp"
 #include "interpolation/kriging/lane_kriging.hpp"
 #include "interpolation/node_loop.hpp"
 #include "realmodel/spatial/nearest_points.hpp"
@@ -13,88 +13,85 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr std::size_t chunk = 64;  // a multiple of `lanes`
-constexpr std::size_t most_neighbours = 64;
-static_assert(most_neighbours <= LaneKriging::most_neighbours);
+constexpr std::size_t kChunk = 64;
+static_assert(kChunk % kLanes == 0);
+constexpr std::size_t kMostNeighbors = 64;
+static_assert(kMostNeighbors <= LaneKriging::kMostNeighbors);
 
 }  // namespace
 
-LeftOutPoints::LeftOutPoints(const DataPoints& data, std::size_t neighbours, std::size_t most,
+LeaveOneOut::LeaveOneOut(const DataPoints& data, std::size_t neighbors, std::size_t most,
                              int threads, Progress* progress)
     : data_(data),
-      neighbours_(std::min({neighbours, data.local.size() - 1, most_neighbours})),
+      neighbors_(std::min({neighbors, data.local.size() - 1, kMostNeighbors})),
       threads_(threads),
-      progress_(progress) {
-    const std::size_t count = data.local.size(), taken = std::min(count, most);
-    for (std::size_t k = 0; k < taken; ++k)
-        left_out_.push_back(static_cast<std::int32_t>(k * count / taken));
-    others_.resize(taken * neighbours_);
+      progress_(progress),
+      left_out_(even_part(data.local.size(), most)) {
+    const std::size_t taken = left_out_.size();
+    others_.resize(taken * neighbors_);
     const spatial::NearestPoints tree(data.local);
-    for_chunks(taken, chunk, threads, nullptr, 0, "", [&](const StopSign&) {
-        return [&, found = std::vector<spatial::Neighbour>()](std::size_t begin,
-                                                              std::size_t end) mutable {
-            for (std::size_t k = begin; k < end; ++k) {
-                const std::int32_t point = left_out_[k];
-                tree.find(data.local[static_cast<std::size_t>(point)], neighbours_ + 1, found);
-                std::int32_t* other = others_.data() + k * neighbours_;
-                for (const spatial::Neighbour& neighbour : found) {
-                    if (neighbour.point != point) *other++ = neighbour.point;
-                }
-            }
-        };
-    });
+    const NodeLoop loop{taken, kChunk, threads, nullptr};
+    loop.over_nodes([] { return std::vector<spatial::Neighbour>(); },
+                    [&](std::vector<spatial::Neighbour>& found, std::size_t k) {
+                        const std::int32_t point = left_out_[k];
+                        tree.find(data.local[point], neighbors_ + 1, found);
+                        std::int32_t* other = others_.data() + k * neighbors_;
+                        for (const spatial::Neighbour& neighbor : found) {
+                            if (neighbor.point != point) *other++ = neighbor.point;
+                        }
+                    });
 }
 
 namespace {
 
-/// Eight systems at a time, their covariances reckoned in lanes too: the points lie apart, and
+/// Eight systems at a time. Their covariances are computed in lanes too: the points lie apart, and
 /// share none.
-class LeftOutLanes {
+class PredictionLanes {
 public:
-    LeftOutLanes(const DataPoints& data, const Covariance& covariance, std::size_t points)
+    PredictionLanes(const DataPoints& data, const Covariance& covariance, std::size_t points)
         : data_(data),
           covariance_(covariance),
           kernels_(lane_kernels().front()),
           points_(points),
           differences_(LaneSystems::row(points) + points),
           rows_(LaneSystems::numbers(points)),
-          x_(differences_ * lanes),
-          y_(differences_ * lanes),
-          estimates_(lanes),
-          variances_(lanes) {}
+          x_(differences_ * kLanes),
+          y_(differences_ * kLanes),
+          estimates_(kLanes),
+          variances_(kLanes) {}
 
-    /// Systems of `count` points, at most `lanes`, each with its others.
+    /// Systems of `count` points, at most `kLanes`, each with its others.
     void solve(const std::int32_t* left_out, const std::int32_t* others, std::size_t count,
                double* errors, double* variances) {
-        double base[lanes] = {};
-        double* const values = rows_.data() + (differences_ + points_) * lanes;
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
+        double base[kLanes] = {};
+        double* const values = rows_.data() + (differences_ + points_) * kLanes;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
             const std::size_t system = std::min(lane, count - 1);
             const std::int32_t* of = others + system * points_;
             double *x = x_.data() + lane, *y = y_.data() + lane;
-            const auto put = [&](const Place& a, const Place& b) {
+            const auto put = [&](const Position& a, const Position& b) {
                 *x = a[0] - b[0];
                 *y = a[1] - b[1];
-                x += lanes;
-                y += lanes;
+                x += kLanes;
+                y += kLanes;
             };
             for (std::size_t i = 0; i < points_; ++i) {
                 for (std::size_t j = 0; j <= i; ++j)
-                    put(place(of[i]), place(of[j]));
+                    put(position(of[i]), position(of[j]));
             }
             for (std::size_t i = 0; i < points_; ++i)
-                put(place(left_out[system]), place(of[i]));
+                put(position(left_out[system]), position(of[i]));
             base[lane] = value(of[0]);
             for (std::size_t i = 0; i < points_; ++i)
-                values[i * lanes + lane] = value(of[i]) - base[lane];
+                values[i * kLanes + lane] = value(of[i]) - base[lane];
         }
         const auto& parts = covariance_.parts();
         double* const rows = rows_.data();
         kernels_.covariances(parts.data(), parts.size(), x_.data(), y_.data(), rows,
-                             differences_ * lanes);
+                             differences_ * kLanes);
         for (std::size_t i = 0; i < points_; ++i)  // whatever the nugget
-            std::fill_n(rows + (LaneSystems::row(i) + i) * lanes, lanes, 1.0);
-        std::fill_n(rows + differences_ * lanes, points_ * lanes, 1.0);
+            std::fill_n(rows + (LaneSystems::row(i) + i) * kLanes, kLanes, 1.0);
+        std::fill_n(rows + differences_ * kLanes, points_ * kLanes, 1.0);
         kernels_.krige({static_cast<int>(points_), rows}, estimates_.data(), variances_.data());
         for (std::size_t system = 0; system < count; ++system) {
             errors[system] = base[system] + estimates_.data()[system] - value(left_out[system]);
@@ -103,10 +100,8 @@ public:
     }
 
 private:
-    const Place& place(std::int32_t point) const {
-        return data_.local[static_cast<std::size_t>(point)];
-    }
-    double value(std::int32_t point) const { return data_.values[static_cast<std::size_t>(point)]; }
+    const Position& position(std::int32_t point) const { return data_.local[point]; }
+    double value(std::int32_t point) const { return data_.values[point]; }
 
     const DataPoints& data_;
     const Covariance& covariance_;
@@ -117,42 +112,44 @@ private:
 
 }  // namespace
 
-LeftOutErrors LeftOutPoints::told_by(const Covariance& covariance) const {
-    const std::size_t count = left_out_.size();
-    LeftOutErrors out{std::vector<double>(count), std::vector<double>(count)};
-    for_chunks(count, chunk, threads_, nullptr, 0, "", [&](const StopSign&) {
-        return [&, systems = LeftOutLanes(data_, covariance, neighbours_)](
-                   std::size_t begin, std::size_t end) mutable {
-            for (std::size_t k = begin; k < end; k += lanes) {
-                systems.solve(left_out_.data() + k, others_.data() + k * neighbours_,
-                              std::min<std::size_t>(lanes, end - k), out.errors.data() + k,
-                              out.variances.data() + k);
-            }
-        };
-    });
+void LeaveOneOut::predict_in_lanes(const Covariance& covariance, PredictionErrors& out) const {
+    const NodeLoop loop{left_out_.size(), kChunk, threads_, nullptr};
+    loop.over_chunks([&] { return PredictionLanes(data_, covariance, neighbors_); },
+                     [&](PredictionLanes& own, std::size_t begin, std::size_t end) {
+                         for (std::size_t k = begin; k < end; k += kLanes) {
+                             own.solve(left_out_.data() + k, others_.data() + k * neighbors_,
+                                       std::min<std::size_t>(kLanes, end - k),
+                                       out.errors.data() + k, out.variances.data() + k);
+                         }
+                     });
     if (progress_ != nullptr) progress_->check();
-    return out;
 }
 
-LeftOutErrors LeftOutPoints::told_by(const Covariance& covariance, Drift drift) const {
-    if (drift == Drift::constant) return told_by(covariance);
+PredictionErrors LeaveOneOut::errors(const Covariance& covariance, Drift drift) const {
     const std::size_t count = left_out_.size();
-    LeftOutErrors out{std::vector<double>(count), std::vector<double>(count)};
-    for_chunks(count, chunk, threads_, progress_, 0, "fitting the variogram",
-               [&](const StopSign& stop) {
-                   return [&, kriging = DriftKriging(data_, covariance, drift),
-                           near = std::vector<spatial::Neighbour>(neighbours_)](
-                              std::size_t begin, std::size_t end) mutable {
-                       for (std::size_t k = begin; k < end && !stop(); ++k) {
-                           const auto point = static_cast<std::size_t>(left_out_[k]);
-                           for (std::size_t i = 0; i < neighbours_; ++i)
-                               near[i].point = others_[k * neighbours_ + i];
-                           const Estimate told = kriging.at(data_.local[point], near, stop);
-                           out.errors[k] = told.value - data_.values[point];
-                           out.variances[k] = told.variance;
-                       }
-                   };
-               });
+    PredictionErrors out{std::vector<double>(count), std::vector<double>(count)};
+    if (drift == Drift::kConstant) {
+        predict_in_lanes(covariance, out);
+        return out;
+    }
+    struct Scratch {
+        NeighborKriging kriging;
+        std::vector<spatial::Neighbour> near;
+    };
+    const NodeLoop loop{count, kChunk, threads_, progress_, nullptr, 0, 0};
+    loop.over_nodes(
+        [&] {
+            return Scratch{NeighborKriging(data_, covariance, drift),
+                           std::vector<spatial::Neighbour>(neighbors_)};
+        },
+        [&](Scratch& own, std::size_t k) {
+            const std::int32_t point = left_out_[k];
+            for (std::size_t i = 0; i < neighbors_; ++i)
+                own.near[i].point = others_[k * neighbors_ + i];
+            const Estimate found = own.kriging.at(data_.local[point], own.near, progress_);
+            out.errors[k] = found.value - data_.values[point];
+            out.variances[k] = found.variance;
+        });
     return out;
 }
 

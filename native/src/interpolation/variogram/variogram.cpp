@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/interpolation/variogram.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 #include "interpolation/kriging/decay.hpp"
 #include "realmodel/base/errors.hpp"
@@ -17,10 +15,10 @@ struct NamedModel {
     VariogramModel model;
     std::string_view name;
 };
-constexpr NamedModel named_models[] = {
-    {VariogramModel::spherical, "spherical"}, {VariogramModel::exponential, "exponential"},
-    {VariogramModel::gaussian, "gaussian"},   {VariogramModel::cubic, "cubic"},
-    {VariogramModel::matern32, "matern32"},   {VariogramModel::matern52, "matern52"}};
+constexpr NamedModel kNamedModels[] = {
+    {VariogramModel::kSpherical, "spherical"}, {VariogramModel::kExponential, "exponential"},
+    {VariogramModel::kGaussian, "gaussian"},   {VariogramModel::kCubic, "cubic"},
+    {VariogramModel::kMatern32, "matern32"},   {VariogramModel::kMatern52, "matern52"}};
 
 std::string number_text(double number) {
     char text[40];
@@ -31,7 +29,7 @@ std::string number_text(double number) {
 }  // namespace
 
 std::string_view name_of(VariogramModel model) {
-    for (const NamedModel& named : named_models) {
+    for (const NamedModel& named : kNamedModels) {
         if (named.model == model) return named.name;
     }
     return {};
@@ -39,7 +37,7 @@ std::string_view name_of(VariogramModel model) {
 
 VariogramModel variogram_model(std::string_view name) {
     std::string known;
-    for (const NamedModel& named : named_models) {
+    for (const NamedModel& named : kNamedModels) {
         if (named.name == name) return named.model;
         known += (known.empty() ? "" : ", ") + std::string(named.name);
     }
@@ -48,19 +46,19 @@ VariogramModel variogram_model(std::string_view name) {
 }
 
 double structure(VariogramModel model, double t) {
-    constexpr double a = matern32_scale, b = matern52_scale;
+    constexpr double a = kMatern32Scale, b = kMatern52Scale;
     switch (model) {
-        case VariogramModel::spherical:
+        case VariogramModel::kSpherical:
             return t < 1 ? t * (1.5 - 0.5 * t * t) : 1;
-        case VariogramModel::exponential:
+        case VariogramModel::kExponential:
             return -std::expm1(-3 * t);
-        case VariogramModel::gaussian:
+        case VariogramModel::kGaussian:
             return -std::expm1(-3 * t * t);
-        case VariogramModel::cubic:
+        case VariogramModel::kCubic:
             return t < 1 ? t * t * (7 + t * (-8.75 + t * t * (3.5 - 0.75 * t * t))) : 1;
-        case VariogramModel::matern32:
+        case VariogramModel::kMatern32:
             return 1 - (1 + a * t) * std::exp(-a * t);
-        case VariogramModel::matern52:
+        case VariogramModel::kMatern52:
             return 1 - (1 + b * t + b * b * t * t / 3) * std::exp(-b * t);
     }
     return 1;
@@ -118,21 +116,6 @@ void check_anisotropy(const Anisotropy& anisotropy) {
     if (!std::isfinite(anisotropy.azimuth)) {
         throw InputError("anisotropy", "the anisotropy's azimuth is not a finite number");
     }
-}
-
-AnisotropicLength::AnisotropicLength(const Anisotropy& anisotropy) {
-    const double azimuth = anisotropy.azimuth * std::numbers::pi / 180;
-    const double stretch = std::max(anisotropy.ratio, 1 / anisotropy.ratio);
-    along_x_ = std::sin(azimuth);
-    along_y_ = std::cos(azimuth);
-    across_x_ = stretch * along_y_;
-    across_y_ = -stretch * along_x_;
-}
-
-double AnisotropicLength::operator()(double dx, double dy) const {
-    const double along = along_x_ * dx + along_y_ * dy;
-    const double across = across_x_ * dx + across_y_ * dy;
-    return std::sqrt(along * along + across * across);
 }
 
 }  // namespace realmodel::interpolation

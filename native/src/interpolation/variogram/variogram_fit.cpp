@@ -20,19 +20,19 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr std::size_t points_left_out = 10'000;
-constexpr std::size_t points_searched = 4000;
-constexpr std::size_t neighbours_searched = 16;
-constexpr std::size_t points_left_out_of_drift = 1000;
-constexpr double as_good = 1.004;     // of mean squares: RMS errors within 0.2 % tell nothing apart
-constexpr double nearly_best = 1.05;  // of mean squares: what few points say of others
-constexpr std::size_t finalists = 8;
-constexpr std::size_t least_for_anisotropy = 30;  // points
-constexpr double shown_by_few = 200;    // points: fewer tell less of how honest variances are than
-                                        // pairs of them tell of the curve
-constexpr double hardly_worse = 1.002;  // of mean squares, for the sake of honest variances
+constexpr std::size_t kPointsLeftOut = 10'000;
+constexpr std::size_t kPointsSearched = 4000;
+constexpr std::size_t kNeighborsSearched = 16;
+constexpr std::size_t kPointsLeftOutOfDrift = 1000;
+constexpr double kAsGood = 1.004;     // of mean squares: RMS errors within 0.2 % are equally good
+constexpr double kNearlyBest = 1.05;  // of mean squares, by few points
+constexpr std::size_t kFinalists = 8;
+constexpr std::size_t kLeastForAnisotropy = 30;  // points
+// Fewer points show less of how honest variances are than pairs of them show of the curve.
+constexpr double kFewPoints = 200;
+constexpr double kHardlyWorse = 1.002;  // of mean squares, for the sake of honest variances
 // A sill far below what distant pairs show would make variances far from points too small.
-constexpr double least_scale = 0.25;
+constexpr double kLeastScale = 0.25;
 
 /// The choice among models, ranges, nuggets and anisotropies by points left out.
 class Choice {
@@ -41,21 +41,21 @@ public:
         : data_(data),
           options_(options),
           progress_(progress),
-          points_(data, static_cast<std::size_t>(options.neighbours), points_left_out,
+          points_(data, static_cast<std::size_t>(options.neighbors), kPointsLeftOut,
                   options.threads, progress),
-          few_(data, std::min(static_cast<std::size_t>(options.neighbours), neighbours_searched),
-               points_searched, options.threads, progress) {}
+          few_(data, std::min(static_cast<std::size_t>(options.neighbors), kNeighborsSearched),
+               kPointsSearched, options.threads, progress) {}
 
-    /// Leaves out as it is where no model fits at all. Its experimental values and its variogram's
+    /// Leaves `out` as it is where no model fits at all. Its experimental values and its variogram's
     /// anisotropy are given; they change where an anisotropy is found.
     void make(FittedVariogram& out) {
         const bool finds = options_.finds_anisotropy &&
-                           data_.local.size() >= least_for_anisotropy && spread_in_plan(data_);
-        std::vector<Candidate> all = search(out, all_variogram_models, 0, finds ? 0.35 : 0.7);
+                           data_.local.size() >= kLeastForAnisotropy && spread_in_plan(data_);
+        std::vector<Candidate> all = search(out, kAllVariogramModels, 0, finds ? 0.35 : 0.7);
         if (all.empty()) return;
         if (finds) {
             const CurveFit best = best_of(all).fit;
-            const Anisotropy found = find_anisotropy(few_, best, *judge_);
+            const Anisotropy found = find_anisotropy(few_, best, *square_of_);
             if (found.ratio > 1 && better_with(found, best)) {
                 out.variogram.anisotropy = found;
                 out.experimental = experimental_variogram(data_, found);
@@ -65,8 +65,9 @@ public:
         const Anisotropy& anisotropy = out.variogram.anisotropy;
         const Candidate chosen = last_choice(std::move(all), anisotropy);
         report(0.85);
-        const Candidate best =
-            refined(chosen, points_, out.experimental, anisotropy, extent(anisotropy), *judge_);
+        const VariogramSearch by_all(points_, out.experimental, anisotropy, extent(anisotropy),
+                                     square_of_);
+        const Candidate best = by_all.refined(chosen);
         report(0.95);
         out.variogram = variogram_of(best.fit, out.variogram.anisotropy);
         make_honest(out, best.square);
@@ -80,40 +81,40 @@ private:
     }
 
     double extent(const Anisotropy& anisotropy) const {
-        return diagonal(isotropic_places(data_, anisotropy));
+        return diagonal(isotropic_positions(data_, anisotropy));
     }
 
     std::vector<Candidate> search(const FittedVariogram& about,
                                   std::span<const VariogramModel> models, double from, double to) {
         const Anisotropy& anisotropy = about.variogram.anisotropy;
         VariogramSearch search(few_, about.experimental, anisotropy, extent(anisotropy),
-                               [&](double share) { report(from + share * (to - from)); });
-        std::vector<Candidate> all = search.run(models, judge_);
+                               square_of_);
+        std::vector<Candidate> all = search.run(
+            models, [&](double share) { report(from + share * (to - from)); });
         keep_agreeing(all);
         return all;
     }
 
     bool better_with(const Anisotropy& found, const CurveFit& fit) const {
-        const LeftOutErrors without = points_.told_by(Covariance(variogram_of(fit, {})));
-        const LeftOutErrors with =
-            points_.told_by(Covariance(variogram_of(stretched(fit, found), found)));
-        return judge_->surely_less(with.errors, without.errors);
+        const PredictionErrors without = points_.errors(Covariance(variogram_of(fit, {})));
+        const PredictionErrors with =
+            points_.errors(Covariance(variogram_of(stretched(fit, found), found)));
+        return square_of_->surely_less(with.errors, without.errors);
     }
 
-    /// By all the points, of those that a part of them tells best. Of those that tell points
-    /// equally well one without a rough part, and of these the one that fits the experimental
-    /// values best.
+    /// By all the points, among the best by a part of them. Of equally good ones one without a rough
+    /// part, and of these the one that fits the experimental values best.
     Candidate last_choice(std::vector<Candidate> all, const Anisotropy& anisotropy) const {
         std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
             return a.square < b.square;
         });
-        const double enough = nearly_best * all.front().square;
-        while (all.size() > 1 && (all.size() > finalists || all.back().square > enough))
+        const double enough = kNearlyBest * all.front().square;
+        while (all.size() > 1 && (all.size() > kFinalists || all.back().square > enough))
             all.pop_back();
         double least = std::numeric_limits<double>::infinity();
         for (Candidate& candidate : all) {
             const Covariance covariance(variogram_of(candidate.fit, anisotropy));
-            candidate.square = (*judge_)(points_.told_by(covariance).errors);
+            candidate.square = (*square_of_)(points_.errors(covariance).errors);
             least = std::min(least, candidate.square);
         }
         const auto rank = [](const Candidate& candidate) {
@@ -121,64 +122,64 @@ private:
         };
         const Candidate* best = nullptr;
         for (const Candidate& candidate : all) {
-            if (candidate.square > as_good * least) continue;
+            if (candidate.square > kAsGood * least) continue;
             if (best == nullptr || rank(candidate) < rank(*best)) best = &candidate;
         }
         return *best;
     }
 
-    /// Moves ranges and sill so that as many errors lie within two deviations as should. Near
-    /// points the range does it, which hardly changes what is told, and the sill stays that of far
-    /// pairs; what is left is the sill's to do.
+    /// Scales ranges and sill so that as many errors lie within two deviations as should. The range
+    /// scales variances near points, hardly changes the estimates and leaves the sill that of far
+    /// pairs; the sill does the rest.
     void make_honest(FittedVariogram& out, double square) const {
         Variogram& variogram = out.variogram;
-        const bool drifts = options_.drift != Drift::constant;
-        std::optional<LeftOutPoints> fewer;
+        const bool drifts = options_.drift != Drift::kConstant;
+        std::optional<LeaveOneOut> fewer;
         if (drifts) {
-            fewer.emplace(data_, points_.neighbours(), points_left_out_of_drift, options_.threads,
+            fewer.emplace(data_, points_.neighbors(), kPointsLeftOutOfDrift, options_.threads,
                           progress_);
         }
-        const LeftOutPoints& points = drifts ? *fewer : points_;
-        const auto told = [&](const Variogram& v) {
-            return points.told_by(Covariance(v), options_.drift);
+        const LeaveOneOut& points = drifts ? *fewer : points_;
+        const auto errors_with = [&](const Variogram& v) {
+            return points.errors(Covariance(v), options_.drift);
         };
-        LeftOutErrors errors = told(variogram);
-        if (drifts) square = (*judge_)(errors.errors);
+        const PredictionErrors errors = errors_with(variogram);
+        if (drifts) square = (*square_of_)(errors.errors);
         double scale = honest_sill(errors) / variogram.sill;
         if (!(scale > 0) || !std::isfinite(scale)) return;
-        // Of what the errors ask for, as much as so many of them are worth.
+        // As much of what the errors ask for as so many of them justify.
         const auto count = static_cast<double>(errors.errors.size());
-        const double left_undone = std::pow(scale, shown_by_few / (count + shown_by_few));
+        const double left_undone = std::pow(scale, kFewPoints / (count + kFewPoints));
         scale /= left_undone;
         const double power = growth(variogram, out.experimental.lags.front());
         const double longest = std::max(variogram.range, extent(variogram.anisotropy));
-        double reach = 1;  // of the way that would do it all
+        double part = 1;  // of the step that would do it all
         for (int step = 0; step < 4 && std::abs(std::log(scale)) > 0.05; ++step) {
-            const double times = std::min(std::clamp(std::pow(scale, -reach / power), 0.5, 2.0),
+            const double times = std::min(std::clamp(std::pow(scale, -part / power), 0.5, 2.0),
                                           std::max(longest / variogram.range, 1.0));
             Variogram moved = variogram;
             moved.range *= times;
-            for (NestedStructure& part : moved.further)
-                part.range *= times;
-            LeftOutErrors with_moved = told(moved);
+            for (NestedStructure& nested : moved.further)
+                nested.range *= times;
+            const PredictionErrors with_moved = errors_with(moved);
             const double with_range = honest_sill(with_moved) / moved.sill / left_undone;
             if (!(std::abs(std::log(with_range)) < std::abs(std::log(scale))) ||
-                (*judge_)(with_moved.errors) > hardly_worse * square) {
-                reach /= 2;
+                (*square_of_)(with_moved.errors) > kHardlyWorse * square) {
+                part /= 2;
                 continue;
             }
             variogram = moved;
             scale = with_range;
         }
-        scale = std::max(scale, least_scale);
+        scale = std::max(scale, kLeastScale);
         variogram.sill *= scale;
         variogram.nugget *= scale;
         for (NestedStructure& part : variogram.further)
             part.sill *= scale;
     }
 
-    /// The variance that kriging leaves open grows as this power of short distances; of a sum, as
-    /// its parts do where they leave most at this distance.
+    /// The kriging variance grows as this power of short distances; that of a sum of structures as
+    /// those do that contribute most at this distance.
     static double growth(const Variogram& variogram, double distance) {
         double open = 0, powers = 0;
         const auto add = [&](VariogramModel model, double range, double sill) {
@@ -195,15 +196,15 @@ private:
 
     static double growth(VariogramModel model) {
         switch (model) {
-            case VariogramModel::spherical:
-            case VariogramModel::exponential:
+            case VariogramModel::kSpherical:
+            case VariogramModel::kExponential:
                 return 1;
-            case VariogramModel::cubic:
-            case VariogramModel::matern32:
-                return 3;  // of what kriging leaves open; gamma itself grows as the square
-            case VariogramModel::matern52:
+            case VariogramModel::kCubic:
+            case VariogramModel::kMatern32:
+                return 3;  // of the kriging variance; gamma itself grows as the square
+            case VariogramModel::kMatern52:
                 return 5;
-            case VariogramModel::gaussian:
+            case VariogramModel::kGaussian:
                 return 8;
         }
         return 1;
@@ -212,17 +213,17 @@ private:
     const DataPoints& data_;
     const FitOptions& options_;
     Progress* progress_;
-    LeftOutPoints points_, few_;  // all that are left out, and those that search
-    std::optional<Judge> judge_;
+    LeaveOneOut points_, few_;  // all that are left out, and those that search
+    std::optional<CappedSquare> square_of_;
 };
 
-/// What is said of points that show no variation, or are too few to show any.
+/// For points that show no variation, or are too few to show any.
 Variogram plain_variogram(const DataPoints& data, std::span<const double> given,
                           const ExperimentalVariogram& e, const Anisotropy& anisotropy) {
     double largest = 1;
     for (const double z : given)
         largest = std::max(largest, std::abs(z));
-    const double length = diagonal(isotropic_places(data, anisotropy));
+    const double length = diagonal(isotropic_positions(data, anisotropy));
     Variogram variogram;
     variogram.anisotropy = anisotropy;
     variogram.range = length > 0 ? length : 1;
@@ -238,13 +239,13 @@ FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
                               const FitOptions& options) {
     const Anisotropy anisotropy = options.finds_anisotropy ? Anisotropy{} : given_anisotropy;
     check_anisotropy(anisotropy);
-    if (options.neighbours < 1) {
-        throw InputError("option", "a variogram is fitted with at least one neighbour");
+    if (options.neighbors < 1) {
+        throw InputError("option", "a variogram is fitted with at least one neighbor");
     }
     DataPoints data = prepare_points(points);
     const std::vector<double> given = data.values;
-    // Kriging with the drift says the same of what is left of the values without one.
-    if (options.drift != Drift::constant) data.values = without_drift(data, options.drift);
+    // Kriging the residuals with the drift gives the same errors as kriging the values.
+    if (options.drift != Drift::kConstant) data.values = without_drift(data, options.drift);
     FittedVariogram out;
     out.experimental = experimental_variogram(data, anisotropy);
     const ExperimentalVariogram& e = out.experimental;

@@ -10,16 +10,17 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr double contradicting = 8;  // times: errors and experimental values ask for such sills
-constexpr double hopeless = 2;       // times the best mean square: such a model is not looked into
-constexpr double hopeful = 1.3;      // times the best mean square: such a one is made rougher
-// A mean square that is less by no more than this, or than that of so many points, may be so by
-// chance.
-constexpr double told_by_chance = 0.001;
-constexpr double points_told_by_chance = 10;
+constexpr double kContradicting = 8;  // times: the sills that errors and experimental values ask for
+constexpr double kHopeless = 2;       // times the best mean square: such a model is not varied
+constexpr double kHopeful = 1.3;      // times the best mean square: such a one is made rougher
+// A mean square that is lower by no more than this share, or by the share of so many points, may be
+// so by chance.
+constexpr double kChanceShare = 0.001;
+constexpr double kChancePoints = 10;
 // Of the experimental value at the shortest lag.
-constexpr double nuggets_tried[] = {0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1};
-constexpr double ranges_tried[] = {0.25, 0.5, 2, 4};  // times the range that fits the curve best
+constexpr double kNuggetsTried[] = {0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1};
+constexpr double kRangesTried[] = {0.25, 0.5, 2, 4};  // times the range that fits the curve best
+
 /// A part that makes surfaces of a model rougher. A small share of a rough model is much at short
 /// distances; of the same model at a shorter range less so.
 struct RougherPart {
@@ -29,15 +30,15 @@ struct RougherPart {
 };
 
 std::vector<RougherPart> parts_for(VariogramModel model) {
-    const RougherPart exponential{VariogramModel::exponential, 1, {0.003, 0.015, 0.07, 0.3}};
-    const RougherPart matern32{VariogramModel::matern32, 1, {0.01, 0.03, 0.1, 0.3}};
+    const RougherPart exponential{VariogramModel::kExponential, 1, {0.003, 0.015, 0.07, 0.3}};
+    const RougherPart matern32{VariogramModel::kMatern32, 1, {0.01, 0.03, 0.1, 0.3}};
     const RougherPart shorter{model, 0.25, {0.01, 0.03, 0.08, 0.2}};
     switch (model) {
-        case VariogramModel::matern32:
-        case VariogramModel::cubic:
+        case VariogramModel::kMatern32:
+        case VariogramModel::kCubic:
             return {exponential, shorter};
-        case VariogramModel::matern52:
-        case VariogramModel::gaussian:
+        case VariogramModel::kMatern52:
+        case VariogramModel::kGaussian:
             return {exponential, matern32};
         default:
             return {};
@@ -63,16 +64,16 @@ struct Step {
     }
 };
 
-constexpr Step steps[] = {{nullptr, &Curve::rough_share, 1.8},
+constexpr Step kSteps[] = {{nullptr, &Curve::rough_share, 1.8},
                           {nullptr, &Curve::range, 1.4},
                           {nullptr, &Curve::rough_range, 1.6},
                           {&CurveFit::nugget, nullptr, 2}};
-constexpr double most_rough = 0.6;  // share of the rougher part
+constexpr double kMostRough = 0.6;  // share of the rougher part
 
 }  // namespace
 
 bool Candidate::contradicts() const {
-    return !(std::abs(std::log(sill / fit.sill())) < std::log(contradicting));
+    return !(std::abs(std::log(sill / fit.sill())) < std::log(kContradicting));
 }
 
 void keep_agreeing(std::vector<Candidate>& candidates) {
@@ -89,9 +90,9 @@ const Candidate& best_of(const std::vector<Candidate>& candidates) {
 }
 
 std::vector<VariogramModel> hopeful_models(const std::vector<Candidate>& candidates) {
-    const double enough = hopeful * best_of(candidates).square;
+    const double enough = kHopeful * best_of(candidates).square;
     std::vector<VariogramModel> out;
-    for (const VariogramModel model : all_variogram_models) {
+    for (const VariogramModel model : kAllVariogramModels) {
         const auto is_good = [&](const Candidate& candidate) {
             return candidate.fit.curve.model == model && candidate.square <= enough;
         };
@@ -100,91 +101,93 @@ std::vector<VariogramModel> hopeful_models(const std::vector<Candidate>& candida
     return out;
 }
 
-Candidate refined(const Candidate& start, const LeftOutPoints& points,
-                  const ExperimentalVariogram& e, const Anisotropy& anisotropy, double longest,
-                  const Judge& judge) {
+/// With the sill that fits the experimental values best, where there is one.
+std::optional<Candidate> VariogramSearch::candidate(const Curve& curve, double nugget) const {
+    const CurveFit fit = fit_sill(e_, curve, nugget);
+    if (!usable(fit) || fit.partial_sill <= 0) return std::nullopt;
+    const PredictionErrors found = points_.errors(Covariance(variogram_of(fit, anisotropy_)));
+    return Candidate{fit, honest_sill(found), (*square_of_)(found.errors)};
+}
+
+Candidate VariogramSearch::refined(const Candidate& start) const {
     Candidate best = start;
-    longest = std::max(longest, start.fit.curve.range);
+    const double longest = std::max(longest_, start.fit.curve.range);
+    const double by_chance =
+        std::max(kChanceShare, kChancePoints / static_cast<double>(points_.size()));
     const auto better_by = [&](const Step& step, bool up) {
         CurveFit changed = best.fit;
         step.change(changed, up);
         const Curve& curve = changed.curve;
-        if (curve.range > longest || curve.rough_share > most_rough) return false;
-        const CurveFit fit = fit_sill(e, curve, changed.nugget);
-        if (!usable(fit) || fit.partial_sill <= 0) return false;
-        const LeftOutErrors told = points.told_by(Covariance(variogram_of(fit, anisotropy)));
-        const Candidate found{fit, honest_sill(told), judge(told.errors)};
-        const auto count = static_cast<double>(told.errors.size());
-        const double by_chance = std::max(told_by_chance, points_told_by_chance / count);
-        if (found.contradicts() || !(found.square < (1 - by_chance) * best.square)) return false;
-        best = found;
+        if (curve.range > longest || curve.rough_share > kMostRough) return false;
+        const std::optional<Candidate> found = candidate(curve, changed.nugget);
+        if (!found || found->contradicts()) return false;
+        if (!(found->square < (1 - by_chance) * best.square)) return false;
+        best = *found;
         return true;
     };
-    for (const Step& step : steps) {
+    for (const Step& step : kSteps) {
         if (!step.applies_to(best.fit)) continue;
-        if (better_by(step, true)) {
-            better_by(step, true);
-        } else if (better_by(step, false)) {
-            better_by(step, false);
+        for (const bool up : {true, false}) {
+            if (!better_by(step, up)) continue;
+            better_by(step, up);
+            break;
         }
     }
     return best;
 }
 
 /// What fits the experimental values best, of each model with and without a nugget.
-void VariogramSearch::start(std::span<const VariogramModel> models, std::optional<Judge>& judge) {
+void VariogramSearch::start(std::span<const VariogramModel> models) {
     std::vector<std::vector<double>> errors;
     for (const VariogramModel model : models) {
         for (const bool with_nugget : {true, false}) {
             const CurveFit fit = fit_curve(e_, model, with_nugget);
             if (!usable(fit)) continue;
-            LeftOutErrors told = points_.told_by(Covariance(variogram_of(fit, anisotropy_)));
-            all_.push_back({fit, honest_sill(told), 0});
-            errors.push_back(std::move(told.errors));
+            PredictionErrors found = points_.errors(Covariance(variogram_of(fit, anisotropy_)));
+            all_.push_back({fit, honest_sill(found), 0});
+            errors.push_back(std::move(found.errors));
         }
     }
     if (errors.empty()) return;
-    if (!judge) {
-        std::size_t best = 0;
-        double least = 0;
-        for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!square_of_) {
+        const auto median = [](const std::vector<double>& of) {
             std::vector<double> sizes;
-            for (const double error : errors[i])
+            for (const double error : of)
                 sizes.push_back(std::abs(error));
-            const double median = quantile(std::move(sizes), 0.5);
-            if (i > 0 && !(median < least)) continue;
-            least = median;
-            best = i;
-        }
-        judge.emplace(errors[best]);
+            return quantile(std::move(sizes), 0.5);
+        };
+        std::vector<double> medians;
+        for (const std::vector<double>& of : errors)
+            medians.push_back(median(of));
+        const auto best = std::min_element(medians.begin(), medians.end());
+        square_of_.emplace(errors[static_cast<std::size_t>(best - medians.begin())]);
     }
     for (std::size_t i = 0; i < errors.size(); ++i)
-        all_[i].square = (*judge)(errors[i]);
-    judge_ = &*judge;
+        all_[i].square = (*square_of_)(errors[i]);
 }
 
 std::vector<Candidate> VariogramSearch::run(std::span<const VariogramModel> models,
-                                            std::optional<Judge>& judge) {
-    start(models, judge);
-    report_(0.2);
+                                            const std::function<void(double)>& report) {
+    start(models);
+    report(0.2);
     if (all_.empty()) return {};
     const auto count = static_cast<double>(models.size());
-    const double enough = hopeless * best_of(all_).square;
+    const double enough = kHopeless * best_of(all_).square;
     double done = 0;
     for (const VariogramModel model : models) {
         const Candidate* const start = best_with(model);
         if (start != nullptr && start->square <= enough) vary(Candidate(*start));
-        report_(0.2 + 0.5 * ++done / count);
+        report(0.2 + 0.5 * ++done / count);
     }
     done = 0;
     for (const VariogramModel model : models) {
         roughen(model);
-        report_(0.7 + 0.3 * ++done / count);
+        report(0.7 + 0.3 * ++done / count);
     }
     return std::move(all_);
 }
 
-/// The one of a model that tells points best, so far.
+/// The best of a model so far.
 const Candidate* VariogramSearch::best_with(VariogramModel model) const {
     const Candidate* best = nullptr;
     for (const Candidate& candidate : all_) {
@@ -194,23 +197,19 @@ const Candidate* VariogramSearch::best_with(VariogramModel model) const {
     return best;
 }
 
-/// With the sill that fits the experimental values best.
 void VariogramSearch::attempt(const Curve& curve, double nugget, double longest) {
     if (curve.range > longest) return;
-    const CurveFit fit = fit_sill(e_, curve, nugget);
-    if (!usable(fit) || fit.partial_sill <= 0) return;
-    const LeftOutErrors told = points_.told_by(Covariance(variogram_of(fit, anisotropy_)));
-    all_.push_back({fit, honest_sill(told), (*judge_)(told.errors)});
+    if (const auto found = candidate(curve, nugget)) all_.push_back(*found);
 }
 
 /// Nuggets, then ranges, then nuggets again.
 void VariogramSearch::vary(const Candidate& start) {
     const VariogramModel model = start.fit.curve.model;
     const double longest = std::max(start.fit.curve.range, longest_);
-    for (const double share : nuggets_tried)
+    for (const double share : kNuggetsTried)
         attempt(start.fit.curve, share * e_.gamma.front(), longest);
     const CurveFit with_nugget = best_with(model)->fit;
-    for (const double times : ranges_tried) {
+    for (const double times : kRangesTried) {
         Curve curve = with_nugget.curve;
         curve.range *= times;
         attempt(curve, with_nugget.nugget, longest);
@@ -226,7 +225,7 @@ void VariogramSearch::vary(const Candidate& start) {
 void VariogramSearch::roughen(VariogramModel model) {
     const std::vector<RougherPart> parts = parts_for(model);
     const Candidate* const plain = best_with(model);
-    if (parts.empty() || plain == nullptr || plain->square > hopeful * best_of(all_).square) return;
+    if (parts.empty() || plain == nullptr || plain->square > kHopeful * best_of(all_).square) return;
     const CurveFit start = plain->fit;
     const double longest = std::max(start.curve.range, longest_);
     for (const RougherPart& part : parts) {

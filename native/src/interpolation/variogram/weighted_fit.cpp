@@ -8,7 +8,7 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr int ranges_tried = 48;
+constexpr int kRangesTried = 48;
 
 /// Weighted sums of 1, f, f^2, gamma and f gamma.
 struct Sums {
@@ -32,8 +32,8 @@ void measure(const ExperimentalVariogram& e, CurveFit& fit) {
     for (std::size_t i = 0; i < e.lags.size(); ++i) {
         const double weight = static_cast<double>(e.pairs[i]) / (e.lags[i] * e.lags[i]);
         const double f = fit.curve(e.lags[i]);
-        const double off = e.gamma[i] - fit.nugget - fit.partial_sill * f;
-        fit.misfit += weight * off * off;
+        const double difference = e.gamma[i] - fit.nugget - fit.partial_sill * f;
+        fit.misfit += weight * difference * difference;
     }
 }
 
@@ -70,20 +70,20 @@ CurveFit fit_sill(const ExperimentalVariogram& e, const Curve& curve, double nug
     return fit;
 }
 
-/// The best range: tried on a geometric scale, then narrowed by golden sections.
+/// The best range: tried on a geometric scale, then narrowed by kGolden sections.
 CurveFit fit_curve(const ExperimentalVariogram& e, VariogramModel model, bool with_nugget) {
     const double shortest = 0.5 * e.lags.front(), longest = 4 * e.lags.back();
-    const double step = std::pow(longest / shortest, 1.0 / ranges_tried);
+    const double step = std::pow(longest / shortest, 1.0 / kRangesTried);
     const auto at = [&](double range) { return fit_for_range(e, model, range, with_nugget); };
     CurveFit best;
-    for (int i = 0; i <= ranges_tried; ++i) {
+    for (int i = 0; i <= kRangesTried; ++i) {
         const CurveFit fit = at(shortest * std::pow(step, i));
         if (fit.misfit < best.misfit) best = fit;
     }
-    constexpr double golden = 0.6180339887498949;
+    constexpr double kGolden = 0.6180339887498949;
     double low = best.curve.range / step, high = std::min(best.curve.range * step, longest);
     for (int i = 0; i < 40; ++i) {
-        const double span = golden * (high - low);
+        const double span = kGolden * (high - low);
         const CurveFit a = at(high - span), b = at(low + span);
         if (a.misfit < b.misfit) {
             high = b.curve.range;

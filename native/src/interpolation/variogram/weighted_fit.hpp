@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Weighted least squares of a variogram's curve to experimental values. Private.
 #pragma once
 
 #include <limits>
@@ -11,9 +10,9 @@ namespace realmodel::interpolation {
 /// How semivariance grows with distance, from 0 to 1: as a model does, or with a part that is
 /// rougher - a rougher model, or one of a shorter range.
 struct Curve {
-    VariogramModel model = VariogramModel::spherical;
+    VariogramModel model = VariogramModel::kSpherical;
     double range = 1;
-    VariogramModel rougher = VariogramModel::exponential;
+    VariogramModel rougher = VariogramModel::kExponential;
     double rough_range = 1;  ///< of the range
     double rough_share = 0;  ///< of the rougher part; 0: there is none
 

@@ -29,12 +29,12 @@ TEST(InverseDistance, HonoursTheDataAndStaysBetween) {
     Nodes nodes;
     for (const auto& p : points)
         nodes.push_back({p[0], p[1]});
-    for (const int neighbours : {0, 1, 8, 1000}) {
-        const auto z = inverse_distance(points, nodes, {2, neighbours, 0});
+    for (const int neighbors : {0, 1, 8, 1000}) {
+        const auto z = inverse_distance(points, nodes, {2, neighbors, 0});
         for (std::size_t i = 0; i < nodes.size(); ++i)
             EXPECT_EQ(z[i], points[i][2]);
         for (const double value :
-             inverse_distance(points, scattered_nodes(500, 1000, {4e5, 5e6}), {3, neighbours, 0})) {
+             inverse_distance(points, scattered_nodes(500, 1000, {4e5, 5e6}), {3, neighbors, 0})) {
             EXPECT_GE(value, 480);
             EXPECT_LE(value, 523);
         }
@@ -53,9 +53,9 @@ TEST(InverseDistance, NeitherOverflowsNorUnderflows) {
 TEST(InverseDistance, SameBytesForAnyNumberOfThreads) {
     const Points points = hills(700, 100);
     const Nodes nodes = scattered_nodes(3000, 100);
-    for (const int neighbours : {0, 16}) {
-        const auto one = inverse_distance(points, nodes, {2.5, neighbours, 1});
-        const auto three = inverse_distance(points, nodes, {2.5, neighbours, 3});
+    for (const int neighbors : {0, 16}) {
+        const auto one = inverse_distance(points, nodes, {2.5, neighbors, 1});
+        const auto three = inverse_distance(points, nodes, {2.5, neighbors, 3});
         EXPECT_EQ(std::memcmp(one.data(), three.data(), 8 * nodes.size()), 0);
     }
 }

@@ -17,7 +17,7 @@ namespace realmodel::interpolation {
 namespace {
 
 Variogram spherical(double range, double sill, double nugget = 0) {
-    return {VariogramModel::spherical, range, sill, nugget, {}};
+    return {VariogramModel::kSpherical, range, sill, nugget, {}};
 }
 
 InputError refusal(const std::function<void()>& run) {
@@ -31,10 +31,10 @@ InputError refusal(const std::function<void()>& run) {
 }
 
 void expect_as_dense(const Points& points, const Nodes& nodes, const Variogram& variogram,
-                     int neighbours, double tolerance) {
-    const Kriged kriged = krige(points, nodes, variogram, {neighbours, 0});
+                     int neighbors, double tolerance) {
+    const Kriged kriged = krige(points, nodes, variogram, {neighbors, 0});
     const std::size_t count =
-        neighbours == 0 ? points.size() : static_cast<std::size_t>(neighbours);
+        neighbors == 0 ? points.size() : static_cast<std::size_t>(neighbors);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto [z, variance] = dense_kriging(points, nodes[i], variogram, count);
         ASSERT_NEAR(kriged.z[i], z, tolerance * variogram.sill);
@@ -46,8 +46,8 @@ TEST(Kriging, TwoPointsByHand) {
     // In the middle of two points h apart both weigh a half: variance 2 gamma(h/2) - gamma(h)/2.
     const Points points{{0, 0, 1}, {4, 0, 5}};
     const Variogram v = spherical(10, 2);
-    for (const int neighbours : {0, 2, 16}) {
-        const Kriged kriged = krige(points, Nodes{{2, 0}}, v, {neighbours, 0});
+    for (const int neighbors : {0, 2, 16}) {
+        const Kriged kriged = krige(points, Nodes{{2, 0}}, v, {neighbors, 0});
         EXPECT_NEAR(kriged.z[0], 3, 1e-14);
         const double gamma2 = 2 * (0.3 - 0.5 * 0.008), gamma4 = 2 * (0.6 - 0.5 * 0.064);
         EXPECT_NEAR(kriged.variance[0], 2 * gamma2 - gamma4 / 2, 1e-14);
@@ -66,10 +66,10 @@ TEST(Kriging, OnePointIsAConstant) {
 TEST(Kriging, AsDenseAlgebraForEveryModel) {
     const Points points = hills(120, 100);
     const Nodes nodes = scattered_nodes(60, 110);
-    for (const VariogramModel model : all_variogram_models) {
+    for (const VariogramModel model : kAllVariogramModels) {
         SCOPED_TRACE(name_of(model));
         // Short enough a range for the smooth models that the dense system itself is well-posed.
-        const double range = model == VariogramModel::gaussian ? 15 : 60;
+        const double range = model == VariogramModel::kGaussian ? 15 : 60;
         for (const double nugget : {0.0, 0.5}) {
             for (const Anisotropy anisotropy : {Anisotropy{}, Anisotropy{2, 30}}) {
                 const Variogram v{model, range, 4, nugget, anisotropy};
@@ -97,9 +97,9 @@ TEST(Kriging, AsDenseAlgebraAcrossTiles) {
 TEST(Kriging, AzimuthCountsClockwiseFromNorth) {
     // Long range to the north-east: the point there weighs more than the one to the north-west.
     const Points points{{10, 10, 1}, {-10, 10, 0}};
-    const Variogram v{VariogramModel::spherical, 100, 1, 0, {4, 45}};
+    const Variogram v{VariogramModel::kSpherical, 100, 1, 0, {4, 45}};
     EXPECT_GT(krige(points, Nodes{{0, 0}}, v, {}).z[0], 0.7);
-    const Variogram other_way{VariogramModel::spherical, 100, 1, 0, {0.25, 45}};
+    const Variogram other_way{VariogramModel::kSpherical, 100, 1, 0, {0.25, 45}};
     EXPECT_EQ(krige(points, Nodes{{0, 0}}, v, {}).z[0],
               krige(points, Nodes{{0, 0}}, other_way, {}).z[0]);
 }
@@ -111,9 +111,9 @@ TEST(Kriging, HonoursTheDataAndMergesRepeats) {
         nodes.push_back({p[0], p[1]});
     points.push_back(points[7]);
     points.push_back(points[7]);
-    for (const int neighbours : {0, 16}) {
+    for (const int neighbors : {0, 16}) {
         for (const double nugget : {0.0, 1.0}) {
-            const Kriged kriged = krige(points, nodes, spherical(5, 4, nugget), {neighbours, 0});
+            const Kriged kriged = krige(points, nodes, spherical(5, 4, nugget), {neighbors, 0});
             for (std::size_t i = 0; i < nodes.size(); ++i) {
                 EXPECT_EQ(kriged.z[i], points[i][2]);
                 EXPECT_EQ(kriged.variance[i], 0);
@@ -144,14 +144,14 @@ TEST(Kriging, PureNuggetIsTheMean) {
 }
 
 /// Values stay within the data's span by a margin and are numbers; so do variances.
-void expect_sane(const Points& points, const Nodes& nodes, const Variogram& v, int neighbours) {
+void expect_sane(const Points& points, const Nodes& nodes, const Variogram& v, int neighbors) {
     double low = points[0][2], high = low;
     for (const auto& p : points) {
         low = std::min(low, p[2]);
         high = std::max(high, p[2]);
     }
     const double margin = 2 * (high - low) + 1e-9;
-    const Kriged kriged = krige(points, nodes, v, {neighbours, 0});
+    const Kriged kriged = krige(points, nodes, v, {neighbors, 0});
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         ASSERT_GE(kriged.z[i], low - margin);
         ASSERT_LE(kriged.z[i], high + margin);
@@ -177,14 +177,14 @@ TEST(Kriging, NearlySingularSystems) {
     }
     // Smooth models go on beyond the data as polynomials do: ask near them.
     const Nodes nodes = scattered_nodes(100, 60), near_cluster = scattered_nodes(100, 0.006);
-    for (const VariogramModel model : all_variogram_models) {
+    for (const VariogramModel model : kAllVariogramModels) {
         SCOPED_TRACE(name_of(model));
-        for (const int neighbours : {0, 16}) {
+        for (const int neighbors : {0, 16}) {
             for (const double range : {5.0, 100.0, 1e6}) {
                 const Variogram v{model, range, 1, 0, {}};
-                expect_sane(line, nodes, v, neighbours);
-                expect_sane(cluster, near_cluster, v, neighbours);
-                expect_sane(twins, nodes, v, neighbours);
+                expect_sane(line, nodes, v, neighbors);
+                expect_sane(cluster, near_cluster, v, neighbors);
+                expect_sane(twins, nodes, v, neighbors);
             }
         }
     }
@@ -196,9 +196,9 @@ TEST(Kriging, GaussianWithoutNuggetFollowsASmoothSurface) {
         for (int x = 0; x < 12; ++x)
             points.push_back({1.0 * x, 1.0 * y, 3 + 0.5 * x - 0.2 * y});
     }
-    const Variogram v{VariogramModel::gaussian, 20, 10, 0, {}};
-    for (const int neighbours : {0, 16}) {
-        const Kriged kriged = krige(points, Nodes{{5.5, 5.5}, {3.3, 7.1}}, v, {neighbours, 0});
+    const Variogram v{VariogramModel::kGaussian, 20, 10, 0, {}};
+    for (const int neighbors : {0, 16}) {
+        const Kriged kriged = krige(points, Nodes{{5.5, 5.5}, {3.3, 7.1}}, v, {neighbors, 0});
         EXPECT_NEAR(kriged.z[0], 3 + 0.5 * 5.5 - 0.2 * 5.5, 1e-3);
         EXPECT_NEAR(kriged.z[1], 3 + 0.5 * 3.3 - 0.2 * 7.1, 1e-3);
     }
@@ -207,10 +207,10 @@ TEST(Kriging, GaussianWithoutNuggetFollowsASmoothSurface) {
 TEST(Kriging, SameBytesForAnyNumberOfThreads) {
     const Points points = hills(700, 100);
     const Nodes nodes = scattered_nodes(2000, 100);
-    for (const int neighbours : {0, 16}) {
-        const Kriged one = krige(points, nodes, spherical(40, 4), {neighbours, 1});
+    for (const int neighbors : {0, 16}) {
+        const Kriged one = krige(points, nodes, spherical(40, 4), {neighbors, 1});
         for (const int threads : {2, 3, 5}) {
-            const Kriged more = krige(points, nodes, spherical(40, 4), {neighbours, threads});
+            const Kriged more = krige(points, nodes, spherical(40, 4), {neighbors, threads});
             EXPECT_EQ(std::memcmp(one.z.data(), more.z.data(), 8 * nodes.size()), 0);
             EXPECT_EQ(std::memcmp(one.variance.data(), more.variance.data(), 8 * nodes.size()), 0);
         }
@@ -259,7 +259,7 @@ TEST(Kriging, RefusesWhatMemoryDoesNotAllow) {
 TEST(Kriging, StopsSoonAfterCancel) {
     const Points points = hills(3000, 100);
     const Nodes nodes = scattered_nodes(200'000, 100);
-    for (const int neighbours : {0, 64, 256}) {
+    for (const int neighbors : {0, 64, 256}) {
         Progress progress;
         std::atomic<double> asked{};
         std::jthread watcher([&] {
@@ -268,7 +268,7 @@ TEST(Kriging, StopsSoonAfterCancel) {
             progress.cancel();
             asked = progress.fraction();
         });
-        EXPECT_THROW(krige(points, nodes, spherical(40, 4), {neighbours, 2}, &progress), Cancelled);
+        EXPECT_THROW(krige(points, nodes, spherical(40, 4), {neighbors, 2}, &progress), Cancelled);
         watcher.join();
         // What each of two threads had in hand: at most 512 of the nodes, however long that takes.
         EXPECT_LT(progress.fraction() - asked.load(), 0.01);

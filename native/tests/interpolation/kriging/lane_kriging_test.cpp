@@ -41,9 +41,9 @@ Nodes some_nodes(int side) {
 }
 
 std::vector<Estimate> one_by_one(const DataPoints& data, const Covariance& covariance,
-                                 std::span<const LaneKriging::Node> nodes, int neighbours) {
+                                 std::span<const LaneKriging::Node> nodes, int neighbors) {
     const spatial::NearestPoints tree(data.local);
-    NeighbourSearch search(data, tree, {neighbours, 0, 0});
+    NeighborSearch search(data, tree, {neighbors, 0, 0});
     LocalKriging kriging(data, covariance);
     std::vector<spatial::Neighbour> near;
     std::vector<Estimate> out;
@@ -57,7 +57,7 @@ std::vector<Estimate> one_by_one(const DataPoints& data, const Covariance& covar
 }
 
 void expect_same_bytes(const Points& points, const Nodes& nodes, const Variogram& variogram,
-                       int neighbours, bool leave_out) {
+                       int neighbors, bool leave_out) {
     const DataPoints data = prepare_points(points);
     const Covariance covariance(variogram);
     std::vector<LaneKriging::Node> all;
@@ -68,11 +68,11 @@ void expect_same_bytes(const Points& points, const Nodes& nodes, const Variogram
         for (std::uint32_t i = 0; i < nodes.size(); ++i)
             all.push_back({data.to_local(nodes[i]), i});
     }
-    const std::vector<Estimate> expected = one_by_one(data, covariance, all, neighbours);
+    const std::vector<Estimate> expected = one_by_one(data, covariance, all, neighbors);
     const spatial::NearestPoints tree(data.local);
     for (const LaneKernels& kernels : lane_kernels()) {
         SCOPED_TRACE(kernels.name);
-        LaneKriging kriging(data, tree, covariance, static_cast<std::size_t>(neighbours), leave_out,
+        LaneKriging kriging(data, tree, covariance, static_cast<std::size_t>(neighbors), leave_out,
                             kernels);
         std::vector<Estimate> found(all.size(), Estimate{-1, -1});
         kriging.krige(all, [&](std::uint32_t i, const Estimate& e) { found[i] = e; });
@@ -86,7 +86,7 @@ void expect_same_bytes(const Points& points, const Nodes& nodes, const Variogram
 
 TEST(LaneKriging, TheBytesOfOneSystemAtATime) {
     for (const std::string kind : {"scattered", "lines", "clusters", "grid"}) {
-        for (const VariogramModel model : all_variogram_models) {
+        for (const VariogramModel model : kAllVariogramModels) {
             SCOPED_TRACE(kind + " " + std::string(name_of(model)));
             const Variogram v{model, 400, 9, 0.01, {2, 30}, {}};
             expect_same_bytes(some_points(kind, 400), some_nodes(21), v, 16, false);
@@ -96,22 +96,22 @@ TEST(LaneKriging, TheBytesOfOneSystemAtATime) {
 }
 
 TEST(LaneKriging, NestedVariogramsAndAllSizes) {
-    Variogram v{VariogramModel::exponential, 300, 9, 0, {}, {}};
-    v.further.push_back({VariogramModel::gaussian, 900, 5, {3, 100}});
-    for (int neighbours = 1; neighbours <= 64; neighbours += neighbours < 9 ? 1 : 5) {
-        SCOPED_TRACE(neighbours);
-        expect_same_bytes(some_points("scattered", 200), some_nodes(9), v, neighbours, false);
+    Variogram v{VariogramModel::kExponential, 300, 9, 0, {}, {}};
+    v.further.push_back({VariogramModel::kGaussian, 900, 5, {3, 100}});
+    for (int neighbors = 1; neighbors <= 64; neighbors += neighbors < 9 ? 1 : 5) {
+        SCOPED_TRACE(neighbors);
+        expect_same_bytes(some_points("scattered", 200), some_nodes(9), v, neighbors, false);
     }
-    for (const int neighbours : {65, 129, 256}) {
-        SCOPED_TRACE(neighbours);
-        expect_same_bytes(some_points("scattered", 400), some_nodes(5), v, neighbours, false);
-        expect_same_bytes(some_points("lines", 300), {}, v, neighbours, true);
+    for (const int neighbors : {65, 129, 256}) {
+        SCOPED_TRACE(neighbors);
+        expect_same_bytes(some_points("scattered", 400), some_nodes(5), v, neighbors, false);
+        expect_same_bytes(some_points("lines", 300), {}, v, neighbors, true);
     }
 }
 
 TEST(LaneKriging, PointsThatTheOthersTellArePassedOver) {
     // Without a nugget and of a long range the gaussian model leaves most points nothing to say.
-    const Variogram v{VariogramModel::gaussian, 3000, 9, 0, {}, {}};
+    const Variogram v{VariogramModel::kGaussian, 3000, 9, 0, {}, {}};
     expect_same_bytes(some_points("grid", 400), some_nodes(15), v, 16, false);
     expect_same_bytes(some_points("clusters", 100), {}, v, 16, true);
 }
@@ -121,16 +121,16 @@ TEST(LaneKriging, NodesFarApartAndOnPoints) {
     Nodes nodes{{0, 0}, {1e7, -1e7}, {431500, 5398500}, {431500, 5398500}};
     for (const auto& p : points)
         nodes.push_back({p[0], p[1]});
-    expect_same_bytes(points, nodes, {VariogramModel::spherical, 300, 9}, 12, false);
+    expect_same_bytes(points, nodes, {VariogramModel::kSpherical, 300, 9}, 12, false);
 }
 
 /// All kernels the same bytes, and what DriftKriging says of each node; how many were left to it.
 std::size_t left_to_others(const Points& points, const Nodes& nodes, const Variogram& variogram,
-                           int neighbours, Drift drift) {
+                           int neighbors, Drift drift) {
     const DataPoints data = prepare_points(points);
     const Covariance covariance(variogram);
     const spatial::NearestPoints tree(data.local);
-    NeighbourSearch search(data, tree, {neighbours, 0, 0});
+    NeighborSearch search(data, tree, {neighbors, 0, 0});
     DriftKriging plain(data, covariance, drift);
     std::vector<spatial::Neighbour> near;
     std::vector<LaneKriging::Node> all;
@@ -140,7 +140,7 @@ std::size_t left_to_others(const Points& points, const Nodes& nodes, const Vario
     std::size_t left = 0;
     for (const LaneKernels& kernels : lane_kernels()) {
         SCOPED_TRACE(kernels.name);
-        LaneKriging kriging(data, tree, covariance, static_cast<std::size_t>(neighbours), false,
+        LaneKriging kriging(data, tree, covariance, static_cast<std::size_t>(neighbors), false,
                             kernels, drift);
         std::vector<Estimate> found(all.size(), Estimate{-1, -1});
         left = 0;
@@ -162,8 +162,8 @@ std::size_t left_to_others(const Points& points, const Nodes& nodes, const Vario
 }
 
 TEST(LaneKriging, AboutADriftWhatOneSystemAtATimeSays) {
-    for (const Drift drift : {Drift::linear, Drift::quadratic}) {
-        for (const VariogramModel model : all_variogram_models) {
+    for (const Drift drift : {Drift::kLinear, Drift::kQuadratic}) {
+        for (const VariogramModel model : kAllVariogramModels) {
             SCOPED_TRACE(std::string(name_of(model)));
             const Variogram v{model, 400, 9, 0.01, {2, 30}, {}};
             const Points scattered = some_points("scattered", 400);
@@ -174,17 +174,17 @@ TEST(LaneKriging, AboutADriftWhatOneSystemAtATimeSays) {
 }
 
 TEST(LaneKriging, ADriftThatThePointsDoNotShowIsLeftToOthers) {
-    const Variogram v{VariogramModel::spherical, 400, 9, 0.01, {}, {}};
+    const Variogram v{VariogramModel::kSpherical, 400, 9, 0.01, {}, {}};
     const Nodes nodes = some_nodes(9);
     Points line;
     for (int i = 0; i < 60; ++i)
         line.push_back({431000 + 10.0 * i, 5398000 + 7.0 * i, std::sin(i / 5.0)});
-    EXPECT_EQ(left_to_others(line, nodes, v, 16, Drift::linear), nodes.size());
+    EXPECT_EQ(left_to_others(line, nodes, v, 16, Drift::kLinear), nodes.size());
     const Points scattered = some_points("scattered", 50);
-    EXPECT_EQ(left_to_others(scattered, nodes, v, 2, Drift::linear), nodes.size());
-    EXPECT_EQ(left_to_others(scattered, nodes, v, 5, Drift::quadratic), nodes.size());
-    const Variogram smooth{VariogramModel::gaussian, 3000, 9, 0, {}, {}};
-    EXPECT_GT(left_to_others(some_points("grid", 400), nodes, smooth, 16, Drift::linear), 0U);
+    EXPECT_EQ(left_to_others(scattered, nodes, v, 2, Drift::kLinear), nodes.size());
+    EXPECT_EQ(left_to_others(scattered, nodes, v, 5, Drift::kQuadratic), nodes.size());
+    const Variogram smooth{VariogramModel::kGaussian, 3000, 9, 0, {}, {}};
+    EXPECT_GT(left_to_others(some_points("grid", 400), nodes, smooth, 16, Drift::kLinear), 0U);
 }
 
 TEST(Decay, WithinTwoUnitsInTheLastPlace) {
@@ -197,7 +197,7 @@ TEST(Decay, WithinTwoUnitsInTheLastPlace) {
     EXPECT_LT(decay(1e300), 1e-300);
 }
 
-TEST(AlongCurve, GoesFromCellToNeighbouringCell) {
+TEST(AlongCurve, GoesFromCellToNeighboringCell) {
     Nodes nodes;
     for (int i = 0; i < 64; ++i) {
         for (int j = 0; j < 64; ++j)

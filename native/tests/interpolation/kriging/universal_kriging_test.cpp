@@ -14,10 +14,10 @@
 namespace realmodel::interpolation {
 namespace {
 
-const Variogram spherical{VariogramModel::spherical, 40, 4, 0.5, {}, {}};
+const Variogram spherical{VariogramModel::kSpherical, 40, 4, 0.5, {}, {}};
 
-KrigingOptions with(Drift drift, int neighbours, int threads = 0) {
-    return {neighbours, threads, drift, 0, 0};
+KrigingOptions with(Drift drift, int neighbors, int threads = 0) {
+    return {neighbors, threads, drift, 0, 0};
 }
 
 double polynomial(const std::array<double, 2>& p, bool quadratic) {
@@ -36,9 +36,9 @@ TEST(UniversalKriging, TheDriftItselfComesOutWhateverTheVariogram) {
     const Nodes nodes = scattered_nodes(100, 140, {-20, -20});
     for (const bool quadratic : {false, true}) {
         const Points points = on_polynomial(80, quadratic);
-        const Drift drift = quadratic ? Drift::quadratic : Drift::linear;
-        for (const int neighbours : {0, 16}) {
-            const Kriged kriged = krige(points, nodes, spherical, with(drift, neighbours));
+        const Drift drift = quadratic ? Drift::kQuadratic : Drift::kLinear;
+        for (const int neighbors : {0, 16}) {
+            const Kriged kriged = krige(points, nodes, spherical, with(drift, neighbors));
             for (std::size_t i = 0; i < nodes.size(); ++i) {
                 ASSERT_NEAR(kriged.z[i], polynomial(nodes[i], quadratic), 1e-9);
                 ASSERT_GT(kriged.variance[i], 0);
@@ -53,14 +53,14 @@ TEST(UniversalKriging, WithFewPoints) {
     const auto z = [&](const Points& points, Drift drift) {
         return krige(points, nodes, spherical, with(drift, 16)).z;
     };
-    for (const Drift drift : {Drift::linear, Drift::quadratic}) {
+    for (const Drift drift : {Drift::kLinear, Drift::kQuadratic}) {
         EXPECT_EQ(z({{0, 0, 3}}, drift), (std::vector<double>{3, 3, 3}));
         const std::vector<double> line = z({{0, 0, 0}, {2, 2, 4}}, drift);
         EXPECT_NEAR(line[0], 10, 1e-9);
         EXPECT_NEAR(line[1], 10, 1e-9);
         EXPECT_NEAR(line[2], 10, 1e-9);
     }
-    const std::vector<double> plane = z({{0, 0, 0}, {1, 0, 1}, {0, 1, -2}}, Drift::linear);
+    const std::vector<double> plane = z({{0, 0, 0}, {1, 0, 1}, {0, 1, -2}}, Drift::kLinear);
     EXPECT_NEAR(plane[0], -5, 1e-9);
     EXPECT_NEAR(plane[1], 10, 1e-9);
     EXPECT_NEAR(plane[2], -20, 1e-9);
@@ -70,9 +70,9 @@ TEST(UniversalKriging, PointsInOneLineHaveNoSlopeAcrossIt) {
     Points line;
     for (int i = 0; i < 30; ++i)
         line.push_back({1e5 + 3.0 * i, 5e6 + 1.0 * i, 2.0 * i});
-    for (const int neighbours : {0, 10}) {
+    for (const int neighbors : {0, 10}) {
         const Kriged kriged = krige(line, Nodes{{1e5 + 60, 5e6 + 20}, {1e5 + 50, 5e6 + 50}},
-                                    spherical, with(Drift::linear, neighbours));
+                                    spherical, with(Drift::kLinear, neighbors));
         EXPECT_NEAR(kriged.z[0], 40, 1e-6);
         EXPECT_NEAR(kriged.z[1], 40, 1e-6);
     }
@@ -81,9 +81,9 @@ TEST(UniversalKriging, PointsInOneLineHaveNoSlopeAcrossIt) {
 TEST(UniversalKriging, SameBytesForAnyNumberOfThreads) {
     const Points points = hills(500, 100);
     const Nodes nodes = scattered_nodes(1000, 100);
-    for (const int neighbours : {0, 20}) {
-        const Kriged one = krige(points, nodes, spherical, with(Drift::quadratic, neighbours, 1));
-        const Kriged three = krige(points, nodes, spherical, with(Drift::quadratic, neighbours, 3));
+    for (const int neighbors : {0, 20}) {
+        const Kriged one = krige(points, nodes, spherical, with(Drift::kQuadratic, neighbors, 1));
+        const Kriged three = krige(points, nodes, spherical, with(Drift::kQuadratic, neighbors, 3));
         EXPECT_EQ(std::memcmp(one.z.data(), three.z.data(), 8 * nodes.size()), 0);
         EXPECT_EQ(std::memcmp(one.variance.data(), three.variance.data(), 8 * nodes.size()), 0);
     }
@@ -96,10 +96,10 @@ TEST(UniversalKriging, TheVariogramIsThatOfTheResiduals) {
     std::normal_distribution<double> normal;
     for (auto& p : points)
         p[2] += normal(random);
-    const Variogram plain = fit_variogram(points, {}, nullptr, {Drift::linear}).variogram;
+    const Variogram plain = fit_variogram(points, {}, nullptr, {Drift::kLinear}).variogram;
     for (auto& p : points)
         p[2] += 40 * p[0] - 25 * p[1];
-    const Variogram tilted = fit_variogram(points, {}, nullptr, {Drift::linear}).variogram;
+    const Variogram tilted = fit_variogram(points, {}, nullptr, {Drift::kLinear}).variogram;
     EXPECT_EQ(tilted.model, plain.model);
     EXPECT_NEAR(tilted.sill, plain.sill, 1e-6 * plain.sill);
     EXPECT_NEAR(tilted.range, plain.range, 1e-6 * plain.range);
@@ -108,10 +108,10 @@ TEST(UniversalKriging, TheVariogramIsThatOfTheResiduals) {
 
 TEST(Drift, ResidualsAreWhatNoPolynomialTells) {
     const DataPoints exact = prepare_points(on_polynomial(60, true));
-    for (const double r : without_drift(exact, Drift::quadratic))
+    for (const double r : without_drift(exact, Drift::kQuadratic))
         EXPECT_NEAR(r, 0, 1e-12);
     const DataPoints data = prepare_points(hills(60, 100, {4e5, 5e6}));
-    const std::vector<double> residuals = without_drift(data, Drift::linear);
+    const std::vector<double> residuals = without_drift(data, Drift::kLinear);
     double sum = 0, along_x = 0, along_y = 0;
     for (std::size_t i = 0; i < residuals.size(); ++i) {
         sum += residuals[i];
@@ -127,13 +127,13 @@ TEST(NestedVariogram, TwoOfOneKindAreOneOfTheirSum) {
     const Points points = hills(100, 100);
     const Nodes nodes = scattered_nodes(50, 100);
     const Variogram nested{
-        VariogramModel::spherical, 40, 4, 0.5, {}, {{VariogramModel::spherical, 40, 1.25, {}}}};
+        VariogramModel::kSpherical, 40, 4, 0.5, {}, {{VariogramModel::kSpherical, 40, 1.25, {}}}};
     check_variogram(nested);
     EXPECT_DOUBLE_EQ(nested.first_sill(), 2.25);
     EXPECT_DOUBLE_EQ(nested.gamma(13), spherical.gamma(13));
-    for (const int neighbours : {0, 16}) {
-        const Kriged a = krige(points, nodes, nested, {neighbours, 0});
-        const Kriged b = krige(points, nodes, spherical, {neighbours, 0});
+    for (const int neighbors : {0, 16}) {
+        const Kriged a = krige(points, nodes, nested, {neighbors, 0});
+        const Kriged b = krige(points, nodes, spherical, {neighbors, 0});
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             EXPECT_NEAR(a.z[i], b.z[i], 1e-11);
             EXPECT_NEAR(a.variance[i], b.variance[i], 1e-11);
@@ -144,25 +144,25 @@ TEST(NestedVariogram, TwoOfOneKindAreOneOfTheirSum) {
 TEST(NestedVariogram, RefusesWhatIsNone) {
     const auto refused = [](const NestedStructure& further) {
         try {
-            check_variogram({VariogramModel::spherical, 40, 4, 0.5, {}, {further}});
+            check_variogram({VariogramModel::kSpherical, 40, 4, 0.5, {}, {further}});
         } catch (const InputError& error) {
             return error.kind;
         }
         return std::string("accepted");
     };
-    EXPECT_EQ(refused({VariogramModel::gaussian, 40, 3.5, {}}), "accepted");
-    EXPECT_EQ(refused({VariogramModel::gaussian, 40, 3.6, {}}), "variogram");
-    EXPECT_EQ(refused({VariogramModel::gaussian, 0, 1, {}}), "variogram");
-    EXPECT_EQ(refused({VariogramModel::gaussian, 40, -1, {}}), "variogram");
-    EXPECT_EQ(refused({VariogramModel::gaussian, 40, 1, {0, 0}}), "anisotropy");
+    EXPECT_EQ(refused({VariogramModel::kGaussian, 40, 3.5, {}}), "accepted");
+    EXPECT_EQ(refused({VariogramModel::kGaussian, 40, 3.6, {}}), "variogram");
+    EXPECT_EQ(refused({VariogramModel::kGaussian, 0, 1, {}}), "variogram");
+    EXPECT_EQ(refused({VariogramModel::kGaussian, 40, -1, {}}), "variogram");
+    EXPECT_EQ(refused({VariogramModel::kGaussian, 40, 1, {0, 0}}), "anisotropy");
 }
 
 TEST(LeftOut, AsKrigingWithoutThePoint) {
     Points points = hills(90, 100, {4e5, 5e6});
     points.push_back(points[5]);  // repeats one: the two leave together
-    for (const Drift drift : {Drift::constant, Drift::linear, Drift::quadratic}) {
-        for (const int neighbours : {0, 12}) {
-            const KrigingOptions options = with(drift, neighbours, 1);
+    for (const Drift drift : {Drift::kConstant, Drift::kLinear, Drift::kQuadratic}) {
+        for (const int neighbors : {0, 12}) {
+            const KrigingOptions options = with(drift, neighbors, 1);
             const Kriged told = krige_left_out(points, spherical, options);
             ASSERT_EQ(told.z.size(), points.size());
             EXPECT_EQ(told.z[5], told.z.back());
@@ -185,14 +185,14 @@ TEST(LeftOut, WhatOthersTellWhollyOrNotAtAll) {
     EXPECT_TRUE(std::isinf(alone.variance[0]));
     // Three points make a plane; two of them a line only.
     const Kriged three =
-        krige_left_out(Points{{0, 0, 0}, {1, 0, 1}, {0, 1, -2}}, spherical, with(Drift::linear, 0));
+        krige_left_out(Points{{0, 0, 0}, {1, 0, 1}, {0, 1, -2}}, spherical, with(Drift::kLinear, 0));
     for (const double z : three.z)
         EXPECT_TRUE(std::isfinite(z));
     // Nearly singular: most of these points the others tell to the last digit.
     Points smooth;
     for (int i = 0; i < 144; ++i)
         smooth.push_back({1.0 * (i % 12), 1.0 * (i / 12), 0.5 * (i % 12)});
-    const Variogram gaussian{VariogramModel::gaussian, 30, 10, 0, {}, {}};
+    const Variogram gaussian{VariogramModel::kGaussian, 30, 10, 0, {}, {}};
     const Kriged told = krige_left_out(smooth, gaussian, {0, 0});
     for (std::size_t i = 0; i < smooth.size(); ++i)
         EXPECT_NEAR(told.z[i], smooth[i][2], 0.01);

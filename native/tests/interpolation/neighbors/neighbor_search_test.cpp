@@ -17,22 +17,22 @@ struct Searched {
     bool within;
 };
 
-Searched search(const DataPoints& data, const Place& place, const Neighbourhood& neighbourhood,
-                std::int32_t left_out = NeighbourSearch::nobody) {
+Searched search(const DataPoints& data, const Place& place, const Neighborhood& neighborhood,
+                std::int32_t left_out = NeighborSearch::kNobody) {
     const spatial::NearestPoints tree(data.local);
-    NeighbourSearch finder(data, tree, neighbourhood);
+    NeighborSearch finder(data, tree, neighborhood);
     std::vector<spatial::Neighbour> found;
     const bool within = finder.find(place, found, left_out);
     EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
     Searched out{{}, within};
-    for (const auto& neighbour : found)
-        out.points.push_back(neighbour.point);
+    for (const auto& neighbor : found)
+        out.points.push_back(neighbor.point);
     return out;
 }
 
 /// The same, by looking at every point.
 std::vector<std::int32_t> expected(const DataPoints& data, const Place& place,
-                                   const Neighbourhood& n, std::int32_t left_out) {
+                                   const Neighborhood& n, std::int32_t left_out) {
     std::vector<spatial::Neighbour> all;
     for (std::size_t i = 0; i < data.local.size(); ++i) {
         const double dx = data.local[i][0] - place[0], dy = data.local[i][1] - place[1];
@@ -49,14 +49,14 @@ std::vector<std::int32_t> expected(const DataPoints& data, const Place& place,
         if (n.octants > 0 && count == n.octants) continue;
         ++count;
         out.push_back(point);
-        if (n.neighbours > 0 && out.size() == static_cast<std::size_t>(n.neighbours)) break;
+        if (n.neighbors > 0 && out.size() == static_cast<std::size_t>(n.neighbors)) break;
     }
     return out;
 }
 
-TEST(NeighbourSearch, AsLookingAtEveryPoint) {
+TEST(NeighborSearch, AsLookingAtEveryPoint) {
     const DataPoints data = prepare_points(hills(400, 100, {4e5, 5e6}));
-    for (const Neighbourhood& n : {Neighbourhood{16, 0, 0},
+    for (const Neighborhood& n : {Neighborhood{16, 0, 0},
                                    {16, 2, 0},
                                    {12, 0, 9},
                                    {0, 0, 15},
@@ -66,7 +66,7 @@ TEST(NeighbourSearch, AsLookingAtEveryPoint) {
                                    {3, 3, 3}}) {
         for (int i = 0; i < 30; ++i) {
             const Place place = data.local[static_cast<std::size_t>(13 * i)];
-            for (const std::int32_t left_out : {NeighbourSearch::nobody, 13 * i}) {
+            for (const std::int32_t left_out : {NeighborSearch::kNobody, 13 * i}) {
                 const auto want = expected(data, place, n, left_out);
                 const Searched got = search(data, place, n, left_out);
                 if (want.empty()) {
@@ -80,7 +80,7 @@ TEST(NeighbourSearch, AsLookingAtEveryPoint) {
     }
 }
 
-TEST(NeighbourSearch, OctantsAlongMeasuredLinesAndFarOutside) {
+TEST(NeighborSearch, OctantsAlongMeasuredLinesAndFarOutside) {
     Points points;
     for (int i = 0; i < 600; ++i)  // six lines, points close together along them; ties
         points.push_back({4e5 + 200.0 * (i % 6), 5e6 + 2.0 * (i / 6), 0});
@@ -90,10 +90,10 @@ TEST(NeighbourSearch, OctantsAlongMeasuredLinesAndFarOutside) {
                                {4e5 - 700.29, 5e6 + 3.11},
                                {4e5 + 5000.7, 5e6 - 9000.3},
                                {4e5 + 1e7, 5e6 + 0.1}}) {
-        for (const Neighbourhood& n :
-             {Neighbourhood{16, 2, 0}, {8, 1, 0}, {32, 4, 500}, {0, 3, 0}}) {
+        for (const Neighborhood& n :
+             {Neighborhood{16, 2, 0}, {8, 1, 0}, {32, 4, 500}, {0, 3, 0}}) {
             const Place local = data.to_local(place);
-            const auto want = expected(data, local, n, NeighbourSearch::nobody);
+            const auto want = expected(data, local, n, NeighborSearch::kNobody);
             const Searched got = search(data, local, n);
             if (want.empty()) {
                 EXPECT_FALSE(got.within);
@@ -104,7 +104,7 @@ TEST(NeighbourSearch, OctantsAlongMeasuredLinesAndFarOutside) {
     }
 }
 
-TEST(NeighbourSearch, OctantsOfPointsInOneLineOrAtOnePlace) {
+TEST(NeighborSearch, OctantsOfPointsInOneLineOrAtOnePlace) {
     Points line;
     for (int i = 0; i < 300; ++i)
         line.push_back({0, 3.0 * i, 0});
@@ -113,12 +113,12 @@ TEST(NeighbourSearch, OctantsOfPointsInOneLineOrAtOnePlace) {
         for (const Place& place : {Place{1.3, 100.7}, {-50.1, 900.4}, {3.2, -4.9}}) {
             const Place local = data.to_local(place);
             EXPECT_EQ(search(data, local, {8, 1, 0}).points,
-                      expected(data, local, {8, 1, 0}, NeighbourSearch::nobody));
+                      expected(data, local, {8, 1, 0}, NeighborSearch::kNobody));
         }
     }
 }
 
-TEST(NeighbourSearch, NoPointWithinTheRadiusGivesTheNearest) {
+TEST(NeighborSearch, NoPointWithinTheRadiusGivesTheNearest) {
     const DataPoints data = prepare_points(Points{{0, 0, 1}, {10, 0, 2}});
     const Searched far = search(data, {6, 0}, {16, 0, 3});
     EXPECT_FALSE(far.within);
@@ -128,7 +128,7 @@ TEST(NeighbourSearch, NoPointWithinTheRadiusGivesTheNearest) {
     EXPECT_TRUE(nothing.points.empty());
 }
 
-TEST(NeighbourSearch, OctantsLookBeyondACluster) {
+TEST(NeighborSearch, OctantsLookBeyondACluster) {
     Points points;
     for (int i = 0; i < 100; ++i)
         points.push_back({1 + 0.001 * i, 0.5, 0});
@@ -140,13 +140,13 @@ TEST(NeighbourSearch, OctantsLookBeyondACluster) {
               (std::vector<std::int32_t>{0, 1, 2, 3, 100}));
 }
 
-TEST(NeighbourSearch, Refuses) {
-    for (const Neighbourhood& n : {Neighbourhood{-1, 0, 0},
+TEST(NeighborSearch, Refuses) {
+    for (const Neighborhood& n : {Neighborhood{-1, 0, 0},
                                    {1, -1, 0},
                                    {1, 0, -1},
                                    {1, 0, HUGE_VAL},
                                    {1, 0, std::nan("")}}) {
-        EXPECT_THROW(check_neighbourhood(n), InputError);
+        EXPECT_THROW(check_neighborhood(n), InputError);
     }
 }
 

@@ -15,14 +15,14 @@ namespace {
 
 using Method = std::vector<double> (*)(std::span<const std::array<double, 3>>,
                                        std::span<const std::array<double, 2>>, int, Progress*);
-constexpr std::array<Method, 2> methods{linear_on_triangulation, natural_neighbours};
+constexpr std::array<Method, 2> methods{linear_on_triangulation, natural_neighbors};
 
 TEST(Triangulated, ByHand) {
     const Points square{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 8}};
     EXPECT_DOUBLE_EQ(linear_on_triangulation(square, Nodes{{1, 0.5}}, 1)[0], 4);
     // The node in the middle of a square of four equal cells takes a quarter from each.
     const Points corners{{0, 0, 1}, {2, 0, 2}, {2, 2, 3}, {0, 2, 6}};
-    EXPECT_NEAR(natural_neighbours(corners, Nodes{{1, 1}}, 1)[0], 3, 1e-14);
+    EXPECT_NEAR(natural_neighbors(corners, Nodes{{1, 1}}, 1)[0], 3, 1e-14);
 }
 
 TEST(Triangulated, SameBytesForAnyNumberOfThreads) {

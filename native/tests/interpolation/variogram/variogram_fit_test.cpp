@@ -68,7 +68,7 @@ TEST(ExperimentalVariogram, MeasuresUnderTheAnisotropy) {
 }
 
 TEST(ExperimentalVariogram, NearPairsOfManyPointsAreAllCounted) {
-    // On a lattice every inner point has four neighbours one spacing away: 2 n (n - 1) pairs.
+    // On a lattice every inner point has four neighbors one spacing away: 2 n (n - 1) pairs.
     Points points;
     constexpr int n = 100;
     for (int y = 0; y < n; ++y) {
@@ -82,7 +82,7 @@ TEST(ExperimentalVariogram, NearPairsOfManyPointsAreAllCounted) {
 }
 
 TEST(VariogramFit, FindsTheVariogramAFieldWasDrawnFrom) {
-    const Variogram truth{VariogramModel::spherical, 30, 4, 0, {}};
+    const Variogram truth{VariogramModel::kSpherical, 30, 4, 0, {}};
     const FittedVariogram fitted = fit_variogram(drawn_field(truth, 900, 200, 3), {});
     expect_usable(fitted);
     // One draw scatters about the truth; what must hold is gamma at short lags, and the sill.
@@ -93,7 +93,7 @@ TEST(VariogramFit, FindsTheVariogramAFieldWasDrawnFrom) {
 }
 
 TEST(VariogramFit, FindsANugget) {
-    const Variogram truth{VariogramModel::exponential, 60, 5, 2, {}};
+    const Variogram truth{VariogramModel::kExponential, 60, 5, 2, {}};
     const FittedVariogram fitted = fit_variogram(drawn_field(truth, 900, 300, 5), {});
     EXPECT_NEAR(fitted.variogram.gamma(1), 2, 1);
     EXPECT_NEAR(fitted.variogram.gamma(30), truth.gamma(30), 1.5);
@@ -103,8 +103,8 @@ TEST(VariogramFit, ASmoothSurfaceAsksForASmoothModel) {
     const Points points = hills(800, 100);
     const FittedVariogram fitted = fit_variogram(points, {});
     expect_usable(fitted);
-    EXPECT_NE(fitted.variogram.model, VariogramModel::spherical);
-    EXPECT_NE(fitted.variogram.model, VariogramModel::exponential);
+    EXPECT_NE(fitted.variogram.model, VariogramModel::kSpherical);
+    EXPECT_NE(fitted.variogram.model, VariogramModel::kExponential);
     // Kriged with it the surface comes out better than with a spherical guess.
     const Nodes nodes = scattered_nodes(300, 90, {5, 5}, 9);
     const auto error = [&](const Variogram& v) {
@@ -117,7 +117,7 @@ TEST(VariogramFit, ASmoothSurfaceAsksForASmoothModel) {
         }
         return std::sqrt(sum / static_cast<double>(nodes.size()));
     };
-    EXPECT_LT(error(fitted.variogram), 0.5 * error({VariogramModel::spherical, 50, 200, 0, {}}));
+    EXPECT_LT(error(fitted.variogram), 0.5 * error({VariogramModel::kSpherical, 50, 200, 0, {}}));
 }
 
 TEST(VariogramFit, APlaneComesOutAsAPlane) {
@@ -161,7 +161,7 @@ TEST(VariogramFit, LittleOrConstantData) {
 TEST(VariogramFit, VariancesAreHonest) {
     // A smooth field measured with errors; and one with a few mistakes in it.
     for (const int every : {0, 150}) {
-        Points points = drawn_field({VariogramModel::matern32, 80, 9, 0.02, {}}, 900, 200, 7);
+        Points points = drawn_field({VariogramModel::kMatern32, 80, 9, 0.02, {}}, 900, 200, 7);
         for (int i = 0; every > 0 && i < 900; i += every)
             points[static_cast<std::size_t>(i)][2] += 4;
         const Variogram v = fit_variogram(points, {}).variogram;
@@ -177,7 +177,7 @@ TEST(VariogramFit, VariancesAreHonest) {
 }
 
 TEST(VariogramFit, FindsAnAnisotropyWhereThereIsOne) {
-    const Variogram truth{VariogramModel::matern32, 60, 4, 0, {2.5, 120}};
+    const Variogram truth{VariogramModel::kMatern32, 60, 4, 0, {2.5, 120}};
     const Points points = drawn_field(truth, 900, 200, 3);
     FitOptions options;
     options.finds_anisotropy = true;
@@ -207,7 +207,7 @@ TEST(VariogramFit, FindsNoAnisotropyWhereThereIsNone) {
     Points line;
     for (int i = 0; i < 200; ++i)
         line.push_back({1.0 * i, 3.0 * i + 1e-3 * (i % 7), std::sin(0.3 * i)});
-    for (const Points& points : {drawn_field({VariogramModel::matern32, 60, 4, 0, {}}, 900, 200, 3),
+    for (const Points& points : {drawn_field({VariogramModel::kMatern32, 60, 4, 0, {}}, 900, 200, 3),
                                  hills(20, 100), line}) {
         const FittedVariogram found = fit_variogram(points, {}, nullptr, options);
         const FittedVariogram plain = fit_variogram(points, {});
@@ -220,7 +220,7 @@ TEST(VariogramFit, FindsNoAnisotropyWhereThereIsNone) {
 TEST(VariogramFit, ARougherPartWhereItTellsPointsBetter) {
     // Smooth from afar and rough from near: no single model is both.
     const Variogram truth{
-        VariogramModel::matern52, 300, 20.6, 0, {}, {{VariogramModel::exponential, 300, 0.6, {}}}};
+        VariogramModel::kMatern52, 300, 20.6, 0, {}, {{VariogramModel::kExponential, 300, 0.6, {}}}};
     const Points points = drawn_field(truth, 1000, 200, 11);
     const FittedVariogram fitted = fit_variogram(points, {});
     expect_usable(fitted);
@@ -229,9 +229,9 @@ TEST(VariogramFit, ARougherPartWhereItTellsPointsBetter) {
         EXPECT_NEAR(fitted.variogram.gamma(h), truth.gamma(h), 0.4 * truth.gamma(h));
 }
 
-TEST(VariogramFit, SameForAnyNumberOfThreadsAndRefusesNoNeighbours) {
+TEST(VariogramFit, SameForAnyNumberOfThreadsAndRefusesNoNeighbors) {
     const Points points = hills(3000, 100);
-    for (const Drift drift : {Drift::constant, Drift::linear}) {
+    for (const Drift drift : {Drift::kConstant, Drift::kLinear}) {
         const Variogram one = fit_variogram(points, {}, nullptr, {drift, 16, 1}).variogram;
         const Variogram three = fit_variogram(points, {}, nullptr, {drift, 16, 3}).variogram;
         EXPECT_EQ(one.model, three.model);
@@ -239,7 +239,7 @@ TEST(VariogramFit, SameForAnyNumberOfThreadsAndRefusesNoNeighbours) {
         EXPECT_EQ(one.sill, three.sill);
         EXPECT_EQ(one.nugget, three.nugget);
     }
-    EXPECT_THROW(fit_variogram(points, {}, nullptr, {Drift::constant, 0}), InputError);
+    EXPECT_THROW(fit_variogram(points, {}, nullptr, {Drift::kConstant, 0}), InputError);
 }
 
 TEST(VariogramFit, SameEveryTime) {
