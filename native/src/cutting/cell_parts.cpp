@@ -5,10 +5,12 @@
 #include <numeric>
 
 #include "base/disjoint_sets.hpp"
-#include "cutting/box_tree.hpp"
 #include "cutting/cell_cut.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
+
+using spatial::Box;
 
 /// Joins pieces that meet along an edge. Where caps end at an edge each of them closes the part
 /// whose face it meets there. False where one part would use an edge four times, though the model's

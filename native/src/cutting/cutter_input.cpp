@@ -6,13 +6,16 @@
 #include <map>
 #include <optional>
 
-#include "cutting/box_tree.hpp"
 #include "cutting/cutter_surface.hpp"
 #include "cutting/triangulate.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
+
+using spatial::Box;
+using spatial::BoxTree;
 
 namespace {
 

@@ -41,7 +41,7 @@ bool FaceSplitter::split_in_two(std::span<const NodeId> face, FaceParts& parts) 
         if (side(a) * side(b) < 0) {
             if (found == 2) return false;
             on[found++] = cycle_.size();
-            cycle_.push_back(crossings_.node(a, b));
+            cycle_.push_back(cuts_.node(a, b));
         }
     }
     if (found != 2 || on[1] - on[0] < 2 || on[0] + cycle_.size() - on[1] < 2) return false;
@@ -87,7 +87,7 @@ void FaceSplitter::split_by_triangles(std::span<const NodeId> face, FaceParts& p
     diagonals.erase(std::unique(diagonals.begin(), diagonals.end()), diagonals.end());
     const auto crossing = [&](NodeId a, NodeId b) {
         const std::array<NodeId, 2> edge{std::min(a, b), std::max(a, b)};
-        if (std::binary_search(border.begin(), border.end(), edge)) return crossings_.node(a, b);
+        if (std::binary_search(border.begin(), border.end(), edge)) return cuts_.node(a, b);
         const auto at = std::lower_bound(diagonals.begin(), diagonals.end(), edge);
         return static_cast<NodeId>(-1 - (at - diagonals.begin()));
     };

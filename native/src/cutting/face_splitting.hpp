@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "cutting/plane_sides.hpp"
+#include "cutting/plane_edges.hpp"
 #include "cutting/polygons.hpp"
 #include "cutting/triangulate.hpp"
 
@@ -31,8 +31,8 @@ struct FaceParts {
 class FaceSplitter {
 public:
     FaceSplitter(const ComplexView& model, const std::vector<std::int8_t>& sides,
-                 const Crossings& crossings)
-        : model_(model), sides_(sides), crossings_(crossings) {}
+                 const EdgeIntersections& cuts)
+        : model_(model), sides_(sides), cuts_(cuts) {}
 
     void split(std::span<const NodeId> face, FaceParts& parts);
 
@@ -43,7 +43,7 @@ private:
 
     const ComplexView& model_;
     const std::vector<std::int8_t>& sides_;
-    const Crossings& crossings_;
+    const EdgeIntersections& cuts_;
     std::vector<NodeId> cycle_;
 };
 

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <map>
 
-#include "cutting/box_tree.hpp"
 #include "cutting/distinct.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
+
+using spatial::Box;
 
 PartRounding::PartRounding(const ComplexView& model, std::vector<Position>& new_positions,
                            Pieces& pieces, PieceParts& parts, std::vector<HalfCell>& half_cells,

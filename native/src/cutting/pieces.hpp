@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "cutting/plane_sides.hpp"
+#include "cutting/plane_edges.hpp"
 #include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {

@@ -58,8 +58,8 @@ std::size_t chunks(std::size_t count, std::size_t size) {
 class PlaneCutter {
 public:
     PlaneCutter(const ComplexView& model, const Plane& plane, int threads, Progress* progress)
-        : model_(model), distance_(plane), threads_(threads), progress_(progress) {
-        sides_ = vertex_sides(model, distance_, threads, progress);
+        : model_(model), plane_(checked_plane(plane)), threads_(threads), progress_(progress) {
+        sides_ = vertex_sides(model, plane_, threads, progress);
     }
 
     Section section() {
@@ -69,7 +69,7 @@ public:
                                        [](const CellCut& cut) { return cut.is_clean; });
         if (!clean)
             divide();  // a cell as thin as rounding: its parts tell what it has in the plane
-        return assemble_section(model_, positions(), pieces_);
+        return assemble_section(model_, new_positions_, pieces_);
     }
 
     Cut cut() {
@@ -78,7 +78,6 @@ public:
         PieceParts parts;
         std::vector<HalfCell> half_cells;
         number_cells(parts, half_cells);
-        positions();
         PartRounding(model_, new_positions_, pieces_, parts, half_cells, {false, false}).run();
         return assemble_halves(model_, new_positions_, pieces_, parts, half_cells, threads_,
                                progress_);
@@ -97,15 +96,8 @@ private:
         progress_->check();
         progress_->report(share, text);
     }
-    const std::vector<Position>& positions() {
-        new_positions_.clear();
-        for (std::size_t i = 0; i < crossings_->size(); ++i)
-            new_positions_.push_back(crossings_->position(i));
-        return new_positions_;
-    }
-
     void mark_sides();
-    void find_crossings();
+    void find_cuts();
     void divide_faces(bool all);
     std::int8_t level_side(std::size_t face, std::size_t which, int turned) const;
     void cut_cells(bool parts);
@@ -114,19 +106,18 @@ private:
     bool settle_part(std::int32_t part, const CellCut& cut, std::span<const PieceRef> refs);
     void number_cells(PieceParts& parts, std::vector<HalfCell>& half_cells) const;
     Position position(NodeId node) const {
-        return crossings_->is_crossing(node)
-                   ? crossings_->position(index(node - crossings_->first_node()))
-                   : model_.vertex(node);
+        return cuts_->contains(node) ? new_positions_[index(node - cuts_->first_node())]
+                                     : model_.vertex(node);
     }
 
     const ComplexView& model_;
-    PlaneDistance distance_;
+    exact::OrientedPlane plane_;
     int threads_;
     Progress* progress_;
     std::vector<std::int8_t> sides_;
     std::vector<std::uint8_t> face_sides_, cell_sides_;
-    std::unique_ptr<Crossings> crossings_;
-    std::vector<Position> new_positions_;
+    std::unique_ptr<EdgeIntersections> cuts_;
+    std::vector<Position> new_positions_;  ///< of cut edges, which settle_part may move
     Pieces pieces_;
     CellPieces cell_pieces_;
     std::vector<CellCut> cell_cuts_;
@@ -156,7 +147,7 @@ void PlaneCutter::mark_sides() {
     }
 }
 
-void PlaneCutter::find_crossings() {
+void PlaneCutter::find_cuts() {
     for (;;) {
         mark_sides();
         std::vector<std::array<NodeId, 2>> edges;
@@ -170,19 +161,20 @@ void PlaneCutter::find_crossings() {
                     edges.push_back({std::min(a, b), std::max(a, b)});
             }
         }
-        crossings_ = std::make_unique<Crossings>(model_, distance_, std::move(edges));
+        cuts_ = std::make_unique<EdgeIntersections>(model_, plane_, std::move(edges));
         // An edge that ends just beside the plane may be cut in the very doubles where it ends.
         // Then it is contracted to its end, and with it all that is as near: what stands on one
         // vertical stays together.
         bool moved = false;
-        for (std::size_t i = 0; i < crossings_->size() && !moved; ++i) {
-            for (const NodeId v : crossings_->edge(i))
-                moved = moved || model_.vertex(v) == crossings_->position(i);
+        new_positions_ = cuts_->positions();
+        for (std::size_t i = 0; i < cuts_->size() && !moved; ++i) {
+            for (const NodeId v : cuts_->edge(cuts_->first_node() + static_cast<NodeId>(i)))
+                moved = moved || model_.vertex(v) == new_positions_[i];
         }
         if (moved) {
             moved = false;
             for (std::size_t v = 0; v < sides_.size(); ++v) {
-                if (sides_[v] == kOn || !distance_.is_beside(model_.vertex(static_cast<NodeId>(v))))
+                if (sides_[v] == kOn || !plane_.is_beside(model_.vertex(static_cast<NodeId>(v))))
                     continue;
                 sides_[v] = kOn;
                 moved = true;
@@ -209,14 +201,14 @@ std::int8_t PlaneCutter::level_side(std::size_t face, std::size_t which, int tur
 /// no section can need.
 void PlaneCutter::divide_faces(bool all) {
     report(0.1, "finding where edges are cut");
-    find_crossings();
+    find_cuts();
     const std::size_t count = chunks(model_.face_count(), kFaces);
     std::vector<Pieces> found(count);
     const auto is_cut = [&](std::int32_t cell) {
         return cell >= 0 && cell_sides_[index(cell)] == kCut;
     };
     parallel_chunks(count, threads_, progress_, [&](std::size_t c) {
-        FaceSplitter splitter(model_, sides_, *crossings_);
+        FaceSplitter splitter(model_, sides_, *cuts_);
         FaceParts parts;
         std::vector<Position> corners;
         Pieces& own = found[c];
@@ -253,7 +245,7 @@ void PlaneCutter::divide_faces(bool all) {
                     const Position normal = polygon_normal(corners);
                     double turned = 0;
                     for (std::size_t k = 0; k < 3; ++k)
-                        turned += normal[k] * distance_.normal()[k];
+                        turned += normal[k] * plane_.normal()[k];
                     sides = {level_side(f, 0, turned > 0 ? 1 : -1),
                              level_side(f, 1, turned > 0 ? 1 : -1)};
                 }
@@ -305,7 +297,7 @@ void PlaneCutter::cut_cells(bool parts) {
 
     cell_cuts_.assign(count, {});
     parallel_chunks(chunks(count, kCells), threads_, progress_, [&](std::size_t c) {
-        CellCutter cutter(model_, sides_, *crossings_, pieces_, distance_);
+        CellCutter cutter(model_, sides_, *cuts_, pieces_, plane_);
         for (std::size_t i = c * kCells; i < std::min(count, (c + 1) * kCells); ++i) {
             if (parts) {
                 cutter.cut(cell_pieces_[i], cell_cuts_[i]);
@@ -343,11 +335,11 @@ bool PlaneCutter::settle_part(std::int32_t part, const CellCut& cut,
                 low[k] = std::min(low[k], p[k]);
                 high[k] = std::max(high[k], p[k]);
             }
-            if (crossings_->is_crossing(node)) {
+            if (cuts_->contains(node)) {
                 last = std::max(last, node);
             } else if (sides_[index(node)] != kOn) {
                 vertices.push_back(node);
-                near = near && std::abs(distance_.at(p).high) <= kNear * distance_.rounding(p);
+                near = near && std::abs(plane_.distance(p).high) <= kNear * plane_.rounding(p);
             }
         }
     }
@@ -371,7 +363,7 @@ bool PlaneCutter::settle_part(std::int32_t part, const CellCut& cut,
         return true;
     }
     if (last >= 0) {
-        Position& p = crossings_->position(index(last - crossings_->first_node()));
+        Position& p = new_positions_[index(last - cuts_->first_node())];
         for (const std::size_t k : flat)
             p[k] = std::nextafter(p[k], HUGE_VAL);
     }
@@ -393,8 +385,8 @@ bool PlaneCutter::straighten_walls() {
         corners.clear();
         for (const NodeId node : pieces_.polygons[p]) {
             corners.push_back(position(node));
-            if (crossings_->is_crossing(node) || sides_[index(node)] == kOn) continue;
-            if (std::abs(distance_.at(corners.back()).high) <= distance_.rounding(corners.back()))
+            if (cuts_->contains(node) || sides_[index(node)] == kOn) continue;
+            if (std::abs(plane_.distance(corners.back()).high) <= plane_.rounding(corners.back()))
                 near.push_back(node);
         }
         if (near.empty() || !crosses_itself(corners)) continue;

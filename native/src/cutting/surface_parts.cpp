@@ -13,6 +13,10 @@
 
 namespace realmodel::cutting {
 
+using arrangement::each_edge;
+
+using spatial::Box;
+
 namespace {
 
 /// A half edge of a face's regions.
@@ -207,7 +211,7 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
     std::vector<EdgeUse> group;
     for (const SlotUse& use : uses)
         group.push_back(use.use);
-    const EdgeFan fan = fan_of(overlay_, group);
+    const EdgeFan fan = overlay_.fan_of(group);
     struct Step {
         std::int32_t slot;
         int change;  ///< 1 the cell begins, -1 it ends

@@ -16,9 +16,9 @@ class ExactTurns : public CornerTurns {
 public:
     ExactTurns(SurfaceOverlay& overlay, const View& view) : overlay_(overlay), view_(view) {}
     int operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const override {
-        return view_.sign() * overlay_.points().turn(view_.axis(), overlay_.exact(a.node),
-                                                     overlay_.exact(b.node),
-                                                     overlay_.exact(c.node));
+        return view_.sign() * exact::orient2d(overlay_.points(), view_.axis(),
+                                              overlay_.exact(a.node), overlay_.exact(b.node),
+                                              overlay_.exact(c.node));
     }
 
 private:
