@@ -30,8 +30,7 @@ void each_edge(const Loops& loops, std::int32_t item, const Visit& visit) {
     for (const auto& loop : loops) {
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const NodeId a = loop[i], b = loop[i + 1 < loop.size() ? i + 1 : 0];
-            visit(EdgeUse{
-                {std::min(a, b), std::max(a, b)}, item, static_cast<std::int8_t>(a < b ? 1 : -1)});
+            visit(EdgeUse{unordered(a, b), item, static_cast<std::int8_t>(a < b ? 1 : -1)});
         }
     }
 }

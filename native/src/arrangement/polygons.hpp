@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -13,6 +14,11 @@ namespace realmodel::arrangement {
 using Position = std::array<double, 3>;
 using PlanePosition = std::array<double, 2>;
 using NodeId = std::int32_t;
+
+/// An edge as (lesser, greater) node.
+inline std::array<NodeId, 2> unordered(NodeId a, NodeId b) {
+    return {std::min(a, b), std::max(a, b)};
+}
 
 /// Many polygons in one array.
 struct Polygons {

@@ -24,10 +24,6 @@ namespace {
 /// So many triangles are one piece of work.
 constexpr std::size_t kChunk = 1 << 8;
 
-std::array<NodeId, 2> unordered(NodeId a, NodeId b) {
-    return {std::min(a, b), std::max(a, b)};
-}
-
 }  // namespace
 
 std::int32_t TriangleArrangement::add(const std::array<NodeId, 3>& corners) {

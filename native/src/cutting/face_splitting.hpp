@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -37,6 +36,11 @@ public:
     void split(std::span<const NodeId> face, FaceParts& parts);
 
 private:
+    struct TrianglePart;
+    class Cuts;
+
+    void split_triangle(const std::array<LoopCorner, 3>& t, const Cuts& cuts,
+                        std::vector<TrianglePart>& parts) const;
     bool split_in_two(std::span<const NodeId> face, FaceParts& parts);
     void split_by_triangles(std::span<const NodeId> face, FaceParts& parts);
     std::int8_t side(NodeId v) const { return sides_[index(v)]; }

@@ -42,7 +42,7 @@ EdgeIntersections::EdgeIntersections(const ComplexView& model, const exact::Orie
 }
 
 NodeId EdgeIntersections::node(NodeId a, NodeId b) const {
-    const std::array<NodeId, 2> edge{std::min(a, b), std::max(a, b)};
+    const std::array<NodeId, 2> edge = unordered(a, b);
     const auto found = std::lower_bound(edges_.begin(), edges_.end(), edge);
     assert(found != edges_.end() && *found == edge);
     return first_ + static_cast<NodeId>(found - edges_.begin());

@@ -12,6 +12,7 @@ using arrangement::Polygons;
 using arrangement::Position;
 using arrangement::rounding_of;
 using arrangement::sixfold_volume;
+using arrangement::unordered;
 using arrangement::View;
 
 /// Sides of a cutter: above it or outside of it, on it, below it or inside.

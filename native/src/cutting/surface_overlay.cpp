@@ -222,7 +222,7 @@ void SurfaceOverlay::activate_beside_flat_triangles() {
             const auto face = model_.face(f);
             for (std::size_t i = 0; i < face.size() && active_[f] == 0; ++i) {
                 const NodeId a = face[i], b = face[i + 1 < face.size() ? i + 1 : 0];
-                if (!edges.contains({std::min(a, b), std::max(a, b)})) continue;
+                if (!edges.contains(unordered(a, b))) continue;
                 active_[f] = 1;
                 fresh.push_back(static_cast<std::int32_t>(f));
             }
