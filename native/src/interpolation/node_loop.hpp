@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 
 namespace realmodel::interpolation {
 

@@ -4,24 +4,22 @@
 #include <cstdint>
 #include <vector>
 
-#include "cutting/polygons.hpp"
+namespace realmodel {
 
-namespace realmodel::cutting {
-
-/// Finds numbers by what they stand for, of which it keeps no more than hashes. Open addressing
-/// with linear probing.
-class NodeTable {
+/// Finds the numbers of things by hashes of them; the things themselves are kept elsewhere. Open
+/// addressing with linear probing.
+class HashIndex {
 public:
     /// The number with this hash that `is_it` holds of (of one at most), or -1.
     template <class IsIt>
-    NodeId find(std::uint64_t hash, const IsIt& is_it) const {
+    std::int32_t find(std::uint64_t hash, const IsIt& is_it) const {
         if (slots_.empty()) return -1;
         for (std::size_t i = hash & mask(); slots_[i].number >= 0; i = (i + 1) & mask()) {
             if (slots_[i].hash == hash && is_it(slots_[i].number)) return slots_[i].number;
         }
         return -1;
     }
-    void insert(std::uint64_t hash, NodeId number) {
+    void insert(std::uint64_t hash, std::int32_t number) {
         if (3 * (size_ + 1) > 2 * slots_.size()) grow();
         put({hash, number});
         ++size_;
@@ -42,7 +40,7 @@ public:
 private:
     struct Slot {
         std::uint64_t hash = 0;
-        NodeId number = -1;
+        std::int32_t number = -1;
     };
     std::size_t mask() const { return slots_.size() - 1; }
     void put(const Slot& slot) {
@@ -63,4 +61,4 @@ private:
     std::size_t size_ = 0;
 };
 
-}  // namespace realmodel::cutting
+}  // namespace realmodel

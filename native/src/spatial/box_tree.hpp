@@ -2,17 +2,19 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <vector>
 
-#include "cutting/polygons.hpp"
+#include "base/index.hpp"
 
-namespace realmodel::cutting {
+namespace realmodel::spatial {
 
 /// An axis-parallel box; empty at first.
 struct Box {
+    using Position = std::array<double, 3>;
     Position low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
 
     void include(const Position& p) {
@@ -123,4 +125,4 @@ private:
     std::vector<Node> nodes_;
 };
 
-}  // namespace realmodel::cutting
+}  // namespace realmodel::spatial

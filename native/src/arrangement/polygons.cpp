@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutting/polygons.hpp"
+#include "arrangement/polygons.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-namespace realmodel::cutting {
+#include "base/ulp.hpp"
+
+namespace realmodel::arrangement {
 
 View::View(const Position& normal) {
     std::size_t axis = 0;
@@ -24,7 +26,7 @@ PlanePosition View::rounding(std::span<const Position> positions) const {
         largest[1] = std::max(largest[1], std::abs(p[v_]));
     }
     for (double& x : largest)
-        x = 4 * (std::nextafter(x, HUGE_VAL) - x);
+        x = kComputedUlps * ulp(x);
     return largest;
 }
 
@@ -51,7 +53,7 @@ double rounding_of(std::span<const Position> positions) {
         for (const double x : p)
             largest = std::max(largest, std::abs(x));
     }
-    return 4 * (std::nextafter(largest, HUGE_VAL) - largest);
+    return kComputedUlps * ulp(largest);
 }
 
 double sixfold_volume(const Position& o, const Position& a, const Position& b, const Position& c) {
@@ -65,4 +67,4 @@ double sixfold_volume(const Position& o, const Position& a, const Position& b, c
            u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
-}  // namespace realmodel::cutting
+}  // namespace realmodel::arrangement

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
-#include "cutting/surface_overlay.hpp"
+#include "arrangement/polygons.hpp"
+#include "exact/space_points.hpp"
 
-namespace realmodel::cutting {
+namespace realmodel::arrangement {
 
 /// A polygon seen along one of its edges.
 struct EdgeUse {
@@ -22,21 +25,27 @@ struct EdgeUse {
 };
 
 /// Calls visit(use) for all edges of some loops.
-template <class ConformedFaces, class Visit>
-void each_edge(const ConformedFaces& loops, std::int32_t item, const Visit& visit) {
+template <class Loops, class Visit>
+void each_edge(const Loops& loops, std::int32_t item, const Visit& visit) {
     for (const auto& loop : loops) {
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const NodeId a = loop[i], b = loop[i + 1 < loop.size() ? i + 1 : 0];
-            visit(EdgeUse{
-                {std::min(a, b), std::max(a, b)}, item, static_cast<std::int8_t>(a < b ? 1 : -1)});
+            visit(EdgeUse{unordered(a, b), item, static_cast<std::int8_t>(a < b ? 1 : -1)});
         }
     }
 }
 
-/// The uses of one edge in the order in which they stand around it, counter-clockwise for one who
-/// looks along the edge from its lesser node. Those in one direction make one blade.
+/// Half of a plane that begins at an edge.
+struct HalfPlane {
+    NodeId towards;         ///< a point of it, not on the line of the edge
+    std::int32_t plane;     ///< two of the same number, if it is not -1, lie in one plane
+    std::int8_t direction;  ///< 1 or -1: two of the same plane and direction are the same
+};
+
+/// Half-planes around one edge in counter-clockwise order for one who looks along it, beginning
+/// with the first. Those that are the same make one blade.
 struct EdgeFan {
-    std::vector<std::size_t> order;            ///< numbers of uses
+    std::vector<std::size_t> order;            ///< numbers of half-planes
     std::vector<std::size_t> blade_begins{0};  ///< in `order`, and its end
 
     std::size_t blades() const { return blade_begins.size() - 1; }
@@ -45,6 +54,8 @@ struct EdgeFan {
     }
 };
 
-EdgeFan fan_of(SurfaceOverlay& overlay, std::span<const EdgeUse> uses);
+/// The fan around the edge from a to b.
+EdgeFan fan_around(const exact::SpacePoints& points, NodeId a, NodeId b,
+                   std::span<const HalfPlane> items);
 
-}  // namespace realmodel::cutting
+}  // namespace realmodel::arrangement
