@@ -54,17 +54,14 @@ void CellCutter::collect_uses(std::span<const PieceRef> refs, bool in_plane_only
     for (std::size_t i = 0; i < refs.size(); ++i) {
         const auto piece = index(refs[i].piece);
         const auto nodes = pieces_.polygons[piece];
-        const std::int8_t side = pieces_.sides[piece][index(refs[i].which)];
-        const bool level = pieces_.level[piece] != 0;
+        const std::int8_t side = pieces_[piece].sides[index(refs[i].which)];
+        const bool level = pieces_[piece].is_level != 0;
         for (std::size_t k = 0; k < nodes.size(); ++k) {
             const NodeId a = nodes[k], b = nodes[k + 1 < nodes.size() ? k + 1 : 0];
             if (in_plane_only && !(in_plane(a) && in_plane(b))) continue;
             const bool ahead = (a < b) == (refs[i].which == 0);
-            uses_.push_back({{std::min(a, b), std::max(a, b)},
-                             static_cast<std::int32_t>(i),
-                             static_cast<std::int8_t>(ahead ? 1 : -1),
-                             side,
-                             level});
+            uses_.push_back({unordered(a, b), static_cast<std::int32_t>(i),
+                             static_cast<std::int8_t>(ahead ? 1 : -1), side, level});
         }
     }
     std::sort(uses_.begin(), uses_.end(), [](const Use& a, const Use& b) {

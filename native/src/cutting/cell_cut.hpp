@@ -28,12 +28,9 @@ struct CellCut {
 class CellCutter {
 public:
     CellCutter(const ComplexView& model, const std::vector<std::int8_t>& sides,
-               const Crossings& crossings, const Pieces& pieces, const PlaneDistance& distance)
-        : model_(model),
-          sides_(sides),
-          crossings_(crossings),
-          pieces_(pieces),
-          points_(model, distance, crossings) {}
+               const EdgeIntersections& cuts, const Pieces& pieces,
+               const exact::OrientedPlane& plane)
+        : model_(model), sides_(sides), cuts_(cuts), pieces_(pieces), points_(model, plane, cuts) {}
 
     /// The caps alone.
     void cap(std::span<const PieceRef> refs, CellCut& result);
@@ -55,9 +52,7 @@ private:
 
     Position position(NodeId node) const { return points_.rounded(node); }
     LoopCorner corner(NodeId node) const { return {node, points_.view()(points_.rounded(node))}; }
-    bool in_plane(NodeId node) const {
-        return crossings_.is_crossing(node) || sides_[index(node)] == kOn;
-    }
+    bool in_plane(NodeId node) const { return cuts_.contains(node) || sides_[index(node)] == kOn; }
     void collect_uses(std::span<const PieceRef> refs, bool in_plane_only);
     void close(std::span<const PieceRef> refs, CellCut& result);
     void collect_open_edges(std::span<const PieceRef> refs);
@@ -75,7 +70,7 @@ private:
 
     const ComplexView& model_;
     const std::vector<std::int8_t>& sides_;
-    const Crossings& crossings_;
+    const EdgeIntersections& cuts_;
     const Pieces& pieces_;
     PlanePoints points_;
 

@@ -5,10 +5,12 @@
 #include <numeric>
 
 #include "base/disjoint_sets.hpp"
-#include "cutting/box_tree.hpp"
 #include "cutting/cell_cut.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
+
+using spatial::Box;
 
 /// Joins pieces that meet along an edge. Where caps end at an edge each of them closes the part
 /// whose face it meets there. False where one part would use an edge four times, though the model's
@@ -22,11 +24,8 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
         const auto nodes = result.caps[c];
         for (std::size_t k = 0; k < nodes.size(); ++k) {
             const NodeId a = nodes[k], b = nodes[k + 1 < nodes.size() ? k + 1 : 0];
-            uses_.push_back({{std::min(a, b), std::max(a, b)},
-                             pieces + 2 * static_cast<std::int32_t>(c),
-                             static_cast<std::int8_t>(a < b ? 1 : -1),
-                             kBelow,
-                             true});
+            uses_.push_back({unordered(a, b), pieces + 2 * static_cast<std::int32_t>(c),
+                             static_cast<std::int8_t>(a < b ? 1 : -1), kBelow, true});
         }
     }
     const auto by_edge = [](const Use& a, const Use& b) {
@@ -93,7 +92,7 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
         if (part < 0) {
             part = static_cast<std::int32_t>(result.part_side.size());
             const std::int8_t side = i < refs.size()
-                                         ? pieces_.sides[index(refs[i].piece)][index(refs[i].which)]
+                                         ? pieces_[index(refs[i].piece)].sides[index(refs[i].which)]
                                      : (i - refs.size()) % 2 == 0 ? kBelow
                                                                   : kAbove;
             result.part_side.push_back(side);
@@ -140,7 +139,7 @@ void CellCutter::attach_shells(std::span<const PieceRef> refs, CellCut& result,
                                std::vector<std::int32_t>& root) {
     const auto side_of = [&](std::size_t i) {
         if (i >= refs.size()) return (i - refs.size()) % 2 == 0 ? kBelow : kAbove;
-        return pieces_.sides[index(refs[i].piece)][index(refs[i].which)];
+        return pieces_[index(refs[i].piece)].sides[index(refs[i].which)];
     };
     for (const std::int8_t side : {kBelow, kAbove}) {
         std::vector<std::int32_t> roots;

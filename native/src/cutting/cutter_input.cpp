@@ -6,13 +6,16 @@
 #include <map>
 #include <optional>
 
-#include "cutting/box_tree.hpp"
 #include "cutting/cutter_surface.hpp"
 #include "cutting/triangulate.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
+
+using spatial::Box;
+using spatial::BoxTree;
 
 namespace {
 
@@ -92,7 +95,7 @@ std::map<Edge, std::vector<std::int32_t>> SurfaceInput::by_edge() const {
         const Triangle& c = surface_.triangles[t];
         for (std::size_t i = 0; i < 3; ++i) {
             const NodeId a = c[i], b = c[(i + 1) % 3];
-            users[{std::min(a, b), std::max(a, b)}].push_back(static_cast<std::int32_t>(t));
+            users[unordered(a, b)].push_back(static_cast<std::int32_t>(t));
         }
     }
     return users;
@@ -190,7 +193,7 @@ void SurfaceInput::divide_triangle(std::size_t t,
     for (std::size_t i = 0; i < 3; ++i) {
         const NodeId a = corners[i], b = corners[(i + 1) % 3];
         loop.push_back({a, view(place(a))});
-        const auto found = on_edge.find({std::min(a, b), std::max(a, b)});
+        const auto found = on_edge.find(unordered(a, b));
         if (found == on_edge.end()) continue;
         std::vector<NodeId> between = found->second;
         if (a > b) std::reverse(between.begin(), between.end());
@@ -239,7 +242,7 @@ void SurfaceInput::turn_upward() {
             const Triangle corners = surface_.triangles[index(part[i])];
             for (std::size_t k = 0; k < 3; ++k) {
                 const NodeId a = corners[k], b = corners[(k + 1) % 3];
-                const auto& users = users_of.at({std::min(a, b), std::max(a, b)});
+                const auto& users = users_of.at(unordered(a, b));
                 closed = closed && users.size() == 2;
                 for (const std::int32_t other : users) {
                     if (other == part[i]) continue;

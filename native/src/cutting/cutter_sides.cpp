@@ -9,6 +9,8 @@
 
 namespace realmodel::cutting {
 
+using arrangement::each_edge;
+
 CutterSides::Sets::Sets(std::size_t count) : parent_(count), opposite_(count, 0) {
     std::iota(parent_.begin(), parent_.end(), 0);
 }
@@ -199,7 +201,7 @@ std::int8_t CutterSides::side_at(std::size_t item, bool of_cutter) {
         }
         return side_of_nearest(overlay_.surface(), middle);
     }
-    ExactPoints& points = overlay_.points();
+    exact::SpacePoints& points = overlay_.points();
     const std::pair<std::size_t, int> seen = is_region ? overlay_.view_of(item) : std::pair{2UL, 1};
     const NodeId p = is_region ? overlay_.inner_point(item)
                                : overlay_.exact(overlay_.model().face(item - overlay_.size())[0]);
@@ -208,7 +210,7 @@ std::int8_t CutterSides::side_at(std::size_t item, bool of_cutter) {
         std::array<NodeId, 3> corners;
         for (std::size_t i = 0; i < 3; ++i)
             corners[i] = points.add(overlay_.surface().vertices[index(t[i])]);
-        if (points.ray_passes(seen.first, p, corners, of_cutter && seen.second > 0) != 0)
+        if (exact::ray_crosses(points, seen.first, p, corners, of_cutter && seen.second > 0) != 0)
             inside = !inside;
     }
     return inside ? kBelow : kAbove;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cutting/cutter_winding.hpp"
-#include "cutting/plane_sides.hpp"
+#include "cutting/plane_edges.hpp"
 
 namespace realmodel::cutting {
 

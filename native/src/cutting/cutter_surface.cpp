@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "cutting/plane_sides.hpp"
+#include "cutting/plane_edges.hpp"
 #include "cutting/triangulate.hpp"
 #include "realmodel/base/errors.hpp"
 

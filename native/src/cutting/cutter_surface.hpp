@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "cutting/box_tree.hpp"
+#include "cutting/polygons.hpp"
 #include "realmodel/cutting/cut.hpp"
 
 namespace realmodel::cutting {

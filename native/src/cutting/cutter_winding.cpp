@@ -8,6 +8,8 @@
 
 namespace realmodel::cutting {
 
+using arrangement::each_edge;
+
 namespace {
 
 /// A loop from its least node on; of several such beginnings the least.
@@ -161,7 +163,7 @@ void CutterWinding::find_fans(const Progress* progress) {
     parallel_ranges(sectors_.size(), 1 << 8, overlay_.threads(), progress,
                     [this](std::size_t begin, std::size_t end) {
                         for (std::size_t e = begin; e < end; ++e)
-                            sectors_[e].fan = fan_of(overlay_, edge(e));
+                            sectors_[e].fan = overlay_.fan_of(edge(e));
                     });
 }
 
@@ -228,10 +230,10 @@ Winding CutterWinding::cast(std::size_t region) {
     const auto view = overlay_.view_of(region);
     const auto axis = view.first;
     const bool is_turned = view.second > 0;
-    ExactPoints& points = overlay_.points();
+    exact::SpacePoints& points = overlay_.points();
     Winding winding;
     overlay_.each_triangle(axis, p, [&](std::size_t face, const std::array<NodeId, 3>& corners) {
-        const int side = points.ray_passes(axis, p, corners, is_turned);
+        const int side = exact::ray_crosses(points, axis, p, corners, is_turned);
         if (side == 0) return;
         add(winding, overlay_.model().cell(face, 0), side);
         add(winding, overlay_.model().cell(face, 1), -side);

@@ -4,9 +4,12 @@
 #include <map>
 #include <vector>
 
-#include "cutting/edge_fan.hpp"
+#include "cutting/surface_overlay.hpp"
 
 namespace realmodel::cutting {
+
+using arrangement::EdgeFan;
+using arrangement::EdgeUse;
 
 /// How often the boundary of each cell goes round a place: once around what is within the cell.
 /// Where rounding has put faces through each other, cells may overlap (two are there), be inside

@@ -6,25 +6,32 @@
 #include <cmath>
 #include <set>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
+#include "base/ulp.hpp"
 #include "exact/orient2d.hpp"
 
 namespace realmodel::cutting {
 
+using arrangement::EdgeUse;
+using arrangement::TriangleArrangement;
+using spatial::Box;
+using spatial::BoxTree;
+
 namespace {
 
-constexpr double kUnits = 4;  // as PlaneDistance::rounding
-
-double last_places(double x) {
-    const double size = std::abs(x);
-    return kUnits * (std::nextafter(size, HUGE_VAL) - size);
+double computed_ulps(double x) {
+    return kComputedUlps * ulp(x);
 }
 
 }  // namespace
 
 SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& surface, int threads,
                                Progress* progress)
-    : model_(model), surface_(surface), threads_(threads), progress_(progress), overlay_(points_) {
+    : model_(model),
+      surface_(surface),
+      threads_(threads),
+      progress_(progress),
+      arrangement_(points_) {
     find_active_faces();
     name_vertices();
     overlay_all();
@@ -46,7 +53,7 @@ void SurfaceOverlay::find_active_faces() {
         whole.include(box);
     for (std::size_t v = 0; v < model_.vertex_count(); ++v) {
         for (const double x : model_.vertex(static_cast<NodeId>(v)))
-            margin_ = std::max(margin_, 4 * last_places(x));
+            margin_ = std::max(margin_, 4 * computed_ulps(x));
         model_box_.include(model_.vertex(static_cast<NodeId>(v)));
     }
     model_box_.widen(margin_);
@@ -75,7 +82,7 @@ void SurfaceOverlay::find_active_faces() {
 std::optional<NodeId> SurfaceOverlay::place_on_surface(const Position& p) {
     Position reach;
     for (std::size_t k = 0; k < 3; ++k)
-        reach[k] = last_places(p[k]);
+        reach[k] = computed_ulps(p[k]);
     const auto is_within = [&](const Position& q, double times) {
         for (std::size_t k = 0; k < 3; ++k) {
             if (std::abs(q[k] - p[k]) > times * reach[k]) return false;
@@ -129,7 +136,7 @@ std::optional<NodeId> SurfaceOverlay::place_on_surface(const Position& p) {
             const double share = (p[axis] - a[axis]) / (b[axis] - a[axis]);
             if (from > to || !(share > 0 && share < 1)) continue;
             const auto found =
-                confirmed(points_.dropped(axis, points_.add(p), points_.add(a), points_.add(b)));
+                confirmed(points_.projected(axis, points_.add(p), points_.add(a), points_.add(b)));
             if (found) return found;
         }
     }
@@ -150,8 +157,8 @@ std::optional<NodeId> SurfaceOverlay::place_on_surface(const Position& p) {
             inside = inside && exact::orient2d(view(corner(t, i)), view(corner(t, i + 1)), at) > 0;
         if (!inside) continue;
         const auto found =
-            confirmed(points_.dropped(coarsest(normal), points_.add(p), points_.add(corners[0]),
-                                      points_.add(corners[1]), points_.add(corners[2])));
+            confirmed(points_.projected(coarsest(normal), points_.add(p), points_.add(corners[0]),
+                                        points_.add(corners[1]), points_.add(corners[2])));
         if (found) return found;
     }
     return std::nullopt;
@@ -204,7 +211,7 @@ void SurfaceOverlay::activate_beside_flat_triangles() {
                 const NodeId a = exact(t[0]), b = exact(t[1]), c = exact(t[2]);
                 bool flat = true;
                 for (std::size_t axis = 0; axis < 3 && flat; ++axis)
-                    flat = points_.turn(axis, a, b, c) == 0;
+                    flat = exact::orient2d(points_, axis, a, b, c) == 0;
                 for (std::size_t i = 0; flat && i < 3; ++i)
                     edges.insert({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
             }
@@ -215,7 +222,7 @@ void SurfaceOverlay::activate_beside_flat_triangles() {
             const auto face = model_.face(f);
             for (std::size_t i = 0; i < face.size() && active_[f] == 0; ++i) {
                 const NodeId a = face[i], b = face[i + 1 < face.size() ? i + 1 : 0];
-                if (!edges.contains({std::min(a, b), std::max(a, b)})) continue;
+                if (!edges.contains(unordered(a, b))) continue;
                 active_[f] = 1;
                 fresh.push_back(static_cast<std::int32_t>(f));
             }
@@ -231,7 +238,7 @@ void SurfaceOverlay::overlay_all() {
     for (const std::int32_t f : active_faces_) {
         triangulate_face(model_, index(f), triangles);
         for (const auto& t : triangles) {
-            overlay_.add(
+            arrangement_.add(
                 {vertex_node_[index(t[0])], vertex_node_[index(t[1])], vertex_node_[index(t[2])]});
             face_of_.push_back(f);
         }
@@ -241,35 +248,36 @@ void SurfaceOverlay::overlay_all() {
         std::array<NodeId, 3> corners;
         for (std::size_t i = 0; i < 3; ++i)
             corners[i] = points_.add(surface_.vertices[index(t[i])]);
-        overlay_.add(corners);
+        arrangement_.add(corners);
     }
     // Which meet is found out on all threads; where they do is entered in order.
     const auto count = index(first_cutter_) + surface_.triangles.size();
     constexpr std::size_t kChunk = 1 << 8;
-    std::vector<std::vector<Overlay::Meeting>> meetings((count + kChunk - 1) / kChunk);
+    std::vector<std::vector<TriangleArrangement::Intersection>> found((count + kChunk - 1) /
+                                                                      kChunk);
     if (progress_ != nullptr) progress_->begin(0.08, 0.15, "finding where surface and faces meet");
-    parallel_chunks(meetings.size(), threads_, progress_, [&](std::size_t chunk) {
+    parallel_chunks(found.size(), threads_, progress_, [&](std::size_t chunk) {
         for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
             const auto t = static_cast<std::int32_t>(i);
             Box box;
-            for (const NodeId p : overlay_.corners(t))
+            for (const NodeId p : arrangement_.corners(t))
                 box.include(points_.rounded(p));
             if (t >= first_cutter_ && !box.meets(model_box_)) continue;
             tree_->find(box, [&](std::int32_t c) {
                 const std::int32_t other = first_cutter_ + c;
                 if (other <= t) return;
-                if (const auto meeting = overlay_.meeting(t, other))
-                    meetings[chunk].push_back(*meeting);
+                if (const auto intersection = arrangement_.intersection(t, other))
+                    found[chunk].push_back(*intersection);
             });
         }
     });
     if (progress_ != nullptr) progress_->begin(0.15, 0.3, "dividing faces and surface");
-    for (const auto& found : meetings) {
+    for (const auto& intersections : found) {
         if (progress_ != nullptr) progress_->check();
-        for (const Overlay::Meeting& meeting : found)
-            overlay_.take(meeting);
+        for (const TriangleArrangement::Intersection& intersection : intersections)
+            arrangement_.insert(intersection);
     }
-    overlay_.divide(threads_, progress_);
+    arrangement_.divide(threads_, progress_);
 }
 
 /// Numbers all nodes: the model's vertices keep theirs, the others follow.
@@ -279,7 +287,7 @@ void SurfaceOverlay::name_nodes() {
         if (vertex_node_[v] >= 0) out[index(vertex_node_[v])] = static_cast<NodeId>(v);
     }
     const auto vertices = static_cast<NodeId>(model_.vertex_count());
-    for (const Region& region : overlay_.regions()) {
+    for (const arrangement::Region& region : arrangement_.regions()) {
         auto& loops = loops_.emplace_back(region.loops);
         for (auto& loop : loops) {
             for (NodeId& p : loop) {
@@ -302,6 +310,39 @@ NodeId SurfaceOverlay::exact(NodeId node) {
     return known >= 0 ? known : points_.add(model_.vertex(node));
 }
 
+/// The corner of a face that is farthest from the line of one of its edges, as an exact point.
+NodeId SurfaceOverlay::far_corner(std::size_t face, const std::array<NodeId, 2>& edge) {
+    const Position a = position(edge[0]), b = position(edge[1]);
+    NodeId found = edge[0];
+    double farthest = -1;
+    for (const NodeId v : model_.face(face)) {
+        const Position normal = polygon_normal(std::array{a, b, position(v)});
+        const double away = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+        if (away > farthest) {
+            farthest = away;
+            found = v;
+        }
+    }
+    return exact(found);
+}
+
+arrangement::EdgeFan SurfaceOverlay::fan_of(std::span<const EdgeUse> uses) {
+    const NodeId a = exact(uses[0].edge[0]), b = exact(uses[0].edge[1]);
+    std::vector<arrangement::HalfPlane> items;
+    for (const EdgeUse& use : uses) {
+        const auto item = index(use.item);
+        if (item >= size()) {
+            items.push_back({far_corner(item - size(), use.edge), -1, use.direction});
+        } else {
+            const std::int32_t t = triangle(item);
+            const bool ahead = use.direction > 0;
+            items.push_back(
+                {arrangement_.left_corner(t, ahead ? a : b, ahead ? b : a), t, use.direction});
+        }
+    }
+    return fan_around(points_, a, b, items);
+}
+
 /// Of a corner that turns left, the middle of the triangle that it cuts off; where the outline or a
 /// hole reaches into that, the middle between the corner and what reaches in farthest.
 NodeId SurfaceOverlay::inner_point(std::size_t region) {
@@ -313,8 +354,8 @@ NodeId SurfaceOverlay::inner_point(std::size_t region) {
         own.push_back(exact(node));
     std::size_t lowest = 0;
     for (std::size_t i = 1; i < own.size(); ++i) {
-        const int x = points_.compare(k, own[i], own[lowest]);
-        if (x < 0 || (x == 0 && points_.compare(l, own[i], own[lowest]) < 0)) lowest = i;
+        const int x = exact::compare(points_, k, own[i], own[lowest]);
+        if (x < 0 || (x == 0 && exact::compare(points_, l, own[i], own[lowest]) < 0)) lowest = i;
     }
     // an outline may pass its lowest node twice: of the corners there, one that turns left
     NodeId a = -1, c = -1;
@@ -323,18 +364,18 @@ NodeId SurfaceOverlay::inner_point(std::size_t region) {
         if (own[i] != b) continue;
         a = own[(i + own.size() - 1) % own.size()];
         c = own[(i + 1) % own.size()];
-        if (turned * points_.turn(axis, a, b, c) > 0) break;
+        if (turned * exact::orient2d(points_, axis, a, b, c) > 0) break;
     }
     NodeId farthest = -1;
     for (const auto& loop : loops_[region]) {
         for (const NodeId node : loop) {
             const NodeId p = exact(node);
             if (p == a || p == b || p == c) continue;
-            if (turned * points_.turn(axis, a, b, p) < 0 ||
-                turned * points_.turn(axis, b, c, p) < 0 ||
-                turned * points_.turn(axis, c, a, p) < 0)
+            if (turned * exact::orient2d(points_, axis, a, b, p) < 0 ||
+                turned * exact::orient2d(points_, axis, b, c, p) < 0 ||
+                turned * exact::orient2d(points_, axis, c, a, p) < 0)
                 continue;
-            if (farthest < 0 || points_.is_farther(axis, c, a, p, farthest)) farthest = p;
+            if (farthest < 0 || exact::is_farther(points_, axis, c, a, p, farthest)) farthest = p;
         }
     }
     return farthest < 0 ? points_.middle({a, b, c}) : points_.middle({b, b, farthest});

@@ -16,9 +16,9 @@ class ExactTurns : public CornerTurns {
 public:
     ExactTurns(SurfaceOverlay& overlay, const View& view) : overlay_(overlay), view_(view) {}
     int operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const override {
-        return view_.sign() * overlay_.points().turn(view_.axis(), overlay_.exact(a.node),
-                                                     overlay_.exact(b.node),
-                                                     overlay_.exact(c.node));
+        return view_.sign() * exact::orient2d(overlay_.points(), view_.axis(),
+                                              overlay_.exact(a.node), overlay_.exact(b.node),
+                                              overlay_.exact(c.node));
     }
 
 private:
@@ -72,7 +72,7 @@ bool divide_loops(SurfaceOverlay& overlay, const Position& normal,
 void SurfaceParts::number_parts() {
     std::vector<std::int32_t> roots;
     for (std::size_t s = 0; s < slots_.size(); ++s) {
-        if (find(static_cast<std::int32_t>(s)) == static_cast<std::int32_t>(s))
+        if (joined_->find(static_cast<std::int32_t>(s)) == static_cast<std::int32_t>(s))
             roots.push_back(static_cast<std::int32_t>(s));
     }
     std::stable_sort(roots.begin(), roots.end(), [this](std::int32_t a, std::int32_t b) {
@@ -84,7 +84,7 @@ void SurfaceParts::number_parts() {
         half_cells.push_back({slots_[index(root)].cell, slots_[index(root)].half});
     }
     for (std::size_t s = 0; s < slots_.size(); ++s)
-        part_[s] = part_[index(find(static_cast<std::int32_t>(s)))];
+        part_[s] = part_[index(joined_->find(static_cast<std::int32_t>(s)))];
 }
 
 /// Adds some of the polygons between two slots: they turn counter-clockwise, turned over where
@@ -92,27 +92,20 @@ void SurfaceParts::number_parts() {
 void SurfaceParts::write(const Polygons& polygons, std::size_t first, std::size_t end,
                          bool reversed, std::int32_t face, std::array<std::int32_t, 2> slots,
                          bool level) {
-    std::array<std::int32_t, 2> cells{-1, -1}, part{-1, -1};
-    std::array<std::int8_t, 2> sides{kOn, kOn};
+    Piece origin{face, {-1, -1}, {kOn, kOn}, level};
     for (std::size_t k = 0; k < 2; ++k) {
         if (slots[k] < 0) continue;
-        cells[k] = slots_[index(slots[k])].cell;
-        sides[k] = slots_[index(slots[k])].half;
-        part[k] = part_[index(slots[k])];
+        const Slot& slot = slots_[index(slots[k])];
+        origin.cells[k] = slot.cell;
+        origin.sides[k] = slot.half;
+        origin.parts[k] = part_[index(slots[k])];
     }
     for (std::size_t p = first; p < end; ++p) {
-        const auto nodes = polygons[p];
         if (reversed) {
-            pieces.polygons.nodes.insert(pieces.polygons.nodes.end(), nodes.rbegin(), nodes.rend());
-            pieces.polygons.close();
+            pieces.add_reversed(polygons[p], origin);
         } else {
-            pieces.polygons.add(nodes);
+            pieces.add(polygons[p], origin);
         }
-        pieces.face.push_back(face);
-        pieces.cells.push_back(cells);
-        pieces.sides.push_back(sides);
-        pieces.level.push_back(level ? 1 : 0);
-        parts.push_back(part);
     }
 }
 

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "exact/orient2d.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "exact/arithmetic.hpp"
+#include "exact/sign_filters.hpp"
 
 namespace realmodel::exact {
 
 int orient2d(const std::array<double, 2>& a, const std::array<double, 2>& b,
              const std::array<double, 2>& c) {
-    const double left = (b[0] - a[0]) * (c[1] - a[1]), right = (b[1] - a[1]) * (c[0] - a[0]);
-    const double value = left - right;
-    // Shewchuk 1997, "Adaptive precision floating-point arithmetic", bound A of orient2d, doubled
-    const double error = 0x1p-50 * (std::abs(left) + std::abs(right)) + 1e-290;
-    if (value > error) return 1;
-    if (value < -error) return -1;
+    if (const auto sign = orient2d_filter(a, b, c)) return *sign;
     if (a == b || b == c || a == c) return 0;
     // a difference is 0 only where doubles are equal, as along borders parallel to an axis
     if ((a[0] == b[0] || a[1] == c[1]) && (a[1] == b[1] || a[0] == c[0])) return 0;

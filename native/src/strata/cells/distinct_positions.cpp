@@ -7,18 +7,11 @@
 #include <set>
 
 #include "base/parallel_counts.hpp"
+#include "base/ulp.hpp"
 
 namespace realmodel::strata {
 
 namespace {
-
-double moved_by(double value, int units) {
-    for (; units > 0; --units)
-        value = std::nextafter(value, HUGE_VAL);
-    for (; units < 0; ++units)
-        value = std::nextafter(value, -HUGE_VAL);
-    return value;
-}
 
 /// Moves places to free positions beside them.
 class Spreader {
@@ -65,7 +58,7 @@ private:
             for (int x = -reach; x <= reach; ++x) {
                 for (int y = -reach; y <= reach; ++y) {
                     if (std::max(std::abs(x), std::abs(y)) != reach || !allowed(x, y)) continue;
-                    const PlanPosition to{moved_by(from[0], x), moved_by(from[1], y)};
+                    const PlanPosition to{moved_by_ulps(from[0], x), moved_by_ulps(from[1], y)};
                     if (!take(to)) continue;
                     moved_[place] = to;
                     return;

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <memory>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "strata/overlay/pieces.hpp"
 
 namespace realmodel::strata {
