@@ -209,13 +209,11 @@ BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners
     return out;
 }
 
-FlatMesh mesh_without_lattice(const RegionGraph& graph, const BorderPieces& border,
+FlatMesh mesh_without_lattice(const RegionGraph& graph, const BorderPieces& border, double finest,
                               const Check& check) {
     EdgeCutting cutting(graph.triangulation, graph.inside, border.points);
     cutting.cut(border.edges, check);
-    FlatMesh mesh = std::move(cutting).take_inside();
-    lock_pieces(mesh, 0, border.locked);
-    return mesh;
+    return std::move(cutting).take_inside(finest, rounding_slack(graph.points));
 }
 
 }  // namespace realmodel::meshing

@@ -290,7 +290,7 @@ PlanarMesh Meshing::mesh(const SizeField& size, double begin, double end) const 
                                          [](const Lattice& l) { return !l.points.empty(); });
     BandedMesh banded;
     if (is_frontal && !has_lattice) {
-        banded.mesh = mesh_without_lattice(graph_, border, joining);
+        banded.mesh = mesh_without_lattice(graph_, border, finest, joining);
     } else {
         banded = join_band(std::move(border), graph_.loners, std::move(lattices), joining);
     }

@@ -267,7 +267,7 @@ TEST(CloseOutlines, RandomRingsOnAFewDoubles) {
         ++meshed;
         expect_meshed(rings, frame.unit);
     }
-    EXPECT_GT(meshed, 50);
+    EXPECT_GT(meshed, 40);
 }
 
 TEST(CloseOutlines, LinesAndPointsThatComeClose) {
