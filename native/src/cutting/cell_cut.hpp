@@ -25,7 +25,7 @@ struct CellCut {
 ///
 /// The edges in the plane that the pieces above it leave open bound the caps. Along an edge of the
 /// cell that only touches the plane nothing is open; whether the caps pass on both of its sides or
-/// on neither is told by which of the two faces there is steeper.
+/// on neither follows from which of the two faces there is steeper.
 class CellCutter {
 public:
     CellCutter(const ComplexView& model, const std::vector<std::int8_t>& sides,

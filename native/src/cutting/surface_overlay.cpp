@@ -230,8 +230,8 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     }
 }
 
-/// A triangle without area is gone in the overlay: the corner in its middle comes to lie on its
-/// long edge, and so on an edge of the face beyond, which must know it.
+/// A triangle without area has no region in the overlay: the corner in its middle comes to lie on
+/// its long edge, and so on an edge of the face beyond, which must know it.
 void SurfaceOverlay::activate_beside_flat_triangles() {
     std::vector<std::array<std::int32_t, 3>> triangles;
     std::vector<std::int32_t> fresh = active_faces_;
@@ -380,7 +380,7 @@ arrangement::EdgeFan SurfaceOverlay::fan_of(std::span<const EdgeUse> uses) {
 /// Of a corner that turns left, the middle of the triangle that it cuts off; where the outline or a
 /// hole reaches into that, the middle between the corner and what reaches in farthest.
 NodeId SurfaceOverlay::inner_point(std::size_t region) {
-    const auto [axis, turned] = view_of(region);
+    const auto [axis, facing] = view_of(region);
     const auto& outline = loops_[region][0];
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
     std::vector<NodeId> own;
@@ -398,16 +398,16 @@ NodeId SurfaceOverlay::inner_point(std::size_t region) {
         if (own[i] != b) continue;
         a = own[(i + own.size() - 1) % own.size()];
         c = own[(i + 1) % own.size()];
-        if (turned * exact::orient2d(points_, axis, a, b, c) > 0) break;
+        if (facing * exact::orient2d(points_, axis, a, b, c) > 0) break;
     }
     NodeId farthest = -1;
     for (const auto& loop : loops_[region]) {
         for (const NodeId node : loop) {
             const NodeId p = exact(node);
             if (p == a || p == b || p == c) continue;
-            if (turned * exact::orient2d(points_, axis, a, b, p) < 0 ||
-                turned * exact::orient2d(points_, axis, b, c, p) < 0 ||
-                turned * exact::orient2d(points_, axis, c, a, p) < 0)
+            if (facing * exact::orient2d(points_, axis, a, b, p) < 0 ||
+                facing * exact::orient2d(points_, axis, b, c, p) < 0 ||
+                facing * exact::orient2d(points_, axis, c, a, p) < 0)
                 continue;
             if (farthest < 0 || exact::is_farther(points_, axis, c, a, p, farthest)) farthest = p;
         }

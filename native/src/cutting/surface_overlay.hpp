@@ -110,7 +110,7 @@ private:
     std::vector<std::uint8_t> active_;
     std::vector<std::int32_t> active_faces_;
     std::vector<NodeId> vertex_node_;     ///< of the model's vertices, -1 away from the surface
-    std::vector<std::uint8_t> is_taken_;  ///< of exact points: a vertex stands for it
+    std::vector<std::uint8_t> is_taken_;  ///< of exact points: a vertex is there
     std::vector<std::int32_t> face_of_;   ///< of the model's triangles in the overlay
     std::int32_t first_cutter_ = 0;       ///< the overlay's first triangle of the surface
     std::vector<NodeId> exact_of_new_;    ///< the exact point of each new node

@@ -55,8 +55,8 @@ TEST(JoinedPolygons, PairsThatMayNotStayArePartedAgain) {
 }
 
 TEST(JoinedPolygons, ARingOfPolygonsHasTwoOutlines) {
-    JoinedPolygons ring = joined(
-        {{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});  // around 4, 5, 6, 7
+    JoinedPolygons ring =
+        joined({{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});  // around 4, 5, 6, 7
     ring.pair(kAlways);
     EXPECT_EQ(outlines(ring), (Loops{{0, 1, 2, 3}, {5, 4, 7, 6}}));
 }

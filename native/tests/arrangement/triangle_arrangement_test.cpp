@@ -144,10 +144,10 @@ TEST(TriangleArrangement, EdgesOfRegionsAreUsedOnceEitherWayWithinATriangle) {
         const int back = uses.contains({edge[1], edge[0]}) ? 1 : 0;
         bool on_border = false;
         for (std::size_t i = 0; i < 3; ++i) {
-            on_border = on_border || (exact::orient2d(a.points, 2, corners[i], corners[(i + 1) % 3],
-                                                      edge[0]) == 0 &&
-                                      exact::orient2d(a.points, 2, corners[i],
-                                                      corners[(i + 1) % 3], edge[1]) == 0);
+            on_border =
+                on_border ||
+                (exact::orient2d(a.points, 2, corners[i], corners[(i + 1) % 3], edge[0]) == 0 &&
+                 exact::orient2d(a.points, 2, corners[i], corners[(i + 1) % 3], edge[1]) == 0);
         }
         EXPECT_EQ(back, on_border ? 0 : 1);
     }

@@ -16,17 +16,15 @@ TEST(HashIndex, FindsWhatWasInsertedThoughHashesAreEqual) {
         table.insert(static_cast<std::uint64_t>(i % 7), i);
     }
     for (int i = 0; i < 1000; ++i) {
-        const auto is_it = [&](std::int32_t n) {
-            return values[static_cast<std::size_t>(n)] == i;
-        };
+        const auto is_it = [&](std::int32_t n) { return values[static_cast<std::size_t>(n)] == i; };
         EXPECT_EQ(table.find(static_cast<std::uint64_t>(i % 7), is_it), i);
     }
     EXPECT_EQ(table.find(3, [](std::int32_t) { return false; }), -1);
 }
 
 TEST(HashIndex, AnEmptyTableHasNothing) {
-    EXPECT_EQ(HashIndex().find(HashIndex::hash(std::array{1, 2}), [](std::int32_t) { return true; }),
-              -1);
+    EXPECT_EQ(
+        HashIndex().find(HashIndex::hash(std::array{1, 2}), [](std::int32_t) { return true; }), -1);
 }
 
 }  // namespace
