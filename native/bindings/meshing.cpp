@@ -46,9 +46,9 @@ py::tuple to_tuple(meshing::PlanarMesh&& mesh) {
 }
 
 meshing::Mesher to_mesher(const std::string& name) {
-    if (name == "delaunay") return meshing::Mesher::delaunay;
-    if (name == "frontal") return meshing::Mesher::frontal;
-    if (name == "grid") return meshing::Mesher::grid;
+    if (name == "delaunay") return meshing::Mesher::kDelaunay;
+    if (name == "frontal") return meshing::Mesher::kFrontal;
+    if (name == "grid") return meshing::Mesher::kGrid;
     throw InputError("mesher", "mesher \"" + name +
                                    "\" is not known; use \"delaunay\", \"frontal\" or \"grid\"");
 }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Flags of every target, kept in two interface targets:
-#   realmodel_settings   language, optimisation, floating point, sanitizers: for all our code
+# Flags of our own targets, kept in interface targets that nobody else gets:
+#   realmodel_settings   floating point, sanitizers: for all our code
 #   realmodel_warnings   warnings as errors
 
 if(NOT CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")

@@ -6,7 +6,9 @@ add_library(realmodel_fuzzing STATIC ${fuzzing_sources})
 target_include_directories(realmodel_fuzzing PUBLIC fuzz PRIVATE src)
 # Debian's property_tree includes a header that asks every reader to say so.
 set_source_files_properties(fuzz/case_file.cpp PROPERTIES COMPILE_DEFINITIONS BOOST_BIND_GLOBAL_PLACEHOLDERS)
-target_link_libraries(realmodel_fuzzing PUBLIC realmodel PRIVATE realmodel_warnings)
+target_link_libraries(realmodel_fuzzing
+    PUBLIC realmodel realmodel_settings
+    PRIVATE realmodel_dependencies realmodel_warnings)
 
 set(fuzzing_programs stack_fuzzer build_digests)
 if(REALMODEL_SANITIZE MATCHES "fuzzer-no-link") # preset fuzz: clang++'s libFuzzer

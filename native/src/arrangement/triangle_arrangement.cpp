@@ -9,7 +9,7 @@
 #include <span>
 
 #include "arrangement/triangle_regions.hpp"
-#include "base/parallel_counts.hpp"
+#include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "spatial/box_tree.hpp"
 

@@ -6,19 +6,10 @@
 #include <vector>
 
 #include "base/flat_array.hpp"
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel {
-
-/// Calls work(begin, end) for ranges of `size` items that cover 0 to count - 1.
-template <class Work>
-void parallel_ranges(std::size_t count, std::size_t size, int threads, const Progress* progress,
-                     const Work& work) {
-    parallel_chunks((count + size - 1) / size, threads, progress, [&](std::size_t chunk) {
-        work(chunk * size, std::min(count, (chunk + 1) * size));
-    });
-}
 
 /// How many items there are before each of several chunks, from how many each has.
 /// @return how many there are in all

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/parallel_counts.hpp"
+#include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 
 namespace realmodel::cutting {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "strata/cells/volumes.hpp"
 
 namespace realmodel::cutting {

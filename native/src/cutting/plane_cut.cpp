@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "cutting/cell_cut.hpp"
 #include "cutting/cutter_surface.hpp"
 #include "cutting/face_splitting.hpp"

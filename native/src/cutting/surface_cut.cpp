@@ -3,7 +3,7 @@
 // halves.
 #include <algorithm>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "cutting/model_check.hpp"
 #include "cutting/part_rounding.hpp"
 #include "cutting/surface_parts.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "base/parallel_counts.hpp"
+#include "base/parallel.hpp"
 #include "base/ulp.hpp"
 #include "exact/orient2d.hpp"
 

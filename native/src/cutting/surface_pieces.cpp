@@ -2,7 +2,7 @@
 // The polygons around parts of cells.
 #include <algorithm>
 
-#include "base/parallel_counts.hpp"
+#include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "cutting/surface_parts.hpp"
 #include "cutting/triangulate.hpp"

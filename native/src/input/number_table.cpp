@@ -15,7 +15,7 @@ namespace realmodel::input {
 
 namespace {
 
-constexpr std::size_t bytes_at_once = 1 << 16;  // a thread's share of the text
+constexpr std::size_t kBytesAtOnce = 1 << 16;  // a thread's share of the text
 
 /// Bytes of the text, without blanks around them and without quotes.
 struct Field {
@@ -143,18 +143,18 @@ private:
                 --end;
         }
         ParsedNumber number = parse_number(text_.substr(begin, end - begin), format_.decimal);
-        if (number.length != end - begin) number.spelling = Spelling::not_a_number;
+        if (number.length != end - begin) number.spelling = Spelling::kNotANumber;
         return number;
     }
 
     bool is_number(const Field& field) const {
-        return number_of(field).spelling != Spelling::not_a_number;
+        return number_of(field).spelling != Spelling::kNotANumber;
     }
 
     bool is_one_of(const Field& field, const Values& values) {
         if (!values.numbers.empty()) {
             const ParsedNumber number = number_of(field);
-            if (number.spelling == Spelling::number || number.spelling == Spelling::not_finite) {
+            if (number.spelling == Spelling::kNumber || number.spelling == Spelling::kNotFinite) {
                 for (const double value : values.numbers) {
                     if (value == number.value || (std::isnan(value) && std::isnan(number.value)))
                         return true;
@@ -194,12 +194,12 @@ private:
         for (std::size_t i = 0; i < format_.columns.size(); ++i) {
             const Field& field = fields_[format_.columns[i]];
             const ParsedNumber number = number_of(field);
-            if (number.spelling == Spelling::number) {
+            if (number.spelling == Spelling::kNumber) {
                 out.values.push_back(number.value);
                 continue;
             }
-            const char* const kind = number.spelling == Spelling::not_finite  ? "not_finite"
-                                     : number.spelling == Spelling::too_large ? "too_large"
+            const char* const kind = number.spelling == Spelling::kNotFinite  ? "not_finite"
+                                     : number.spelling == Spelling::kTooLarge ? "too_large"
                                                                               : "not_a_number";
             return Wrong{kind,
                          {0, static_cast<std::int64_t>(i), static_cast<std::int64_t>(field.begin),
@@ -220,8 +220,8 @@ private:
 
 NumberTable read_numbers(std::string_view text, const TableFormat& format, int threads) {
     std::vector<std::size_t> begins{0};  // of the parts: lines are kept whole
-    while (begins.back() + bytes_at_once < text.size()) {
-        const std::size_t newline = text.find('\n', begins.back() + bytes_at_once);
+    while (begins.back() + kBytesAtOnce < text.size()) {
+        const std::size_t newline = text.find('\n', begins.back() + kBytesAtOnce);
         if (newline == std::string_view::npos) break;
         begins.push_back(newline + 1);
     }

@@ -28,10 +28,10 @@ ParsedNumber not_finite(std::string_view text, std::size_t sign) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const double signed_infinity = sign > 0 && text[0] == '-' ? -infinity : infinity;
     const std::string_view word = text.substr(sign);
-    if (begins_with(word, "infinity")) return {Spelling::not_finite, signed_infinity, sign + 8};
-    if (begins_with(word, "inf")) return {Spelling::not_finite, signed_infinity, sign + 3};
+    if (begins_with(word, "infinity")) return {Spelling::kNotFinite, signed_infinity, sign + 8};
+    if (begins_with(word, "inf")) return {Spelling::kNotFinite, signed_infinity, sign + 3};
     if (begins_with(word, "nan")) {
-        return {Spelling::not_finite, std::numeric_limits<double>::quiet_NaN(), sign + 3};
+        return {Spelling::kNotFinite, std::numeric_limits<double>::quiet_NaN(), sign + 3};
     }
     return {};
 }
@@ -73,8 +73,8 @@ ParsedNumber beyond_range(std::string_view digits, bool negative, std::size_t le
         if (is_digit(digits[i])) exponent = std::min(10 * exponent + (digits[i] - '0'), 1e15);
     }
     if (e + 1 < digits.size() && digits[e + 1] == '-') exponent = -exponent;
-    if (place + exponent > 0) return {Spelling::too_large, 0.0, length};
-    return {Spelling::number, negative ? -0.0 : 0.0, length};
+    if (place + exponent > 0) return {Spelling::kTooLarge, 0.0, length};
+    return {Spelling::kNumber, negative ? -0.0 : 0.0, length};
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ ParsedNumber parse_number(std::string_view text, char decimal) {
     if (error == std::errc::invalid_argument) return {};  // a decimal mark alone
     if (error == std::errc::result_out_of_range) return beyond_range(digits, negative, end);
     if (stop != digits.data() + digits.size()) return {};
-    return {Spelling::number, negative ? -value : value, end};
+    return {Spelling::kNumber, negative ? -value : value, end};
 }
 
 }  // namespace realmodel::input

@@ -8,7 +8,7 @@
 
 #include "exact/orient2d.hpp"
 #include "interpolation/data_points.hpp"
-#include "interpolation/node_chunks.hpp"
+#include "interpolation/node_loop.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::interpolation {

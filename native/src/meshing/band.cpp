@@ -12,11 +12,11 @@ namespace realmodel::meshing {
 
 namespace {
 
-/// Sides that wait for the triangle behind them, found by their ends.
-struct OpenSide {
+/// Sides that wait for the triangle twin them, found by their ends.
+struct OpenEdge {
     std::int32_t from, to;
-    Side side;
-    bool operator<(const OpenSide& other) const {
+    HalfEdge edge;
+    bool operator<(const OpenEdge& other) const {
         return from != other.from ? from < other.from : to < other.to;
     }
 };
@@ -25,11 +25,11 @@ struct OpenSide {
 /// line does not.
 std::vector<signed char> faces_in_band(const Cdt& cdt, const std::vector<Segment>& inner,
                                        const Check& check) {
-    constexpr signed char unknown = -1;
+    constexpr signed char kUnknown = -1;
     std::size_t stamps = 0;
     for (auto face = cdt.all_faces_begin(); face != cdt.all_faces_end(); ++face)
         stamps = std::max(stamps, face->time_stamp() + 1);
-    std::vector<signed char> parity(stamps, unknown);
+    std::vector<signed char> parity(stamps, kUnknown);
     const auto is_inner = [&](Cdt::Face_handle face, int i) {
         if (inner.empty()) return false;
         const auto [low, high] =
@@ -47,7 +47,7 @@ std::vector<signed char> faces_in_band(const Cdt& cdt, const std::vector<Segment
         for (int i = 0; i < 3; ++i) {
             const Cdt::Face_handle next = face->neighbor(i);
             signed char& there = parity[next->time_stamp()];
-            if (there != unknown) continue;
+            if (there != kUnknown) continue;
             const bool changes = face->is_constrained(i) && !is_inner(face, i);
             there = static_cast<signed char>(changes ? 1 - here : here);
             open.push_back(next);
@@ -57,7 +57,7 @@ std::vector<signed char> faces_in_band(const Cdt& cdt, const std::vector<Segment
 }
 
 /// All lattices as one mesh, numbered on from the border's points.
-void take_lattices(BandedMesh& out, std::vector<Lattice>&& lattices, std::vector<OpenSide>& rim) {
+void take_lattices(BandedMesh& out, std::vector<Lattice>&& lattices, std::vector<OpenEdge>& rim) {
     FlatMesh& mesh = out.mesh;
     for (Lattice& lattice : lattices) {
         const auto points = static_cast<std::int32_t>(mesh.points.size());
@@ -69,21 +69,21 @@ void take_lattices(BandedMesh& out, std::vector<Lattice>&& lattices, std::vector
                 c += points;
         if (triangles == 0) {
             mesh.corners = std::move(lattice.mesh.corners);
-            mesh.across = std::move(lattice.mesh.across);
-            mesh.fixed = std::move(lattice.mesh.fixed);
+            mesh.twins = std::move(lattice.mesh.twins);
+            mesh.marks = std::move(lattice.mesh.marks);
         } else {
-            for (auto& sides : lattice.mesh.across) {
-                for (Side& side : sides)
-                    if (!side.is_outside()) side = {side.triangle() + triangles, side.number()};
+            for (auto& edges : lattice.mesh.twins) {
+                for (HalfEdge& edge : edges)
+                    if (!edge.is_none()) edge = {edge.triangle() + triangles, edge.index()};
             }
             const FlatMesh& more = lattice.mesh;
             mesh.corners.insert(mesh.corners.end(), more.corners.begin(), more.corners.end());
-            mesh.across.insert(mesh.across.end(), more.across.begin(), more.across.end());
-            mesh.fixed.insert(mesh.fixed.end(), more.fixed.begin(), more.fixed.end());
+            mesh.twins.insert(mesh.twins.end(), more.twins.begin(), more.twins.end());
+            mesh.marks.insert(mesh.marks.end(), more.marks.begin(), more.marks.end());
             lattice.mesh = {};
         }
-        for (const Side side : lattice.rim) {
-            const Side moved(side.triangle() + triangles, side.number());
+        for (const HalfEdge edge : lattice.rim) {
+            const HalfEdge moved(edge.triangle() + triangles, edge.index());
             rim.push_back({mesh.from(moved), mesh.to(moved), moved});
             out.rim_triangles.push_back(moved.triangle());
         }
@@ -118,7 +118,7 @@ BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners
     BandedMesh out;
     FlatMesh& mesh = out.mesh;
     mesh.points = std::move(border.points);
-    std::vector<OpenSide> rim;
+    std::vector<OpenEdge> rim;
     take_lattices(out, std::move(lattices), rim);
 
     BandPoints band;
@@ -131,8 +131,8 @@ BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners
     }
     for (const std::int32_t loner : loners)
         band.add(mesh, loner);
-    for (const OpenSide& side : rim)
-        band.add(mesh, side.from);
+    for (const OpenEdge& edge : rim)
+        band.add(mesh, edge.from);
     for (const Lattice& lattice : lattices)
         for (const std::int32_t loner : lattice.loners)
             band.add(mesh, loner);
@@ -140,8 +140,8 @@ BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners
     std::vector<Segment> segments, inner;
     for (const Segment& piece : border.border)
         segments.push_back({band.in_band[piece[0]], band.in_band[piece[1]]});
-    for (const OpenSide& side : rim)
-        segments.push_back({band.in_band[side.from], band.in_band[side.to]});
+    for (const OpenEdge& edge : rim)
+        segments.push_back({band.in_band[edge.from], band.in_band[edge.to]});
     for (const Segment& piece : border.inner) {
         const auto [low, high] = std::minmax(band.in_band[piece[0]], band.in_band[piece[1]]);
         inner.push_back({low, high});
@@ -170,31 +170,31 @@ BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners
             {band.numbers[face->vertex(0)->number], band.numbers[face->vertex(1)->number],
              band.numbers[face->vertex(2)->number]});
     }
-    std::vector<Side> doubtful;
+    std::vector<HalfEdge> open;
     for (const Cdt::Face_handle face : cdt.finite_face_handles()) {
         const std::int32_t t = triangle_of[face->time_stamp()];
         if (t < 0) continue;
         for (int i = 0; i < 3; ++i) {
-            const Side side(t, i);
+            const HalfEdge edge(t, i);
             const int opposite = (i + 2) % 3;  // CGAL numbers an edge by the corner opposite to it
             const Cdt::Face_handle other = face->neighbor(opposite);
             const std::int32_t beyond = triangle_of[other->time_stamp()];
             if (beyond >= 0) {
-                mesh.across[t][i] = {beyond, (other->index(face) + 1) % 3};
-                if (face->is_constrained(opposite)) mesh.fix(side);
+                mesh.twins[t][i] = {beyond, (other->index(face) + 1) % 3};
+                if (face->is_constrained(opposite)) mesh.fix(edge);
                 continue;
             }
-            const OpenSide wanted{mesh.to(side), mesh.from(side), {}};
+            const OpenEdge wanted{mesh.to(edge), mesh.from(edge), {}};
             const auto at = std::lower_bound(rim.begin(), rim.end(), wanted);
             if (at != rim.end() && at->from == wanted.from && at->to == wanted.to) {
-                mesh.join(side, at->side);
-                doubtful.push_back(side);
+                mesh.join(edge, at->edge);
+                open.push_back(edge);
             } else {
-                mesh.fix(side);
+                mesh.fix(edge);
             }
         }
     }
-    mesh.legalise(doubtful);
+    mesh.legalize(open);
     return out;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What lies between a region's border and the lattices inside it. Private.
+// What lies between a region's border and the lattices inside it.
 #pragma once
 
 #include "meshing/border_pieces.hpp"
@@ -16,7 +16,7 @@ struct BandedMesh {
     std::vector<std::int32_t> rim_triangles;  ///< of lattices, beside the band
 };
 
-/// Joins border and lattices; lattices are used up. Throws InputError "too_close" where points
+/// Joins border and lattices; lattices are used up. @throws InputError "too_close" where points
 /// added on the border collide.
 BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners,
                      std::vector<Lattice>&& lattices, const Check& check);

@@ -18,26 +18,26 @@ namespace {
 
 // Where detail is everywhere (combs, coasts), sizes follow it only so far: what is finer is left to
 // the refinement of angles, which needs no field that is as fine as the detail.
-constexpr std::size_t many_sources = 50'000;
-constexpr double finest_of_many = 64;
+constexpr std::size_t kManySources = 50'000;
+constexpr double kFinestOfMany = 64;
 
 // Beside outlines that are all detail most triangles are where lengths grow: the slower they do,
-// the better they are, and the more (15 % more than with a growth of a quarter).
-constexpr double growth = 0.2;
+// the better they are, and the more (15 % more than with a kGrowth of a quarter).
+constexpr double kGrowth = 0.2;
 
-/// How long edges should be at a fixed side. Refinement halves lengths; where the region is a strip
-/// between the side and the border opposite, its width tells how far.
-double length_at(const FlatMesh& mesh, Side side, const std::vector<bool>& is_fixed) {
-    const PlanPoint &a = mesh.point_from(side), &b = mesh.point_to(side);
+/// How long edges should be at a fixed edge. Refinement halves lengths; where the region is a strip
+/// between the edge and the border opposite, its width tells how far.
+double length_at(const FlatMesh& mesh, HalfEdge edge, const std::vector<bool>& is_fixed) {
+    const PlanPoint &a = mesh.origin_point(edge), &b = mesh.target_point(edge);
     const double length = std::sqrt(squared_distance(a, b));
     const bool is_strip =
-        is_fixed[mesh.apex(side)] && !mesh.is_fixed(side.next()) && !mesh.is_fixed(side.previous());
+        is_fixed[mesh.apex(edge)] && !mesh.is_fixed(edge.next()) && !mesh.is_fixed(edge.prev());
     if (!is_strip) return length;
-    const double width = twice_area(a, b, mesh.point_apex(side)) / length;
+    const double width = twice_area(a, b, mesh.apex_point(edge)) / length;
     return std::clamp(2 / std::numbers::sqrt3 * width, 0.25 * length, 1.5 * length);
 }
 
-/// No source finer than `finest`, and of those one in each square of that side.
+/// No source finer than `finest`, and of those one in each square of that edge.
 void thin_out(std::vector<SizeSource>& sources, double finest) {
     std::vector<SizeSource> kept;
     std::stable_sort(sources.begin(), sources.end(),
@@ -66,7 +66,7 @@ void thin_out(std::vector<SizeSource>& sources, double finest) {
 std::vector<SizeSource> border_detail(const RegionGraph& graph, const SizeField& size,
                                       double least_angle, double shortest_edge,
                                       std::size_t most_vertices, const Check& check) {
-    constexpr double short_share = 0.7;  // cut_border's own pieces are hardly shorter than that
+    constexpr double kShortShare = 0.7;  // cut_border's own pieces are hardly shorter than that
     FlatMesh mesh = join_band(cut_border(graph, size, check), graph.loners, {}, check).mesh;
     refine(mesh,
            {least_angle, std::numeric_limits<double>::infinity(), shortest_edge, most_vertices},
@@ -83,25 +83,25 @@ std::vector<SizeSource> border_detail(const RegionGraph& graph, const SizeField&
                 is_fixed[mesh.from({t, i})] = is_fixed[mesh.to({t, i})] = true;
     for (std::int32_t t = 0; t < count; ++t) {
         for (int i = 0; i < 3; ++i) {
-            const Side side(t, i);
-            const bool is_first = mesh.is_border(side) || mesh.behind(side).triangle() > t;
+            const HalfEdge edge(t, i);
+            const bool is_first = mesh.is_border(edge) || mesh.twin(edge).triangle() > t;
             if (!is_first) continue;
-            const PlanPoint &a = mesh.point_from(side), &b = mesh.point_to(side);
+            const PlanPoint &a = mesh.origin_point(edge), &b = mesh.target_point(edge);
             const double length = std::sqrt(squared_distance(a, b));
-            if (length >= short_share * size.at(middle(a, b))) continue;
+            if (length >= kShortShare * size.at(middle(a, b))) continue;
             // Refinement passes over triangles with the shortest edges: leave it room above them.
             const double least = std::max(length, 4 * shortest_edge);
-            if (mesh.is_fixed(side)) {
-                const double here = std::max(length_at(mesh, side, is_fixed), 4 * shortest_edge);
-                sources.push_back({a, b, here, here, growth});
+            if (mesh.is_fixed(edge)) {
+                const double here = std::max(length_at(mesh, edge, is_fixed), 4 * shortest_edge);
+                sources.push_back({a, b, here, here, kGrowth});
             }
-            for (const std::int32_t v : {mesh.from(side), mesh.to(side)}) {
+            for (const std::int32_t v : {mesh.from(edge), mesh.to(edge)}) {
                 const PlanPoint& p = mesh.points[v];
-                if (is_loner[v]) sources.push_back({p, p, least, least, growth});
+                if (is_loner[v]) sources.push_back({p, p, least, least, kGrowth});
             }
         }
     }
-    if (sources.size() > many_sources) thin_out(sources, size.largest() / finest_of_many);
+    if (sources.size() > kManySources) thin_out(sources, size.largest() / kFinestOfMany);
     return sources;
 }
 

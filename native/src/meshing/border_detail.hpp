@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is small about a region's border. Private.
+// What is small about a region's border.
 #pragma once
 
 #include <vector>

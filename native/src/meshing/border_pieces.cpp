@@ -10,8 +10,8 @@ namespace realmodel::meshing {
 
 namespace {
 
-constexpr double longest_piece = 1.4;  // lengths wanted: above it two pieces fit better than one
-constexpr double sharp_angle = std::numbers::pi / 3;
+constexpr double kLongestPiece = 1.4;  // lengths wanted: above it two pieces fit better than one
+constexpr double kSharpAngle = std::numbers::pi / 3;
 
 double length_of(const RegionGraph& graph, const Segment& edge) {
     const PlanPoint &a = graph.points[edge[0]], &b = graph.points[edge[1]];
@@ -57,7 +57,7 @@ std::vector<double> tip_lengths(const RegionGraph& graph, const SizeField& size)
             const Spoke& next = spokes[i + 1 < end ? i + 1 : begin];
             double angle = next.direction - spokes[i].direction;
             if (angle <= 0) angle += 2 * std::numbers::pi;
-            if (angle < sharp_angle) {
+            if (angle < kSharpAngle) {
                 // A tip so far from the corner that the triangle there is wide enough to be refined
                 // (shortest_edge in region_mesh.cpp); room for the tips at both ends of an edge.
                 const double wide = std::min(size.largest(), 4e-3 * size.largest() / angle);
@@ -70,7 +70,7 @@ std::vector<double> tip_lengths(const RegionGraph& graph, const SizeField& size)
 }
 
 std::size_t piece_count(double lengths) {
-    return static_cast<std::size_t>(std::max(1.0, std::ceil(lengths - (longest_piece - 1))));
+    return static_cast<std::size_t>(std::max(1.0, std::ceil(lengths - (kLongestPiece - 1))));
 }
 
 /// Shares of the way from a to b, between `begin` and `end`, at which to cut.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The border of a region, and the lines inside, cut into pieces as long as edges should be.
-// Private.
+//
 #pragma once
 
 #include "meshing/check.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the meshers' loops are watched and stopped. Private.
+// How the meshers' loops are watched and stopped.
 #pragma once
 
 #include <array>

@@ -17,7 +17,7 @@ namespace realmodel::meshing {
 
 namespace {
 
-constexpr std::size_t points_between_checks = 1024;
+constexpr std::size_t kPointsBetweenChecks = 1024;
 
 /// Gives CGAL's sort the point of a number, and the caller a chance to stop it.
 struct PointOfNumber {
@@ -31,7 +31,7 @@ struct PointOfNumber {
     std::size_t* calls;
 
     friend Kernel::Point_2 get(const PointOfNumber& map, std::int32_t number) {
-        if (++*map.calls % (64 * points_between_checks) == 0) (*map.check)(0);
+        if (++*map.calls % (64 * kPointsBetweenChecks) == 0) (*map.check)(0);
         const PlanPoint& p = map.points[number];
         return {p[0], p[1]};
     }
@@ -83,7 +83,7 @@ std::vector<Cdt::Vertex_handle> insert_points(Cdt& cdt, std::span<const PlanPoin
     Cdt::Face_handle near;
     std::size_t done = 0;
     for (const std::int32_t number : curve_order(points, check)) {
-        if (++done % points_between_checks == 0) {
+        if (++done % kPointsBetweenChecks == 0) {
             check(static_cast<double>(done) / static_cast<double>(points.size()));
         }
         const PlanPoint& p = points[number];
@@ -108,7 +108,7 @@ void insert_segments(Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
         return point >= 0 && static_cast<std::size_t>(point) < vertices.size();
     };
     for (std::size_t i = 0; i < segments.size(); ++i) {
-        if (i % points_between_checks == 0) {
+        if (i % kPointsBetweenChecks == 0) {
             check(static_cast<double>(i) / static_cast<double>(segments.size()));
         }
         const auto [from, to] = segments[i];
@@ -181,17 +181,17 @@ ConstrainedTriangulation numbered_triangles(const Cdt& cdt) {
         number_of[faces[i].handle->time_stamp()] = static_cast<std::int32_t>(i);
     }
     out.triangles.reserve(faces.size());
-    out.neighbours.reserve(faces.size());
+    out.neighbors.reserve(faces.size());
     out.constrained.reserve(faces.size());
     for (const Face& face : faces) {
         out.triangles.push_back(face.corners);
-        auto& neighbours = out.neighbours.emplace_back();
+        auto& neighbors = out.neighbors.emplace_back();
         auto& constrained = out.constrained.emplace_back();
         for (int i = 0; i < 3; ++i) {
             // CGAL numbers an edge by the corner opposite to it.
             const int opposite = (face.first + i + 2) % 3;
             const Cdt::Face_handle across = face.handle->neighbor(opposite);
-            neighbours[i] = cdt.is_infinite(across) ? -1 : number_of[across->time_stamp()];
+            neighbors[i] = cdt.is_infinite(across) ? -1 : number_of[across->time_stamp()];
             constrained[i] = face.handle->is_constrained(opposite);
         }
     }

@@ -50,11 +50,11 @@ using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
     CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
 /// Inserts points in the order of a space-filling curve; returns the vertex of each.
-/// Throws InputError "repeated_point", "not_finite".
+/// @throws InputError "repeated_point", "not_finite".
 std::vector<Cdt::Vertex_handle> insert_points(Cdt& cdt, std::span<const PlanPoint> points,
                                               const Check& check);
 
-/// Inserts segments between points inserted before. Throws InputError "crossing", "bad_index".
+/// Inserts segments between points inserted before. @throws InputError "crossing", "bad_index".
 void insert_segments(Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
                      std::span<const Segment> segments, const Check& check);
 

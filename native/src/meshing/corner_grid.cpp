@@ -5,14 +5,14 @@ namespace realmodel::meshing {
 
 namespace {
 
-constexpr std::int32_t most_in_cell = 24;
-constexpr int deepest = 24;
+constexpr std::int32_t kMostInCell = 24;
+constexpr int kDeepest = 24;
 
 }  // namespace
 
 CornerGrid::CornerGrid(std::vector<Member> members, std::size_t numbers) : whereabouts_(numbers) {
     members_.reserve(members.size());
-    if (!members.empty()) add_level(members, none, none, 0);
+    if (!members.empty()) add_level(members, kNone, kNone, 0);
 }
 
 std::int32_t CornerGrid::add_level(std::span<Member> members, std::int32_t above,
@@ -31,7 +31,7 @@ std::int32_t CornerGrid::add_level(std::span<Member> members, std::int32_t above
     // Outlines are lines: with a tenth of its members along each way, a cell that they pass has a
     // few of them, and levels take memory in proportion to what they hold.
     const double along =
-        std::clamp(static_cast<double>(members.size()) / 10, 2.0, most_along - 1.0);
+        std::clamp(static_cast<double>(members.size()) / 10, 2.0, kMostAlong - 1.0);
     const double side = std::max(width, height) / along;
     level.columns = level.rows = 1;
     if (side > 0 && std::isfinite(1 / side)) {
@@ -45,7 +45,7 @@ std::int32_t CornerGrid::add_level(std::span<Member> members, std::int32_t above
     const std::int32_t cell_count = level.columns * level.rows;
     cells_.resize(cells_.size() + cell_count);
 
-    std::array<std::int32_t, most_along * most_along + 1> begin{};
+    std::array<std::int32_t, kMostAlong * kMostAlong + 1> begin{};
     for (const Member& member : members) {
         const std::int32_t cell = cell_at(member.place, level);
         whereabouts_[member.number].cell = cell;
@@ -64,9 +64,9 @@ std::int32_t CornerGrid::add_level(std::span<Member> members, std::int32_t above
         const std::int32_t cell = level.first + k;
         const std::span here(sorted.data() + begin[k], sorted.data() + begin[k + 1]);
         const auto count = static_cast<std::int32_t>(here.size());
-        if (count > most_in_cell && depth < deepest && level.cells_per_unit > 0) {
+        if (count > kMostInCell && depth < kDeepest && level.cells_per_unit > 0) {
             const std::int32_t below = add_level(here, number, cell, depth + 1);
-            cells_[cell] = {below, is_level};
+            cells_[cell] = {below, kIsLevel};
             continue;
         }
         cells_[cell] = {static_cast<std::int32_t>(members_.size()), count};
@@ -91,7 +91,7 @@ void CornerGrid::set_used(Level& level, std::int32_t cell, bool is_used) {
 
 /// A cell that nothing is left in is passed over from now on, and so is a level.
 void CornerGrid::clear(std::int32_t number, std::int32_t cell) {
-    while (number != none) {
+    while (number != kNone) {
         Level& level = levels_[number];
         cells_[cell] = {};
         set_used(level, cell, false);
@@ -103,13 +103,13 @@ void CornerGrid::clear(std::int32_t number, std::int32_t cell) {
 
 void CornerGrid::remove(std::int32_t number) {
     auto& [member, at, level] = whereabouts_[number];
-    if (member == none) return;
+    if (member == kNone) return;
     Cell& cell = cells_[at];
     --cell.count;
     const Member& last = members_[cell.first + cell.count];
     members_[member] = last;
     whereabouts_[last.number].member = member;
-    member = none;
+    member = kNone;
     if (cell.count == 0) clear(level, at);
 }
 

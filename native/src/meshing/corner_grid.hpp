@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Corners of a polygon by the cells of the plan that they lie in, for ear clipping. Private.
+// Corners of a polygon by the cells of the plan that they lie in, for ear clipping.
 #pragma once
 
 #include <algorithm>
@@ -38,22 +38,23 @@ public:
                          Wanted&& wanted);
 
 private:
-    static constexpr std::int32_t none = -1;
-    static constexpr std::int32_t most_along = 17;  ///< columns or rows of a level
+    static constexpr std::int32_t kNone = -1;
+    static constexpr std::int32_t kMostAlong = 17;  ///< columns or rows of a level
 
-    /// `count` members from `first` on; or, where `count` is `is_level`, the level `first`.
+    /// `count` members from `first` on; or, where `count` is `kIsLevel`, the level `first`.
     struct Cell {
         std::int32_t first = 0, count = 0;
     };
-    static constexpr std::int32_t is_level = -1;
+    static constexpr std::int32_t kIsLevel = -1;
     struct Level {
         PlanPoint low, high;
         double cells_per_unit, side;
         std::int32_t columns, rows;
-        std::int32_t first;                            ///< of its cells
-        std::uint32_t used_rows;                       ///< bits of rows that hold something
-        std::array<std::uint32_t, most_along> used;    ///< of each row: columns that hold something
-        std::int32_t above = none, cell_above = none;  ///< the level that it is in, the cell there
+        std::int32_t first;                          ///< of its cells
+        std::uint32_t used_rows;                     ///< bits of rows that hold something
+        std::array<std::uint32_t, kMostAlong> used;  ///< of each row: columns that hold something
+        std::int32_t above = kNone,
+                     cell_above = kNone;  ///< the level that it is in, the cell there
     };
     struct Triangle {
         PlanPoint a, b, c;
@@ -90,9 +91,9 @@ private:
     std::vector<Level> levels_;
     std::vector<Cell> cells_;
     std::vector<Member> members_;  ///< those of a cell side by side
-    /// Of each number: where its member is, none if there is none; the cell, and its level.
+    /// Of each number: where its member is, none if there is kNone; the cell, and its level.
     struct Whereabouts {
-        std::int32_t member = none, cell, level;
+        std::int32_t member = kNone, cell, level;
     };
     std::vector<Whereabouts> whereabouts_;
     std::int32_t last_ = 0;  ///< the level where the last search was
@@ -116,14 +117,14 @@ inline std::int32_t CornerGrid::innermost(const Triangle& triangle) const {
         return cell_at(triangle.low, level) == cell && cell_at(triangle.high, level) == cell;
     };
     std::int32_t number = last_;
-    while (levels_[number].above != none &&
+    while (levels_[number].above != kNone &&
            !lies_in(levels_[levels_[number].above], levels_[number].cell_above)) {
         number = levels_[number].above;
     }
     while (true) {
         const Level& level = levels_[number];
         const std::int32_t cell = cell_at(triangle.low, level);
-        if (cells_[cell].count != is_level || cell_at(triangle.high, level) != cell) return number;
+        if (cells_[cell].count != kIsLevel || cell_at(triangle.high, level) != cell) return number;
         number = cells_[cell].first;
     }
 }
@@ -174,7 +175,7 @@ bool CornerGrid::search(const Triangle& triangle, std::int32_t number, Wanted& w
         const Cell* cells = &cells_[level.first + row * level.columns];
         for (; used != 0; used &= used - 1) {
             const Cell& cell = cells[std::countr_zero(used)];
-            if (cell.count == is_level) {
+            if (cell.count == kIsLevel) {
                 if (search(triangle, cell.first, wanted)) return true;
                 continue;
             }

@@ -32,8 +32,8 @@ public:
         : ring_(ring), check_(check), tips_(ring.nodes.size()) {
         mesh_.points = std::move(corners);
         mesh_.corners.reserve(ring.nodes.size());
-        mesh_.across.reserve(ring.nodes.size());
-        mesh_.fixed.reserve(ring.nodes.size());
+        mesh_.twins.reserve(ring.nodes.size());
+        mesh_.marks.reserve(ring.nodes.size());
         queue_.reserve(2 * ring.nodes.size());
     }
 
@@ -59,28 +59,28 @@ public:
 
     Triangles swapped() {
         Ticker tick(check_);
-        std::vector<Side> doubtful;
+        std::vector<HalfEdge> open;
         const auto count = static_cast<std::int32_t>(mesh_.corners.size());
         // All are asked before the first is flipped: then no answer waits for another.
         for (std::int32_t t = 0; t < count; ++t) {
             tick(0);
             for (int i = 0; i < 3; ++i) {
-                const Side side(t, i);
-                if (mesh_.behind(side).triangle() > t && mesh_.should_flip(side)) {
-                    doubtful.push_back(side);
+                const HalfEdge edge(t, i);
+                if (mesh_.twin(edge).triangle() > t && mesh_.should_flip(edge)) {
+                    open.push_back(edge);
                 }
             }
         }
-        mesh_.legalise(doubtful);
+        mesh_.legalize(open);
         return std::move(mesh_.corners);
     }
 
 private:
-    static constexpr std::int32_t none = -1;
+    static constexpr std::int32_t kNone = -1;
 
     int turn_at(std::int32_t node) const {
         const EarNode& n = ring_.nodes[node];
-        return side_of_line(ring_.place(n.previous), n.place, ring_.place(n.next));
+        return orient2d(ring_.place(n.previous), n.place, ring_.place(n.next));
     }
 
     /// Only corners that do not turn left can hide in an ear: of those that lie in it, the one
@@ -104,10 +104,10 @@ private:
             const std::int32_t tip = queue_[i];
             if (tips_[tip].entry != static_cast<std::int32_t>(i))
                 continue;  // it comes again, or is cut
-            tips_[tip].entry = none;
+            tips_[tip].entry = kNone;
             const std::int32_t a = ring_.nodes[tip].previous, c = ring_.nodes[tip].next;
             const std::int32_t blocker = blocker_of(tip, grid, is_choosy);
-            if (blocker != none) {
+            if (blocker != kNone) {
                 wait(tip, blocker);
                 continue;
             }
@@ -131,7 +131,7 @@ private:
     /// slivers that flips must mend.
     void enqueue(std::int32_t tip) {
         stop_waiting(tip);
-        tips_[tip].entry = none;
+        tips_[tip].entry = kNone;
         if (tips_[tip].turn <= 0) return;
         tips_[tip].entry = static_cast<std::int32_t>(queue_.size());
         queue_.push_back(tip);
@@ -143,26 +143,26 @@ private:
     void wait(std::int32_t tip, std::int32_t blocker) {
         Tip& first = tips_[blocker];
         tips_[tip].blocker = blocker;
-        tips_[tip].before = none;
+        tips_[tip].before = kNone;
         tips_[tip].after = first.head;
-        if (first.head != none) tips_[first.head].before = tip;
+        if (first.head != kNone) tips_[first.head].before = tip;
         first.head = tip;
     }
 
     void stop_waiting(std::int32_t tip) {
         auto& [entry, blocker, head, before, after, turn] = tips_[tip];
-        if (blocker == none) return;
-        if (before != none) {
+        if (blocker == kNone) return;
+        if (before != kNone) {
             tips_[before].after = after;
         } else {
             tips_[blocker].head = after;
         }
-        if (after != none) tips_[after].before = before;
-        blocker = none;
+        if (after != kNone) tips_[after].before = before;
+        blocker = kNone;
     }
 
     void wake(std::int32_t blocker) {
-        while (tips_[blocker].head != none)
+        while (tips_[blocker].head != kNone)
             enqueue(tips_[blocker].head);
     }
 
@@ -172,7 +172,7 @@ private:
         const EarNode& node = ring_.nodes[tip];
         const PlanPoint &a = ring_.place(node.previous), &b = node.place,
                         &c = ring_.place(node.next);
-        std::int32_t blocker = none;
+        std::int32_t blocker = kNone;
         if (is_choosy) {
             // Rounded: it decides how good the triangle is, not whether it is one.
             const double ux = a[0] - b[0], uy = a[1] - b[1], vx = c[0] - b[0], vy = c[1] - b[1];
@@ -195,8 +195,7 @@ private:
         grid.any_in_triangle(a, b, c, [&](const CornerGrid::Member& member) {
             const PlanPoint& p = member.place;
             if (p == a || p == b || p == c) return false;
-            if (side_of_line(a, b, p) < 0 || side_of_line(b, c, p) < 0 ||
-                side_of_line(c, a, p) < 0) {
+            if (orient2d(a, b, p) < 0 || orient2d(b, c, p) < 0 || orient2d(c, a, p) < 0) {
                 return false;
             }
             blocker = member.number;
@@ -205,7 +204,7 @@ private:
         return blocker;
     }
 
-    /// Makes a triangle whose first two sides are the edges of nodes a and b.
+    /// Makes a triangle whose first two edges are the edges of nodes a and b.
     std::int32_t add(std::int32_t a, std::int32_t b, std::int32_t c) {
         const auto& nodes = ring_.nodes;
         const std::int32_t t =
@@ -215,15 +214,15 @@ private:
         return t;
     }
 
-    /// A side is the edge of a node: it gets what lies behind that.
-    void place(Side side, std::int32_t node) {
-        EarNode& edge = ring_.nodes[node];
-        if (edge.twin >= 0) {
-            edge.placed = side;
-            const Side other = ring_.nodes[edge.twin].placed;
-            if (!other.is_outside()) mesh_.join(side, other);
-        } else if (!edge.behind.is_outside()) {
-            mesh_.join(side, edge.behind);
+    /// A half-edge is the edge of a node: it is joined to what lies behind that.
+    void place(HalfEdge edge, std::int32_t node) {
+        EarNode& own = ring_.nodes[node];
+        if (own.twin >= 0) {
+            own.placed = edge;
+            const HalfEdge other = ring_.nodes[own.twin].placed;
+            if (!other.is_none()) mesh_.join(edge, other);
+        } else if (!own.behind.is_none()) {
+            mesh_.join(edge, own.behind);
         }
     }
 
@@ -241,20 +240,20 @@ private:
     }
 
     /// The twin of a bridge that has been placed knows from now on what lies behind it.
-    void keep_twin(std::int32_t twin, Side placed) {
+    void keep_twin(std::int32_t twin, HalfEdge placed) {
         EarNode& other = ring_.nodes[twin];
-        if (!other.placed.is_outside()) return;  // both are placed and joined
+        if (!other.placed.is_none()) return;  // both are placed and joined
         other.twin = -1;
         other.behind = placed;
     }
 
     /// What is known of a node as the tip of an ear.
     struct Tip {
-        std::int32_t entry = none;                 ///< where it stands in the queue
-        std::int32_t blocker = none;               ///< what it waits for
-        std::int32_t head = none;                  ///< the first that waits for it
-        std::int32_t before = none, after = none;  ///< others that wait for the same as this one
-        std::int8_t turn = 0;                      ///< 1 left, 0 straight on or back, -1 right
+        std::int32_t entry = kNone;                  ///< where it stands in the queue
+        std::int32_t blocker = kNone;                ///< what it waits for
+        std::int32_t head = kNone;                   ///< the first that waits for it
+        std::int32_t before = kNone, after = kNone;  ///< others that wait for the same as this one
+        std::int8_t turn = 0;                        ///< 1 left, 0 straight on or back, -1 right
     };
 
     EarRing& ring_;
@@ -302,9 +301,8 @@ bool is_plain(std::span<const Ring> rings) {
         const auto other = std::find_if(ring.begin(), ring.end(),
                                         [&](const PlanPoint& p) { return p != ring[0]; });
         return is_finite && other != ring.end() &&
-               std::any_of(other, ring.end(), [&](const PlanPoint& p) {
-                   return side_of_line(ring[0], *other, p) != 0;
-               });
+               std::any_of(other, ring.end(),
+                           [&](const PlanPoint& p) { return orient2d(ring[0], *other, p) != 0; });
     });
 }
 

@@ -58,10 +58,9 @@ std::int32_t EarRing::add_ring(const Ring& ring, std::int32_t first_corner, bool
 bool EarRing::opens_towards(std::int32_t node, const PlanPoint& p) const {
     const PlanPoint &a = place(nodes[node].previous), &b = place(node),
                     &c = place(nodes[node].next);
-    const bool left_of_first = side_of_line(a, b, p) > 0,
-               left_of_second = side_of_line(b, c, p) > 0;
-    return side_of_line(a, b, c) > 0 ? left_of_first && left_of_second
-                                     : left_of_first || left_of_second;
+    const bool left_of_first = orient2d(a, b, p) > 0, left_of_second = orient2d(b, c, p) > 0;
+    return orient2d(a, b, c) > 0 ? left_of_first && left_of_second
+                                 : left_of_first || left_of_second;
 }
 
 std::size_t EarRing::row_of(double y) const {
@@ -118,7 +117,7 @@ std::int32_t EarRing::find_bridge(std::int32_t hole) const {
         // The ring lies right of edges that run down.
         if (a[1] < from[1] || b[1] > from[1] || a[1] == b[1]) continue;
         if (a[0] > from[0] && b[0] > from[0]) continue;
-        if (side_of_line(a, b, from) < 0) continue;  // it is right of here
+        if (orient2d(a, b, from) < 0) continue;  // it is right of here
         const double x = a[0] + (from[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
         if (x > met) {
             met = x;
@@ -140,8 +139,8 @@ std::int32_t EarRing::find_bridge(std::int32_t hole) const {
     const auto consider = [&](std::int32_t n) {
         const PlanPoint& p = place(n);
         if (p[0] >= from[0] || p[0] < std::min(goal[0], met)) return;
-        const int below = is_above ? side_of_line(from, goal, p) : side_of_line(goal, from, p);
-        const int above = is_above ? side_of_line(hit, goal, p) : side_of_line(goal, hit, p);
+        const int below = is_above ? orient2d(from, goal, p) : orient2d(goal, from, p);
+        const int above = is_above ? orient2d(hit, goal, p) : orient2d(goal, hit, p);
         const bool within =
             p == goal || (p[1] == from[1] && p[0] > met) ||
             (below >= 0 && above <= 0 && (is_above ? p[1] >= from[1] : p[1] <= from[1]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One ring of a polygon's outline with its holes joined to it, for ear clipping. Private.
+// One ring of a polygon's outline with its holes joined to it, for ear clipping.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@ struct EarNode {
     PlanPoint place;
     std::int32_t corner;
     std::int32_t previous, next;
-    std::int32_t twin = -1;         ///< for a bridge: the node whose edge runs the other way
-    Side behind = Side::outside();  ///< what lies behind the edge, once it is known
-    Side placed = Side::outside();  ///< for a bridge: the side that was made of its edge
+    std::int32_t twin = -1;              ///< for a bridge: the node whose edge runs the other way
+    HalfEdge behind = HalfEdge::none();  ///< what lies behind the edge, once it is known
+    HalfEdge placed = HalfEdge::none();  ///< for a bridge: the edge that was made of its edge
 };
 
 /// The rings of a polygon, the outline counter-clockwise and holes clockwise, joined into one.

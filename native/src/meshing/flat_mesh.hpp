@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A triangulation in arrays that vertices can be added to. Private.
+// A triangulation in arrays that vertices can be added to.
 #pragma once
 
 #include <array>
@@ -10,90 +10,119 @@
 
 namespace realmodel::meshing {
 
-/// A side of a triangle: side i runs from corner i to corner (i + 1) % 3. Packed as
-/// 4 * triangle + i, so that neighbours find one another's sides without a search.
-class Side {
+/// An edge of one triangle: half-edge i runs from corner i to corner (i + 1) % 3. Packed as
+/// 4 * triangle + i, so that twins find one another without a search.
+class HalfEdge {
 public:
-    Side() = default;
-    Side(std::int32_t triangle, int number) : packed_(4 * triangle + number) {}
-    static Side outside() { return {}; }
+    HalfEdge() = default;
+    HalfEdge(std::int32_t triangle, int index) : packed_(4 * triangle + index) {}
+    static HalfEdge none() { return {}; }
 
-    bool is_outside() const { return packed_ < 0; }
+    bool is_none() const { return packed_ < 0; }
     std::int32_t triangle() const { return packed_ >> 2; }
-    int number() const { return packed_ & 3; }
-    Side next() const { return {triangle(), number() == 2 ? 0 : number() + 1}; }
-    Side previous() const { return {triangle(), number() == 0 ? 2 : number() - 1}; }
-    bool operator==(const Side&) const = default;
+    int index() const { return packed_ & 3; }
+    HalfEdge next() const { return {triangle(), index() == 2 ? 0 : index() + 1}; }
+    HalfEdge prev() const { return {triangle(), index() == 0 ? 2 : index() - 1}; }
+    bool operator==(const HalfEdge&) const = default;
 
 private:
     std::int32_t packed_ = -1;
 };
 
-/// The most triangles whose sides can be packed.
-inline constexpr double most_flat_triangles = 536'870'911;
+/// The most triangles whose half-edges can be packed.
+inline constexpr double kMostFlatTriangles = 536'870'911;
 
 /// Triangles, counter-clockwise, of a part of the plan. Its border, and the constraints inside, are
-/// fixed sides: nothing flips them. Some triangles may be dead (removed, not yet reused).
+/// fixed edges: nothing flips them. Of these some are locked: nothing cuts or moves them either.
+/// Some triangles may be dead (removed, not yet reused).
 class FlatMesh {
 public:
     std::vector<PlanPoint> points;
     std::vector<std::array<std::int32_t, 3>> corners;  ///< of each triangle; -1 first: it is dead
-    std::vector<std::array<Side, 3>> across;           ///< what lies behind each side
-    std::vector<std::uint8_t> fixed;                   ///< bit i: side i may not be flipped
+    std::vector<std::array<HalfEdge, 3>> twins;        ///< none: on the border
+    std::vector<std::uint8_t> marks;                   ///< bit i: fixed; bit 3 + i: locked
 
-    std::int32_t from(Side side) const { return corners[side.triangle()][side.number()]; }
-    std::int32_t to(Side side) const { return from(side.next()); }
-    std::int32_t apex(Side side) const { return from(side.previous()); }
-    const PlanPoint& point_from(Side side) const { return points[from(side)]; }
-    const PlanPoint& point_to(Side side) const { return points[to(side)]; }
-    const PlanPoint& point_apex(Side side) const { return points[apex(side)]; }
-    Side behind(Side side) const { return across[side.triangle()][side.number()]; }
-    bool is_border(Side side) const { return behind(side).is_outside(); }
-    bool is_fixed(Side side) const { return (fixed[side.triangle()] >> side.number() & 1) != 0; }
+    std::int32_t from(HalfEdge edge) const { return corners[edge.triangle()][edge.index()]; }
+    std::int32_t to(HalfEdge edge) const { return from(edge.next()); }
+    std::int32_t apex(HalfEdge edge) const { return from(edge.prev()); }
+    const PlanPoint& origin_point(HalfEdge edge) const { return points[from(edge)]; }
+    const PlanPoint& target_point(HalfEdge edge) const { return points[to(edge)]; }
+    const PlanPoint& apex_point(HalfEdge edge) const { return points[apex(edge)]; }
+    HalfEdge twin(HalfEdge edge) const { return twins[edge.triangle()][edge.index()]; }
+    bool is_border(HalfEdge edge) const { return twin(edge).is_none(); }
+    bool is_fixed(HalfEdge edge) const { return (marks[edge.triangle()] >> edge.index() & 1) != 0; }
+    bool is_locked(HalfEdge edge) const {
+        return (marks[edge.triangle()] >> (3 + edge.index()) & 1) != 0;
+    }
     bool is_dead(std::int32_t triangle) const { return corners[triangle][0] < 0; }
 
     std::int32_t add_triangle(const std::array<std::int32_t, 3>& corner);
-    /// Makes two sides one another's neighbours; the second may be outside.
-    void join(Side a, Side b);
-    void fix(Side side, bool value = true);
+    /// Makes two half-edges twins; the second may be none.
+    void join(HalfEdge a, HalfEdge b);
+    /// Sets or takes away the marks of a half-edge; those of its twin are its own.
+    void fix(HalfEdge edge, bool is_fixed = true, bool is_locked = false);
 
-    /// The side from the same vertex that comes next counter-clockwise; outside at the border.
-    Side turn_left(Side side) const { return behind(side.previous()); }
+    /// The half-edge from the same vertex that comes next counter-clockwise; none at the border.
+    HalfEdge rotate_ccw(HalfEdge edge) const { return twin(edge.prev()); }
     /// The same clockwise.
-    Side turn_right(Side side) const {
-        const Side other = behind(side);
-        return other.is_outside() ? other : other.next();
+    HalfEdge rotate_cw(HalfEdge edge) const {
+        const HalfEdge other = twin(edge);
+        return other.is_none() ? other : other.next();
+    }
+    /// Visits the half-edges from the origin of one, from that counter-clockwise, and where the
+    /// border ends that the others, too, clockwise from it.
+    template <class Visit>
+    void visit_star(HalfEdge start, Visit&& visit) const {
+        HalfEdge edge = start;
+        do {
+            visit(edge);
+            edge = rotate_ccw(edge);
+        } while (!edge.is_none() && edge != start);
+        if (!edge.is_none()) return;
+        for (edge = rotate_cw(start); !edge.is_none(); edge = rotate_cw(edge))
+            visit(edge);
     }
 
-    /// Swaps the diagonal of the two triangles beside a side that is not on the border. The two
-    /// triangles keep their numbers; returns the new diagonal in the first.
-    Side flip(Side side);
-    /// Whether a side is no longer Delaunay, so that flipping it helps.
-    bool should_flip(Side side) const;
+    /// Swaps the diagonal of the two triangles beside an edge that is not on the border; they form
+    /// a strictly convex quadrilateral and keep their numbers. Returns the new diagonal in the
+    /// first.
+    HalfEdge flip(HalfEdge edge);
+    /// Whether an edge is no longer Delaunay, so that flipping it helps.
+    bool should_flip(HalfEdge edge) const;
 
-    /// Adds a vertex inside a triangle; returns a side that leaves it. The triangles around it are
-    /// made Delaunay by flips (Lawson 1977) as far as fixed sides allow.
-    Side insert_inside(std::int32_t triangle, const PlanPoint& p);
-    /// Adds a vertex on a side, which stays fixed in both parts if it was; else as insert_inside.
-    Side insert_on(Side side, const PlanPoint& p);
-    /// Makes sides Delaunay, and those that flips make doubtful.
-    void legalise(std::vector<Side>& doubtful);
+    /// Adds a vertex inside a triangle; returns a half-edge that leaves it. The triangles around it
+    /// are made Delaunay by flips (Lawson 1977) as far as fixed edges allow.
+    HalfEdge insert_inside(std::int32_t triangle, const PlanPoint& p);
+    /// Adds a vertex on an edge, which keeps its marks in both parts; else as insert_inside.
+    HalfEdge insert_on(HalfEdge edge, const PlanPoint& p);
+    /// The same with a point that is there already and no triangle has yet.
+    HalfEdge insert_on(HalfEdge edge, std::int32_t vertex);
+    /// Makes edges Delaunay, and those that flips make doubtful.
+    void legalize(std::vector<HalfEdge>& open);
 
-    /// Moves the vertex that an unfixed side leaves, which must be inside, to the side's other end;
-    /// the two triangles beside the side die. Returns the two sides that now lie where those
-    /// triangles were, both leaving the merged vertex or ending at it. The caller has made sure
-    /// that nothing turns over.
-    std::array<Side, 2> collapse(Side side);
-    /// Takes the vertex that a side on the border leaves, which must have two triangles, out of the
-    /// border: one triangle takes their place, the other dies. Returns the side of the border that
-    /// runs past it now. The caller has made sure that the triangle is not turned over.
-    Side pass_by(Side side);
-    /// Forgets dead triangles; those before the first of them keep their numbers.
+    /// Moves the origin of an unfixed edge, which must be inside, to the edge's other end; the two
+    /// triangles beside the edge die. Returns the two half-edges that are now where those triangles
+    /// were, both leaving the merged vertex or ending at it. The caller has made sure that all
+    /// triangles stay counter-clockwise.
+    std::array<HalfEdge, 2> collapse(HalfEdge edge);
+    /// Takes the origin of an edge on the border, which must have two triangles, out of the border:
+    /// one triangle replaces them, the other dies. Returns the edge of the border that runs past it
+    /// now. The caller has made sure that the triangle is counter-clockwise.
+    HalfEdge remove_from_border(HalfEdge edge);
+    /// Removes dead triangles; those before the first of them keep their numbers.
     void compact();
 
 private:
-    Side legalise_around(std::int32_t vertex, std::int32_t triangle);
-    std::vector<Side> doubtful_;
+    /// What lies beyond an edge of a triangle that is being replaced, and the edge's marks.
+    struct Outer {
+        HalfEdge twin;
+        bool is_fixed, is_locked;
+    };
+    Outer outer(HalfEdge edge) const { return {twin(edge), is_fixed(edge), is_locked(edge)}; }
+    void attach(HalfEdge edge, const Outer& outer);
+    void kill(std::int32_t triangle);
+    HalfEdge legalize_around(std::int32_t vertex, std::int32_t triangle);
+    std::vector<HalfEdge> open_;
 };
 
 }  // namespace realmodel::meshing

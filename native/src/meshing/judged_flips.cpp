@@ -7,20 +7,20 @@ namespace realmodel::meshing {
 
 namespace {
 
-constexpr int most_looks = 100;  // flips tried from one vertex
-constexpr int sweeps = 2;        // of moves before a way is judged
+constexpr int kMostLooks = 100;  // flips tried from one vertex
+constexpr int kSweeps = 2;       // of moves before a way is judged
 
 // How much of the sum of inverse mean ratios less strain by one may cost. Beside fixed lines angles
-// are given, and six neighbours no longer mean good triangles: there these must get better.
-constexpr double price = 0.4, price_beside_lines = -0.05;
+// are given, and six neighbors no longer mean good triangles: there these must get better.
+constexpr double kPrice = 0.4, kPriceBesideLines = -0.05;
 
-constexpr double bad_ratio = 0.9;      // of a triangle that is to be mended
-constexpr double worth_a_flip = 0.02;  // in that sum
+constexpr double kBadRatio = 0.9;     // of a triangle that is to be mended
+constexpr double kWorthAFlip = 0.02;  // in that sum
 
 }  // namespace
 
 bool JudgedFlips::glide(std::int32_t vertex, int most_flips) {
-    looks_left_ = most_looks;
+    looks_left_ = kMostLooks;
     candidates_.clear();
     way_.clear();
     const std::array changed{vertex};
@@ -31,9 +31,9 @@ bool JudgedFlips::seek(std::span<const std::int32_t> changed, int gained, int fl
     const std::size_t begin = candidates_.size();
     for (const std::int32_t v : changed) {
         if (valences_.is_fixed(v) || valences_.is_regular(v)) continue;
-        valences_.around(v, [&](Side side) {
-            add_candidate(side, 0);
-            add_candidate(side.next(), 0);
+        valences_.around(v, [&](HalfEdge edge) {
+            add_candidate(edge, 0);
+            add_candidate(edge.next(), 0);
         });
     }
     sort_candidates(begin);
@@ -43,9 +43,9 @@ bool JudgedFlips::seek(std::span<const std::int32_t> changed, int gained, int fl
         const int all = gained + candidates_[i].gain;
         if (all <= 0 && flips_left == 1) break;  // they are sorted
         if (--looks_left_ < 0) break;
-        if (!try_flip(candidates_[i].edge)) continue;
+        if (!try_flip(candidates_[i].ends)) continue;
         if (all > 0) {
-            found = is_worth_it(price * all, price_beside_lines * all);
+            found = is_worth_it(kPrice * all, kPriceBesideLines * all);
         } else {
             const auto [before, after] = way_.back();
             const std::array touched{before[0], before[1], after[0], after[1]};
@@ -60,18 +60,18 @@ bool JudgedFlips::seek(std::span<const std::int32_t> changed, int gained, int fl
 bool JudgedFlips::mend(std::int32_t vertex) {
     const FlatMesh& mesh = valences_.mesh();
     bool is_bad = false;
-    valences_.around(vertex, [&](Side side) {
-        is_bad = is_bad || mean_ratio(mesh.point_from(side), mesh.point_to(side),
-                                      mesh.point_apex(side)) < bad_ratio;
+    valences_.around(vertex, [&](HalfEdge edge) {
+        is_bad = is_bad || mean_ratio(mesh.origin_point(edge), mesh.target_point(edge),
+                                      mesh.apex_point(edge)) < kBadRatio;
     });
     if (!is_bad) return false;
     candidates_.clear();
     way_.clear();
-    valences_.around(vertex, [&](Side side) { add_candidate(side, any_gain); });
+    valences_.around(vertex, [&](HalfEdge edge) { add_candidate(edge, kAnyGain); });
     sort_candidates(0);
     for (const Candidate& candidate : candidates_) {
-        if (!try_flip(candidate.edge)) continue;
-        if (is_worth_it(-worth_a_flip, -worth_a_flip)) return true;
+        if (!try_flip(candidate.ends)) continue;
+        if (is_worth_it(-kWorthAFlip, -kWorthAFlip)) return true;
         undo();
     }
     return false;
@@ -81,47 +81,47 @@ bool JudgedFlips::may_change(std::int32_t vertex) const {
     return moves_.moves_freely(vertex) || valences_.is_fixed(vertex);
 }
 
-/// A side whose flip lessens the strain by so much at least.
-void JudgedFlips::add_candidate(Side side, int least_gain) {
+/// An edge whose flip lessens the strain by so much at least.
+void JudgedFlips::add_candidate(HalfEdge edge, int least_gain) {
     const FlatMesh& mesh = valences_.mesh();
-    if (mesh.is_fixed(side)) return;
-    for (const Side s : {side, mesh.behind(side)})
-        if (!may_change(mesh.from(s)) || !may_change(mesh.apex(s))) return;
-    const int gain = valences_.gain_of_flip(side);
+    if (mesh.is_fixed(edge)) return;
+    for (const HalfEdge e : {edge, mesh.twin(edge)})
+        if (!may_change(mesh.from(e)) || !may_change(mesh.apex(e))) return;
+    const int gain = valences_.gain_of_flip(edge);
     if (gain < least_gain) return;
-    const auto [a, b] = std::minmax({mesh.from(side), mesh.to(side)});
-    const Edge edge{a, b};
+    const auto [a, b] = std::minmax({mesh.from(edge), mesh.to(edge)});
+    const Ends ends{a, b};
     for (const Flip& flip : way_)
-        if (flip.after == edge) return;
-    candidates_.push_back({gain, edge});
+        if (flip.after == ends) return;
+    candidates_.push_back({gain, ends});
 }
 
 /// Those that gain most first, each once.
 void JudgedFlips::sort_candidates(std::size_t begin) {
     const auto first = candidates_.begin() + static_cast<std::ptrdiff_t>(begin);
     std::sort(first, candidates_.end(), [](const Candidate& a, const Candidate& b) {
-        return a.gain != b.gain ? a.gain > b.gain : a.edge < b.edge;
+        return a.gain != b.gain ? a.gain > b.gain : a.ends < b.ends;
     });
     const auto last =
         std::unique(first, candidates_.end(),
-                    [](const Candidate& a, const Candidate& b) { return a.edge == b.edge; });
+                    [](const Candidate& a, const Candidate& b) { return a.ends == b.ends; });
     candidates_.erase(last, candidates_.end());
 }
 
 /// Adds a flip to the way where there can be one.
-bool JudgedFlips::try_flip(const Edge& edge) {
-    const Side side = side_between(edge);
-    if (!valences_.can_flip(side)) return false;
-    const Side diagonal = valences_.flip(side);
+bool JudgedFlips::try_flip(const Ends& ends) {
+    const HalfEdge edge = edge_between(ends);
+    if (!valences_.can_flip(edge)) return false;
+    const HalfEdge diagonal = valences_.flip(edge);
     const FlatMesh& mesh = valences_.mesh();
     const auto [c, d] = std::minmax({mesh.from(diagonal), mesh.to(diagonal)});
-    way_.push_back({edge, {c, d}});
+    way_.push_back({ends, {c, d}});
     return true;
 }
 
 /// Takes the last flip of the way back.
 void JudgedFlips::undo() {
-    valences_.flip(side_between(way_.back().after));
+    valences_.flip(edge_between(way_.back().after));
     way_.pop_back();
 }
 
@@ -130,20 +130,20 @@ void JudgedFlips::undo() {
 bool JudgedFlips::is_worth_it(double most_worse, double most_worse_beside_lines) {
     touched_.clear();
     for (const Flip& flip : way_)
-        for (const Edge& edge : {flip.before, flip.after})
-            touched_.insert(touched_.end(), edge.begin(), edge.end());
+        for (const Ends& ends : {flip.before, flip.after})
+            touched_.insert(touched_.end(), ends.begin(), ends.end());
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     for (auto flip = way_.rbegin(); flip != way_.rend(); ++flip)
-        valences_.flip(side_between(flip->after));
+        valences_.flip(edge_between(flip->after));
     const double before = badness();
     for (const Flip& flip : way_)
-        valences_.flip(side_between(flip.before));
+        valences_.flip(edge_between(flip.before));
     std::vector<PlanPoint>& points = valences_.mesh().points;
     places_.clear();
     for (const std::int32_t v : touched_)
         places_.push_back(points[v]);
-    for (int i = 0; i < sweeps; ++i)
+    for (int i = 0; i < kSweeps; ++i)
         for (const std::int32_t v : touched_)
             moves_.move(v);
     const bool is_beside_line = std::any_of(touched_.begin(), touched_.end(),
@@ -160,7 +160,7 @@ double JudgedFlips::badness() {
     const FlatMesh& mesh = valences_.mesh();
     star_.clear();
     for (const std::int32_t v : touched_)
-        valences_.around(v, [&](Side side) { star_.push_back(side.triangle()); });
+        valences_.around(v, [&](HalfEdge edge) { star_.push_back(edge.triangle()); });
     std::sort(star_.begin(), star_.end());
     star_.erase(std::unique(star_.begin(), star_.end()), star_.end());
     double sum = 0;
@@ -171,10 +171,10 @@ double JudgedFlips::badness() {
     return sum;
 }
 
-Side JudgedFlips::side_between(const Edge& edge) const {
-    Side found = Side::outside();
-    valences_.around(edge[0], [&](Side side) {
-        if (valences_.mesh().to(side) == edge[1]) found = side;
+HalfEdge JudgedFlips::edge_between(const Ends& ends) const {
+    HalfEdge found = HalfEdge::none();
+    valences_.around(ends[0], [&](HalfEdge edge) {
+        if (valences_.mesh().to(edge) == ends[1]) found = edge;
     });
     return found;
 }

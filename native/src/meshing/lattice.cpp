@@ -191,34 +191,34 @@ double apart(double s, double t) {
 /// A length cut into whole parts of about the one given, if that stretches them by little; else
 /// the one given.
 double fitted(double length, double part) {
-    constexpr double most_stretch = 0.015;
+    constexpr double kMostStretch = 0.015;
     const double count = std::round(length / part);
     if (count < 1) return part;
     const double fits = length / count;
-    return std::abs(fits - part) <= most_stretch * part ? fits : part;
+    return std::abs(fits - part) <= kMostStretch * part ? fits : part;
 }
 
 }  // namespace
 
 LatticeFrame fitting_frame(const RegionGraph& graph, double edge_length) {
-    constexpr double same_direction = 0.01;  // of 60 degrees
+    constexpr double kSameDirection = 0.01;  // of 60 degrees
     LatticeFrame frame{
         graph.points.front(), {1, 0}, edge_length, edge_length * std::numbers::sqrt3 / 2};
     const std::vector<LongEdge> edges = long_edges(graph, edge_length);
     if (edges.empty()) return frame;
-    constexpr int bins = 120;
-    std::array<double, bins> lengths{};
+    constexpr int kBins = 120;
+    std::array<double, kBins> lengths{};
     for (const LongEdge& edge : edges)
-        lengths[std::min(bins - 1, static_cast<int>(edge.turn * bins))] += edge.length;
+        lengths[std::min(kBins - 1, static_cast<int>(edge.turn * kBins))] += edge.length;
     int best = 0;
     const auto around = [&](int bin) {
-        return lengths[(bin + bins - 1) % bins] + 2 * lengths[bin] + lengths[(bin + 1) % bins];
+        return lengths[(bin + kBins - 1) % kBins] + 2 * lengths[bin] + lengths[(bin + 1) % kBins];
     };
-    for (int bin = 1; bin < bins; ++bin)
+    for (int bin = 1; bin < kBins; ++bin)
         if (around(bin) > around(best)) best = bin;
     const LongEdge* longest = nullptr;
     for (const LongEdge& edge : edges) {
-        if (apart(edge.turn, (best + 0.5) / bins) > 1.5 / bins) continue;
+        if (apart(edge.turn, (best + 0.5) / kBins) > 1.5 / kBins) continue;
         if (longest == nullptr || edge.length > longest->length) longest = &edge;
     }
     if (longest == nullptr) return frame;
@@ -231,7 +231,7 @@ LatticeFrame fitting_frame(const RegionGraph& graph, double edge_length) {
     const FrameMap map{frame};
     double farthest = 0;
     for (const LongEdge& edge : edges) {
-        if (apart(edge.turn, longest->turn) > same_direction || edge.length < longest->length / 3) {
+        if (apart(edge.turn, longest->turn) > kSameDirection || edge.length < longest->length / 3) {
             continue;
         }
         const PlanPoint a = map.into(edge.a), b = map.into(edge.b);
@@ -245,7 +245,7 @@ LatticeFrame fitting_frame(const RegionGraph& graph, double edge_length) {
 Lattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t> loners,
                        const LatticeFrame& frame, const SizeField& size, double edge_length,
                        double clearance, const Check& check) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const FrameMap map{frame};
     const double room = clearance * edge_length;
     const auto row_above = [&](double y) {
@@ -277,7 +277,7 @@ Lattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t>
         }
         const std::int64_t last = row_above(top + room);
         for (std::int64_t row = row_above(bottom - room); row < last; ++row) {
-            double near_low = infinity, near_high = -infinity;
+            double near_low = kInfinity, near_high = -kInfinity;
             near_segment(near_low, near_high, a, b, room, row_y(row));
             if (near_low <= near_high) too_near.push_back({row, near_low, near_high});
         }
@@ -310,7 +310,7 @@ Lattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t>
         row_points = {};
     };
     auto blocked = too_near.begin();
-    double blocked_to = -infinity;  // of the row, up to what is reached so far
+    double blocked_to = -kInfinity;  // of the row, up to what is reached so far
     for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
         const std::int64_t row = crossings[i].row;
         check(static_cast<double>(i) / static_cast<double>(crossings.size()));
@@ -318,7 +318,7 @@ Lattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t>
             finish_row();
             row_points.number = row;
             row_points.first = static_cast<std::int32_t>(lattice.points.size());
-            blocked_to = -infinity;
+            blocked_to = -kInfinity;
             while (blocked != too_near.end() && blocked->row < row)
                 ++blocked;
         }
@@ -349,7 +349,7 @@ Lattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t>
     lattice.on_rim.assign(lattice.points.size(), false);
     for (std::int32_t t = 0; t < triangles; ++t) {
         for (int i = 0; i < 3; ++i) {
-            const Side side(t, i);
+            const HalfEdge side(t, i);
             used[lattice.mesh.from(side)] = true;
             if (!lattice.mesh.is_border(side)) continue;
             lattice.rim.push_back(side);

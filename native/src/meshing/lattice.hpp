@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points of an equilateral lattice inside a region, and the triangles between them. Private.
+// Points of an equilateral lattice inside a region, and the triangles between them.
 #pragma once
 
 #include "meshing/border_pieces.hpp"
@@ -25,7 +25,7 @@ struct Lattice {
     /// Triangles whose corners are all there; in `points` and among themselves. A triangle lies
     /// wholly inside the region.
     FlatMesh mesh;
-    std::vector<Side> rim;             ///< the sides with no triangle behind them
+    std::vector<HalfEdge> rim;         ///< the sides with no triangle twin them
     std::vector<std::int32_t> loners;  ///< points that no triangle has
     std::vector<bool> on_rim;          ///< of each point
 };

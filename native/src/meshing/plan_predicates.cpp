@@ -17,22 +17,21 @@ Point exact_point(const PlanPoint& p) {
 
 }  // namespace
 
-int side_of_line_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
+int orient2d_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
     // The commonest cases by far, that need no arithmetic: p is an end, or all lie along an axis.
     if ((a[0] == p[0] || b[1] == p[1]) && (a[1] == p[1] || b[0] == p[0])) return 0;
     return static_cast<int>(CGAL::orientation(exact_point(a), exact_point(b), exact_point(p)));
 }
 
-int side_of_circle_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
-                           const PlanPoint& p) {
+int in_circle_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
+                      const PlanPoint& p) {
     return static_cast<int>(CGAL::side_of_oriented_circle(exact_point(a), exact_point(b),
                                                           exact_point(c), exact_point(p)));
 }
 
 bool cross_properly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
                     const PlanPoint& d) {
-    return side_of_line(a, b, c) * side_of_line(a, b, d) < 0 &&
-           side_of_line(c, d, a) * side_of_line(c, d, b) < 0;
+    return orient2d(a, b, c) * orient2d(a, b, d) < 0 && orient2d(c, d, a) * orient2d(c, d, b) < 0;
 }
 
 PlanPoint crossing_place(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,

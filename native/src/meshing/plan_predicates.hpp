@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exact questions about points in plan. Private.
+// Exact questions about points in plan.
 #pragma once
 
 #include <cmath>
@@ -10,31 +10,31 @@
 
 namespace realmodel::meshing {
 
-// Half a unit in the last place of 1, and what underflow may add to a determinant.
-inline constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
-inline constexpr double underflow = 1e-290;
+// Half a unit in the last place of 1, and what kUnderflow may add to a determinant.
+inline constexpr double kHalfUlp = std::numeric_limits<double>::epsilon() / 2;
+inline constexpr double kUnderflow = 1e-290;
 
-int side_of_line_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p);
-int side_of_circle_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
-                           const PlanPoint& p);
+int orient2d_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p);
+int in_circle_exactly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
+                      const PlanPoint& p);
 
 /// Side of the line from a to b on which p lies: 1 left, -1 right, 0 on it. Exact; the error bound
 /// that spares most calls the exact arithmetic is that of Shewchuk 1997, "Adaptive precision
 /// floating-point arithmetic and fast robust geometric predicates", section 4.
-inline int side_of_line(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
+inline int orient2d(const PlanPoint& a, const PlanPoint& b, const PlanPoint& p) {
     const double left = (a[0] - p[0]) * (b[1] - p[1]), right = (a[1] - p[1]) * (b[0] - p[0]);
     const double det = left - right;
     const double bound =
-        (3 + 16 * half_ulp) * half_ulp * (std::abs(left) + std::abs(right)) + underflow;
+        (3 + 16 * kHalfUlp) * kHalfUlp * (std::abs(left) + std::abs(right)) + kUnderflow;
     if (det > bound) return 1;
     if (-det > bound) return -1;
-    return side_of_line_exactly(a, b, p);
+    return orient2d_exactly(a, b, p);
 }
 
 /// 1 where p lies inside the circle through a, b, c (counter-clockwise), -1 outside, 0 on it.
 /// Exact, with the error bound of the same paper.
-inline int side_of_circle(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
-                          const PlanPoint& p) {
+inline int in_circle(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
+                     const PlanPoint& p) {
     const double ax = a[0] - p[0], ay = a[1] - p[1], bx = b[0] - p[0], by = b[1] - p[1],
                  cx = c[0] - p[0], cy = c[1] - p[1];
     const double bxcy = bx * cy, cxby = cx * by, cxay = cx * ay, axcy = ax * cy, axby = ax * by,
@@ -44,10 +44,10 @@ inline int side_of_circle(const PlanPoint& a, const PlanPoint& b, const PlanPoin
     const double permanent = (std::abs(bxcy) + std::abs(cxby)) * a2 +
                              (std::abs(cxay) + std::abs(axcy)) * b2 +
                              (std::abs(axby) + std::abs(bxay)) * c2;
-    const double bound = (10 + 96 * half_ulp) * half_ulp * permanent + underflow;
+    const double bound = (10 + 96 * kHalfUlp) * kHalfUlp * permanent + kUnderflow;
     if (det > bound) return 1;
     if (-det > bound) return -1;
-    return side_of_circle_exactly(a, b, c, p);
+    return in_circle_exactly(a, b, c, p);
 }
 
 /// Whether the open segments ab and cd meet in one point that ends neither of them. Exact.
@@ -57,7 +57,7 @@ bool cross_properly(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c, 
 PlanPoint crossing_place(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
                          const PlanPoint& d);
 
-/// "(x, y)" with as many digits as tell it from its neighbours on a map.
+/// "(x, y)" with as many digits as tell it from its neighbors on a map.
 std::string text_of(const PlanPoint& place);
 
 }  // namespace realmodel::meshing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a point that a triangle asks for lies, and what adding it would disturb. Private.
+// Where a point that a triangle asks for lies, and what adding it would disturb.
 #pragma once
 
 #include <optional>
@@ -11,30 +11,30 @@ namespace realmodel::meshing {
 
 /// Where a straight walk through a mesh ended.
 struct Arrival {
-    enum Kind { inside, on_side, at_fixed_side, nowhere } kind;
-    Side side;  ///< of the triangle (inside), the side it lies on, or the fixed side in the way
+    enum Kind { kInside, kOnEdge, kAtFixedEdge, kNowhere } kind;
+    HalfEdge edge;  ///< of the triangle (inside), the edge it lies on, or the fixed edge in the way
 };
 
-/// Goes from within a triangle straight to a goal, and stops at the first fixed side. `nowhere`:
+/// Goes from within a triangle straight to a goal, and stops at the first fixed edge. `kNowhere`:
 /// a vertex is there already, or the triangle is too thin for the question to have an answer.
 Arrival walk_to(const FlatMesh& mesh, std::int32_t triangle, const PlanPoint& goal);
 
-/// The centre of the circle through a triangle's corners; none where doubles do not hold it.
-std::optional<PlanPoint> circumcentre(const FlatMesh& mesh, std::int32_t triangle);
+/// The center of the circle through a triangle's corners; none where doubles do not hold it.
+std::optional<PlanPoint> circumcenter(const FlatMesh& mesh, std::int32_t triangle);
 
-/// Finds a fixed side that a new point would encroach on: that it would see, without another side
+/// Finds a fixed edge that a new point would encroach on: that it would see, without another edge
 /// between, under more than 120 degrees (Shewchuk 2002, section 3.4: lenses of 30 degrees).
 class Encroachment {
 public:
     /// Outside where there is none. `at` is where the point lies.
-    Side find(const FlatMesh& mesh, const Arrival& at, const PlanPoint& p);
+    HalfEdge find(const FlatMesh& mesh, const Arrival& at, const PlanPoint& p);
 
 private:
     std::vector<std::int32_t> cavity_;
 };
 
-/// Whether a side can be cut at a point near it without turning a triangle over. Exact.
-bool can_cut(const FlatMesh& mesh, Side side, const PlanPoint& p);
+/// Whether an edge can be cut at a point near it without turning a triangle over. Exact.
+bool can_cut(const FlatMesh& mesh, HalfEdge edge, const PlanPoint& p);
 
 inline double squared_distance(const PlanPoint& a, const PlanPoint& b) {
     const double dx = b[0] - a[0], dy = b[1] - a[1];

@@ -71,7 +71,7 @@ private:
         double sine2 = 1;
         for (int i = 0; i < 3; ++i) {
             const int before = (i + 2) % 3;
-            // An angle between two fixed sides is given: no vertex can widen it.
+            // An angle between two fixed edges is given: no vertex can widen it.
             if (mesh_.is_fixed({triangle, i}) && mesh_.is_fixed({triangle, before})) continue;
             sine2 = std::min(sine2, area * area / (squared[i] * squared[before]));
         }
@@ -85,42 +85,42 @@ private:
 
     /// Adds one vertex for the sake of a bad triangle; false if there is none to add.
     bool improve(std::int32_t triangle) {
-        const std::optional<PlanPoint> centre = circumcentre(mesh_, triangle);
-        if (!centre) return false;
-        const Arrival at = walk_to(mesh_, triangle, *centre);
-        if (at.kind == Arrival::nowhere) return false;
-        if (at.kind == Arrival::at_fixed_side) return cut(at.side);
-        const Side side = encroachment_.find(mesh_, at, *centre);
-        if (!side.is_outside()) return cut(side);
-        enqueue_star(at.kind == Arrival::inside ? mesh_.insert_inside(at.side.triangle(), *centre)
-                                                : mesh_.insert_on(at.side, *centre));
+        const std::optional<PlanPoint> center = circumcenter(mesh_, triangle);
+        if (!center) return false;
+        const Arrival at = walk_to(mesh_, triangle, *center);
+        if (at.kind == Arrival::kNowhere) return false;
+        if (at.kind == Arrival::kAtFixedEdge) return cut(at.edge);
+        const HalfEdge edge = encroachment_.find(mesh_, at, *center);
+        if (!edge.is_none()) return cut(edge);
+        enqueue_star(at.kind == Arrival::kInside ? mesh_.insert_inside(at.edge.triangle(), *center)
+                                                 : mesh_.insert_on(at.edge, *center));
         return true;
     }
 
-    /// Cuts a fixed side in two; false where it is as short as it may get, or where the rounded
+    /// Cuts a fixed edge in two; false where it is as short as it may get, or where the rounded
     /// middle would turn a triangle over.
-    bool cut(Side side) {
-        const PlanPoint &a = mesh_.point_from(side), &b = mesh_.point_to(side);
+    bool cut(HalfEdge edge) {
+        const PlanPoint &a = mesh_.origin_point(edge), &b = mesh_.target_point(edge);
         if (squared_distance(a, b) <= 4 * target_.shortest_edge * target_.shortest_edge) {
             return false;
         }
-        // Alike from both sides, so that a region and its neighbour are cut alike.
+        // Alike from both edges, so that a region and its neighbor are cut alike.
         const PlanPoint m = a < b ? middle(a, b) : middle(b, a);
-        if (!can_cut(mesh_, side, m)) return false;
-        enqueue_star(mesh_.insert_on(side, m));
+        if (!can_cut(mesh_, edge, m)) return false;
+        enqueue_star(mesh_.insert_on(edge, m));
         return true;
     }
 
-    void enqueue_star(Side leaving) {
+    void enqueue_star(HalfEdge leaving) {
         require_room(mesh_, target_.most_vertices);
-        Side side = leaving;
+        HalfEdge edge = leaving;
         do {
-            enqueue_if_bad(side.triangle());
-            side = mesh_.turn_left(side);
-        } while (!side.is_outside() && side != leaving);
-        if (!side.is_outside()) return;
-        for (side = mesh_.turn_right(leaving); !side.is_outside(); side = mesh_.turn_right(side))
-            enqueue_if_bad(side.triangle());
+            enqueue_if_bad(edge.triangle());
+            edge = mesh_.rotate_ccw(edge);
+        } while (!edge.is_none() && edge != leaving);
+        if (!edge.is_none()) return;
+        for (edge = mesh_.rotate_cw(leaving); !edge.is_none(); edge = mesh_.rotate_cw(edge))
+            enqueue_if_bad(edge.triangle());
     }
 
     FlatMesh& mesh_;

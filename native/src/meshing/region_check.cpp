@@ -12,7 +12,7 @@ namespace realmodel::meshing {
 
 namespace {
 
-constexpr std::int32_t none = -1;
+constexpr std::int32_t kNone = -1;
 
 /// Finds the rings that run along an edge of the triangulation.
 class RingsOfEdges {
@@ -25,7 +25,7 @@ public:
             if (a.from != b.from || a.to != b.to) continue;
             shared_ = true;
             if (rings[ring_of(a)].polygon != rings[ring_of(b)].polygon) continue;
-            if (same_ == none || b.segment < edges_[same_].segment)
+            if (same_ == kNone || b.segment < edges_[same_].segment)
                 same_ = static_cast<std::int32_t>(i);
         }
     }
@@ -35,13 +35,13 @@ public:
 
     /// Refuses rings of one polygon that share a stretch, the first such one.
     void require_apart() const {
-        if (same_ != none) refuse_overlap(graph_, edges_[same_ - 1], edges_[same_]);
+        if (same_ != kNone) refuse_overlap(graph_, edges_[same_ - 1], edges_[same_]);
     }
 
     /// Calls visit(ring) for each ring along the edge between two points.
     template <class Visit>
     void visit(std::int32_t a, std::int32_t b, Visit&& visit) const {
-        const CoveredEdge wanted{std::min(a, b), std::max(a, b), none};
+        const CoveredEdge wanted{std::min(a, b), std::max(a, b), kNone};
         for (auto at = std::lower_bound(edges_.begin(), edges_.end(), wanted);
              at != edges_.end() && at->from == wanted.from && at->to == wanted.to; ++at) {
             visit(ring_of(*at));
@@ -56,13 +56,13 @@ private:
     const RingGraph& graph_;
     std::vector<CoveredEdge> edges_;
     bool shared_ = false;
-    std::int32_t same_ = none;
+    std::int32_t same_ = kNone;
 };
 
 /// How rings lie in each other, told by walking over the triangles from the outside.
 struct Nesting {
     std::vector<bool> inside;           ///< of triangles: in an odd number of rings
-    std::vector<std::int32_t> parents;  ///< of rings: the innermost other one around it, or none
+    std::vector<std::int32_t> parents;  ///< of rings: the innermost other one around it, or kNone
 };
 
 /// The innermost ring around a place, after an edge is crossed along which rings run.
@@ -76,14 +76,14 @@ std::int32_t cross(const RingsOfEdges& rings, std::int32_t a, std::int32_t b,
     while (more) {  // leave the innermost ones first, in whatever order they are listed
         more = false;
         for (std::int32_t& ring : along) {
-            if (ring == none || ring != innermost) continue;
+            if (ring == kNone || ring != innermost) continue;
             innermost = nesting.parents[ring];
-            ring = none;
+            ring = kNone;
             more = true;
         }
     }
     for (const std::int32_t ring : along) {
-        if (ring == none) continue;
+        if (ring == kNone) continue;
         if (!met[ring]) nesting.parents[ring] = innermost;
         met[ring] = true;
         innermost = ring;
@@ -93,14 +93,14 @@ std::int32_t cross(const RingsOfEdges& rings, std::int32_t a, std::int32_t b,
 
 Nesting nesting_of(const ConstrainedTriangulation& mesh, const RingsOfEdges& rings,
                    std::size_t ring_count) {
-    constexpr signed char unknown = -1;
-    Nesting nesting{{}, std::vector<std::int32_t>(ring_count, none)};
+    constexpr signed char kUnknown = -1;
+    Nesting nesting{{}, std::vector<std::int32_t>(ring_count, kNone)};
     std::vector<bool> met(ring_count);
-    std::vector<signed char> parity(mesh.triangles.size(), unknown);
-    std::vector<std::int32_t> innermost(mesh.triangles.size(), none), open;
+    std::vector<signed char> parity(mesh.triangles.size(), kUnknown);
+    std::vector<std::int32_t> innermost(mesh.triangles.size(), kNone), open;
     const auto reach = [&](std::int32_t triangle, const std::array<std::int32_t, 3>& corners, int i,
                            std::int32_t around, bool constrained, signed char value) {
-        if (parity[triangle] != unknown) return;
+        if (parity[triangle] != kUnknown) return;
         bool odd = false;
         if (constrained) {
             around = cross(rings, corners[i], corners[(i + 1) % 3], around, nesting, met, odd);
@@ -111,15 +111,15 @@ Nesting nesting_of(const ConstrainedTriangulation& mesh, const RingsOfEdges& rin
     };
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         for (int i = 0; i < 3; ++i) {
-            if (mesh.neighbours[t][i] >= 0) continue;
-            reach(static_cast<std::int32_t>(t), mesh.triangles[t], i, none, mesh.constrained[t][i],
+            if (mesh.neighbors[t][i] >= 0) continue;
+            reach(static_cast<std::int32_t>(t), mesh.triangles[t], i, kNone, mesh.constrained[t][i],
                   0);
         }
         while (!open.empty()) {
             const std::int32_t from = open.back();
             open.pop_back();
             for (int i = 0; i < 3; ++i) {
-                const std::int32_t to = mesh.neighbours[from][i];
+                const std::int32_t to = mesh.neighbors[from][i];
                 if (to < 0) continue;
                 reach(to, mesh.triangles[from], i, innermost[from], mesh.constrained[from][i],
                       parity[from]);
@@ -136,7 +136,7 @@ void require_holes_inside(std::span<const RegionRing> rings, const Nesting& nest
         if (!rings[r].hole) continue;
         bool found = false;
         std::size_t steps = 0;
-        for (std::int32_t around = nesting.parents[r]; around != none && steps <= rings.size();
+        for (std::int32_t around = nesting.parents[r]; around != kNone && steps <= rings.size();
              around = nesting.parents[around], ++steps) {
             found = found || (rings[around].polygon == rings[r].polygon && !rings[around].hole);
         }
@@ -154,7 +154,7 @@ void require_holes_inside(std::span<const RegionRing> rings, const Nesting& nest
 std::vector<Ring> border_rings(const RingGraph& graph, const ConstrainedTriangulation& mesh,
                                const std::vector<bool>& inside) {
     const auto is_border = [&](std::int32_t t, int i) {
-        const std::int32_t across = mesh.neighbours[t][i];
+        const std::int32_t across = mesh.neighbors[t][i];
         return across < 0 || !inside[across];
     };
     std::vector<std::array<bool, 3>> taken(mesh.triangles.size());
@@ -174,7 +174,7 @@ std::vector<Ring> border_rings(const RingGraph& graph, const ConstrainedTriangul
                 const std::int32_t pivot = mesh.triangles[t][(i + 1) % 3];
                 i = (i + 1) % 3;
                 while (!is_border(t, i)) {
-                    t = mesh.neighbours[t][i];
+                    t = mesh.neighbors[t][i];
                     i = 0;
                     while (mesh.triangles[t][i] != pivot)
                         ++i;

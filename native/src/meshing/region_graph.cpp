@@ -27,7 +27,7 @@ void take_region(RegionGraph& graph, const ConstrainedTriangulation& mesh,
         graph.triangles.push_back({a, b, c});
         graph.area += 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
         for (int i = 0; i < 3; ++i) {
-            const std::int32_t across = mesh.neighbours[t][i];
+            const std::int32_t across = mesh.neighbors[t][i];
             if (across >= 0 && inside[across]) continue;
             graph.border.push_back({corners[i], corners[(i + 1) % 3]});
         }
@@ -190,7 +190,7 @@ RegionGraph region_graph(std::span<const Ring> rings, const Constraints& constra
         for (int i = 0; i < 3; ++i) {
             const std::int32_t a = mesh.triangles[t][i], b = mesh.triangles[t][(i + 1) % 3];
             within[a] = true;
-            const std::int32_t other = mesh.neighbours[t][i];
+            const std::int32_t other = mesh.neighbors[t][i];
             if (a > b || !mesh.constrained[t][i] || other < 0 || !inside[other]) continue;
             if (!std::binary_search(inner_edges.begin(), inner_edges.end(), Segment{a, b}))
                 continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A region with what its mesh must contain, as points and edges. Private.
+// A region with what its mesh must contain, as points and edges.
 #pragma once
 
 #include <span>
@@ -24,7 +24,7 @@ struct RegionGraph {
 
 /// Checks rings and constraints and brings them together: constraints are cut where they meet the
 /// border or one another (at crossings with a new point, rounded), and what lies outside is left
-/// out. Throws InputError as mesh_region does.
+/// out. @throws InputError as mesh_region does.
 RegionGraph region_graph(std::span<const Ring> rings, const Constraints& constraints,
                          const Progress* progress);
 

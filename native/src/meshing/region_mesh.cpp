@@ -25,21 +25,21 @@ namespace realmodel::meshing {
 
 namespace {
 
-// In edge lengths. Lattice points nearer to the border than the clearance would make flat triangles
-// with it; the longest edge lets pass what the band between lattice and border needs.
-constexpr double clearance = 0.6;
-constexpr double longest_edge = 1.6;
-constexpr double shortest_edge = 1e-3;
-constexpr double least_angle = 27.0 / 180 * std::numbers::pi;
+// In edge lengths. Lattice points nearer to the border than the kClearance would make flat
+// triangles with it; the longest edge lets pass what the band between lattice and border needs.
+constexpr double kClearance = 0.6;
+constexpr double kLongestEdge = 1.6;
+constexpr double kShortestEdge = 1e-3;
+constexpr double kLeastAngle = 27.0 / 180 * std::numbers::pi;
 
 // The same for grids: nodes stay where they are as far as slivers allow it.
-constexpr double grid_clearance = 0.35;
-constexpr double longest_grid_edge = 2.2;
-constexpr double least_grid_angle = 20.0 / 180 * std::numbers::pi;
+constexpr double kGridClearance = 0.35;
+constexpr double kLongestGridEdge = 2.2;
+constexpr double kLeastGridAngle = 20.0 / 180 * std::numbers::pi;
 
 // Measured at 4 million triangles (native/benchmarks/meshing_benchmark.cpp), with a reserve.
-constexpr double bytes_per_triangle = 220;
-constexpr double most_triangles = most_flat_triangles;
+constexpr double kBytesPerTriangle = 220;
+constexpr double kMostTriangles = kMostFlatTriangles;
 
 std::string number_text(double number) {
     char text[40];
@@ -79,7 +79,8 @@ class Meshing {
 public:
     Meshing(std::span<const Ring> rings, const MeshRequest& request, Progress* progress)
         : request_(request), progress_(progress) {
-        if (request.mesher == Mesher::grid && !(request.sizes.empty() && request.density.empty())) {
+        if (request.mesher == Mesher::kGrid &&
+            !(request.sizes.empty() && request.density.empty())) {
             throw InputError("size",
                              "a grid has one edge length everywhere; use mesher \"delaunay\" "
                              "or \"frontal\" for local ones");
@@ -95,7 +96,7 @@ public:
         graph_ = region_graph(rings, request.constraints, progress);
         extent_ = extent_of(graph_);
         fitting_ =
-            std::min(most_triangles, static_cast<double>(available_memory()) / bytes_per_triangle);
+            std::min(kMostTriangles, static_cast<double>(available_memory()) / kBytesPerTriangle);
     }
 
     PlanarMesh run() {
@@ -105,11 +106,11 @@ public:
     }
 
     MeshEstimate estimate() {
-        fitting_ = most_triangles;  // it is the caller who asks whether it fits
+        fitting_ = kMostTriangles;  // it is the caller who asks whether it fits
         const double triangles = request_.triangles > 0
                                      ? request_.triangles
                                      : triangles_of(unchecked_field(longest(), 1));
-        return {triangles, triangles * bytes_per_triangle};
+        return {triangles, triangles * kBytesPerTriangle};
     }
 
 private:
@@ -132,7 +133,7 @@ private:
     SizeField field(double length, double scale) const {
         require_room(length);
         SizeField size = unchecked_field(length, scale);
-        if (request_.mesher == Mesher::frontal) size = graded_to_detail(std::move(size), scale);
+        if (request_.mesher == Mesher::kFrontal) size = graded_to_detail(std::move(size), scale);
         if (!size.is_uniform()) {
             const double need = triangles_of(size);
             if (need > fitting_) refuse_size(need);
@@ -146,7 +147,7 @@ private:
         const double pieces = pieces_along(sources, extent_.low, extent_.high);
         if (pieces > fitting_) refuse_size(2 * pieces);
         return {length,
-                gradation,
+                kGradation,
                 sources,
                 extent_.low,
                 extent_.high,
@@ -159,12 +160,12 @@ private:
     SizeField graded_to_detail(SizeField&& size, double scale) const {
         const Check check = step(0.01, 0.01, "looking for detail");
         std::vector<SizeSource> sources = border_detail(
-            graph_, size, least_angle, shortest_edge * size.largest(), most_vertices(), check);
+            graph_, size, kLeastAngle, kShortestEdge * size.largest(), most_vertices(), check);
         if (sources.empty()) return std::move(size);
         const std::vector<SizeSource> wanted =
             requested_sources(graph_, request_, size.largest(), scale);
         sources.insert(sources.end(), wanted.begin(), wanted.end());
-        return {size.largest(), gradation, sources, extent_.low, extent_.high, fitting_, check};
+        return {size.largest(), kGradation, sources, extent_.low, extent_.high, fitting_, check};
     }
 
     std::size_t most_vertices() const { return static_cast<std::size_t>(fitting_ / 2); }
@@ -188,7 +189,7 @@ private:
             throw InputError("too_large",
                              "edge length " + number_text(edge_length) + " would need about " +
                                  number_text(need) + " triangles (" +
-                                 number_text(need * bytes_per_triangle / 1e9) +
+                                 number_text(need * kBytesPerTriangle / 1e9) +
                                  " GB); there is room for " + number_text(fitting_) +
                                  ": use an edge length of at least " + number_text(fits));
         }
@@ -197,20 +198,20 @@ private:
 
     void require_precision(double edge_length) const {
         const double step = extent_.reach * std::numeric_limits<double>::epsilon();
-        if (edge_length * shortest_edge >= 16 * step) return;
+        if (edge_length * kShortestEdge >= 16 * step) return;
         throw InputError("edge_length",
                          "edge length " + number_text(edge_length) +
                              " is too small for coordinates as large as " +
                              number_text(extent_.reach) +
                              ": doubles cannot tell the points apart; use at least " +
-                             number_text(17 * step / shortest_edge) +
+                             number_text(17 * step / kShortestEdge) +
                              ", or move the region nearer to the origin");
     }
 
     [[noreturn]] void refuse_size(double need) const {
         throw InputError("too_large", "the local lengths would need about " + number_text(need) +
                                           " triangles (" +
-                                          number_text(need * bytes_per_triangle / 1e9) +
+                                          number_text(need * kBytesPerTriangle / 1e9) +
                                           " GB); there is room for " + number_text(fitting_) +
                                           ": use longer ones, or shorter distances");
     }
@@ -230,7 +231,7 @@ void require_upright(const PlanarMesh& mesh, const Check& check) {
     Ticker tick(check);
     for (const auto& [a, b, c] : mesh.triangles) {
         tick(0.9);
-        if (side_of_line(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) > 0) continue;
+        if (orient2d(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) > 0) continue;
         const PlanPoint& p = mesh.vertices[a];
         throw InputError(
             "too_close",
@@ -244,7 +245,7 @@ void require_upright(const PlanarMesh& mesh, const Check& check) {
 PlanarMesh collected(FlatMesh&& flat, const Check& check) {
     Ticker tick(check);
     PlanarMesh mesh{std::move(flat.points), std::move(flat.corners)};
-    flat.across = {};
+    flat.twins = {};
     std::erase_if(mesh.triangles, [](const auto& t) { return t[0] < 0; });
     std::vector<bool> used(mesh.vertices.size(), false);
     for (const auto& t : mesh.triangles) {
@@ -272,22 +273,22 @@ PlanarMesh Meshing::mesh(const SizeField& size, double begin, double end) const 
     const auto part = [&](double from, double to, const char* text) {
         return step(begin + (end - begin) * from, begin + (end - begin) * to, text);
     };
-    const bool is_grid = request_.mesher == Mesher::grid;
+    const bool is_grid = request_.mesher == Mesher::kGrid;
     const Check cutting = part(0, 0.05, "cutting the border");
     const Check laying = part(0.05, 0.3, "laying out the points");
     BorderPieces border;
     std::vector<Lattice> lattices;
     if (is_grid) {
         const double side = size.largest();
-        border = cut_border_by_grid(graph_, extent_.low, side, grid_clearance, cutting);
+        border = cut_border_by_grid(graph_, extent_.low, side, kGridClearance, cutting);
         lattices.push_back(lattice_inside(border, graph_.loners,
                                           {extent_.low, {1, 0}, side, side, true}, size, side,
-                                          grid_clearance, laying));
+                                          kGridClearance, laying));
     } else {
         border = cut_border(graph_, size, cutting);
         for (const double length : lattice_lengths(request_, size)) {
             lattices.push_back(lattice_inside(border, graph_.loners, fitting_frame(graph_, length),
-                                              size, length, clearance, laying));
+                                              size, length, kClearance, laying));
         }
     }
     BandedMesh banded = join_band(std::move(border), graph_.loners, std::move(lattices),
@@ -297,12 +298,12 @@ PlanarMesh Meshing::mesh(const SizeField& size, double begin, double end) const 
         advance_front(flat, size, banded.first_of_band, most_vertices(),
                       part(0.5, 0.75, "filling"));
     }
-    const RefinementTarget target{is_grid ? least_grid_angle : least_angle,
-                                  is_grid ? longest_grid_edge : longest_edge,
-                                  shortest_edge * size.largest(), most_vertices()};
+    const RefinementTarget target{is_grid ? kLeastGridAngle : kLeastAngle,
+                                  is_grid ? kLongestGridEdge : kLongestEdge,
+                                  kShortestEdge * size.largest(), most_vertices()};
     refine(flat, target, size, banded.first_of_band, banded.rim_triangles,
            part(0.75, 0.8, "improving the border"));
-    if (request_.mesher == Mesher::frontal) {
+    if (request_.mesher == Mesher::kFrontal) {
         const Check check = part(0.8, 0.9, "smoothing");
         smooth(flat, size, banded.first_of_band, banded.rim_triangles,
                static_cast<std::int32_t>(graph_.points.size()), graph_.loners, check);
@@ -316,10 +317,10 @@ PlanarMesh Meshing::mesh(const SizeField& size, double begin, double end) const 
 }
 
 PlanarMesh Meshing::run_for_count() {
-    constexpr double good_enough = 0.02;
-    constexpr int most_rounds = 8;
+    constexpr double kGoodEnough = 0.02;
+    constexpr int kMostRounds = 8;
     // The area of a triangle of side 1, or half a square.
-    const double equilateral = request_.mesher == Mesher::grid ? 0.5 : std::numbers::sqrt3 / 4;
+    const double equilateral = request_.mesher == Mesher::kGrid ? 0.5 : std::numbers::sqrt3 / 4;
     const double wanted = request_.triangles;
     // With densities both bounds and points are scaled alike.
     double scale = 1;
@@ -327,7 +328,7 @@ PlanarMesh Meshing::run_for_count() {
         request_.density.empty() ? std::sqrt(graph_.area / (equilateral * wanted)) : longest();
     PlanarMesh best;
     double best_miss = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < kMostRounds; ++round) {
         const double begin = 1 - std::pow(0.5, round), end = 1 - std::pow(0.5, round + 1);
         PlanarMesh made = mesh(field(scale * unit, scale), begin, end);
         const auto count = static_cast<double>(made.triangles.size());
@@ -336,7 +337,7 @@ PlanarMesh Meshing::run_for_count() {
             best = std::move(made);
             best_miss = miss;
         }
-        if (miss <= good_enough) break;
+        if (miss <= kGoodEnough) break;
         scale *= std::sqrt(count / wanted);
         if (scale * unit > 4 * extent_.width) break;
     }

@@ -15,9 +15,9 @@ namespace realmodel::meshing {
 namespace {
 
 // Edges half as long as the points are apart: each point gets a few triangles of its own.
-constexpr double edges_per_spacing = 2;
-constexpr double longest_share = 4, shortest_share = 1.0 / 64;
-constexpr std::size_t counted_neighbours = 8;
+constexpr double kEdgesPerSpacing = 2;
+constexpr double kLongestShare = 4, kShortestShare = 1.0 / 64;
+constexpr std::size_t kCountedNeighbors = 8;
 
 void check_size(const LocalLength& size, std::size_t number, double edge_length) {
     const auto refuse = [&](const std::string& what) {
@@ -41,8 +41,8 @@ void check_size(const LocalLength& size, std::size_t number, double edge_length)
 }  // namespace
 
 double longest_by_density(const RegionGraph& graph, const MeshRequest& request) {
-    return longest_share * std::sqrt(graph.area / static_cast<double>(request.density.size())) /
-           edges_per_spacing;
+    return kLongestShare * std::sqrt(graph.area / static_cast<double>(request.density.size())) /
+           kEdgesPerSpacing;
 }
 
 std::vector<SizeSource> requested_sources(const RegionGraph& graph, const MeshRequest& request,
@@ -51,7 +51,7 @@ std::vector<SizeSource> requested_sources(const RegionGraph& graph, const MeshRe
     for (std::size_t i = 0; i < request.sizes.size(); ++i) {
         const LocalLength& size = request.sizes[i];
         check_size(size, i, request.triangles > 0 || !request.density.empty() ? 0 : edge_length);
-        const double start = size.length - gradation * size.distance;
+        const double start = size.length - kGradation * size.distance;
         if (size.line.empty()) {
             for (const auto& [from, to] : graph.border)
                 sources.push_back({graph.points[from], graph.points[to], start, size.length});
@@ -75,16 +75,16 @@ std::vector<SizeSource> requested_sources(const RegionGraph& graph, const MeshRe
         throw InputError("density", "an edge length by density needs two points at least");
     }
     const double longest = longest_by_density(graph, request);
-    const std::size_t neighbours = std::min(counted_neighbours, points.size() - 1);
+    const std::size_t neighbors = std::min(kCountedNeighbors, points.size() - 1);
     const spatial::NearestPoints nearest(points);
     std::vector<spatial::Neighbour> found;
     for (const PlanPoint& p : points) {
-        nearest.find(p, neighbours + 1, found);  // the first is the point itself
+        nearest.find(p, neighbors + 1, found);  // the first is the point itself
         // So many points lie in a circle of that radius.
         const double spacing = std::sqrt(found.back().squared_distance * std::numbers::pi /
-                                         static_cast<double>(neighbours));
+                                         static_cast<double>(neighbors));
         const double wanted =
-            scale * std::clamp(spacing / edges_per_spacing, shortest_share * longest, longest);
+            scale * std::clamp(spacing / kEdgesPerSpacing, kShortestShare * longest, longest);
         sources.push_back({p, p, wanted, wanted});
     }
     return sources;
@@ -114,21 +114,21 @@ double pieces_along(std::span<const SizeSource> sources, const PlanPoint& low,
 }
 
 std::vector<double> lattice_lengths(const MeshRequest& request, const SizeField& size) {
-    constexpr double clearly_shorter = 0.8;  // else two lattices would collide
+    constexpr double kClearlyShorter = 0.8;  // else two lattices would collide
     std::vector<double> lengths{size.largest()};
     std::vector<double> wanted;
     for (const LocalLength& local : request.sizes)
         if (local.distance > 2 * local.length) wanted.push_back(local.length);
     std::sort(wanted.rbegin(), wanted.rend());
     for (const double length : wanted)
-        if (length < clearly_shorter * lengths.back()) lengths.push_back(length);
+        if (length < kClearlyShorter * lengths.back()) lengths.push_back(length);
     return lengths;
 }
 
 double triangles_in(const RegionGraph& graph, const SizeField& size, const Check& check) {
-    constexpr double equilateral = std::numbers::sqrt3 / 4;  // the area at side 1
-    constexpr double next_to_nothing = 0.25 * equilateral;
-    if (size.is_uniform()) return graph.area / (equilateral * size.largest() * size.largest());
+    constexpr double kEquilateral = std::numbers::sqrt3 / 4;  // the area at side 1
+    constexpr double kNextToNothing = 0.25 * kEquilateral;
+    if (size.is_uniform()) return graph.area / (kEquilateral * size.largest() * size.largest());
     Ticker tick(check);
     double triangles = 0;
     std::vector<std::array<PlanPoint, 3>> open = graph.triangles;
@@ -142,11 +142,11 @@ double triangles_in(const RegionGraph& graph, const SizeField& size, const Check
         const double longest = std::max({ab, bc, ca});
         const double area = 0.5 * twice_area(a, b, c);
         // Slivers, of which combs have many, are not cut as long as they hold next to nothing: all
-        // of one lies within two thirds of its longest side from its centre.
+        // of one lies within two thirds of its longest side from its center.
         const double finest =
-            std::max(size.smallest(), wanted - gradation * 2 / 3 * std::sqrt(longest));
-        if (longest <= 9 * wanted * wanted || area <= next_to_nothing * finest * finest) {
-            triangles += area / (equilateral * wanted * wanted);
+            std::max(size.smallest(), wanted - kGradation * 2 / 3 * std::sqrt(longest));
+        if (longest <= 9 * wanted * wanted || area <= kNextToNothing * finest * finest) {
+            triangles += area / (kEquilateral * wanted * wanted);
         } else if (longest == ab) {
             const PlanPoint m = middle(a, b);
             open.push_back({a, m, c});

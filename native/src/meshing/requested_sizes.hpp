@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lengths that a request asks for, as a size field. Private.
+// The lengths that a request asks for, as a size field.
 #pragma once
 
 #include "meshing/region_graph.hpp"
@@ -8,10 +8,10 @@
 namespace realmodel::meshing {
 
 /// How much lengths may differ from place to place, for each unit between them.
-inline constexpr double gradation = 0.25;
+inline constexpr double kGradation = 0.25;
 
 /// The sources of a request's local lengths and densities. `scale` multiplies what densities ask
-/// for. Throws InputError "size" and "density".
+/// for. @throws InputError "size" and "density".
 std::vector<SizeSource> requested_sources(const RegionGraph& graph, const MeshRequest& request,
                                           double edge_length, double scale);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rings as a graph, and the refusal of two of its edges. Private.
+// Rings as a graph, and the refusal of two of its edges.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace realmodel::meshing {
 
-/// Rings as points and segments. Throws InputError "no_outline", "not_finite" and
+/// Rings as points and segments. @throws InputError "no_outline", "not_finite" and
 /// "outline_degenerate" as triangulate_region does.
 RingGraph ring_graph(std::span<const Ring> rings);
 
@@ -24,7 +24,7 @@ struct ConstrainedRings {
     ConstrainedTriangulation triangulation;
 };
 
-/// Throws InputError as ring_graph does, and "outline_crosses"; Cancelled.
+/// @throws InputError as ring_graph does, and "outline_crosses"; Cancelled.
 ConstrainedRings constrained_rings(std::span<const Ring> rings, const Progress* progress);
 
 /// Refuses two segments that run along one edge, as "outline_overlaps".
@@ -38,23 +38,23 @@ std::vector<std::int32_t> first_equal(std::span<const PlanPoint> places);
 /// across the sides for which `is_ring(triangle, side)`. The hull is walked into from outside.
 template <class IsRing>
 std::vector<bool> inside_rings(const ConstrainedTriangulation& mesh, IsRing&& is_ring) {
-    constexpr signed char unknown = -1;
-    std::vector<signed char> parity(mesh.triangles.size(), unknown);
+    constexpr signed char kUnknown = -1;
+    std::vector<signed char> parity(mesh.triangles.size(), kUnknown);
     std::vector<std::int32_t> open;
     const auto reach = [&](std::int32_t triangle, int value) {
-        if (parity[triangle] != unknown) return;
+        if (parity[triangle] != kUnknown) return;
         parity[triangle] = static_cast<signed char>(value);
         open.push_back(triangle);
     };
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         const auto first = static_cast<std::int32_t>(t);
         for (int i = 0; i < 3; ++i)
-            if (mesh.neighbours[t][i] < 0) reach(first, is_ring(first, i) ? 1 : 0);
+            if (mesh.neighbors[t][i] < 0) reach(first, is_ring(first, i) ? 1 : 0);
         while (!open.empty()) {
             const std::int32_t from = open.back();
             open.pop_back();
             for (int i = 0; i < 3; ++i) {
-                const std::int32_t to = mesh.neighbours[from][i];
+                const std::int32_t to = mesh.neighbors[from][i];
                 if (to >= 0) reach(to, is_ring(from, i) ? 1 - parity[from] : parity[from]);
             }
         }

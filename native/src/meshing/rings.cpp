@@ -58,7 +58,7 @@ void require_area(const std::vector<Corner>& corners, std::int64_t ring_number) 
                (corners.size() == 1 ? "" : "s"));
     }
     const bool in_line = std::all_of(corners.begin() + 2, corners.end(), [&](const Corner& c) {
-        return side_of_line(corners[0].place, corners[1].place, c.place) == 0;
+        return orient2d(corners[0].place, corners[1].place, c.place) == 0;
     });
     if (in_line) refuse("has all its corners in one line");
 }

@@ -42,8 +42,8 @@ std::vector<std::vector<PlanPoint>> crossings(std::span<const PlanPoint> points,
     const auto meet = [&](std::int32_t s, std::int32_t t) {
         const PlanPoint &a = points[segments[s][0]], &b = points[segments[s][1]],
                         &c = points[segments[t][0]], &d = points[segments[t][1]];
-        const int ac = side_of_line(a, b, c), ad = side_of_line(a, b, d),
-                  ca = side_of_line(c, d, a), cb = side_of_line(c, d, b);
+        const int ac = orient2d(a, b, c), ad = orient2d(a, b, d), ca = orient2d(c, d, a),
+                  cb = orient2d(c, d, b);
         if (ac * ad < 0 && ca * cb < 0) {
             // From the same two names in the same order, so that both get the same place.
             PlanPoint p = crossing_place(a, b, c, d);

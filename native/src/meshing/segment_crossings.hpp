@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the segments of constraints meet others. Private.
+// Where the segments of constraints meet others.
 #pragma once
 
 #include <span>

@@ -12,8 +12,8 @@ namespace realmodel::meshing {
 
 namespace {
 
-constexpr std::int32_t deepest = 40;     // a cell then is 1e-12 of the region
-constexpr double leaf_per_length = 1.5;  // width of a leaf in lengths wanted there
+constexpr std::int32_t kDeepest = 40;   // a cell then is 1e-12 of the region
+constexpr double kLeafPerLength = 1.5;  // width of a leaf in lengths wanted there
 
 double distance(const SizeSource& source, double x, double y) {
     const double ux = source.b[0] - source.a[0], uy = source.b[1] - source.a[1];
@@ -83,7 +83,7 @@ void SizeField::build(std::int32_t node, const Cell& cell, std::span<const SizeS
             kept.push_back(candidates[i]);
         }
     }
-    if (cell.width <= leaf_per_length * lowest || cell.depth == deepest) {
+    if (cell.width <= kLeafPerLength * lowest || cell.depth == kDeepest) {
         std::array<double, 4> lengths;
         for (int i = 0; i < 4; ++i) {
             lengths[i] = largest_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long edges should be at each place. Private.
+// How long edges should be at each place.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ public:
     /// The same length everywhere.
     explicit SizeField(double length) : largest_(length), smallest_(length) {}
 
-    /// Between `low` and `high`, beyond them what is at their border. Throws InputError "too_large"
-    /// where it would need more than `most_leaves`.
+    /// Between `low` and `high`, beyond them what is at their border. @throws InputError
+    /// "too_large" where it would need more than `most_leaves`.
     SizeField(double largest, double gradation, std::span<const SizeSource> sources,
               const PlanPoint& low, const PlanPoint& high, double most_leaves, const Check& check);
 

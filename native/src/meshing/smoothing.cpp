@@ -11,11 +11,11 @@ namespace realmodel::meshing {
 
 namespace {
 
-constexpr int rounds = 6;
-constexpr int judged_rounds = 2;  // later ones find next to nothing
-constexpr int moves_per_round = 2;
-constexpr int last_moves = 4;
-constexpr int flips_of_a_glide = 8;
+constexpr int kRounds = 6;
+constexpr int kJudgedRounds = 2;  // later ones find next to nothing
+constexpr int kMovesPerRound = 2;
+constexpr int kLastMoves = 4;
+constexpr int kFlipsOfAGlide = 8;
 
 class Smoothing {
 public:
@@ -29,23 +29,23 @@ public:
           flips_(valences_, moves_) {
         for (const std::int32_t v : kept)
             valences_.keep(v);
-        // Of one length pieces stay even: regions side by side meet in them.
+        // Of one length pieces stay even: regions edge by edge meet in them.
         if (!size_.is_uniform()) find_sliding(corners);
         find_active(first, also);
     }
 
     void run(const Check& check) {
         Ticker tick(check);
-        for (int round = 0; round < rounds; ++round) {
+        for (int round = 0; round < kRounds; ++round) {
             flip_towards_six(tick);
             collapse_towards_six(tick);
-            if (round < judged_rounds) glide(check);
-            for (int i = 0; i < moves_per_round; ++i)
+            if (round < kJudgedRounds) glide(check);
+            for (int i = 0; i < kMovesPerRound; ++i)
                 move_all(tick);
             make_delaunay(tick);
-            if (round < judged_rounds) mend(check);
+            if (round < kJudgedRounds) mend(check);
         }
-        for (int i = 0; i < last_moves; ++i)
+        for (int i = 0; i < kLastMoves; ++i)
             move_all(tick);
         make_delaunay(tick);
         move_all(tick);
@@ -86,26 +86,26 @@ private:
     /// Vertices added between two corners of the border may slide between them.
     void find_sliding(std::int32_t corners) {
         const std::size_t points = mesh_.points.size();
-        std::vector<Side> border(points, Side::outside());  // of each added vertex: from it
-        std::vector<Side> begins;
+        std::vector<HalfEdge> border(points, HalfEdge::none());  // of each added vertex: from it
+        std::vector<HalfEdge> begins;
         const auto count = static_cast<std::int32_t>(mesh_.corners.size());
         for (std::int32_t t = 0; t < count; ++t) {
             if (mesh_.is_dead(t)) continue;
             for (int i = 0; i < 3; ++i) {
-                const Side side(t, i);
-                if (!mesh_.is_border(side)) continue;
-                if (mesh_.from(side) >= corners) {
-                    border[mesh_.from(side)] = side;
-                } else if (mesh_.to(side) >= corners) {
-                    begins.push_back(side);
+                const HalfEdge edge(t, i);
+                if (!mesh_.is_border(edge)) continue;
+                if (mesh_.from(edge) >= corners) {
+                    border[mesh_.from(edge)] = edge;
+                } else if (mesh_.to(edge) >= corners) {
+                    begins.push_back(edge);
                 }
             }
         }
-        for (const Side begin : begins) {
+        for (const HalfEdge begin : begins) {
             std::int32_t end = mesh_.to(begin);
             while (end >= corners)
                 end = mesh_.to(border[end]);
-            const std::int32_t line = moves_.add_line(mesh_.point_from(begin), mesh_.points[end]);
+            const std::int32_t line = moves_.add_line(mesh_.origin_point(begin), mesh_.points[end]);
             for (std::int32_t v = mesh_.to(begin); v >= corners; v = mesh_.to(border[v]))
                 moves_.slide_on(v, line);
         }
@@ -115,13 +115,13 @@ private:
         for (const std::int32_t v : active_) {
             tick(0.2);
             if (valences_.is_gone(v)) continue;
-            sides_.clear();
-            valences_.around(v, [&](Side side) { sides_.push_back(side); });
-            for (const Side side : sides_) {
-                if (mesh_.is_fixed(side)) continue;
-                if (valences_.gain_of_flip(side) <= 0) continue;
-                if (!valences_.can_flip(side)) continue;
-                valences_.flip(side);
+            edges_.clear();
+            valences_.around(v, [&](HalfEdge edge) { edges_.push_back(edge); });
+            for (const HalfEdge edge : edges_) {
+                if (mesh_.is_fixed(edge)) continue;
+                if (valences_.gain_of_flip(edge) <= 0) continue;
+                if (!valences_.can_flip(edge)) continue;
+                valences_.flip(edge);
                 break;  // the star has changed
             }
         }
@@ -131,7 +131,7 @@ private:
         for (const std::int32_t v : active_) {
             tick(0.3);
             if (valences_.is_gone(v)) continue;
-            if (moves_.slides(v)) valences_.pass_by(v);
+            if (moves_.slides(v)) valences_.remove_from_border(v);
             if (moves_.moves_freely(v)) valences_.collapse(v);
         }
     }
@@ -143,7 +143,7 @@ private:
                 continue;
             }
             tick(0.5);
-            flips_.glide(v, flips_of_a_glide);
+            flips_.glide(v, kFlipsOfAGlide);
         }
     }
 
@@ -163,22 +163,22 @@ private:
     }
 
     void make_delaunay(Ticker& tick) {
-        std::vector<Side>& open = sides_;
+        std::vector<HalfEdge>& open = edges_;
         for (const std::int32_t v : active_) {
             tick(0.8);
             if (valences_.is_gone(v)) continue;
             open.clear();
-            valences_.around(v, [&](Side side) {
-                open.push_back(side);
-                open.push_back(side.next());
+            valences_.around(v, [&](HalfEdge edge) {
+                open.push_back(edge);
+                open.push_back(edge.next());
             });
             while (!open.empty()) {
-                const Side side = open.back();
+                const HalfEdge edge = open.back();
                 open.pop_back();
-                if (!mesh_.should_flip(side)) continue;
-                const Side diagonal = valences_.flip(side), other = mesh_.behind(diagonal);
-                for (const Side s :
-                     {diagonal.next(), diagonal.previous(), other.next(), other.previous()})
+                if (!mesh_.should_flip(edge)) continue;
+                const HalfEdge diagonal = valences_.flip(edge), other = mesh_.twin(diagonal);
+                for (const HalfEdge s :
+                     {diagonal.next(), diagonal.prev(), other.next(), other.prev()})
                     open.push_back(s);
             }
         }
@@ -190,7 +190,7 @@ private:
     StarMoves moves_;
     JudgedFlips flips_;
     std::vector<std::int32_t> active_;
-    std::vector<Side> sides_;
+    std::vector<HalfEdge> edges_;
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace realmodel::meshing {
 
 namespace {
 
-constexpr double moved_enough = 1e-3;  // of an edge: less is not worth another visit
+constexpr double kMovedEnough = 1e-3;  // of an edge: less is not worth another visit
 
 }  // namespace
 
@@ -61,14 +61,14 @@ template <class Place>
 void StarMoves::step(std::int32_t v, const Shape& now, double way, const Place& place_at) {
     PlanPoint& p = mesh_.points[v];
     if (!std::isfinite(now.value) || !std::isfinite(way)) return;
-    const double least = moved_enough * std::sqrt(squared_distance(p, mesh_.points[base_[0][0]]));
+    const double least = kMovedEnough * std::sqrt(squared_distance(p, mesh_.points[base_[0][0]]));
     double share = 1;
     for (int halving = 0; halving < 6; ++halving, share /= 2) {
         if (share * way < least) return;
         const PlanPoint place = place_at(share);
         if (!(shape_at(place).value < now.value)) continue;
         const bool is_upright = std::all_of(base_.begin(), base_.end(), [&](const auto& base) {
-            return side_of_line(mesh_.points[base[0]], mesh_.points[base[1]], place) > 0;
+            return orient2d(mesh_.points[base[0]], mesh_.points[base[1]], place) > 0;
         });
         if (!is_upright) continue;
         p = place;
@@ -106,7 +106,9 @@ void StarMoves::slide(std::int32_t v) {
 
 StarMoves::Shape StarMoves::shape_of_star(std::int32_t v) {
     base_.clear();
-    valences_.around(v, [&](Side side) { base_.push_back({mesh_.to(side), mesh_.apex(side)}); });
+    valences_.around(v, [&](HalfEdge edge) {
+        base_.push_back({mesh_.to(edge), mesh_.apex(edge)});
+    });
     return shape_at(mesh_.points[v]);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Moves of one vertex to where its triangles are best. Private.
+// Moves of one vertex to where its triangles are best.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ namespace realmodel::meshing {
 class StarMoves {
 public:
     explicit StarMoves(Valences& valences)
-        : valences_(valences), mesh_(valences.mesh()), kinds_(mesh_.points.size(), stays) {}
+        : valences_(valences), mesh_(valences.mesh()), kinds_(mesh_.points.size(), kStays) {}
 
-    void free(std::int32_t vertex) { kinds_[vertex] = is_free; }
-    bool moves_freely(std::int32_t vertex) const { return kinds_[vertex] == is_free; }
+    void free(std::int32_t vertex) { kinds_[vertex] = kIsFree; }
+    bool moves_freely(std::int32_t vertex) const { return kinds_[vertex] == kIsFree; }
     /// Lets vertices slide between two ends.
     std::int32_t add_line(const PlanPoint& begin, const PlanPoint& end);
     void slide_on(std::int32_t vertex, std::int32_t line) { kinds_[vertex] = line; }
@@ -30,7 +30,7 @@ public:
 
 private:
     struct Shape;
-    static constexpr std::int32_t stays = -1, is_free = -2;
+    static constexpr std::int32_t kStays = -1, kIsFree = -2;
 
     void go_freely(std::int32_t vertex);
     void slide(std::int32_t vertex);
@@ -41,9 +41,9 @@ private:
 
     const Valences& valences_;
     FlatMesh& mesh_;
-    std::vector<std::int32_t> kinds_;  ///< of each vertex: stays, is_free or the line it slides on
+    std::vector<std::int32_t> kinds_;  ///< of each vertex: kStays, kIsFree or the line it slides on
     std::vector<std::array<PlanPoint, 2>> lines_;
-    std::vector<std::array<std::int32_t, 2>> base_;  ///< the sides opposite to the vertex
+    std::vector<std::array<std::int32_t, 2>> base_;  ///< the edges opposite to the vertex
 };
 
 }  // namespace realmodel::meshing

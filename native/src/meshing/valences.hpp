@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How many triangles vertices have, and should have. Private.
+// How many triangles vertices have, and should have.
 #pragma once
 
 #include <cstdint>
@@ -23,61 +23,61 @@ public:
 
     bool is_gone(std::int32_t vertex) const { return triangles_[vertex] == 0; }
     bool is_fixed(std::int32_t vertex) const { return is_fixed_[vertex]; }
-    /// Vertices that must stay what they are though no fixed side ends in them.
+    /// Vertices that must stay what they are though no fixed edge ends in them.
     void keep(std::int32_t vertex) { is_fixed_[vertex] = true; }
     std::int32_t triangles(std::int32_t vertex) const { return triangles_[vertex]; }
     bool is_regular(std::int32_t vertex) const { return strain(vertex, 0) == 0; }
 
-    /// Visits the sides that leave a vertex, counter-clockwise; a star at the border from its
+    /// Visits the edges that leave a vertex, counter-clockwise; a star at the border from its
     /// border on.
     template <class Visit>
     void around(std::int32_t vertex, Visit&& visit) const {
-        Side begin = leaving_[vertex];
+        HalfEdge begin = leaving_[vertex];
         if (is_fixed_[vertex]) {
-            for (Side side = begin; !side.is_outside();) {
-                begin = side;
-                side = mesh_.turn_right(side);
-                if (side == leaving_[vertex]) break;
+            for (HalfEdge edge = begin; !edge.is_none();) {
+                begin = edge;
+                edge = mesh_.rotate_cw(edge);
+                if (edge == leaving_[vertex]) break;
             }
         }
-        Side side = begin;
+        HalfEdge edge = begin;
         do {
-            visit(side);
-            side = mesh_.turn_left(side);
-        } while (!side.is_outside() && side != begin);
+            visit(edge);
+            edge = mesh_.rotate_ccw(edge);
+        } while (!edge.is_none() && edge != begin);
     }
 
     /// By how much a flip lessens the strain of the four vertices.
-    int gain_of_flip(Side side) const;
-    /// Whether a side that is not fixed can be flipped: both triangles stay upright and fair, no
+    int gain_of_flip(HalfEdge edge) const;
+    /// Whether an edge that is not fixed can be flipped: both triangles stay upright and fair, no
     /// vertex inside is left with two.
-    bool can_flip(Side side) const;
-    Side flip(Side side);
+    bool can_flip(HalfEdge edge) const;
+    HalfEdge flip(HalfEdge edge);
 
-    /// Takes a vertex inside with five triangles or fewer to its neighbour where that lessens the
+    /// Takes a vertex inside with five triangles or fewer to its neighbor where that lessens the
     /// strain most, if anywhere.
     void collapse(std::int32_t vertex);
     /// Takes a vertex with two triangles out of the border where that helps the one opposite. It
     /// must lie between two vertices of the border in one line with it.
-    void pass_by(std::int32_t vertex);
+    void remove_from_border(std::int32_t vertex);
 
 private:
     int strain(std::int32_t vertex, int more) const {
         const int off = triangles_[vertex] + more - wanted_[vertex];
         return off * off;
     }
-    double angle_at(Side side) const;
+    double angle_at(HalfEdge edge) const;
     void want_on_lines();
     bool can_collapse_to(std::int32_t vertex) const;
-    void collapse(Side side);
+    void collapse(HalfEdge edge);
 
     FlatMesh& mesh_;
     const SizeField& size_;
-    std::vector<Side> leaving_;            ///< of each vertex: a side from it
+    std::vector<HalfEdge> leaving_;        ///< of each vertex: an edge from it
     std::vector<std::int32_t> triangles_;  ///< of each vertex: how many it has; 0: it is gone
     std::vector<std::int32_t> wanted_;     ///< and how many it should have
     std::vector<bool> is_fixed_;
-    std::vector<Side> sides_;
+    std::vector<HalfEdge> edges_;
 };
 
 /// 1 where a triangle is equilateral, 0 or less where it is flat or turned over.

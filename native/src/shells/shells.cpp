@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::shells {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/memory.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "validation/cell_sides.hpp"
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 
 namespace realmodel::validation {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "realmodel/validation/findings.hpp"
 
 namespace realmodel::validation {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 
 namespace realmodel::validation {
 

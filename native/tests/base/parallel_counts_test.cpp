@@ -8,19 +8,6 @@
 namespace realmodel {
 namespace {
 
-TEST(ParallelCounts, RangesCoverEverythingOnce) {
-    for (const std::size_t count : {0, 1, 99, 100, 101, 1000}) {
-        std::vector<int> seen(count, 0);
-        parallel_ranges(count, 100, 3, nullptr, [&](std::size_t begin, std::size_t end) {
-            EXPECT_EQ(begin % 100, 0u);
-            EXPECT_LE(end - begin, 100u);
-            for (std::size_t i = begin; i < end; ++i)
-                ++seen[i];
-        });
-        EXPECT_EQ(seen, std::vector<int>(count, 1));
-    }
-}
-
 TEST(ParallelCounts, RunningTotalsAreThoseOfASimpleLoop) {
     std::mt19937 random(1);
     for (const std::size_t count : {0, 1, 65535, 65536, 65537, 300001}) {

@@ -27,9 +27,9 @@ std::set<std::pair<int, int>> constrained_edges(const ConstrainedTriangulation& 
 void expect_consistent(const ConstrainedTriangulation& mesh) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         for (int i = 0; i < 3; ++i) {
-            const int across = mesh.neighbours[t][i];
+            const int across = mesh.neighbors[t][i];
             if (across < 0) continue;
-            const auto& back = mesh.neighbours[across];
+            const auto& back = mesh.neighbors[across];
             const auto at = std::find(back.begin(), back.end(), static_cast<int>(t));
             ASSERT_NE(at, back.end());
             const auto j = static_cast<std::size_t>(at - back.begin());
@@ -47,7 +47,7 @@ TEST(ConstrainedDelaunay, KeepsTheDiagonalAskedFor) {
     EXPECT_EQ(free.triangles, (std::vector<std::array<std::int32_t, 3>>{{0, 1, 3}, {1, 2, 3}}));
     const auto forced = constrained_delaunay(kite, Segments{{2, 0}});
     EXPECT_EQ(forced.triangles, (std::vector<std::array<std::int32_t, 3>>{{0, 1, 2}, {0, 2, 3}}));
-    EXPECT_EQ(forced.neighbours,
+    EXPECT_EQ(forced.neighbors,
               (std::vector<std::array<std::int32_t, 3>>{{-1, -1, 1}, {0, -1, -1}}));
     EXPECT_EQ(constrained_edges(forced), (std::set<std::pair<int, int>>{{0, 2}}));
 }
@@ -104,7 +104,7 @@ TEST(ConstrainedDelaunay, ALatticeWhereEveryCircleIsATieRepeats) {
     const std::vector<std::string> elsewhere(100, "moves the heap about");
     const auto second = constrained_delaunay(points, segments);
     EXPECT_EQ(first.triangles, second.triangles);
-    EXPECT_EQ(first.neighbours, second.neighbours);
+    EXPECT_EQ(first.neighbors, second.neighbors);
 }
 
 TEST(ConstrainedDelaunay, NoPointLiesInTheCircleOfAFreeEdge) {
@@ -120,7 +120,7 @@ TEST(ConstrainedDelaunay, NoPointLiesInTheCircleOfAFreeEdge) {
     expect_consistent(mesh);
     for (const auto& t : mesh.triangles) {
         const PlanPoint &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
-        ASSERT_EQ(side_of_line(a, b, c), 1);
+        ASSERT_EQ(orient2d(a, b, c), 1);
         for (const PlanPoint& p : points) {
             // Integers below 1000: this determinant is exact in double.
             const double ax = a[0] - p[0], ay = a[1] - p[1], bx = b[0] - p[0], by = b[1] - p[1],

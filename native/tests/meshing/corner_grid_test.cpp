@@ -49,7 +49,7 @@ TEST(CornerGrid, FindsWhatLiesInATriangleUntilItIsRemoved) {
         const auto any = [&] { return points[(random() % (points.size() / 2)) * 2 + among]; };
         const PlanPoint a = any(), b = round % 7 == 0 ? points[random() % points.size()] : any(),
                         c = any();
-        if (side_of_line(a, b, c) <= 0) continue;
+        if (orient2d(a, b, c) <= 0) continue;
         std::set<std::int32_t> found, wanted;
         grid.any_in_triangle(a, b, c, [&](const CornerGrid::Member& member) {
             EXPECT_TRUE(found.insert(member.number).second) << "twice";
@@ -57,8 +57,8 @@ TEST(CornerGrid, FindsWhatLiesInATriangleUntilItIsRemoved) {
             return false;
         });
         for (const std::int32_t n : left) {
-            if (side_of_line(a, b, points[n]) > 0 && side_of_line(b, c, points[n]) > 0 &&
-                side_of_line(c, a, points[n]) > 0) {
+            if (orient2d(a, b, points[n]) > 0 && orient2d(b, c, points[n]) > 0 &&
+                orient2d(c, a, points[n]) > 0) {
                 wanted.insert(n);
             }
         }

@@ -26,7 +26,7 @@ PlanarMesh cut(const std::vector<Ring>& rings) {
     PlanarMesh mesh{corners_of(rings), triangulate_polygon(rings)};
     std::size_t turned = 0;
     for (const auto& [a, b, c] : mesh.triangles)
-        turned += side_of_line(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) <= 0;
+        turned += orient2d(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) <= 0;
     EXPECT_EQ(turned, 0U);
     const PlanarMesh region = triangulate_rings(rings);
     EXPECT_NEAR(area_of(mesh), area_of(region), 1e-12 * area_of(region));
@@ -40,8 +40,8 @@ PlanarMesh cut(const std::vector<Ring>& rings) {
     for (const auto& [side, third] : apex) {
         const auto other = apex.find({side[1], side[0]});
         if (other == apex.end()) continue;
-        EXPECT_LE(side_of_circle(mesh.vertices[side[0]], mesh.vertices[side[1]],
-                                 mesh.vertices[third], mesh.vertices[other->second]),
+        EXPECT_LE(in_circle(mesh.vertices[side[0]], mesh.vertices[side[1]], mesh.vertices[third],
+                            mesh.vertices[other->second]),
                   0);
     }
     return mesh;

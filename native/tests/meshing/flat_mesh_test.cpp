@@ -17,8 +17,8 @@ FlatMesh square() {
     mesh.add_triangle({0, 1, 2});
     mesh.add_triangle({0, 2, 3});
     mesh.join({0, 2}, {1, 0});
-    for (const Side side : {Side(0, 0), Side(0, 1), Side(1, 1), Side(1, 2)})
-        mesh.fix(side);
+    for (const HalfEdge edge : {HalfEdge(0, 0), HalfEdge(0, 1), HalfEdge(1, 1), HalfEdge(1, 2)})
+        mesh.fix(edge);
     return mesh;
 }
 
@@ -28,16 +28,16 @@ double checked_area(const FlatMesh& mesh) {
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.corners.size()); ++t) {
         if (mesh.is_dead(t)) continue;
         plain.triangles.push_back(mesh.corners[t]);
-        EXPECT_GT(side_of_line(mesh.points[mesh.corners[t][0]], mesh.points[mesh.corners[t][1]],
-                               mesh.points[mesh.corners[t][2]]),
+        EXPECT_GT(orient2d(mesh.points[mesh.corners[t][0]], mesh.points[mesh.corners[t][1]],
+                           mesh.points[mesh.corners[t][2]]),
                   0);
         for (int i = 0; i < 3; ++i) {
-            const Side side(t, i), other = mesh.behind(side);
-            if (other.is_outside()) continue;
-            EXPECT_EQ(mesh.behind(other), side);
-            EXPECT_EQ(mesh.from(side), mesh.to(other));
-            EXPECT_EQ(mesh.to(side), mesh.from(other));
-            EXPECT_EQ(mesh.is_fixed(side), mesh.is_fixed(other));
+            const HalfEdge edge(t, i), other = mesh.twin(edge);
+            if (other.is_none()) continue;
+            EXPECT_EQ(mesh.twin(other), edge);
+            EXPECT_EQ(mesh.from(edge), mesh.to(other));
+            EXPECT_EQ(mesh.to(edge), mesh.from(other));
+            EXPECT_EQ(mesh.is_fixed(edge), mesh.is_fixed(other));
         }
     }
     return area_of(plain);
@@ -46,9 +46,9 @@ double checked_area(const FlatMesh& mesh) {
 std::int32_t triangle_around(const FlatMesh& mesh, const PlanPoint& p) {
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.corners.size()); ++t) {
         const auto [a, b, c] = mesh.corners[t];
-        if (side_of_line(mesh.points[a], mesh.points[b], p) > 0 &&
-            side_of_line(mesh.points[b], mesh.points[c], p) > 0 &&
-            side_of_line(mesh.points[c], mesh.points[a], p) > 0) {
+        if (orient2d(mesh.points[a], mesh.points[b], p) > 0 &&
+            orient2d(mesh.points[b], mesh.points[c], p) > 0 &&
+            orient2d(mesh.points[c], mesh.points[a], p) > 0) {
             return t;
         }
     }
@@ -76,11 +76,11 @@ FlatMesh filled(int count) {
 
 TEST(FlatMesh, FlippingTwiceTurnsADiagonalRound) {
     FlatMesh mesh = square();
-    const Side other = mesh.flip({0, 2});
+    const HalfEdge other = mesh.flip({0, 2});
     EXPECT_EQ(std::minmax(mesh.from(other), mesh.to(other)), std::minmax(1, 3));
     EXPECT_DOUBLE_EQ(checked_area(mesh), 1);
     EXPECT_TRUE(mesh.is_fixed(other.next()));
-    const Side again = mesh.flip(other);
+    const HalfEdge again = mesh.flip(other);
     EXPECT_EQ(std::minmax(mesh.from(again), mesh.to(again)), std::minmax(0, 2));
     EXPECT_DOUBLE_EQ(checked_area(mesh), 1);
 }
@@ -94,7 +94,7 @@ TEST(FlatMesh, VerticesAreAddedAndTheMeshStaysDelaunay) {
 
 TEST(FlatMesh, VerticesOnSidesKeepThemFixed) {
     FlatMesh mesh = square();
-    const Side leaving = mesh.insert_on({0, 0}, {0.5, 0});
+    const HalfEdge leaving = mesh.insert_on({0, 0}, {0.5, 0});
     EXPECT_EQ(mesh.from(leaving), 4);
     int on_border = 0;
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.corners.size()); ++t)
@@ -104,7 +104,7 @@ TEST(FlatMesh, VerticesOnSidesKeepThemFixed) {
     const std::int32_t t = triangle_around(mesh, {0.6, 0.55});
     for (int i = 0; i < 3; ++i) {
         if (mesh.is_border({t, i})) continue;
-        const PlanPoint &a = mesh.point_from({t, i}), &b = mesh.point_to({t, i});
+        const PlanPoint &a = mesh.origin_point({t, i}), &b = mesh.target_point({t, i});
         mesh.insert_on({t, i}, {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])});
         break;
     }
@@ -119,24 +119,24 @@ TEST(FlatMesh, TheBorderPassesByAVertexThatIsTakenOut) {
     std::int32_t t = 0;
     while (mesh.is_dead(t) || mesh.corners[t][0] != taken)
         ++t;
-    Side side(t, 0);  // any of its sides; on to the one that leaves it on the border
-    while (!mesh.is_border(side))
-        side = mesh.turn_right(side);
+    HalfEdge edge(t, 0);  // any of its edges; on to the one that leaves it on the border
+    while (!mesh.is_border(edge))
+        edge = mesh.rotate_cw(edge);
     std::size_t around = 0;
     for (const auto& corner : mesh.corners)
         around += std::count(corner.begin(), corner.end(), taken);
     if (around == 3) {  // flipped: two triangles only
-        mesh.flip(side.previous());
-        side = Side::outside();
-        for (t = 0; side.is_outside(); ++t)
+        mesh.flip(edge.prev());
+        edge = HalfEdge::none();
+        for (t = 0; edge.is_none(); ++t)
             for (int i = 0; i < 3; ++i)
-                if (mesh.from({t, i}) == taken && mesh.is_border({t, i})) side = {t, i};
+                if (mesh.from({t, i}) == taken && mesh.is_border({t, i})) edge = {t, i};
     }
     const std::size_t triangles = mesh.corners.size();
-    const Side past = mesh.pass_by(side);
+    const HalfEdge past = mesh.remove_from_border(edge);
     EXPECT_TRUE(mesh.is_border(past) && mesh.is_fixed(past));
-    EXPECT_EQ(mesh.point_from(past), (PlanPoint{0, 0}));
-    EXPECT_EQ(mesh.point_to(past), (PlanPoint{1, 0}));
+    EXPECT_EQ(mesh.origin_point(past), (PlanPoint{0, 0}));
+    EXPECT_EQ(mesh.target_point(past), (PlanPoint{1, 0}));
     EXPECT_DOUBLE_EQ(checked_area(mesh), 1);
     mesh.compact();
     EXPECT_EQ(mesh.corners.size(), triangles - 1);
@@ -148,20 +148,20 @@ TEST(FlatMesh, CollapsedVerticesLeaveAMeshThatCanBeCompacted) {
     int collapsed = 0;
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.corners.size()); ++t) {
         for (int i = 0; i < 3 && !mesh.is_dead(t); ++i) {
-            const Side side(t, i);
-            const std::int32_t v = mesh.from(side);
-            if (v < 4 || mesh.is_fixed(side)) continue;
+            const HalfEdge edge(t, i);
+            const std::int32_t v = mesh.from(edge);
+            if (v < 4 || mesh.is_fixed(edge)) continue;
             // Nothing turns over where the star of the vertex sees the other end.
             bool fits = true;
-            Side around = side;
+            HalfEdge around = edge;
             do {
-                const std::int32_t a = mesh.to(around), b = mesh.apex(around), u = mesh.to(side);
+                const std::int32_t a = mesh.to(around), b = mesh.apex(around), u = mesh.to(edge);
                 fits = fits && (a == u || b == u ||
-                                side_of_line(mesh.points[a], mesh.points[b], mesh.points[u]) > 0);
-                around = mesh.turn_left(around);
-            } while (around != side);
+                                orient2d(mesh.points[a], mesh.points[b], mesh.points[u]) > 0);
+                around = mesh.rotate_ccw(around);
+            } while (around != edge);
             if (!fits) continue;
-            mesh.collapse(side);
+            mesh.collapse(edge);
             ++collapsed;
             ASSERT_NEAR(checked_area(mesh), 1, 1e-12);
             break;

@@ -29,36 +29,36 @@ FlatMesh lattice() {
             mesh.add_triangle({node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});
         }
     }
-    std::map<std::array<std::int32_t, 2>, Side> sides;
+    std::map<std::array<std::int32_t, 2>, HalfEdge> edges;
     const auto count = static_cast<std::int32_t>(mesh.corners.size());
     for (std::int32_t t = 0; t < count; ++t)
         for (int i = 0; i < 3; ++i)
-            sides[{mesh.from({t, i}), mesh.to({t, i})}] = {t, i};
-    for (const auto& [ends, side] : sides) {
-        const auto other = sides.find({ends[1], ends[0]});
-        if (other != sides.end()) {
-            mesh.join(side, other->second);
+            edges[{mesh.from({t, i}), mesh.to({t, i})}] = {t, i};
+    for (const auto& [ends, edge] : edges) {
+        const auto other = edges.find({ends[1], ends[0]});
+        if (other != edges.end()) {
+            mesh.join(edge, other->second);
         } else {
-            mesh.fix(side);
+            mesh.fix(edge);
         }
     }
     return mesh;
 }
 
-/// A lattice in which `flips` neighbouring diagonals between two rows were flipped: a vertex with
-/// five neighbours beside one with seven at either end, so many rows apart.
+/// A lattice in which `flips` neighboring diagonals between two rows were flipped: a vertex with
+/// five neighbors beside one with seven at either end, so many rows apart.
 struct TornLattice {
     explicit TornLattice(int flips)
         : mesh(lattice()), size(1), valences(mesh, size), moves(valences) {
         for (std::int32_t v = 0; v < width * width; ++v)
             if (!valences.is_fixed(v)) moves.free(v);
         for (int k = 0; k < flips; ++k)
-            valences.flip(side(node(begin + k + 1, row), node(begin + k, row + 1)));
+            valences.flip(edge(node(begin + k + 1, row), node(begin + k, row + 1)));
     }
 
-    Side side(std::int32_t from, std::int32_t to) const {
-        Side found = Side::outside();
-        valences.around(from, [&](Side s) {
+    HalfEdge edge(std::int32_t from, std::int32_t to) const {
+        HalfEdge found = HalfEdge::none();
+        valences.around(from, [&](HalfEdge s) {
             if (mesh.to(s) == to) found = s;
         });
         return found;
@@ -100,10 +100,10 @@ TEST(JudgedFlips, DislocationsStayWhereNoWayIsShortEnough) {
     EXPECT_FALSE(JudgedFlips(torn.valences, torn.moves).glide(node(4, 7), 5));
     EXPECT_EQ(torn.irregular(), 4);
     EXPECT_EQ(torn.mesh.points, points);
-    // The same sides, though their triangles may have other numbers.
+    // The same edges, though their triangles may have other numbers.
     for (const auto& t : corners)
         for (int i = 0; i < 3; ++i)
-            EXPECT_FALSE(torn.side(t[i], t[(i + 1) % 3]).is_outside());
+            EXPECT_FALSE(torn.edge(t[i], t[(i + 1) % 3]).is_none());
 }
 
 TEST(JudgedFlips, DislocationsDoNotPassVerticesThatStay) {
@@ -119,7 +119,7 @@ TEST(JudgedFlips, DislocationsDoNotPassVerticesThatStay) {
 /// made.
 TEST(JudgedFlips, MendWhatIsBad) {
     TornLattice torn(0);
-    const Side diagonal = torn.side(node(5, 7), node(4, 8));
+    const HalfEdge diagonal = torn.edge(node(5, 7), node(4, 8));
     torn.valences.flip(diagonal);
     ASSERT_EQ(torn.irregular(), 4);
     JudgedFlips flips(torn.valences, torn.moves);

@@ -38,16 +38,16 @@ double mean_ratio(const PlanarMesh& mesh) {
     return sum / static_cast<double>(mesh.triangles.size());
 }
 
-/// Mean edge of the triangles whose centre lies within a distance of a place.
+/// Mean edge of the triangles whose center lies within a distance of a place.
 double mean_edge_near(const PlanarMesh& mesh, const PlanPoint& place, double distance) {
     double sum = 0;
     int count = 0;
     for (const auto& t : mesh.triangles) {
-        PlanPoint centre{};
+        PlanPoint center{};
         for (const std::int32_t v : t)
             for (int k = 0; k < 2; ++k)
-                centre[k] += mesh.vertices[v][k] / 3;
-        if (std::hypot(centre[0] - place[0], centre[1] - place[1]) > distance) continue;
+                center[k] += mesh.vertices[v][k] / 3;
+        if (std::hypot(center[0] - place[0], center[1] - place[1]) > distance) continue;
         for (int i = 0; i < 3; ++i)
             sum += length_of(mesh, t, i);
         count += 3;
@@ -72,7 +72,7 @@ TEST(Meshers, FrontalIsBetterThanDelaunay) {
     MeshRequest request;
     request.edge_length = 3;
     const double plain = mean_ratio(made(request, rings));
-    request.mesher = Mesher::frontal;
+    request.mesher = Mesher::kFrontal;
     const double better = mean_ratio(made(request, rings));
     EXPECT_GT(better, plain);
     EXPECT_GT(better, 0.98);
@@ -82,7 +82,7 @@ TEST(Meshers, FrontalGradesToDetailOfTheBorder) {
     Ring coast{{100, 60}, {0, 60}};
     for (int i = 0; i < 100; ++i)
         coast.push_back({1.0 * i, i % 2 == 0 ? 0 : 0.8});
-    MeshRequest request = by(Mesher::frontal, 8);
+    MeshRequest request = by(Mesher::kFrontal, 8);
     EXPECT_GT(mean_ratio(made(request, {coast})), 0.93);
 }
 
@@ -110,7 +110,7 @@ double share_with_six(const PlanarMesh& mesh) {
 
 /// Rows must end where lengths grow, but no more often than that asks for.
 TEST(Meshers, FrontalHasNoNeedlessEndsOfRows) {
-    MeshRequest request = by(Mesher::frontal, 20);
+    MeshRequest request = by(Mesher::kFrontal, 20);
     request.sizes = {{{}, 2, 0}};
     EXPECT_GT(share_with_six(made(request, {rectangle(0, 0, 500, 500)})), 0.88);
 }
@@ -122,7 +122,7 @@ TEST(Meshers, FrontalFillsNeedlesWell) {
         const double radius = i % 2 == 0 ? 50 : 5, turn = i * std::numbers::pi / 40;
         rings[0].push_back({radius * std::cos(turn), radius * std::sin(turn)});
     }
-    const PlanarMesh mesh = made(by(Mesher::frontal, 2), rings);
+    const PlanarMesh mesh = made(by(Mesher::kFrontal, 2), rings);
     EXPECT_GT(mean_ratio(mesh), 0.95);
     EXPECT_TRUE(std::equal(rings[0].begin(), rings[0].end(), mesh.vertices.begin()));
     // What was added on the border lies on the outline's edges, but for rounding.
@@ -144,7 +144,7 @@ TEST(Meshers, FrontalFillsNeedlesWell) {
 TEST(Meshers, FrontalRegionsSideBySideMeetInTheSameVertices) {
     const auto on_seam = [](const Ring& ring) {
         std::vector<double> ys;
-        for (const PlanPoint& p : made(by(Mesher::frontal, 7), {ring}).vertices)
+        for (const PlanPoint& p : made(by(Mesher::kFrontal, 7), {ring}).vertices)
             if (p[0] == 100) ys.push_back(p[1]);
         std::sort(ys.begin(), ys.end());
         return ys;
@@ -162,7 +162,7 @@ TEST(Meshers, CombsOfManyTeethAreFollowed) {
         comb.insert(comb.end(), {{x, 0}, {x + 0.25, 2}, {x + 0.5, 0}});
     }
     comb.insert(comb.end(), {{2000, 0}, {2000, -1}});
-    for (const Mesher mesher : {Mesher::delaunay, Mesher::frontal}) {
+    for (const Mesher mesher : {Mesher::kDelaunay, Mesher::kFrontal}) {
         const PlanarMesh mesh = made(by(mesher, 3), {comb});
         EXPECT_LT(mesh.triangles.size(), 60'000U);
     }
@@ -173,7 +173,7 @@ TEST(Meshers, TenThousandHoles) {
     for (int i = 0; i < 100; ++i)
         for (int k = 0; k < 100; ++k)
             rings.push_back(rectangle(10 * i + 3, 10 * k + 3, 10 * i + 8, 10 * k + 7));
-    for (const Mesher mesher : {Mesher::delaunay, Mesher::frontal}) {
+    for (const Mesher mesher : {Mesher::kDelaunay, Mesher::kFrontal}) {
         const PlanarMesh mesh = made(by(mesher, 8), rings);
         EXPECT_GT(mesh.triangles.size(), 40'000U);
         EXPECT_LT(mesh.triangles.size(), 400'000U);
@@ -181,7 +181,7 @@ TEST(Meshers, TenThousandHoles) {
 }
 
 TEST(Meshers, AGridHasItsNodesAndNothingElseInside) {
-    MeshRequest request = by(Mesher::grid, 5);
+    MeshRequest request = by(Mesher::kGrid, 5);
     const PlanarMesh mesh = made(request);
     EXPECT_EQ(mesh.vertices.size(), 21U * 21 - 3 * 3);
     for (const PlanPoint& p : mesh.vertices)
@@ -191,13 +191,13 @@ TEST(Meshers, AGridHasItsNodesAndNothingElseInside) {
 }
 
 TEST(Meshers, AGridHasOneLength) {
-    MeshRequest request = by(Mesher::grid, 5);
+    MeshRequest request = by(Mesher::kGrid, 5);
     request.sizes = {{{}, 1, 1}};
     EXPECT_EQ(refusal([&] { mesh_region(with_hole, request); }).kind, "size");
 }
 
 TEST(Meshers, LocalLengthsAtPlacesLinesAndTheOutline) {
-    for (const Mesher mesher : {Mesher::delaunay, Mesher::frontal}) {
+    for (const Mesher mesher : {Mesher::kDelaunay, Mesher::kFrontal}) {
         MeshRequest request = by(mesher, 10);
         request.sizes = {{{{80, 80}}, 0.5, 3}, {{{10, 70}, {40, 90}}, 1, 2}};
         const PlanarMesh mesh = made(request);
@@ -211,7 +211,7 @@ TEST(Meshers, LocalLengthsAtPlacesLinesAndTheOutline) {
 }
 
 TEST(Meshers, RefusesLengthsThatAreNone) {
-    MeshRequest request = by(Mesher::delaunay, 10);
+    MeshRequest request = by(Mesher::kDelaunay, 10);
     for (const LocalLength& bad : {LocalLength{{}, 0, 1}, LocalLength{{}, 1, -1},
                                    LocalLength{{}, 10, 0}, LocalLength{{{0, NAN}}, 1, 0}}) {
         request.sizes = {{{}, 1, 1}, bad};
@@ -235,7 +235,7 @@ TEST(Meshers, DensityOfPointsGivesTheLength) {
 }
 
 TEST(Meshers, NumbersOfTriangles) {
-    for (const Mesher mesher : {Mesher::delaunay, Mesher::frontal, Mesher::grid}) {
+    for (const Mesher mesher : {Mesher::kDelaunay, Mesher::kFrontal, Mesher::kGrid}) {
         MeshRequest request = by(mesher);
         request.triangles = 3000;
         EXPECT_NEAR(static_cast<double>(made(request).triangles.size()), 3000, 150);
@@ -246,7 +246,7 @@ TEST(Meshers, NumbersOfTriangles) {
 }
 
 TEST(Meshers, ConstraintsAreInTheMesh) {
-    for (const Mesher mesher : {Mesher::delaunay, Mesher::frontal, Mesher::grid}) {
+    for (const Mesher mesher : {Mesher::kDelaunay, Mesher::kFrontal, Mesher::kGrid}) {
         MeshRequest request = by(mesher, 6);
         request.constraints.lines = {{{-10, 75}, {110, 75}}, {{20, 60}, {20, 90}}};
         request.constraints.points = {{81.25, 20.5}, {10, 75}};
@@ -262,7 +262,7 @@ TEST(Meshers, ConstraintsAreInTheMesh) {
             EXPECT_FALSE(lowest < 75 - 1e-9 && highest > 75 + 1e-9) << "a triangle lies across";
         }
     }
-    MeshRequest request = by(Mesher::delaunay, 6);
+    MeshRequest request = by(Mesher::kDelaunay, 6);
     request.constraints.points = {{1, 1}, {50, 40}};  // in the hole
     const InputError error = refusal([&] { mesh_region(with_hole, request); });
     EXPECT_EQ(error.kind, "constraint_outside");
@@ -270,7 +270,7 @@ TEST(Meshers, ConstraintsAreInTheMesh) {
 }
 
 TEST(Meshers, SameBytesEveryTime) {
-    for (const Mesher mesher : {Mesher::frontal, Mesher::grid}) {
+    for (const Mesher mesher : {Mesher::kFrontal, Mesher::kGrid}) {
         const MeshRequest request = by(mesher, 2.5);
         const PlanarMesh first = mesh_region(with_hole, request),
                          second = mesh_region(with_hole, request);
@@ -280,7 +280,7 @@ TEST(Meshers, SameBytesEveryTime) {
 }
 
 TEST(Meshers, EstimatesAreNearWhatIsMade) {
-    for (const Mesher mesher : {Mesher::delaunay, Mesher::frontal}) {
+    for (const Mesher mesher : {Mesher::kDelaunay, Mesher::kFrontal}) {
         MeshRequest request = by(mesher, 8);
         request.sizes = {{{{80, 80}}, 0.4, 5}};
         const MeshEstimate told = estimate_region_mesh(with_hole, request);

@@ -55,7 +55,7 @@ inline void expect_valid(const PlanarMesh& mesh) {
             ASSERT_LT(static_cast<std::size_t>(v), mesh.vertices.size());
             used[v] = true;
         }
-        turned += side_of_line(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]) <= 0;
+        turned += orient2d(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]) <= 0;
     }
     EXPECT_EQ(turned, 0U);
     EXPECT_EQ(std::count(used.begin(), used.end(), false), 0);

@@ -198,7 +198,7 @@ TEST(RegionMesh, RandomStars) {
         try {
             check_rings(std::vector<Ring>{star, hole});
         } catch (const InputError&) {
-            continue;  // three corners may reach round the centre
+            continue;  // three corners may reach round the center
         }
         meshed({star, hole}, 2 + 10 * uniform());
     }

@@ -11,7 +11,7 @@
 namespace realmodel::meshing {
 namespace {
 
-constexpr double growth = 0.25, largest = 8;
+constexpr double kGrowth = 0.25, largest = 8;
 const PlanPoint low{1000, 5000}, high{1100, 5060};
 
 /// What sources ask for at a place, by their definition.
@@ -24,13 +24,13 @@ double asked(const std::vector<SizeSource>& sources, const PlanPoint& p) {
                 ? std::clamp(((p[0] - s.a[0]) * ux + (p[1] - s.a[1]) * uy) / squared, 0., 1.)
                 : 0;
         const double away = std::hypot(p[0] - s.a[0] - along * ux, p[1] - s.a[1] - along * uy);
-        least = std::min(least, std::max(s.least, s.start + growth * away));
+        least = std::min(least, std::max(s.least, s.start + kGrowth * away));
     }
     return least;
 }
 
 SizeField field_of(const std::vector<SizeSource>& sources, double most_leaves = 1e6) {
-    return {largest, growth, sources, low, high, most_leaves, [](double) {}};
+    return {largest, kGrowth, sources, low, high, most_leaves, [](double) {}};
 }
 
 TEST(SizeField, IsUniformWithoutSources) {

@@ -30,7 +30,7 @@ namespace realmodel::meshing {
 /// round it: once. Where ears of positive area run out (a hole that touches an edge between its
 /// corners), triangulate_region does the work.
 ///
-/// Throws InputError as that does; Cancelled. `progress` may be null.
+/// @throws InputError as that does; Cancelled. `progress` may be null.
 std::vector<std::array<std::int32_t, 3>> triangulate_polygon(std::span<const Ring> rings,
                                                              const Progress* progress = nullptr);
 

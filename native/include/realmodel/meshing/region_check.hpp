@@ -23,11 +23,11 @@ struct RegionRing {
 /// Checks the rings of a region that may have several polygons, and gives them as rings that touch
 /// in points at most (what triangulate_region takes); they count even-odd.
 ///
-/// Polygons may share borders: those vanish, so that neighbouring polygons make one region. Where
+/// Polygons may share borders: those vanish, so that neighboring polygons make one region. Where
 /// none do, the rings come back as they are. Islands may lie in holes, whatever they are said to
 /// be.
 ///
-/// Throws InputError as triangulate_region does - two edges of one polygon may not share a stretch
+/// @throws InputError as triangulate_region does - two edges of one polygon may not share a stretch
 /// - and of kind
 /// - "hole_outside" (items: the ring, a corner of it; place),
 /// - "no_area" (the polygons take each other away).

@@ -14,9 +14,9 @@ class Progress;
 namespace realmodel::meshing {
 
 enum class Mesher : std::uint8_t {
-    delaunay,  ///< constrained Delaunay refinement around a lattice
-    frontal,   ///< the same, filled by a front and smoothed: better triangles, more time
-    grid,      ///< a regular grid of squares, halved, that ends at the outline
+    kDelaunay,  ///< constrained Delaunay refinement around a lattice
+    kFrontal,   ///< the same, filled by a front and smoothed: better triangles, more time
+    kGrid,      ///< a regular grid of squares, halved, that ends at the outline
 };
 
 /// What a mesh must contain beside the outlines. Lines may cross one another and the outlines; what
@@ -35,7 +35,7 @@ struct LocalLength {
 };
 
 struct MeshRequest {
-    Mesher mesher = Mesher::delaunay;
+    Mesher mesher = Mesher::kDelaunay;
     double edge_length = 0;          ///< of most edges; not used where `triangles` is above 0
     double triangles = 0;            ///< how many there should be, within 5 %
     std::vector<LocalLength> sizes;  ///< where edges are shorter
@@ -73,7 +73,7 @@ MeshEstimate estimate_region_mesh(std::span<const Ring> rings, double edge_lengt
 /// outlines.
 ///
 /// The same input gives the same mesh. `progress` may be null.
-/// Throws InputError as triangulate_region does (rings.hpp), and of kind
+/// @throws InputError as triangulate_region does (rings.hpp), and of kind
 /// - "edge_length" (not positive and finite, or too small for doubles to tell points apart here),
 /// - "triangles" (not a number that this region can be meshed with; says the nearest that can),
 /// - "size" (items: its number; a length or distance that is none, or no shorter than edge_length),

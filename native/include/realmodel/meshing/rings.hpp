@@ -33,7 +33,7 @@ struct RingTriangulation {
 /// Checks outlines and holes and triangulates them. Rings go either way round, may repeat their
 /// first corner at the end, and may touch others and themselves in points.
 ///
-/// Throws InputError of kind
+/// @throws InputError of kind
 /// - "no_outline" (no ring),
 /// - "not_finite" (items: ring, corner),
 /// - "outline_degenerate" (fewer than three distinct corners or all in one line; items: ring),

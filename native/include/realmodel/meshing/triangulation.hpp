@@ -27,7 +27,7 @@ struct ConstrainedTriangulation {
     std::vector<std::array<std::int32_t, 3>>
         triangles;  ///< point numbers, counter-clockwise, least first
     std::vector<std::array<std::int32_t, 3>>
-        neighbours;                                ///< triangle across edge i, -1 outside the hull
+        neighbors;                                 ///< triangle across edge i, -1 outside the hull
     std::vector<std::array<bool, 3>> constrained;  ///< edge i lies on a segment
 };
 
@@ -39,14 +39,14 @@ struct ConstrainedTriangulation {
 /// overlap; two that cross where there is no point are refused. No triangles if all points are in
 /// one line. The order of the result depends on the numbers of the points alone.
 ///
-/// Throws InputError of kind "crossing" (items: the two segments; place), "repeated_point" (items:
+/// @throws InputError of kind "crossing" (items: the two segments; place), "repeated_point" (items:
 /// the two points), "not_finite" (items: the point), "bad_index" (items: the segment).
 ConstrainedTriangulation constrained_delaunay(
     std::span<const PlanPoint> points, std::span<const std::array<std::int32_t, 2>> segments);
 
 /// Triangulates what lies inside an odd number of rings (outlines, holes, islands in holes alike)
 /// without adding a vertex. Vertices: the distinct corners in order of appearance. Rings may touch
-/// in points, themselves too. Throws InputError as check_rings does (see rings.hpp).
+/// in points, themselves too. @throws InputError as check_rings does (see rings.hpp).
 PlanarMesh triangulate_rings(std::span<const Ring> rings);
 
 }  // namespace realmodel::meshing

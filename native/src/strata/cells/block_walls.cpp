@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "strata/conform/interval_curves.hpp"
 
 namespace realmodel::strata {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/disjoint_sets.hpp"
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::strata {

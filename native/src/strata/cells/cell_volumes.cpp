@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::strata {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/disjoint_sets.hpp"
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "realmodel/strata/stack.hpp"
 
 namespace realmodel::strata {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "strata/overlay/ordered_commit.hpp"
 #include "strata/overlay/pieces.hpp"
 #include "strata/overlay/shared_polygons.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 #include "strata/overlay/shared_polygons.hpp"
 

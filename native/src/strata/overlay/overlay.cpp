@@ -4,7 +4,7 @@
 #include <atomic>
 #include <memory>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "strata/overlay/chunk_joining.hpp"
 #include "strata/overlay/envelope.hpp"
 #include "strata/overlay/ordered_commit.hpp"

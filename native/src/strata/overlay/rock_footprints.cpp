@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::strata {

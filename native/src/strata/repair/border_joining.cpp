@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/keep_single.hpp"
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "exact/orient2d.hpp"
 
 namespace realmodel::strata {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "base/sort_doubles.hpp"
 #include "exact/orient2d.hpp"
 

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "base/flat_array.hpp"
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "base/sort_few.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/meshing/triangulation.hpp"
@@ -221,8 +221,8 @@ FrameTriangles fill_frame(const PlanArrangement& geometry, std::span<const Borde
         const std::size_t t = pending.back();
         pending.pop_back();
         for (std::size_t i = 0; i < 3; ++i) {
-            if (mesh.neighbours[t][i] < 0) continue;
-            const auto n = static_cast<std::size_t>(mesh.neighbours[t][i]);
+            if (mesh.neighbors[t][i] < 0) continue;
+            const auto n = static_cast<std::size_t>(mesh.neighbors[t][i]);
             if (result.covered[n] != kUnknown) continue;
             const std::int32_t step =
                 mesh.constrained[t][i] ? net(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3])

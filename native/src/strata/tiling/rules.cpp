@@ -5,7 +5,7 @@
 #include <atomic>
 #include <memory>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "strata/overlay/pieces.hpp"
 
 namespace realmodel::strata {

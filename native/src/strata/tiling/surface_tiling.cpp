@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "base/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 #include "base/parallel_counts.hpp"
 #include "realmodel/base/errors.hpp"
 
