@@ -84,7 +84,7 @@ void print_mesh_and_heights() {
     const interpolation::Variogram spherical{.range = 60, .sill = 4, .nugget = 0.1};
     for (const int neighbours : {0, 16, 32}) {
         interpolation::KrigingOptions options;
-        options.neighbours = neighbours;
+        options.neighbors = neighbours;
         options.threads = threads;
         const auto kriged = interpolation::krige(points, mesh.vertices, spherical, options);
         print("kriging, " + std::to_string(neighbours) + " neighbours",

@@ -20,6 +20,14 @@ inline std::array<NodeId, 2> unordered(NodeId a, NodeId b) {
     return {std::min(a, b), std::max(a, b)};
 }
 
+inline Position minus(const Position& a, const Position& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+inline double dot(const Position& a, const Position& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /// Many polygons in one array.
 struct Polygons {
     std::vector<std::int64_t> offsets{0};
@@ -47,7 +55,7 @@ class View {
 public:
     explicit View(const Position& normal);
     PlanePosition operator()(const Position& p) const { return {p[u_], p[v_]}; }
-    /// How far apart on either axis rounding may put things that are in one place: a few units in
+    /// How far apart on either axis rounding may put things that coincide: a few units in
     /// the last place of the largest coordinates.
     PlanePosition rounding(std::span<const Position> positions) const;
     /// The axis, and 1 where the view is from its positive end, -1 from its negative.
@@ -66,7 +74,7 @@ Position polygon_normal(std::span<const Position> corners);
 /// outside.
 double sixfold_volume(const Position& o, const Position& a, const Position& b, const Position& c);
 
-/// How far apart rounding may put things that are in one place: a few units in the last place of
+/// How far apart rounding may put things that coincide: a few units in the last place of
 /// the largest coordinate.
 double rounding_of(std::span<const Position> positions);
 

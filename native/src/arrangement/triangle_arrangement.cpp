@@ -9,7 +9,7 @@
 #include <span>
 
 #include "arrangement/triangle_regions.hpp"
-#include "base/parallel_counts.hpp"
+#include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "spatial/box_tree.hpp"
 
@@ -133,7 +133,7 @@ TriangleArrangement::Interval TriangleArrangement::interval_of(const Triangle& o
 }
 
 /// Which of two ends comes first along the line of two planes, in the direction of the product of
-/// a's normal and b's: 1 a's, -1 b's, 0 they are in one place. `sides`: of a's corners from b's
+/// a's normal and b's: 1 a's, -1 b's, 0 they coincide. `sides`: of a's corners from b's
 /// plane.
 int TriangleArrangement::order(const Triangle& a, const Sides& sides, const End& on_a,
                                const Triangle& b, const End& on_b) const {
@@ -172,7 +172,7 @@ std::optional<TriangleArrangement::Intersection> TriangleArrangement::intersecti
     };
     if (order_of(of_a.down, of_b.down) > 0 || order_of(of_a.up, of_b.up) < 0) return std::nullopt;
     const int first = order_of(of_a.up, of_b.down), last = order_of(of_a.down, of_b.up);
-    // of two in one place a corner, which has a number
+    // of two that coincide a corner, which has a number
     const bool from_b = first > 0 || (first == 0 && of_a.up.to >= 0);
     const bool to_b = last < 0 || (last == 0 && of_a.down.to >= 0);
     return Intersection{
@@ -353,7 +353,7 @@ void TriangleArrangement::intersect_segments(int threads, const Progress* progre
     }
 }
 
-/// What the points on the edges and segments of a triangle are to the others that share these.
+/// The points on the edges and segments of a triangle, for the others that share these.
 void TriangleArrangement::messages_of(std::int32_t triangle, std::vector<Message>& messages) const {
     const Triangle& t = triangles_[index(triangle)];
     // of a triangle without area one corner may lie on the edge between the others
@@ -384,7 +384,7 @@ void TriangleArrangement::messages_of(std::int32_t triangle, std::vector<Message
     }
 }
 
-/// Hands the points on edges and segments to the other triangles that share these, until all of
+/// Sends the points on edges and segments to the other triangles that share these, until all of
 /// them know them.
 void TriangleArrangement::exchange_points(int threads, const Progress* progress) {
     std::vector<std::int32_t> changed(triangles_.size());

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/disjoint_sets.hpp"
 #include "cutting/pieces.hpp"
 #include "cutting/plane_points.hpp"
 
@@ -24,7 +25,7 @@ struct CellCut {
 ///
 /// The edges in the plane that the pieces above it leave open bound the caps. Along an edge of the
 /// cell that only touches the plane nothing is open; whether the caps pass on both of its sides or
-/// on neither is told by which of the two faces there is steeper.
+/// on neither follows from which of the two faces there is steeper.
 class CellCutter {
 public:
     CellCutter(const ComplexView& model, const std::vector<std::int8_t>& sides,
@@ -65,8 +66,12 @@ private:
     std::size_t next_edge(const DirectedEdge& arriving, const std::vector<bool>& taken) const;
     bool find_parts(std::span<const PieceRef> refs, CellCut& result);
     bool use_edges_twice(const std::vector<std::int32_t>& root, std::int32_t pieces);
-    void attach_shells(std::span<const PieceRef> refs, CellCut& result,
-                       std::vector<std::int32_t>& root);
+    void attach_shells(std::span<const PieceRef> refs, const CellCut& result,
+                       std::vector<std::int32_t>& root) const;
+    std::int8_t side_of(std::size_t local, std::span<const PieceRef> refs) const;
+    void add_uses_of_caps(const Polygons& caps, std::int32_t pieces);
+    static void join_at_edge(std::span<const Use> uses, std::int8_t side, std::int32_t pieces,
+                             DisjointSets& sets);
 
     const ComplexView& model_;
     const std::vector<std::int8_t>& sides_;

@@ -23,9 +23,9 @@ struct FaceParts {
 
 /// Divides faces that have corners on both sides of a plane.
 ///
-/// Most faces change sides twice: the line between the two places divides them. Others (walls need
+/// Most faces change sides twice: the line between the two points divides them. Others (walls need
 /// not be convex) are divided as their triangulation is, and the parts of the triangles joined
-/// again: which places a cut joins follows from the triangles alone, so that the parts fit together
+/// again: which points a cut joins follows from the triangles alone, so that the parts fit together
 /// whatever rounding did to the face.
 class FaceSplitter {
 public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A vertical section between two places: the section of the whole plane, cut off at both ends.
+// A vertical section between two points: the section of the whole plane, cut off at both ends.
 #include <algorithm>
 #include <map>
 #include <utility>
@@ -12,7 +12,7 @@ namespace realmodel::cutting {
 namespace {
 
 /// The part of a section above a plane. Convex polygons stay convex and in one piece (I. E.
-/// Sutherland and G. W. Hodgman 1974); neighbours are cut in the same places.
+/// Sutherland and G. W. Hodgman 1974); neighbors are cut in the same points.
 class SectionClip {
 public:
     SectionClip(const Section& section, const exact::OrientedPlane& plane)

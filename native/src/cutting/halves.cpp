@@ -59,13 +59,13 @@ void assemble(const ComplexView& model, const std::vector<Position>& new_positio
         }
         if (own[0] < 0 && own[1] < 0) continue;
         const auto nodes = pieces.polygons[p];
-        const bool turned = own[0] < 0;
+        const bool reversed = own[0] < 0;
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             complex.face_vertices.push_back(
-                renumbered(turned ? nodes[nodes.size() - 1 - i] : nodes[i]));
+                renumbered(reversed ? nodes[nodes.size() - 1 - i] : nodes[i]));
         }
         complex.face_offsets.push_back(static_cast<std::int64_t>(complex.face_vertices.size()));
-        complex.face_cells.push_back(turned ? std::array{own[1], -1} : own);
+        complex.face_cells.push_back(reversed ? std::array{own[1], -1} : own);
         const bool is_exposed = (own[0] < 0 || own[1] < 0) && pieces[p].cells[1] >= 0;
         complex.face_surface.push_back(is_exposed || pieces[p].face < 0
                                            ? strata::kCutFace
@@ -102,15 +102,15 @@ Section assemble_section(const ComplexView& model, const std::vector<Position>& 
     for (std::size_t p = 0; p < pieces.size(); ++p) {
         if (!pieces[p].is_in_section()) continue;
         const auto& sides = pieces[p].sides;
-        const bool turned = sides[0] == kAbove || sides[1] == kBelow;
+        const bool reversed = sides[0] == kAbove || sides[1] == kBelow;
         const auto nodes = pieces.polygons[p];
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             section.polygon_vertices.push_back(
-                renumbered(turned ? nodes[nodes.size() - 1 - i] : nodes[i]));
+                renumbered(reversed ? nodes[nodes.size() - 1 - i] : nodes[i]));
         }
         section.offsets.push_back(static_cast<std::int64_t>(section.polygon_vertices.size()));
         const auto& cells = pieces[p].cells;
-        section.cells.push_back(turned ? std::array{cells[1], cells[0]} : cells);
+        section.cells.push_back(reversed ? std::array{cells[1], cells[0]} : cells);
     }
     return section;
 }

@@ -14,7 +14,7 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
                     const Pieces& pieces, const std::vector<HalfCell>& half_cells, int threads,
                     Progress* progress);
 
-/// The pieces that lie on the cutter, each turned as it is seen from above.
+/// The pieces that lie on the cutter, each as it is seen from above.
 Section assemble_section(const ComplexView& model, const std::vector<Position>& new_positions,
                          const Pieces& pieces);
 

@@ -146,11 +146,11 @@ bool is_nearly_convex(std::span<const PlanePosition> corners, const PlanePositio
     for (std::size_t i = 0; i < n; ++i) {
         const PlanePosition &a = corners[i], &b = corners[(i + 1) % n], &c = corners[(i + 2) % n];
         const double ux = b[0] - a[0], uy = b[1] - a[1], vx = c[0] - b[0], vy = c[1] - b[1];
-        const double turn = ux * vy - uy * vx;
+        const double cross = ux * vy - uy * vx;
         const double allowed = rounding[0] * (std::abs(uy) + std::abs(vy)) +
                                rounding[1] * (std::abs(ux) + std::abs(vx));
-        left = left && turn >= -allowed;
-        right = right && turn <= allowed;
+        left = left && cross >= -allowed;
+        right = right && cross <= allowed;
     }
     if (!left && !right) return false;
     for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -158,10 +158,10 @@ bool is_nearly_convex(std::span<const PlanePosition> corners, const PlanePositio
         for (std::size_t i = 0; i < n; ++i) {
             const double step = corners[(i + 1) % n][axis] - corners[i][axis];
             if (step == 0) continue;
-            const int way = step > 0 ? 1 : -1;
-            if (last == 0) first = way;
-            changes += last != 0 && way != last ? 1 : 0;
-            last = way;
+            const int direction = step > 0 ? 1 : -1;
+            if (last == 0) first = direction;
+            changes += last != 0 && direction != last ? 1 : 0;
+            last = direction;
         }
         changes += last != first ? 1 : 0;
         if (changes > 2) return false;
@@ -172,7 +172,7 @@ bool is_nearly_convex(std::span<const PlanePosition> corners, const PlanePositio
 /// Whether a polygon has more than the area that rounding may give to one that has none.
 bool has_area(std::span<const PlanePosition> corners, double twice_area,
               const PlanePosition& rounding) {
-    PlanePosition around{0, 0};  // the way along each axis
+    PlanePosition around{0, 0};  // the length along each axis
     for (std::size_t i = 0; i < corners.size(); ++i) {
         for (std::size_t axis = 0; axis < 2; ++axis)
             around[axis] += std::abs(corners[(i + 1) % corners.size()][axis] - corners[i][axis]);

@@ -136,10 +136,10 @@ bool PartRounding::stays_sound(std::int32_t part) const {
         const auto piece = index(own);
         std::vector<NodeId> loop = contracted(piece);
         if (loop.empty()) continue;
-        const int turned = pieces_[piece].parts[0] == part ? 1 : -1;
+        const int facing = pieces_[piece].parts[0] == part ? 1 : -1;
         for (std::size_t k = 0; k < loop.size(); ++k) {
             const NodeId a = loop[k], b = loop[(k + 1) % loop.size()];
-            uses.push_back({std::min(a, b), std::max(a, b), a < b ? turned : -turned});
+            uses.push_back({std::min(a, b), std::max(a, b), a < b ? facing : -facing});
             box.include(at(a));
         }
         std::sort(loop.begin(), loop.end());
@@ -238,7 +238,7 @@ void PartRounding::contract() {
     find_pieces_of_parts();
 }
 
-/// The nearest free place beside a node that its faces allow.
+/// Moves a node to the nearest free position beside it that its faces allow.
 void PartRounding::move_aside(NodeId node) {
     Position& p = moving(node);
     const bool fixed = on_base_[index(node)] != 0;

@@ -11,11 +11,11 @@ namespace realmodel::cutting {
 
 /// Makes sound parts of exact ones whose nodes were rounded to doubles.
 ///
-/// Nodes that came to lie in one place become one, and polygons between them vanish, wherever the
-/// parts around stay closed and keep an extent. Others get places beside it, parts and upright
-/// walls without extent are given one, all by single units in the last place; nodes on the flat
-/// base stay on it, and those on walls move up or down before they move aside. Last, polygons that
-/// are no longer convex are divided.
+/// Nodes that came to lie in one position become one, and polygons between them vanish, wherever
+/// the parts around stay closed and keep an extent. Others get positions beside it, parts and
+/// upright walls without extent are given one, all by single units in the last place; nodes on the
+/// flat base stay on it, and those on walls move up or down before they move aside. Last, polygons
+/// that are no longer convex are divided.
 class PartRounding {
 public:
     /// @param new_positions  of nodes after the model's vertices; they may move

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model cut by a plane: sides of vertices, places on edges, parts of faces, caps and parts of
+// A model cut by a plane: sides of vertices, cut edges, parts of faces, caps and parts of
 // cells, halves.
 #include <algorithm>
 #include <cmath>
@@ -67,8 +67,7 @@ public:
         cut_cells(false);
         const bool clean = std::all_of(cell_cuts_.begin(), cell_cuts_.end(),
                                        [](const CellCut& cut) { return cut.is_clean; });
-        if (!clean)
-            divide();  // a cell as thin as rounding: its parts tell what it has in the plane
+        if (!clean) divide();  // a cell as thin as rounding: its parts say what it has in the plane
         return assemble_section(model_, new_positions_, pieces_);
     }
 
@@ -98,7 +97,7 @@ private:
     void find_cuts();
     Piece origin(std::size_t face, std::int8_t side, std::span<const NodeId> polygon) const;
     void divide_faces(bool all);
-    std::int8_t level_side(std::size_t face, std::size_t which, int turned) const;
+    std::int8_t level_side(std::size_t face, std::size_t which, int facing) const;
     void cut_cells(bool parts);
     bool settle();
     bool straighten_walls();
@@ -121,7 +120,8 @@ private:
     CellPieces cell_pieces_;
     std::vector<CellCut> cell_cuts_;
     std::size_t first_cap_ = 0;
-    std::set<std::pair<std::int32_t, std::size_t>> turned_;  ///< faces in the plane, and their cell
+    std::set<std::pair<std::int32_t, std::size_t>>
+        reversed_;  ///< faces in the plane, and their cell
 };
 
 /// On which sides of the plane faces and cells have corners.
@@ -161,7 +161,7 @@ void PlaneCutter::find_cuts() {
         }
         cuts_ = std::make_unique<EdgeIntersections>(model_, plane_, std::move(edges));
         // An edge that ends just beside the plane may be cut in the very doubles where it ends.
-        // Then it is contracted to its end, and with it all that is as near: what stands on one
+        // Then it is contracted to its end, and with it all that is as near: what is on one
         // vertical stays together.
         bool moved = false;
         new_positions_ = cuts_->positions();
@@ -183,14 +183,14 @@ void PlaneCutter::find_cuts() {
 }
 
 /// The side of the part of a cell that a face in the plane bounds: the cell's, or where it has
-/// parts on both the one that the face turns to.
-std::int8_t PlaneCutter::level_side(std::size_t face, std::size_t which, int turned) const {
+/// parts on both the one that the face looks to.
+std::int8_t PlaneCutter::level_side(std::size_t face, std::size_t which, int facing) const {
     const std::int32_t cell = model_.cell(face, which);
     if (cell < 0) return kOn;
     const std::uint8_t sides = cell_sides_[index(cell)];
     if (sides == kCut) {
-        const bool against = turned_.contains({static_cast<std::int32_t>(face), which});
-        return ((turned > 0) == (which == 0)) != against ? kBelow : kAbove;
+        const bool against = reversed_.contains({static_cast<std::int32_t>(face), which});
+        return ((facing > 0) == (which == 0)) != against ? kBelow : kAbove;
     }
     return sides == kHasAbove ? kAbove : kBelow;
 }
@@ -340,7 +340,7 @@ bool PlaneCutter::settle_part(std::int32_t part, const CellCut& cut,
         for (std::size_t i = 0; i < refs.size(); ++i) {
             if (cut.part[i] != part) continue;
             const auto face = pieces_[index(refs[i].piece)].face;
-            first_time |= turned_.insert({face, index(refs[i].which)}).second;
+            first_time |= reversed_.insert({face, index(refs[i].which)}).second;
         }
         return first_time;
     }

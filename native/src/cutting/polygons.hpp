@@ -5,6 +5,8 @@
 
 namespace realmodel::cutting {
 
+using arrangement::dot;
+using arrangement::minus;
 using arrangement::NodeId;
 using arrangement::PlanePosition;
 using arrangement::polygon_normal;

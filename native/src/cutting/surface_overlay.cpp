@@ -38,128 +38,160 @@ SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& su
     name_nodes();
 }
 
-/// The faces that come near the surface.
+/// The faces that come near the surface: near the box of one of its triangles, and not all to one
+/// side of the triangle's plane.
 void SurfaceOverlay::find_active_faces() {
-    std::vector<Box> boxes;
     margin_ = rounding_of(surface_.vertices);
-    for (const auto& t : surface_.triangles) {
-        Box box;
-        for (const NodeId v : t)
-            box.include(surface_.vertices[index(v)]);
-        boxes.push_back(box);
-    }
-    Box whole;
-    for (const Box& box : boxes)
-        whole.include(box);
     for (std::size_t v = 0; v < model_.vertex_count(); ++v) {
         for (const double x : model_.vertex(static_cast<NodeId>(v)))
             margin_ = std::max(margin_, 4 * computed_ulps(x));
         model_box_.include(model_.vertex(static_cast<NodeId>(v)));
     }
     model_box_.widen(margin_);
-    for (Box& box : boxes)
+    std::vector<Box> boxes;
+    Box whole;
+    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t) {
+        Box& box = boxes.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i)
+            box.include(corner(t, i));
         box.widen(margin_);
-    whole.widen(margin_);
+        whole.include(box);
+    }
     tree_ = std::make_unique<BoxTree>(std::move(boxes));
     active_.assign(model_.face_count(), 0);
-    constexpr std::size_t kChunk = 1 << 12;
-    parallel_chunks(
-        (model_.face_count() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t c) {
-            for (std::size_t f = c * kChunk; f < std::min(active_.size(), (c + 1) * kChunk); ++f) {
-                Box box;
-                for (const NodeId v : model_.face(f))
-                    box.include(model_.vertex(v));
-                active_[f] = box.meets(whole) && tree_->any(box) ? 1 : 0;
-            }
-        });
+    parallel_ranges(active_.size(), 1 << 12, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f) {
+                            Box box;
+                            for (const NodeId v : model_.face(f))
+                                box.include(model_.vertex(v));
+                            if (!box.meets(whole)) continue;
+                            tree_->find(box, [&](std::int32_t t) {
+                                if (active_[f] == 0 && !is_beside(f, t)) active_[f] = 1;
+                            });
+                        }
+                    });
     for (std::size_t f = 0; f < active_.size(); ++f) {
         if (active_[f] != 0) active_faces_.push_back(static_cast<std::int32_t>(f));
     }
 }
 
-/// The place on the surface that a vertex is at but for its rounding; none where it is elsewhere.
-/// Corners of the surface come first, then its edges, then its triangles.
-std::optional<NodeId> SurfaceOverlay::place_on_surface(const Position& p) {
-    Position reach;
-    for (std::size_t k = 0; k < 3; ++k)
-        reach[k] = computed_ulps(p[k]);
-    const auto is_within = [&](const Position& q, double times) {
+/// Whether all vertices of a face are on one side of the plane of a triangle, farther from it than
+/// rounding may put them.
+bool SurfaceOverlay::is_beside(std::size_t face, std::int32_t t) const {
+    constexpr double kRounding = 0x1p-46;  // of the normal, and of the distances
+    const Position a = corner(t, 0);
+    const Position normal = polygon_normal(std::array{a, corner(t, 1), corner(t, 2)});
+    int above = 0, below = 0;
+    for (const NodeId v : model_.face(face)) {
+        const Position p = model_.vertex(v);
+        double distance = 0, allowed = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            if (std::abs(q[k] - p[k]) > times * reach[k]) return false;
+            distance += normal[k] * (p[k] - a[k]);
+            allowed += std::abs(normal[k]) * (margin_ + kRounding * std::abs(p[k] - a[k]));
         }
-        return true;
-    };
-    /// A place found in floating point, if it is indeed as near as that said.
-    const auto confirmed = [&](NodeId found) -> std::optional<NodeId> {
-        if (!is_within(points_.rounded(found), 3)) return std::nullopt;
-        return found;
-    };
+        above += distance > allowed;
+        below += distance < -allowed;
+        if (above > 0 && below > 0) return false;
+    }
+    const std::size_t all = model_.face(face).size();
+    return index(above) == all || index(below) == all;
+}
+
+namespace {
+
+/// How far a vertex may be from where it is meant to be, on each axis.
+Position tolerance_of(const Position& p) {
+    return {computed_ulps(p[0]), computed_ulps(p[1]), computed_ulps(p[2])};
+}
+
+bool is_within(const Position& p, const Position& q, const Position& tolerance, double times) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (std::abs(q[k] - p[k]) > times * tolerance[k]) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+/// A point that was found near p in floating point, if it is indeed as near.
+std::optional<NodeId> SurfaceOverlay::confirmed(NodeId found, const Position& p) const {
+    if (!is_within(p, points_.rounded(found), tolerance_of(p), 3)) return std::nullopt;
+    return found;
+}
+
+/// The point of an edge of the surface that a vertex is at but for its rounding.
+std::optional<NodeId> SurfaceOverlay::point_on_edge(const Position& p, const Position& a,
+                                                    const Position& b) {
+    // the part of the edge that is within the tolerance on every axis, and the axis that has it
+    // shortest: there the point keeps the vertex's coordinate
+    const Position tolerance = tolerance_of(p);
+    double from = 0, to = 1, shortest = HUGE_VAL;
+    std::size_t axis = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double change = b[k] - a[k], off = p[k] - a[k];
+        if (change == 0) {
+            if (std::abs(off) > tolerance[k]) return std::nullopt;
+            continue;
+        }
+        const double one = (off - tolerance[k]) / change, other = (off + tolerance[k]) / change;
+        from = std::max(from, std::min(one, other));
+        to = std::min(to, std::max(one, other));
+        if (tolerance[k] / std::abs(change) >= shortest) continue;
+        shortest = tolerance[k] / std::abs(change);
+        axis = k;
+    }
+    const double share = (p[axis] - a[axis]) / (b[axis] - a[axis]);
+    if (from > to || !(share > 0 && share < 1)) return std::nullopt;
+    const std::array of{points_.add(p), points_.add(a), points_.add(b)};  // in this order
+    return confirmed(points_.projected(axis, of[0], of[1], of[2]), p);
+}
+
+/// The point within a triangle of the surface that a vertex is at but for its rounding.
+std::optional<NodeId> SurfaceOverlay::point_in_triangle(const Position& p,
+                                                        const std::array<Position, 3>& corners) {
+    constexpr double kRounding = 0x1p-50;  // of the distance
+    const Position normal = polygon_normal(corners), tolerance = tolerance_of(p);
+    double off = 0, allowed = 0, size = 0;
+    std::size_t axis = 0;  // along which the point may be off most
+    for (std::size_t k = 0; k < 3; ++k) {
+        off += normal[k] * (p[k] - corners[0][k]);
+        size += std::abs(normal[k] * (p[k] - corners[0][k]));
+        allowed += std::abs(normal[k]) * tolerance[k];
+        if (std::abs(normal[k]) * tolerance[k] > std::abs(normal[axis]) * tolerance[axis]) axis = k;
+    }
+    if (!(std::abs(off) <= allowed + kRounding * size) || allowed == 0) return std::nullopt;
+    const View view(normal);
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (exact::orient2d(view(corners[i]), view(corners[(i + 1) % 3]), view(p)) <= 0)
+            return std::nullopt;
+    }
+    const std::array of{points_.add(p), points_.add(corners[0]), points_.add(corners[1]),
+                        points_.add(corners[2])};  // in this order
+    return confirmed(points_.projected(axis, of[0], of[1], of[2], of[3]), p);
+}
+
+/// The point of the surface that a vertex is at but for its rounding; none where it is elsewhere.
+/// Corners of the surface come first, then its edges, then its triangles.
+std::optional<NodeId> SurfaceOverlay::point_on_surface(const Position& p) {
     Box box;
     box.include(p);
     std::vector<std::int32_t> near;
     tree_->find(box, [&near](std::int32_t t) { near.push_back(t); });
     std::sort(near.begin(), near.end());
-    const auto corner = [this](std::int32_t t, std::size_t i) {
-        return surface_.vertices[index(surface_.triangles[index(t)][i % 3])];
-    };
     for (const std::int32_t t : near) {
         for (std::size_t i = 0; i < 3; ++i) {
-            if (is_within(corner(t, i), 1)) return points_.add(corner(t, i));
-        }
-    }
-    const auto coarsest = [&reach](const Position& d) {
-        std::size_t axis = 0;
-        for (std::size_t k = 1; k < 3; ++k) {
-            if (std::abs(d[k]) * reach[k] > std::abs(d[axis]) * reach[axis]) axis = k;
-        }
-        return axis;
-    };
-    for (const std::int32_t t : near) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            // the stretch of the edge that is within reach on every axis, and the axis that has it
-            // shortest: there the place keeps the vertex's coordinate
-            const Position a = corner(t, i), b = corner(t, i + 1);
-            double from = 0, to = 1, shortest = HUGE_VAL;
-            std::size_t axis = 0;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const double way = b[k] - a[k], off = p[k] - a[k];
-                if (way == 0) {
-                    if (std::abs(off) > reach[k]) to = -1;
-                    continue;
-                }
-                from = std::max(from, std::min((off - reach[k]) / way, (off + reach[k]) / way));
-                to = std::min(to, std::max((off - reach[k]) / way, (off + reach[k]) / way));
-                if (reach[k] / std::abs(way) >= shortest) continue;
-                shortest = reach[k] / std::abs(way);
-                axis = k;
-            }
-            const double share = (p[axis] - a[axis]) / (b[axis] - a[axis]);
-            if (from > to || !(share > 0 && share < 1)) continue;
-            const auto found =
-                confirmed(points_.projected(axis, points_.add(p), points_.add(a), points_.add(b)));
-            if (found) return found;
+            if (is_within(p, corner(t, i), tolerance_of(p), 1)) return points_.add(corner(t, i));
         }
     }
     for (const std::int32_t t : near) {
-        const std::array corners{corner(t, 0), corner(t, 1), corner(t, 2)};
-        const Position normal = polygon_normal(corners);
-        double off = 0, allowed = 0, size = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            off += normal[k] * (p[k] - corners[0][k]);
-            size += std::abs(normal[k] * (p[k] - corners[0][k]));
-            allowed += std::abs(normal[k]) * reach[k];
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (const auto found = point_on_edge(p, corner(t, i), corner(t, i + 1))) return found;
         }
-        if (!(std::abs(off) <= allowed + 0x1p-50 * size) || allowed == 0) continue;
-        const View view(normal);
-        bool inside = true;
-        const PlanePosition at = view(p);
-        for (std::size_t i = 0; i < 3; ++i)
-            inside = inside && exact::orient2d(view(corner(t, i)), view(corner(t, i + 1)), at) > 0;
-        if (!inside) continue;
-        const auto found =
-            confirmed(points_.projected(coarsest(normal), points_.add(p), points_.add(corners[0]),
-                                        points_.add(corners[1]), points_.add(corners[2])));
-        if (found) return found;
+    }
+    for (const std::int32_t t : near) {
+        if (const auto found = point_in_triangle(p, {corner(t, 0), corner(t, 1), corner(t, 2)}))
+            return found;
     }
     return std::nullopt;
 }
@@ -181,25 +213,25 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     }
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    const auto take = [this](NodeId p) -> std::uint8_t& {
+    const auto is_taken = [this](NodeId p) -> std::uint8_t& {
         if (is_taken_.size() <= index(p)) is_taken_.resize(points_.size());
         return is_taken_[index(p)];
     };
     for (const NodeId v : vertices)
-        take(vertex_node_[index(v)] = points_.add(model_.vertex(v))) = 1;
+        is_taken(vertex_node_[index(v)] = points_.add(model_.vertex(v))) = 1;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         poll(progress_, 16 * i);
         NodeId& node = vertex_node_[index(vertices[i])];
-        const auto place = place_on_surface(model_.vertex(vertices[i]));
-        if (!place || *place == node || take(*place) != 0) continue;
-        take(node) = 0;
-        take(*place) = 1;
-        node = *place;
+        const auto found = point_on_surface(model_.vertex(vertices[i]));
+        if (!found || *found == node || is_taken(*found) != 0) continue;
+        is_taken(node) = 0;
+        is_taken(*found) = 1;
+        node = *found;
     }
 }
 
-/// A triangle without area is gone in the overlay: the corner in its middle comes to lie on its
-/// long edge, and so on an edge of the face beyond, which must know it.
+/// A triangle without area has no region in the overlay: the corner in its middle comes to lie on
+/// its long edge, and so on an edge of the face beyond, which must know it.
 void SurfaceOverlay::activate_beside_flat_triangles() {
     std::vector<std::array<std::int32_t, 3>> triangles;
     std::vector<std::int32_t> fresh = active_faces_;
@@ -234,30 +266,15 @@ void SurfaceOverlay::activate_beside_flat_triangles() {
 }
 
 void SurfaceOverlay::overlay_all() {
-    std::vector<std::array<std::int32_t, 3>> triangles;
-    for (const std::int32_t f : active_faces_) {
-        triangulate_face(model_, index(f), triangles);
-        for (const auto& t : triangles) {
-            arrangement_.add(
-                {vertex_node_[index(t[0])], vertex_node_[index(t[1])], vertex_node_[index(t[2])]});
-            face_of_.push_back(f);
-        }
-    }
-    first_cutter_ = static_cast<std::int32_t>(face_of_.size());
-    for (const auto& t : surface_.triangles) {
-        std::array<NodeId, 3> corners;
-        for (std::size_t i = 0; i < 3; ++i)
-            corners[i] = points_.add(surface_.vertices[index(t[i])]);
-        arrangement_.add(corners);
-    }
-    // Which meet is found out on all threads; where they do is entered in order.
+    add_triangles();
+    // Which intersect is found out on all threads; where they do is entered in order.
     const auto count = index(first_cutter_) + surface_.triangles.size();
     constexpr std::size_t kChunk = 1 << 8;
     std::vector<std::vector<TriangleArrangement::Intersection>> found((count + kChunk - 1) /
                                                                       kChunk);
     if (progress_ != nullptr) progress_->begin(0.08, 0.15, "finding where surface and faces meet");
-    parallel_chunks(found.size(), threads_, progress_, [&](std::size_t chunk) {
-        for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
+    parallel_ranges(count, kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
             const auto t = static_cast<std::int32_t>(i);
             Box box;
             for (const NodeId p : arrangement_.corners(t))
@@ -267,7 +284,7 @@ void SurfaceOverlay::overlay_all() {
                 const std::int32_t other = first_cutter_ + c;
                 if (other <= t) return;
                 if (const auto intersection = arrangement_.intersection(t, other))
-                    found[chunk].push_back(*intersection);
+                    found[begin / kChunk].push_back(*intersection);
             });
         }
     });
@@ -280,21 +297,38 @@ void SurfaceOverlay::overlay_all() {
     arrangement_.divide(threads_, progress_);
 }
 
+/// The triangles of active faces, then those of the surface.
+void SurfaceOverlay::add_triangles() {
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    for (const std::int32_t f : active_faces_) {
+        triangulate_face(model_, index(f), triangles);
+        for (const auto& t : triangles) {
+            arrangement_.add(
+                {vertex_node_[index(t[0])], vertex_node_[index(t[1])], vertex_node_[index(t[2])]});
+            face_of_.push_back(f);
+        }
+    }
+    first_cutter_ = static_cast<std::int32_t>(face_of_.size());
+    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t)
+        arrangement_.add(
+            {points_.add(corner(t, 0)), points_.add(corner(t, 1)), points_.add(corner(t, 2))});
+}
+
 /// Numbers all nodes: the model's vertices keep theirs, the others follow.
 void SurfaceOverlay::name_nodes() {
     std::vector<NodeId> out(points_.size(), -1);
     for (std::size_t v = 0; v < vertex_node_.size(); ++v) {
         if (vertex_node_[v] >= 0) out[index(vertex_node_[v])] = static_cast<NodeId>(v);
     }
-    const auto vertices = static_cast<NodeId>(model_.vertex_count());
+    // edges and sides number regions and then faces in one row
+    checked_number(size() + model_.face_count(), "faces and their parts");
     for (const arrangement::Region& region : arrangement_.regions()) {
         auto& loops = loops_.emplace_back(region.loops);
         for (auto& loop : loops) {
             for (NodeId& p : loop) {
                 NodeId& node = out[index(p)];
                 if (node < 0) {
-                    node = vertices + static_cast<NodeId>(new_positions_.size());
-                    new_positions_.push_back(points_.rounded(p));
+                    node = add_node(points_.rounded(p));
                     exact_of_new_.push_back(p);
                 }
                 p = node;
@@ -346,7 +380,7 @@ arrangement::EdgeFan SurfaceOverlay::fan_of(std::span<const EdgeUse> uses) {
 /// Of a corner that turns left, the middle of the triangle that it cuts off; where the outline or a
 /// hole reaches into that, the middle between the corner and what reaches in farthest.
 NodeId SurfaceOverlay::inner_point(std::size_t region) {
-    const auto [axis, turned] = view_of(region);
+    const auto [axis, facing] = view_of(region);
     const auto& outline = loops_[region][0];
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
     std::vector<NodeId> own;
@@ -364,16 +398,16 @@ NodeId SurfaceOverlay::inner_point(std::size_t region) {
         if (own[i] != b) continue;
         a = own[(i + own.size() - 1) % own.size()];
         c = own[(i + 1) % own.size()];
-        if (turned * exact::orient2d(points_, axis, a, b, c) > 0) break;
+        if (facing * exact::orient2d(points_, axis, a, b, c) > 0) break;
     }
     NodeId farthest = -1;
     for (const auto& loop : loops_[region]) {
         for (const NodeId node : loop) {
             const NodeId p = exact(node);
             if (p == a || p == b || p == c) continue;
-            if (turned * exact::orient2d(points_, axis, a, b, p) < 0 ||
-                turned * exact::orient2d(points_, axis, b, c, p) < 0 ||
-                turned * exact::orient2d(points_, axis, c, a, p) < 0)
+            if (facing * exact::orient2d(points_, axis, a, b, p) < 0 ||
+                facing * exact::orient2d(points_, axis, b, c, p) < 0 ||
+                facing * exact::orient2d(points_, axis, c, a, p) < 0)
                 continue;
             if (farthest < 0 || exact::is_farther(points_, axis, c, a, p, farthest)) farthest = p;
         }

@@ -14,7 +14,7 @@
 namespace realmodel::cutting {
 
 /// A model's faces near a surface, and the surface, divided along one another exactly. Nodes are
-/// the model's vertices, then the places where they meet.
+/// the model's vertices, then the points where they meet.
 ///
 /// Vertices of the model that are on the surface but for their own rounding are taken to lie on it:
 /// with that the model's cells may come to overlap by as much, which whoever uses this must bear.
@@ -45,10 +45,10 @@ public:
         return node < vertices ? model_.vertex(node) : new_positions_[index(node - vertices)];
     }
     std::vector<Position>& new_positions() { return new_positions_; }
-    /// A node somewhere, of which no exact point is known.
+    /// A new node, of which no exact point is known.
     NodeId add_node(const Position& p) {
         new_positions_.push_back(p);
-        return static_cast<NodeId>(model_.vertex_count() + new_positions_.size()) - 1;
+        return checked_number(model_.vertex_count() + new_positions_.size(), "nodes") - 1;
     }
     bool is_near(NodeId vertex) const { return vertex_node_[index(vertex)] >= 0; }
 
@@ -62,7 +62,7 @@ public:
     }
     /// The fan of an edge's uses by regions and whole faces, in nodes.
     arrangement::EdgeFan fan_of(std::span<const arrangement::EdgeUse> uses);
-    /// A place within a region, on none of its edges.
+    /// A point within a region, on none of its edges.
     NodeId inner_point(std::size_t region);
     /// The axis along which a region is seen best, and which way it turns seen along it.
     std::pair<std::size_t, int> view_of(std::size_t region) const {
@@ -84,7 +84,16 @@ private:
     void name_vertices_of(std::span<const std::int32_t> faces);
     void activate_beside_flat_triangles();
     NodeId far_corner(std::size_t face, const std::array<NodeId, 2>& edge);
-    std::optional<NodeId> place_on_surface(const Position& p);
+    Position corner(std::int32_t triangle, std::size_t i) const {
+        return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
+    }
+    bool is_beside(std::size_t face, std::int32_t triangle) const;
+    std::optional<NodeId> confirmed(NodeId found, const Position& p) const;
+    std::optional<NodeId> point_on_edge(const Position& p, const Position& a, const Position& b);
+    std::optional<NodeId> point_in_triangle(const Position& p,
+                                            const std::array<Position, 3>& corners);
+    std::optional<NodeId> point_on_surface(const Position& p);
+    void add_triangles();
     void overlay_all();
     void name_nodes();
 
@@ -101,7 +110,7 @@ private:
     std::vector<std::uint8_t> active_;
     std::vector<std::int32_t> active_faces_;
     std::vector<NodeId> vertex_node_;     ///< of the model's vertices, -1 away from the surface
-    std::vector<std::uint8_t> is_taken_;  ///< of exact points: a vertex stands for it
+    std::vector<std::uint8_t> is_taken_;  ///< of exact points: a vertex is there
     std::vector<std::int32_t> face_of_;   ///< of the model's triangles in the overlay
     std::int32_t first_cutter_ = 0;       ///< the overlay's first triangle of the surface
     std::vector<NodeId> exact_of_new_;    ///< the exact point of each new node

@@ -9,12 +9,11 @@
 
 #include "arrangement/joined_polygons.hpp"
 #include "base/parallel_sort.hpp"
+#include "cutting/shell.hpp"
 
 namespace realmodel::cutting {
 
 using arrangement::each_edge;
-
-using spatial::Box;
 
 SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding,
                            const CutterSides& sides, Progress* progress)
@@ -203,62 +202,45 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
 /// The wall of a hollow that the surface cuts out of a cell bounds the part around it; what
 /// rounding turned inside out goes with the part beside it.
 void SurfaceParts::attach_hollows() {
-    struct Shell {
-        double volume = 0;
-        Box box;
-    };
     std::map<std::pair<std::int32_t, std::int8_t>, std::map<std::int32_t, Shell>> shells;
-    std::vector<Position> origin(overlay_.model().cell_block.size());
-    std::vector<std::uint8_t> has_origin(origin.size(), 0);
-    const auto take = [&](std::int32_t slot, const auto& loops) {
+    std::vector<std::optional<Position>> origin(overlay_.model().cell_block.size());
+    const auto at = [this](NodeId node) { return overlay_.position(node); };
+    const auto add = [&](std::int32_t slot, const auto& loops) {
         if (slot < 0 || !sides_.reaches(slots_[index(slot)].cell)) return;
         const Slot& own = slots_[index(slot)];
-        Shell& shell = shells[{own.cell, own.half}][joined_->find(slot)];
-        if (has_origin[index(own.cell)] == 0) {
-            has_origin[index(own.cell)] = 1;
-            origin[index(own.cell)] = overlay_.position(loops[0][0]);
-        }
-        for (const auto& loop : loops) {
-            const Position first = overlay_.position(loop[0]);
-            for (std::size_t i = 0; i < loop.size(); ++i) {
-                shell.box.include(overlay_.position(loop[i]));
-                if (i < 2) continue;
-                shell.volume += own.sign * sixfold_volume(origin[index(own.cell)], first,
-                                                          overlay_.position(loop[i - 1]),
-                                                          overlay_.position(loop[i]));
-            }
-        }
+        auto& first = origin[index(own.cell)];
+        if (!first) first = at(loops[0][0]);
+        for (const auto& loop : loops)
+            shells[{own.cell, own.half}][joined_->find(slot)].add(loop, own.sign, *first, at);
     };
     for (const Patch& patch : patches_) {
         for (const std::int32_t slot : patch.slots) {
             if (patch.regions.empty()) {
-                take(slot, std::array{overlay_.model().face(index(patch.face))});
+                add(slot, std::array{overlay_.model().face(index(patch.face))});
             } else {
-                take(slot, patch.loops);
+                add(slot, patch.loops);
             }
         }
     }
     for (const Caps& caps : caps_) {
         for (const auto& own : caps.slots) {
             for (const std::int32_t slot : own)
-                take(slot, overlay_.loops(index(caps.region)));
+                add(slot, overlay_.loops(index(caps.region)));
         }
     }
     for (const auto& [cell, of_cell] : shells) {
         for (const auto& [root, hollow] : of_cell) {
-            if (hollow.volume > 0) continue;
+            if (hollow.sixfold_volume > 0) continue;
+            const auto rank = [&hollow](const Shell& shell) {  // a box around it, then the smallest
+                return std::pair(!shell.box.contains(hollow.box), shell.sixfold_volume);
+            };
             const std::pair<const std::int32_t, Shell>* around = nullptr;
             for (const auto& other : of_cell) {
-                const Shell& shell = other.second;
-                if (other.first == root || shell.volume <= -hollow.volume) continue;
-                const bool better =
-                    around == nullptr ||
-                    std::pair(!shell.box.contains(hollow.box), shell.volume) <
-                        std::pair(!around->second.box.contains(hollow.box), around->second.volume);
-                if (better) around = &other;
+                if (other.first == root || other.second.sixfold_volume <= -hollow.sixfold_volume)
+                    continue;
+                if (around == nullptr || rank(other.second) < rank(around->second)) around = &other;
             }
-            if (around == nullptr) continue;
-            joined_->join(around->first, root);
+            if (around != nullptr) joined_->join(around->first, root);
         }
     }
 }

@@ -2,7 +2,7 @@
 // The polygons around parts of cells.
 #include <algorithm>
 
-#include "base/parallel_counts.hpp"
+#include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "cutting/surface_parts.hpp"
 #include "cutting/triangulate.hpp"
@@ -11,7 +11,7 @@ namespace realmodel::cutting {
 
 namespace {
 
-/// Turns of nodes where they are exactly.
+/// Orientations of nodes where they are exactly.
 class ExactTurns : public CornerTurns {
 public:
     ExactTurns(SurfaceOverlay& overlay, const View& view) : overlay_(overlay), view_(view) {}
@@ -36,9 +36,9 @@ Polygons from_middle(SurfaceOverlay& overlay, const Polygons& polygons) {
             for (std::size_t k = 0; k < 3; ++k)
                 middle[k] += overlay.position(node)[k] / static_cast<double>(nodes.size());
         }
-        const NodeId centre = overlay.add_node(middle);
+        const NodeId center = overlay.add_node(middle);
         for (std::size_t i = 0; i < nodes.size(); ++i)
-            divided.add(std::array{nodes[i], nodes[(i + 1) % nodes.size()], centre});
+            divided.add(std::array{nodes[i], nodes[(i + 1) % nodes.size()], center});
     }
     return divided;
 }
@@ -87,8 +87,8 @@ void SurfaceParts::number_parts() {
         part_[s] = part_[index(joined_->find(static_cast<std::int32_t>(s)))];
 }
 
-/// Adds some of the polygons between two slots: they turn counter-clockwise, turned over where
-/// `reversed`, seen from outside of the first, and clockwise from outside of the second.
+/// Adds some of the polygons between two slots: they turn counter-clockwise, the other
+/// way where `reversed`, seen from outside of the first, and clockwise from outside of the second.
 void SurfaceParts::write(const Polygons& polygons, std::size_t first, std::size_t end,
                          bool reversed, std::int32_t face, std::array<std::int32_t, 2> slots,
                          bool level) {
@@ -125,10 +125,10 @@ void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
     if (!divide_loops(overlay_, polygon_normal(corners), patch.loops, is_wall, whole)) {
         whole.clear();
         for (const std::int32_t region : patch.regions) {
-            const auto [axis, turned] = overlay_.view_of(index(region));
-            Position way{0, 0, 0};
-            way[axis] = turned;
-            divide_loops(overlay_, way, overlay_.loops(index(region)), false, whole);
+            const auto [axis, facing] = overlay_.view_of(index(region));
+            Position normal{0, 0, 0};
+            normal[axis] = facing;
+            divide_loops(overlay_, normal, overlay_.loops(index(region)), false, whole);
         }
     }
     for (std::size_t p = 0; p < whole.size(); ++p)
@@ -202,7 +202,7 @@ void SurfaceParts::write_caps() {
         const auto sign = [this](std::int32_t slot) { return slots_[index(slot)].sign; };
         std::vector<std::array<std::int32_t, 2>> pairs;
         for (std::size_t k = 0; k < 2; ++k) {
-            std::vector<std::int32_t> ahead, back;  // turned as the surface, and against it
+            std::vector<std::int32_t> ahead, back;  // facing as the surface, and against it
             for (const std::int32_t slot : caps.slots[k])
                 (sign(slot) > 0 ? ahead : back).push_back(slot);
             const std::size_t count = std::min(ahead.size(), back.size());

@@ -11,15 +11,15 @@ namespace realmodel::input {
 
 namespace {
 
-constexpr int clear = 256, kEndOfInformation = 257, kFirstFree = 258, kTableSize = 4096;
+constexpr int kClear = 256, kEndOfInformation = 257, kFirstFree = 258, kTableSize = 4096;
 constexpr int kLeastWidth = 9, kGreatestWidth = 12;
 
 [[noreturn]] void refuse(const char* what) {
     throw InputError("damaged", std::string("damaged LZW data: ") + what);
 }
 
-/// What the codes stand for: each its predecessor's bytes and one more, which lie in the output
-/// where it was made.
+/// The bytes of a code: those of the code before it and one more, which lie in the output where the
+/// code was made.
 struct Entry {
     std::size_t begin, length;
 };
@@ -42,18 +42,18 @@ std::vector<std::uint8_t> decode_lzw(std::span<const std::uint8_t> encoded, std:
         held -= width;
         const int code = static_cast<int>(bits >> held & ((1u << width) - 1));
         if (code == kEndOfInformation) break;
-        if (code == clear) {
+        if (code == kClear) {
             next = kFirstFree;
             width = kLeastWidth;
             fresh = true;
             continue;
         }
-        const Entry here{out.size(), code < clear  ? 1
+        const Entry here{out.size(), code < kClear ? 1
                                      : code < next ? table[code].length
                                                    : previous.length + 1};
-        if (code > next || (fresh && code > clear)) refuse("a code that was not made yet");
+        if (code > next || (fresh && code > kClear)) refuse("a code that was not made yet");
         if (here.length > most - out.size()) refuse("it is longer than the image");
-        if (code < clear) {
+        if (code < kClear) {
             out.push_back(static_cast<std::uint8_t>(code));
         } else {
             // The code that is being made now is the previous one and its own first byte, which

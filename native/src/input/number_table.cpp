@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/input/number_table.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <optional>
 
+#include "base/parallel.hpp"
 #include "input/number_text.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -15,7 +13,7 @@ namespace realmodel::input {
 
 namespace {
 
-constexpr std::size_t kBytesAtOnce = 1 << 16;  // a thread's share of the text
+constexpr std::size_t kBytesAtOnce = 1 << 16;  // the least that a thread reads
 
 /// Bytes of the text, without blanks around them and without quotes.
 struct Field {
@@ -97,7 +95,8 @@ private:
         }
     }
 
-    /// A field in quotes; `at` goes behind its separator. Returns whether there may be another.
+    /// A field in quotes; moves `at` behind its separator.
+    /// @return whether there may be another
     bool quoted(std::size_t& at, std::size_t end) {
         std::size_t close = at + 1;
         while (close < end && (text_[close] != '"' || (close + 1 < end && text_[close + 1] == '"')))
@@ -174,7 +173,7 @@ private:
         return std::find(values.texts.begin(), values.texts.end(), entry) != values.texts.end();
     }
 
-    /// Takes up the present line.
+    /// Adds the present line.
     std::optional<Wrong> row(NumberTable& out) {
         if (fields_.size() < most_) {
             return Wrong{"too_few", {0, static_cast<std::int64_t>(fields_.size())}};
@@ -225,23 +224,12 @@ NumberTable read_numbers(std::string_view text, const TableFormat& format, int t
         if (newline == std::string_view::npos) break;
         begins.push_back(newline + 1);
     }
-    const auto parts = static_cast<std::ptrdiff_t>(begins.size());
     begins.push_back(text.size());
     std::vector<NumberTable> tables(begins.size() - 1);
-    std::vector<std::optional<Wrong>> wrong(begins.size() - 1);
-    std::exception_ptr thrown;
-    const int team = threads > 0 ? threads : omp_get_max_threads();
-#pragma omp parallel for schedule(dynamic) num_threads(team) if (parts > 1)
-    for (std::ptrdiff_t part = 0; part < parts; ++part) {
-        try {
-            Lines lines(text, format);
-            wrong[part] = lines.read(begins[part], begins[part + 1], tables[part]);
-        } catch (...) {  // out of memory
-#pragma omp critical(realmodel_read_numbers)
-            thrown = std::current_exception();
-        }
-    }
-    if (thrown) std::rethrow_exception(thrown);
+    std::vector<std::optional<Wrong>> wrong(tables.size());
+    parallel_chunks(tables.size(), threads, nullptr, [&](std::size_t part) {
+        wrong[part] = Lines(text, format).read(begins[part], begins[part + 1], tables[part]);
+    });
     NumberTable all;
     std::size_t count = 0;
     for (const NumberTable& table : tables)

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One number written as text. Private.
 #pragma once
 
 #include <string_view>
 
 namespace realmodel::input {
 
-enum class Spelling { number, not_a_number, not_finite, too_large };
+enum class Spelling { kNumber, kNotANumber, kNotFinite, kTooLarge };
 
 struct ParsedNumber {
     Spelling spelling = Spelling::kNotANumber;

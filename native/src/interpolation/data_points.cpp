@@ -111,8 +111,8 @@ void require_finite_nodes(std::span<const Position> nodes) {
 void require_countable(std::size_t count, const char* what) {
     constexpr std::size_t kMost = INT32_MAX;
     if (count <= kMost) return;
-    throw InputError("too_large", "there are " + std::to_string(count) + " " + what +
-                                      "; at most " + std::to_string(kMost) + " can be used");
+    throw InputError("too_large", "there are " + std::to_string(count) + " " + what + "; at most " +
+                                      std::to_string(kMost) + " can be used");
 }
 
 }  // namespace realmodel::interpolation

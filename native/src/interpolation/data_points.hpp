@@ -39,7 +39,8 @@ struct DataPoints {
 };
 
 /// Merges points that repeat another.
-/// @throws InputError kind "no_points", "not_finite" (items: the point), "contradicting_points" (two
+/// @throws InputError kind "no_points", "not_finite" (items: the point), "contradicting_points"
+/// (two
 ///         values at one position; items: both points; place), "too_large"
 DataPoints prepare_points(std::span<const std::array<double, 3>> points);
 

@@ -8,9 +8,9 @@ namespace realmodel::interpolation {
 
 namespace {
 
-// The least part of a term, its values of the order of 1, that is orthogonal to the terms before it:
-// with less the data do not distinguish it from them. Points off a line by a millionth of its length
-// are on it.
+// The least part of a term, its values of the order of 1, that is orthogonal to the terms before
+// it: with less the data do not distinguish it from them. Points off a line by a millionth of its
+// length are on it.
 constexpr double kLeastPart = 1e-6;
 // Points closer together show no trend: far from them its terms, and the variances that are their
 // squares, would overflow.
@@ -84,6 +84,13 @@ DriftFrame::Terms DriftFrame::terms(const Position& position) const {
     return terms;
 }
 
+Eigen::MatrixXd DriftFrame::terms(std::span<const Position> positions) const {
+    Eigen::MatrixXd rows(std::ssize(positions), drift_terms(drift_));
+    for (Eigen::Index i = 0; i < rows.rows(); ++i)
+        rows.row(i) = terms(positions[i]);
+    return rows;
+}
+
 void DriftBasis::make(const Eigen::Ref<const Eigen::MatrixXd>& plain,
                       const Eigen::Ref<const Eigen::MatrixXd>& whitened) {
     const Eigen::Index rows = plain.rows(), terms = plain.cols();
@@ -124,19 +131,16 @@ DriftBasis::Coefficients DriftBasis::solve(const DriftFrame::Terms& terms) const
 }
 
 std::vector<double> without_drift(const DataPoints& data, Drift drift) {
-    const auto count = static_cast<Eigen::Index>(data.local.size());
-    const DriftFrame frame(data.local, drift);
-    Eigen::MatrixXd f(count, drift_terms(drift));
-    Eigen::VectorXd z(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-        f.row(i) = frame.terms(data.local[i]);
+    const Eigen::MatrixXd terms =
+        DriftFrame(data.local, drift).terms(std::span<const Position>(data.local));
+    Eigen::VectorXd z(terms.rows());
+    for (Eigen::Index i = 0; i < z.size(); ++i)
         z(i) = data.values[i] - data.values[0];
-    }
     DriftBasis basis;
-    basis.make(f, f);
+    basis.make(terms, terms);
     for (int pass = 0; pass < 2; ++pass)
         z -= basis.expand(basis.project(z));
-    return {z.data(), z.data() + count};
+    return {z.begin(), z.end()};
 }
 
 }  // namespace realmodel::interpolation

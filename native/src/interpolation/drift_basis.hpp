@@ -20,14 +20,16 @@ inline constexpr Eigen::Index kMostDriftTerms = 6;
 Eigen::Index drift_terms(Drift drift);
 
 /// Coordinates in which a polynomial drift is well-conditioned: from the mean of some positions,
-/// along the axis of their greatest spread and across it, in units of that spread. Terms across come
-/// after those along, so that positions in one line keep the terms along it.
+/// along the axis of their greatest spread and across it, in units of that spread. Terms across
+/// come after those along, so that positions in one line keep the terms along it.
 class DriftFrame {
 public:
     using Terms = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMostDriftTerms>;
 
     DriftFrame(std::span<const Position> positions, Drift drift);
     Terms terms(const Position& position) const;
+    /// A row for each position.
+    Eigen::MatrixXd terms(std::span<const Position> positions) const;
 
 private:
     Drift drift_;
@@ -42,7 +44,8 @@ class DriftBasis {
 public:
     using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostDriftTerms, 1>;
 
-    /// @param plain     F; on it is decided which terms are kept. Rows that elimination left out are 0
+    /// @param plain     F; on it is decided which terms are kept. Rows that elimination left out
+    /// are 0
     /// @param whitened  L^-1 F, the same rows 0
     void make(const Eigen::Ref<const Eigen::MatrixXd>& plain,
               const Eigen::Ref<const Eigen::MatrixXd>& whitened);

@@ -2,17 +2,14 @@
 #include "meshing/band.hpp"
 
 #include <algorithm>
-#include <string>
 
 #include "meshing/constrained_delaunay.hpp"
-#include "meshing/plan_predicates.hpp"
-#include "realmodel/base/errors.hpp"
 
 namespace realmodel::meshing {
 
 namespace {
 
-/// Sides that wait for the triangle twin them, found by their ends.
+/// Edges of lattices that wait for the triangle behind them, found by their ends.
 struct OpenEdge {
     std::int32_t from, to;
     HalfEdge edge;
@@ -111,16 +108,9 @@ struct BandPoints {
     }
 };
 
-}  // namespace
-
-BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners,
-                     std::vector<Lattice>&& lattices, const Check& check) {
-    BandedMesh out;
-    FlatMesh& mesh = out.mesh;
-    mesh.points = std::move(border.points);
-    std::vector<OpenEdge> rim;
-    take_lattices(out, std::move(lattices), rim);
-
+BandPoints band_points(const FlatMesh& mesh, const BorderPieces& border,
+                       std::span<const std::int32_t> loners, std::span<const OpenEdge> rim,
+                       std::span<const Lattice> lattices) {
     BandPoints band;
     band.in_band.assign(mesh.points.size(), -1);
     for (const auto* pieces : {&border.border, &border.inner}) {
@@ -136,33 +126,12 @@ BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners
     for (const Lattice& lattice : lattices)
         for (const std::int32_t loner : lattice.loners)
             band.add(mesh, loner);
+    return band;
+}
 
-    std::vector<Segment> segments, inner;
-    for (const Segment& piece : border.border)
-        segments.push_back({band.in_band[piece[0]], band.in_band[piece[1]]});
-    for (const OpenEdge& edge : rim)
-        segments.push_back({band.in_band[edge.from], band.in_band[edge.to]});
-    for (const Segment& piece : border.inner) {
-        const auto [low, high] = std::minmax(band.in_band[piece[0]], band.in_band[piece[1]]);
-        inner.push_back({low, high});
-        segments.push_back(inner.back());
-    }
-    std::sort(inner.begin(), inner.end());
-
-    Cdt cdt;
-    try {
-        const auto vertices = insert_points(cdt, band.points, check);
-        insert_segments(cdt, vertices, segments, check);
-    } catch (const InputError& error) {
-        if (!error.place) throw;
-        throw InputError("too_close",
-                         "outlines come so close at " +
-                             text_of({(*error.place)[0], (*error.place)[1]}) +
-                             " that the points added on them collide; move them apart or let them "
-                             "touch",
-                         -1, {}, error.place);
-    }
-    const std::vector<signed char> in_band = faces_in_band(cdt, inner, check);
+/// Adds the band's triangles to the mesh and joins them to those of the lattices.
+void add_triangles(FlatMesh& mesh, const Cdt& cdt, const std::vector<signed char>& in_band,
+                   const BandPoints& band, std::span<const OpenEdge> rim) {
     std::vector<std::int32_t> triangle_of(in_band.size(), -1);
     for (const Cdt::Face_handle face : cdt.finite_face_handles()) {
         if (in_band[face->time_stamp()] != 1) continue;
@@ -195,7 +164,56 @@ BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners
         }
     }
     mesh.legalize(open);
+}
+
+void lock_pieces(FlatMesh& mesh, std::int32_t first, std::span<const Segment> locked) {
+    const auto count = static_cast<std::int32_t>(mesh.corners.size());
+    for (std::int32_t t = locked.empty() ? count : first; t < count; ++t) {
+        for (int i = 0; i < 3; ++i) {
+            const HalfEdge edge(t, i);
+            const Segment piece{mesh.from(edge), mesh.to(edge)};
+            if (mesh.is_border(edge) && std::binary_search(locked.begin(), locked.end(), piece))
+                mesh.fix(edge, true, true);
+        }
+    }
+}
+
+}  // namespace
+
+BandedMesh join_band(BorderPieces&& border, std::span<const std::int32_t> loners,
+                     std::vector<Lattice>&& lattices, const Check& check) {
+    BandedMesh out;
+    FlatMesh& mesh = out.mesh;
+    mesh.points = std::move(border.points);
+    std::vector<OpenEdge> rim;
+    take_lattices(out, std::move(lattices), rim);
+    const BandPoints band = band_points(mesh, border, loners, rim, lattices);
+
+    std::vector<Segment> segments, inner;
+    for (const Segment& piece : border.border)
+        segments.push_back({band.in_band[piece[0]], band.in_band[piece[1]]});
+    for (const OpenEdge& edge : rim)
+        segments.push_back({band.in_band[edge.from], band.in_band[edge.to]});
+    for (const Segment& piece : border.inner) {
+        const auto [low, high] = std::minmax(band.in_band[piece[0]], band.in_band[piece[1]]);
+        inner.push_back({low, high});
+        segments.push_back(inner.back());
+    }
+    std::sort(inner.begin(), inner.end());
+
+    Cdt cdt;
+    const auto vertices = insert_points(cdt, band.points, check);
+    insert_segments(cdt, vertices, segments, check);
+    add_triangles(mesh, cdt, faces_in_band(cdt, inner, check), band, rim);
+    lock_pieces(mesh, out.first_of_band, border.locked);
     return out;
+}
+
+FlatMesh mesh_without_lattice(const RegionGraph& graph, const BorderPieces& border, double finest,
+                              const Check& check) {
+    EdgeCutting cutting(graph.triangulation, graph.inside, border.points);
+    cutting.cut(border.edges, check);
+    return std::move(cutting).take_inside(finest, rounding_slack(graph.points));
 }
 
 }  // namespace realmodel::meshing

@@ -67,7 +67,8 @@ std::vector<SizeSource> border_detail(const RegionGraph& graph, const SizeField&
                                       double least_angle, double shortest_edge,
                                       std::size_t most_vertices, const Check& check) {
     constexpr double kShortShare = 0.7;  // cut_border's own pieces are hardly shorter than that
-    FlatMesh mesh = join_band(cut_border(graph, size, check), graph.loners, {}, check).mesh;
+    FlatMesh mesh = mesh_without_lattice(graph, cut_border(graph, size, shortest_edge, check),
+                                         shortest_edge, check);
     refine(mesh,
            {least_angle, std::numeric_limits<double>::infinity(), shortest_edge, most_vertices},
            size, 0, {}, check);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "realmodel/base/errors.hpp"
+
 namespace realmodel::meshing {
 
 namespace {
@@ -115,41 +117,118 @@ std::vector<double> cuts(const PlanPoint& a, const PlanPoint& b, double begin, d
     return shares;
 }
 
-/// Cuts edges at the shares of their length that `shares_of(edge)` gives.
-template <class SharesOf>
-BorderPieces cut_edges(const RegionGraph& graph, const Check& check, SharesOf&& shares_of) {
-    BorderPieces pieces;
-    pieces.points = graph.points;
-    std::size_t seen = 0;
-    const auto cut = [&](const Segment& edge, std::vector<Segment>& out) {
-        if (++seen % 1024 == 0) check(0);
-        // Always from the lesser end, so that a border read in the other direction is cut alike.
-        const bool turns = graph.points[edge[1]] < graph.points[edge[0]];
-        const Segment way = turns ? Segment{edge[1], edge[0]} : edge;
-        const PlanPoint &a = graph.points[way[0]], &b = graph.points[way[1]];
-        std::vector<double> shares = shares_of(way);
-        if (turns) std::reverse(shares.begin(), shares.end());
-        std::int32_t last = edge[0];
-        for (const double t : shares) {
-            const auto next = static_cast<std::int32_t>(pieces.points.size());
-            pieces.points.push_back({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])});
-            out.push_back({last, next});
-            last = next;
+/// The edges of a graph, border and inner, cut at the shares of their length that
+/// `shares_of(edge)` gives; cuts that there is no room for are left out.
+class Cutter {
+public:
+    Cutter(const RegionGraph& graph, double finest, const Check& check)
+        : graph_(graph), finest_(finest), check_(check) {}
+
+    template <class SharesOf>
+    BorderPieces run(SharesOf&& shares_of) {
+        pieces_.points = graph_.points;
+        for (const auto* edges : {&graph_.border, &graph_.inner}) {
+            for (const Segment& edge : *edges) {
+                if (pieces_.edges.size() % 1024 == 0) check_(0);
+                // Always from the lesser end, so that a border read in the other direction is cut
+                // alike.
+                const bool is_reversed = graph_.points[edge[1]] < graph_.points[edge[0]];
+                const Segment way = is_reversed ? Segment{edge[1], edge[0]} : edge;
+                std::vector<double> shares = shares_of(way);
+                if (is_reversed) std::reverse(shares.begin(), shares.end());
+                add(edge, way, shares);
+            }
         }
-        out.push_back({last, edge[1]});
-    };
-    for (const Segment& edge : graph.border)
-        cut(edge, pieces.border);
-    for (const Segment& edge : graph.inner)
-        cut(edge, pieces.inner);
-    return pieces;
-}
+        settle();
+        return std::move(pieces_);
+    }
+
+private:
+    void add(const Segment& edge, const Segment& way, std::span<const double> shares) {
+        const PlanPoint &a = graph_.points[way[0]], &b = graph_.points[way[1]];
+        const auto first = static_cast<std::int32_t>(pieces_.points.size());
+        double nearest = 1;
+        for (const double t : shares) {
+            pieces_.points.push_back({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])});
+            nearest = std::min({nearest, t, 1 - t});
+        }
+        if (static_cast<double>(pieces_.points.size()) > kMostFlatTriangles) {
+            throw InputError("too_large",
+                             "the outlines need more pieces than 32-bit numbers can "
+                             "count; use a larger edge length");
+        }
+        pieces_.edges.push_back({edge, first, static_cast<std::int32_t>(pieces_.points.size())});
+        nearest_.push_back(nearest * length_of(graph_, edge));
+    }
+
+    bool is_border(std::size_t edge) const { return edge < graph_.border.size(); }
+
+    /// Where others come close, points are added one by one, as far as there is room.
+    void settle() {
+        const double slack = rounding_slack(graph_.points);
+        EdgeCutting cutting(graph_.triangulation, graph_.inside, pieces_.points);
+        const FlatMesh& mesh = cutting.mesh();
+        std::vector<CutEdge> tight;
+        std::vector<bool> is_tight(pieces_.edges.size()), is_crowded(pieces_.edges.size());
+        for (std::size_t k = 0; k < pieces_.edges.size(); ++k) {
+            const HalfEdge edge =
+                is_border(k) ? graph_.border_at[k] : graph_.inner_at[k - graph_.border.size()];
+            const HalfEdge other = mesh.twin(edge);
+            const bool is_cut = pieces_.edges[k].first < pieces_.edges[k].last;
+            const double nearest = is_border(k) ? std::min(nearest_[k], finest_) : nearest_[k];
+            const bool has_room_beyond = other.is_none() || has_room(mesh, other, nearest, slack);
+            is_crowded[k] = is_border(k) && !has_room_beyond;
+            is_tight[k] = is_cut && !(has_room_beyond && has_room(mesh, edge, nearest_[k], slack));
+            if (is_tight[k]) tight.push_back(pieces_.edges[k]);
+        }
+        cutting.cut(tight, check_);
+        std::vector<PlanPoint> points = graph_.points;
+        for (std::size_t k = 0; k < pieces_.edges.size(); ++k) {
+            auto& [edge, first, last] = pieces_.edges[k];
+            Segment before = edge, piece = edge;  // by the numbers of before, and those from now on
+            const auto end_piece = [&](std::int32_t old_end, std::int32_t end) {
+                before[1] = old_end;
+                piece[1] = end;
+                (is_border(k) ? pieces_.border : pieces_.inner).push_back(piece);
+                if (is_crowded[k] && !may_be_cut(cutting, before, slack))
+                    pieces_.locked.push_back(piece);
+                before[0] = old_end;
+                piece[0] = end;
+            };
+            const auto begin = static_cast<std::int32_t>(points.size());
+            for (std::int32_t point = first; point < last; ++point) {
+                if (is_tight[k] && !cutting.has(point)) continue;
+                points.push_back(mesh.points[point]);
+                end_piece(point, static_cast<std::int32_t>(points.size()) - 1);
+            }
+            end_piece(edge[1], edge[1]);
+            first = begin;
+            last = static_cast<std::int32_t>(points.size());
+        }
+        pieces_.points = std::move(points);
+        std::sort(pieces_.locked.begin(), pieces_.locked.end());
+    }
+
+    /// Whether there is room outside of the region for cuts in a piece of the border.
+    bool may_be_cut(const EdgeCutting& cutting, const Segment& piece, double slack) const {
+        HalfEdge edge = cutting.between(piece[0], piece[1]);
+        if (cutting.is_inside(edge)) edge = cutting.mesh().twin(edge);
+        return edge.is_none() || has_room(cutting.mesh(), edge, finest_, slack);
+    }
+
+    const RegionGraph& graph_;
+    double finest_;
+    const Check& check_;
+    BorderPieces pieces_;
+    std::vector<double> nearest_;  ///< of each edge: from an end to what cuts it next to that
+};
 
 }  // namespace
 
-BorderPieces cut_border(const RegionGraph& graph, const SizeField& size, const Check& check) {
+BorderPieces cut_border(const RegionGraph& graph, const SizeField& size, double finest,
+                        const Check& check) {
     const std::vector<double> tips = tip_lengths(graph, size);
-    return cut_edges(graph, check, [&](const Segment& edge) {
+    return Cutter(graph, finest, check).run([&](const Segment& edge) {
         const double length = length_of(graph, edge);
         return cuts(graph.points[edge[0]], graph.points[edge[1]], tips[edge[0]] / length,
                     1 - tips[edge[1]] / length, size);
@@ -157,8 +236,8 @@ BorderPieces cut_border(const RegionGraph& graph, const SizeField& size, const C
 }
 
 BorderPieces cut_border_by_grid(const RegionGraph& graph, const PlanPoint& origin, double side,
-                                double closest, const Check& check) {
-    return cut_edges(graph, check, [&](const Segment& edge) {
+                                double closest, double finest, const Check& check) {
+    return Cutter(graph, finest, check).run([&](const Segment& edge) {
         const PlanPoint &a = graph.points[edge[0]], &b = graph.points[edge[1]];
         std::vector<double> crossings;
         for (int k = 0; k < 2; ++k) {

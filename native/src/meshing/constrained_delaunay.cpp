@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -73,7 +74,10 @@ PlanPoint point_of(const Cdt::Vertex_handle& vertex) {
 }  // namespace
 
 std::vector<Cdt::Vertex_handle> insert_points(Cdt& cdt, std::span<const PlanPoint> points,
-                                              const Check& check) {
+                                              const Check& check, Repeated repeated) {
+    if (static_cast<double>(points.size()) > std::numeric_limits<std::int32_t>::max()) {
+        throw InputError("too_large", "there are more points than 32-bit numbers can count");
+    }
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (std::isfinite(points[i][0]) && std::isfinite(points[i][1])) continue;
         throw InputError("not_finite", "point " + std::to_string(i) + " is not a finite number", -1,
@@ -89,6 +93,11 @@ std::vector<Cdt::Vertex_handle> insert_points(Cdt& cdt, std::span<const PlanPoin
         const PlanPoint& p = points[number];
         const Cdt::Vertex_handle vertex = cdt.insert({p[0], p[1]}, near);
         near = vertex->face();
+        vertices[number] = vertex;
+        if (vertex->number >= 0 && repeated == Repeated::kJoin) {
+            vertex->number = std::min(vertex->number, number);
+            continue;
+        }
         if (vertex->number >= 0) {
             const auto [first, second] = std::minmax(vertex->number, number);
             throw InputError("repeated_point",
@@ -97,13 +106,13 @@ std::vector<Cdt::Vertex_handle> insert_points(Cdt& cdt, std::span<const PlanPoin
                              -1, {first, second}, std::array{p[0], p[1], 0.0});
         }
         vertex->number = number;
-        vertices[number] = vertex;
     }
     return vertices;
 }
 
 void insert_segments(Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
-                     std::span<const Segment> segments, const Check& check) {
+                     std::span<const Segment> segments, const Check& check,
+                     std::vector<std::size_t>* refused) {
     const auto known = [&](std::int32_t point) {
         return point >= 0 && static_cast<std::size_t>(point) < vertices.size();
     };
@@ -120,7 +129,8 @@ void insert_segments(Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
         try {
             cdt.insert_constraint(vertices[from], vertices[to]);
         } catch (const Cdt::Intersection_of_constraints_exception&) {
-            refuse_crossing(vertices, segments, i);
+            if (refused == nullptr) refuse_crossing(vertices, segments, i);
+            refused->push_back(i);
         }
     }
 }

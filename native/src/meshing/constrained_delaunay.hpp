@@ -49,14 +49,22 @@ using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
                                          CGAL::Delaunay_mesh_face_base_2<Kernel>>,
     CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
+/// What becomes of a point that is there already: refused, or it is the same vertex, which keeps
+/// the lesser number.
+enum class Repeated : std::uint8_t { kRefuse, kJoin };
+
 /// Inserts points in the order of a space-filling curve; returns the vertex of each.
 /// @throws InputError "repeated_point", "not_finite".
 std::vector<Cdt::Vertex_handle> insert_points(Cdt& cdt, std::span<const PlanPoint> points,
-                                              const Check& check);
+                                              const Check& check,
+                                              Repeated repeated = Repeated::kRefuse);
 
-/// Inserts segments between points inserted before. @throws InputError "crossing", "bad_index".
+/// Inserts segments between points inserted before. Those that cross one before them are left out
+/// and listed in `refused`, or refused where that is null.
+/// @throws InputError "crossing", "bad_index".
 void insert_segments(Cdt& cdt, std::span<const Cdt::Vertex_handle> vertices,
-                     std::span<const Segment> segments, const Check& check);
+                     std::span<const Segment> segments, const Check& check,
+                     std::vector<std::size_t>* refused = nullptr);
 
 /// The edges that each segment consists of once all are inserted, sorted by their ends (lower
 /// number first), then by segment: an edge that comes twice belongs to two segments.

@@ -142,15 +142,7 @@ private:
 
     void judge_star(HalfEdge leaving) {
         star_.clear();
-        HalfEdge edge = leaving;
-        do {
-            star_.push_back(edge.triangle());
-            edge = mesh_.rotate_ccw(edge);
-        } while (!edge.is_none() && edge != leaving);
-        if (edge.is_none()) {
-            for (edge = mesh_.rotate_cw(leaving); !edge.is_none(); edge = mesh_.rotate_cw(edge))
-                star_.push_back(edge.triangle());
-        }
+        mesh_.visit_star(leaving, [&](HalfEdge edge) { star_.push_back(edge.triangle()); });
         for (const std::int32_t t : star_)
             states_[t] = is_small(t) ? kAccepted : kWaiting;
         for (const std::int32_t t : star_) {

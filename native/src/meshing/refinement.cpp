@@ -97,14 +97,15 @@ private:
         return true;
     }
 
-    /// Cuts a fixed edge in two; false where it is as short as it may get, or where the rounded
-    /// middle would turn a triangle over.
+    /// Cuts a fixed edge in two; false where it is as short as it may get, or where there is no
+    /// room for its rounded middle.
     bool cut(HalfEdge edge) {
+        if (mesh_.is_locked(edge)) return false;
         const PlanPoint &a = mesh_.origin_point(edge), &b = mesh_.target_point(edge);
         if (squared_distance(a, b) <= 4 * target_.shortest_edge * target_.shortest_edge) {
             return false;
         }
-        // Alike from both edges, so that a region and its neighbor are cut alike.
+        // Alike from both sides, so that a region and its neighbor are cut alike.
         const PlanPoint m = a < b ? middle(a, b) : middle(b, a);
         if (!can_cut(mesh_, edge, m)) return false;
         enqueue_star(mesh_.insert_on(edge, m));
@@ -113,14 +114,7 @@ private:
 
     void enqueue_star(HalfEdge leaving) {
         require_room(mesh_, target_.most_vertices);
-        HalfEdge edge = leaving;
-        do {
-            enqueue_if_bad(edge.triangle());
-            edge = mesh_.rotate_ccw(edge);
-        } while (!edge.is_none() && edge != leaving);
-        if (!edge.is_none()) return;
-        for (edge = mesh_.rotate_cw(leaving); !edge.is_none(); edge = mesh_.rotate_cw(edge))
-            enqueue_if_bad(edge.triangle());
+        mesh_.visit_star(leaving, [&](HalfEdge edge) { enqueue_if_bad(edge.triangle()); });
     }
 
     FlatMesh& mesh_;

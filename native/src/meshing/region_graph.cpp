@@ -6,7 +6,9 @@
 #include <string>
 
 #include "meshing/constrained_delaunay.hpp"
+#include "meshing/edge_cutting.hpp"
 #include "meshing/plan_predicates.hpp"
+#include "meshing/point_insertion.hpp"
 #include "meshing/ring_graph.hpp"
 #include "meshing/segment_crossings.hpp"
 #include "realmodel/base/errors.hpp"
@@ -16,77 +18,232 @@ namespace realmodel::meshing {
 
 namespace {
 
-/// Adds the region's triangles to its area, and the sides between inside and outside to its border.
-void take_region(RegionGraph& graph, const ConstrainedTriangulation& mesh,
-                 const std::vector<bool>& inside) {
+/// Takes a triangulation over: the region's area, and the edges between inside and outside.
+void take_region(RegionGraph& graph, ConstrainedTriangulation&& mesh, std::vector<bool>&& inside) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (!inside[t]) continue;
         const auto& corners = mesh.triangles[t];
-        const PlanPoint &a = graph.points[corners[0]], &b = graph.points[corners[1]],
-                        &c = graph.points[corners[2]];
-        graph.triangles.push_back({a, b, c});
-        graph.area += 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+        graph.area += 0.5 * twice_area(graph.points[corners[0]], graph.points[corners[1]],
+                                       graph.points[corners[2]]);
         for (int i = 0; i < 3; ++i) {
             const std::int32_t across = mesh.neighbors[t][i];
             if (across >= 0 && inside[across]) continue;
             graph.border.push_back({corners[i], corners[(i + 1) % 3]});
+            graph.border_at.emplace_back(static_cast<std::int32_t>(t), i);
         }
     }
+    graph.triangulation = std::move(mesh);
+    graph.inside = std::move(inside);
 }
 
-/// Numbers the points of constraints after those of the rings; equal points are one.
-class Places {
+void require_finite(const PlanPoint& p, std::int64_t line, std::size_t corner) {
+    if (std::isfinite(p[0]) && std::isfinite(p[1])) return;
+    const std::string what =
+        line < 0 ? "the constraint points" : "constraint " + std::to_string(line);
+    throw InputError("constraint_not_finite",
+                     "point " + std::to_string(corner) + " of " + what + " is not a finite number",
+                     -1, {line, static_cast<std::int64_t>(corner)});
+}
+
+/// Rings and constraints as one graph.
+class ConstrainedGraph {
 public:
-    explicit Places(std::vector<PlanPoint>& points) : points_(points) {
-        for (std::size_t i = 0; i < points.size(); ++i)
-            known_.emplace_back(points[i], static_cast<std::int32_t>(i));
-        std::sort(known_.begin(), known_.end());
+    ConstrainedGraph(RingGraph&& rings, const Constraints& constraints, const Check& check)
+        : constraints_(constraints), check_(check), ring_edges_(std::move(rings.segments)) {
+        graph_.points = std::move(rings.points);
     }
 
-    /// Numbers of many places at once.
-    std::vector<std::int32_t> number(std::span<const PlanPoint> places) {
-        const std::vector<std::int32_t> first = first_equal(places);
-        std::vector<std::int32_t> numbers(places.size());
-        const std::size_t before = known_.size();
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            if (first[i] != static_cast<std::int32_t>(i)) {
-                numbers[i] = numbers[first[i]];
-                continue;
-            }
-            const auto end = known_.begin() + static_cast<std::ptrdiff_t>(before);
-            const auto at = std::lower_bound(known_.begin(), end, std::pair(places[i], 0));
-            if (at != end && at->first == places[i]) {
-                numbers[i] = at->second;
-                continue;
-            }
-            numbers[i] = static_cast<std::int32_t>(points_.size());
-            points_.push_back(places[i]);
-            known_.emplace_back(places[i], numbers[i]);
-        }
-        std::sort(known_.begin(), known_.end());
-        return numbers;
+    RegionGraph run() {
+        add_constraints();
+        cut_at_crossings();
+        take_triangulation();
+        require_points_inside();
+        return std::move(graph_);
     }
 
 private:
-    std::vector<PlanPoint>& points_;
-    std::vector<std::pair<PlanPoint, std::int32_t>> known_;
+    std::int32_t add_point(const PlanPoint& p) {
+        graph_.points.push_back(p);
+        return static_cast<std::int32_t>(graph_.points.size()) - 1;
+    }
+
+    void add_constraints() {
+        for (std::size_t l = 0; l < constraints_.lines.size(); ++l) {
+            const auto& line = constraints_.lines[l];
+            for (std::size_t i = 0; i < line.size(); ++i) {
+                require_finite(line[i], static_cast<std::int64_t>(l), i);
+                const std::int32_t end = add_point(line[i]);
+                if (i > 0 && line[i] != line[i - 1]) inner_edges_.push_back({end - 1, end});
+            }
+        }
+        first_point_ = static_cast<std::int32_t>(graph_.points.size());
+        for (std::size_t i = 0; i < constraints_.points.size(); ++i) {
+            require_finite(constraints_.points[i], -1, i);
+            add_point(constraints_.points[i]);
+        }
+    }
+
+    /// Cuts everything where constraints meet something. Crossings are rounded, which bends what
+    /// they cut, and that may cross something else: then all is cut once more. Rings are cut only
+    /// where there is room for it. What of constraints still crosses something after some rounds
+    /// cannot be told from its crossings in doubles, and is left out.
+    void cut_at_crossings() {
+        constexpr int kMostRounds = 8;
+        EdgeCutting rings = triangulated_rings();
+        for (int round = 1; round <= kMostRounds; ++round) {
+            cut_once(rings);
+            cdt_.clear();
+            vertices_ = insert_points(cdt_, graph_.points, check_, Repeated::kJoin);
+            insert_segments(cdt_, vertices_, ring_edges_, check_);
+            std::vector<std::size_t> refused;
+            insert_segments(cdt_, vertices_, inner_edges_, check_, &refused);
+            if (refused.empty()) return;
+            if (round < kMostRounds) continue;
+            for (auto edge = refused.rbegin(); edge != refused.rend(); ++edge)
+                inner_edges_.erase(inner_edges_.begin() + static_cast<std::ptrdiff_t>(*edge));
+        }
+    }
+
+    /// The rings among all points, cut where points are on them.
+    EdgeCutting triangulated_rings() {
+        Cdt cdt;
+        const auto vertices = insert_points(cdt, graph_.points, check_, Repeated::kJoin);
+        insert_segments(cdt, vertices, ring_edges_, check_);
+        std::vector<CoveredEdge> covered = covered_edges(cdt, vertices, ring_edges_);
+        std::stable_sort(
+            covered.begin(), covered.end(),
+            [](const CoveredEdge& a, const CoveredEdge& b) { return a.segment < b.segment; });
+        const std::vector<Segment> whole = std::move(ring_edges_);
+        ring_edges_.clear();
+        for (const auto& [from, to, segment] : covered) {
+            const bool is_reversed = whole[segment][0] == to || whole[segment][1] == from;
+            ring_edges_.push_back(is_reversed ? Segment{to, from} : Segment{from, to});
+        }
+        const ConstrainedTriangulation mesh = numbered_triangles(cdt);
+        return {mesh, std::vector<bool>(mesh.triangles.size()), graph_.points};
+    }
+
+    void cut_once(EdgeCutting& rings) {
+        std::vector<Segment> segments = ring_edges_;
+        segments.insert(segments.end(), inner_edges_.begin(), inner_edges_.end());
+        const std::size_t ring_count = ring_edges_.size();
+        std::vector<std::vector<PlanPoint>> cuts =
+            crossings(graph_.points, segments, ring_count, check_);
+        const auto moved = cut_rings(rings, std::span(cuts).first(ring_count));
+        inner_edges_.clear();
+        for (std::size_t s = ring_count; s < segments.size(); ++s) {
+            std::int32_t last = segments[s][0];
+            const auto step = [&](std::int32_t next) {
+                if (graph_.points[next] != graph_.points[last])
+                    inner_edges_.push_back({last, next});
+                last = next;
+            };
+            for (const PlanPoint& p : cuts[s]) {
+                const auto at = std::lower_bound(moved.begin(), moved.end(), Moved{p, p});
+                step(add_point(at != moved.end() && (*at)[0] == p ? (*at)[1] : p));
+            }
+            step(segments[s][1]);
+        }
+    }
+
+    /// A point wanted on a ring and the one that there is room for.
+    using Moved = std::array<PlanPoint, 2>;
+
+    /// Cuts the rings' edges as far as there is room; returns the points that moved, sorted.
+    std::vector<Moved> cut_rings(EdgeCutting& rings, std::span<const std::vector<PlanPoint>> cuts) {
+        std::vector<CutEdge> edges;
+        for (std::size_t s = 0; s < cuts.size(); ++s) {
+            const Segment edge = ring_edges_[s];
+            const auto first = static_cast<std::int32_t>(graph_.points.size());
+            for (const PlanPoint& p : cuts[s])
+                if (p != graph_.points[edge[0]] && p != graph_.points[edge[1]]) add_point(p);
+            edges.push_back({edge, first, static_cast<std::int32_t>(graph_.points.size())});
+        }
+        rings.add_points(graph_.points);
+        rings.cut(edges, check_);
+        std::vector<Moved> moved;
+        ring_edges_.clear();
+        for (const auto& [edge, first, last] : edges) {
+            std::int32_t begin = edge[0];
+            for (std::int32_t i = first; i < last; ++i) {
+                if (!rings.has(i)) continue;
+                const PlanPoint& p = rings.mesh().points[i];
+                if (p != graph_.points[i]) moved.push_back({graph_.points[i], p});
+                graph_.points[i] = p;
+                ring_edges_.push_back({begin, i});
+                begin = i;
+            }
+            ring_edges_.push_back({begin, edge[1]});
+        }
+        std::sort(moved.begin(), moved.end());
+        return moved;
+    }
+
+    /// The edges of the triangulation that segments run along, by the lesser end first; sorted.
+    std::vector<Segment> edges_along(std::span<const Segment> segments) const {
+        std::vector<Segment> edges;
+        for (const CoveredEdge& edge : covered_edges(cdt_, vertices_, segments))
+            edges.push_back({edge.from, edge.to});
+        edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+        return edges;
+    }
+
+    void take_triangulation() {
+        ConstrainedTriangulation mesh = numbered_triangles(cdt_);
+        const auto is_along = [&](const std::vector<Segment>& edges, std::size_t t, int i) {
+            const auto [low, high] =
+                std::minmax(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]);
+            return mesh.constrained[t][i] &&
+                   std::binary_search(edges.begin(), edges.end(), Segment{low, high});
+        };
+        const std::vector<Segment> ring_edges = edges_along(ring_edges_),
+                                   inner_edges = edges_along(inner_edges_);
+        std::vector<bool> inside =
+            inside_rings(mesh, [&](std::int32_t t, int i) { return is_along(ring_edges, t, i); });
+        std::vector<bool> is_ended(graph_.points.size(), false);
+        is_within_.assign(graph_.points.size(), false);
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+            if (!inside[t]) continue;
+            for (int i = 0; i < 3; ++i) {
+                const std::int32_t a = mesh.triangles[t][i], b = mesh.triangles[t][(i + 1) % 3];
+                is_within_[a] = true;
+                const std::int32_t other = mesh.neighbors[t][i];
+                if (a > b || other < 0 || !inside[other] || !is_along(inner_edges, t, i)) continue;
+                graph_.inner.push_back({a, b});
+                graph_.inner_at.emplace_back(static_cast<std::int32_t>(t), i);
+                is_ended[a] = is_ended[b] = true;
+            }
+        }
+        take_region(graph_, std::move(mesh), std::move(inside));
+        for (const auto& [from, to] : graph_.border)
+            is_ended[from] = is_ended[to] = true;
+        for (std::size_t i = 0; i < graph_.points.size(); ++i)
+            if (is_within_[i] && !is_ended[i])
+                graph_.loners.push_back(static_cast<std::int32_t>(i));
+    }
+
+    void require_points_inside() const {
+        for (std::size_t i = 0; i < constraints_.points.size(); ++i) {
+            const std::size_t number = static_cast<std::size_t>(first_point_) + i;
+            if (is_within_[vertices_[number]->number]) continue;
+            const PlanPoint& p = constraints_.points[i];
+            const auto item = static_cast<std::int64_t>(i);
+            throw InputError("constraint_outside",
+                             "constraint point " + std::to_string(i) + " at " + text_of(p) +
+                                 " is outside the region; leave it out",
+                             -1, {item}, std::array{p[0], p[1], 0.0});
+        }
+    }
+
+    const Constraints& constraints_;
+    const Check& check_;
+    RegionGraph graph_;
+    std::vector<Segment> ring_edges_, inner_edges_;  ///< cut wherever they are known to meet
+    std::int32_t first_point_ = 0;                   ///< of the constraints' points
+    std::vector<bool> is_within_;                    ///< of each point: the region
+    Cdt cdt_;
+    std::vector<Cdt::Vertex_handle> vertices_;
 };
-
-void require_finite(const PlanPoint& p, std::size_t line, std::size_t corner, const char* what) {
-    if (std::isfinite(p[0]) && std::isfinite(p[1])) return;
-    throw InputError("constraint_not_finite",
-                     "point " + std::to_string(corner) + " of " + what +
-                         (line == static_cast<std::size_t>(-1) ? "" : " " + std::to_string(line)) +
-                         " is not a finite number",
-                     -1, {static_cast<std::int64_t>(line), static_cast<std::int64_t>(corner)});
-}
-
-void sort_out_repeats(std::vector<Segment>& segments) {
-    for (Segment& s : segments)
-        if (s[0] > s[1]) std::swap(s[0], s[1]);
-    std::sort(segments.begin(), segments.end());
-    segments.erase(std::unique(segments.begin(), segments.end()), segments.end());
-}
 
 }  // namespace
 
@@ -96,121 +253,11 @@ RegionGraph region_graph(std::span<const Ring> rings, const Constraints& constra
         if (progress != nullptr) progress->check();
     };
     RingTriangulation region = triangulate_region(rings, progress);
+    if (!constraints.lines.empty() || !constraints.points.empty())
+        return ConstrainedGraph(std::move(region.graph), constraints, check).run();
     RegionGraph graph;
     graph.points = std::move(region.graph.points);
-    if (constraints.lines.empty() && constraints.points.empty()) {
-        take_region(graph, region.triangulation, region.inside);
-        return graph;
-    }
-
-    // All segments, the rings' first, cut where they meet.
-    Places places(graph.points);
-    std::vector<Segment> segments = region.graph.segments;
-    const std::size_t ring_segments = segments.size();
-    for (std::size_t l = 0; l < constraints.lines.size(); ++l) {
-        const auto& line = constraints.lines[l];
-        for (std::size_t i = 0; i < line.size(); ++i)
-            require_finite(line[i], l, i, "constraint");
-    }
-    std::vector<PlanPoint> given;
-    for (const auto& line : constraints.lines)
-        given.insert(given.end(), line.begin(), line.end());
-    const std::size_t line_points = given.size();
-    for (std::size_t i = 0; i < constraints.points.size(); ++i) {
-        require_finite(constraints.points[i], static_cast<std::size_t>(-1), i,
-                       "the constraint points");
-        given.push_back(constraints.points[i]);
-    }
-    const std::vector<std::int32_t> number = places.number(given);
-    std::size_t at = 0;
-    for (const auto& line : constraints.lines) {
-        for (std::size_t i = 0; i < line.size(); ++i, ++at) {
-            if (i > 0 && number[at - 1] != number[at]) {
-                segments.push_back({number[at - 1], number[at]});
-            }
-        }
-    }
-    const std::vector<std::vector<PlanPoint>> cuts =
-        crossings(graph.points, segments, ring_segments, check);
-    std::vector<PlanPoint> cut_places;
-    for (const auto& list : cuts)
-        cut_places.insert(cut_places.end(), list.begin(), list.end());
-    const std::vector<std::int32_t> cut_number = places.number(cut_places);
-
-    std::vector<Segment> ring_edges, inner_edges;
-    at = 0;
-    for (std::size_t s = 0; s < segments.size(); ++s) {
-        std::vector<Segment>& out = s < ring_segments ? ring_edges : inner_edges;
-        std::int32_t last = segments[s][0];
-        const auto step = [&](std::int32_t next) {
-            if (next != last) out.push_back({last, next});
-            last = next;
-        };
-        for (std::size_t i = 0; i < cuts[s].size(); ++i)
-            step(cut_number[at++]);
-        step(segments[s][1]);
-    }
-
-    Cdt cdt;
-    const std::vector<Cdt::Vertex_handle> vertices = insert_points(cdt, graph.points, check);
-    std::vector<Segment> all = ring_edges;
-    all.insert(all.end(), inner_edges.begin(), inner_edges.end());
-    try {
-        insert_segments(cdt, vertices, all, check);
-    } catch (const InputError& error) {
-        if (error.kind != "crossing" || !error.place) throw;
-        throw InputError(
-            "too_close",
-            "a constraint comes so close to another line at " +
-                text_of({(*error.place)[0], (*error.place)[1]}) +
-                " that they cannot be told apart; move it, or let them meet in a point",
-            -1, {}, error.place);
-    }
-    // A point may lie on a segment without being its end: name the edges that there are.
-    const auto chain = [&](const std::vector<Segment>& wanted) {
-        std::vector<Segment> edges;
-        for (const CoveredEdge& edge : covered_edges(cdt, vertices, wanted))
-            edges.push_back({edge.from, edge.to});
-        sort_out_repeats(edges);
-        return edges;
-    };
-    ring_edges = chain(ring_edges);
-    inner_edges = chain(inner_edges);
-    const ConstrainedTriangulation mesh = numbered_triangles(cdt);
-    const std::vector<bool> inside = inside_rings(mesh, [&](std::int32_t t, int i) {
-        const auto [low, high] = std::minmax(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3]);
-        return mesh.constrained[t][i] &&
-               std::binary_search(ring_edges.begin(), ring_edges.end(), Segment{low, high});
-    });
-    take_region(graph, mesh, inside);
-
-    std::vector<bool> within(graph.points.size(), false), ended(graph.points.size(), false);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (!inside[t]) continue;
-        for (int i = 0; i < 3; ++i) {
-            const std::int32_t a = mesh.triangles[t][i], b = mesh.triangles[t][(i + 1) % 3];
-            within[a] = true;
-            const std::int32_t other = mesh.neighbors[t][i];
-            if (a > b || !mesh.constrained[t][i] || other < 0 || !inside[other]) continue;
-            if (!std::binary_search(inner_edges.begin(), inner_edges.end(), Segment{a, b}))
-                continue;
-            graph.inner.push_back({a, b});
-            ended[a] = ended[b] = true;
-        }
-    }
-    for (std::size_t i = line_points; i < given.size(); ++i) {
-        if (within[number[i]]) continue;
-        const PlanPoint& p = given[i];
-        throw InputError("constraint_outside",
-                         "constraint point " + std::to_string(i - line_points) + " at " +
-                             text_of(p) + " lies outside the region; leave it out",
-                         -1, {static_cast<std::int64_t>(i - line_points)},
-                         std::array{p[0], p[1], 0.0});
-    }
-    for (const Segment& edge : graph.border)
-        ended[edge[0]] = ended[edge[1]] = true;
-    for (std::size_t i = 0; i < graph.points.size(); ++i)
-        if (within[i] && !ended[i]) graph.loners.push_back(static_cast<std::int32_t>(i));
+    take_region(graph, std::move(region.triangulation), std::move(region.inside));
     return graph;
 }
 

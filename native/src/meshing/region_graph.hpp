@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "meshing/check.hpp"
+#include "meshing/flat_mesh.hpp"
 #include "realmodel/meshing/region_mesh.hpp"
 #include "realmodel/meshing/rings.hpp"
 
@@ -17,9 +18,13 @@ struct RegionGraph {
     std::vector<PlanPoint> points;
     std::vector<Segment> border;  ///< between the region and what is not, the region on the left
     std::vector<Segment> inner;   ///< of constraints, inside the region
-    std::vector<std::int32_t> loners;                 ///< points inside that no edge ends at
-    double area = 0;                                  ///< of the region
-    std::vector<std::array<PlanPoint, 3>> triangles;  ///< that tile it
+    std::vector<std::int32_t> loners;  ///< points inside that no edge ends at
+    double area = 0;                   ///< of the region
+    /// Of all points and edges, up to the convex hull; which triangles belong to the region, and
+    /// where the edges are in it.
+    ConstrainedTriangulation triangulation;
+    std::vector<bool> inside;
+    std::vector<HalfEdge> border_at, inner_at;
 };
 
 /// Checks rings and constraints and brings them together: constraints are cut where they meet the

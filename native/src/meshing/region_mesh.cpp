@@ -2,6 +2,7 @@
 #include "realmodel/meshing/region_mesh.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -226,19 +227,10 @@ private:
     double fitting_ = 0;
 };
 
-/// Points added on edges are rounded; where outlines nearly coincide that can turn triangles over.
-void require_upright(const PlanarMesh& mesh, const Check& check) {
-    Ticker tick(check);
-    for (const auto& [a, b, c] : mesh.triangles) {
-        tick(0.9);
-        if (orient2d(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]) > 0) continue;
-        const PlanPoint& p = mesh.vertices[a];
-        throw InputError(
-            "too_close",
-            "outlines come so close at " + text_of(p) +
-                " that the points added on them collide; move them apart or let them touch",
-            -1, {}, std::array{p[0], p[1], 0.0});
-    }
+[[maybe_unused]] bool is_upright(const PlanarMesh& mesh) {
+    return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& t) {
+        return orient2d(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]) > 0;
+    });
 }
 
 /// The triangles that are not dead, and the points that they use, in their order.
@@ -276,34 +268,43 @@ PlanarMesh Meshing::mesh(const SizeField& size, double begin, double end) const 
     const bool is_grid = request_.mesher == Mesher::kGrid;
     const Check cutting = part(0, 0.05, "cutting the border");
     const Check laying = part(0.05, 0.3, "laying out the points");
+    const bool is_frontal = request_.mesher == Mesher::kFrontal;
+    const double finest = kShortestEdge * size.largest();
     BorderPieces border;
     std::vector<Lattice> lattices;
     if (is_grid) {
         const double side = size.largest();
-        border = cut_border_by_grid(graph_, extent_.low, side, kGridClearance, cutting);
+        border = cut_border_by_grid(graph_, extent_.low, side, kGridClearance, finest, cutting);
         lattices.push_back(lattice_inside(border, graph_.loners,
                                           {extent_.low, {1, 0}, side, side, true}, size, side,
                                           kGridClearance, laying));
     } else {
-        border = cut_border(graph_, size, cutting);
+        border = cut_border(graph_, size, finest, cutting);
         for (const double length : lattice_lengths(request_, size)) {
             lattices.push_back(lattice_inside(border, graph_.loners, fitting_frame(graph_, length),
                                               size, length, kClearance, laying));
         }
     }
-    BandedMesh banded = join_band(std::move(border), graph_.loners, std::move(lattices),
-                                  part(0.3, 0.5, "triangulating"));
+    const Check joining = part(0.3, 0.5, "triangulating");
+    const bool has_lattice = std::any_of(lattices.begin(), lattices.end(),
+                                         [](const Lattice& l) { return !l.points.empty(); });
+    BandedMesh banded;
+    if (is_frontal && !has_lattice) {
+        banded.mesh = mesh_without_lattice(graph_, border, finest, joining);
+    } else {
+        banded = join_band(std::move(border), graph_.loners, std::move(lattices), joining);
+    }
     FlatMesh& flat = banded.mesh;
     if (!size.is_uniform()) {
         advance_front(flat, size, banded.first_of_band, most_vertices(),
                       part(0.5, 0.75, "filling"));
     }
     const RefinementTarget target{is_grid ? kLeastGridAngle : kLeastAngle,
-                                  is_grid ? kLongestGridEdge : kLongestEdge,
-                                  kShortestEdge * size.largest(), most_vertices()};
+                                  is_grid ? kLongestGridEdge : kLongestEdge, finest,
+                                  most_vertices()};
     refine(flat, target, size, banded.first_of_band, banded.rim_triangles,
            part(0.75, 0.8, "improving the border"));
-    if (request_.mesher == Mesher::kFrontal) {
+    if (is_frontal) {
         const Check check = part(0.8, 0.9, "smoothing");
         smooth(flat, size, banded.first_of_band, banded.rim_triangles,
                static_cast<std::int32_t>(graph_.points.size()), graph_.loners, check);
@@ -312,7 +313,7 @@ PlanarMesh Meshing::mesh(const SizeField& size, double begin, double end) const 
     }
     const Check finish = part(0.9, 1, "collecting the mesh");
     PlanarMesh mesh = collected(std::move(flat), finish);
-    require_upright(mesh, finish);
+    assert(is_upright(mesh));
     return mesh;
 }
 

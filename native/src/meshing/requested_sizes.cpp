@@ -131,7 +131,11 @@ double triangles_in(const RegionGraph& graph, const SizeField& size, const Check
     if (size.is_uniform()) return graph.area / (kEquilateral * size.largest() * size.largest());
     Ticker tick(check);
     double triangles = 0;
-    std::vector<std::array<PlanPoint, 3>> open = graph.triangles;
+    std::vector<std::array<PlanPoint, 3>> open;
+    for (std::size_t t = 0; t < graph.inside.size(); ++t) {
+        const auto& [a, b, c] = graph.triangulation.triangles[t];
+        if (graph.inside[t]) open.push_back({graph.points[a], graph.points[b], graph.points[c]});
+    }
     while (!open.empty()) {
         tick(0);
         const auto [a, b, c] = open.back();

@@ -106,8 +106,13 @@ private:
             while (end >= corners)
                 end = mesh_.to(border[end]);
             const std::int32_t line = moves_.add_line(mesh_.origin_point(begin), mesh_.points[end]);
-            for (std::int32_t v = mesh_.to(begin); v >= corners; v = mesh_.to(border[v]))
-                moves_.slide_on(v, line);
+            HalfEdge before = begin;
+            for (std::int32_t v = mesh_.to(begin); v >= corners; v = mesh_.to(before)) {
+                if (!mesh_.is_locked(before) && !mesh_.is_locked(border[v])) {
+                    moves_.slide_on(v, line);
+                }
+                before = border[v];
+            }
         }
     }
 

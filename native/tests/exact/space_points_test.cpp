@@ -78,5 +78,51 @@ TEST(SpacePoints, EqualPointsHaveOneNumberWhateverTheyWereMadeOf) {
     EXPECT_EQ(points.add(points.rounded(low)), low);
 }
 
+class AnEdgeAndATriangle : public testing::Test {
+protected:
+    SpacePointId at(double x, double y, double z) { return points.add(SpacePosition{x, y, z}); }
+    SpacePoints points;
+    SpacePointId a = at(0, 0, 0), b = at(3, 0, 0), c = at(0, 3, 3);
+};
+
+TEST_F(AnEdgeAndATriangle, MeetWhereTheyDo) {
+    // the triangle lies in z = y; the edge from (1, 1, 0) to (1, 0, 3) has y = 1 - t, z = 3 t
+    const SpacePointId p = points.intersection(at(1, 1, 0), at(1, 0, 3), a, b, c);
+    EXPECT_EQ(points.rounded(p), (SpacePosition{1, 0.75, 0.75}));
+    EXPECT_TRUE(points.is_double(p));
+    const SpacePointId q = points.intersection(at(1, 1, 0), at(1, 0, 2), a, b, c);
+    EXPECT_EQ(points.exact(q), (RationalPoint{1, mpq_class(2, 3), mpq_class(2, 3)}));
+    EXPECT_FALSE(points.is_double(q));
+    EXPECT_TRUE(points.was_constructed_on(q, at(1, 0, 2), at(1, 1, 0)));
+    EXPECT_EQ(orient3d(points, a, b, c, q), 0);
+    EXPECT_EQ(orient2d(points, 0, at(1, 1, 0), at(1, 0, 2), q), 0);
+    EXPECT_EQ(compare(points, 1, q, p), -1);
+}
+
+TEST_F(AnEdgeAndATriangle, ProjectionsLieInThePlaneAndOnTheLine) {
+    const SpacePointId p = at(1, 2, 7);
+    EXPECT_EQ(points.projected(2, p, a, b, c), at(1, 2, 2));
+    EXPECT_EQ(points.projected(1, p, a, b, c), at(1, 7, 7));
+    EXPECT_EQ(points.projected(1, p, a, c), at(0, 2, 2));
+}
+
+TEST_F(AnEdgeAndATriangle, ARayCrossesWhatIsAheadOfIt) {
+    const std::array triangle{a, b, c};  // turns left seen from above
+    EXPECT_EQ(ray_crosses(points, 2, at(1, 0.5, -1), triangle, false), 1);
+    EXPECT_EQ(ray_crosses(points, 2, at(1, 0.5, 2), triangle, false), 0);
+    EXPECT_EQ(ray_crosses(points, 2, at(5, 0.5, -1), triangle, false), 0);
+    EXPECT_EQ(ray_crosses(points, 2, at(1, 0.5, -1), {a, c, b}, false), -1);
+    const SpacePointId on = at(1, 0.5, 0.5);
+    EXPECT_EQ(ray_crosses(points, 2, on, triangle, true), 1);
+    EXPECT_EQ(ray_crosses(points, 2, on, triangle, false), 0);
+}
+
+TEST_F(AnEdgeAndATriangle, OfTwoTrianglesWithAnEdgeARayThroughItCrossesOne) {
+    const SpacePointId d = at(3, 3, 3), p = at(1.5, 1.5, -1);  // above it the edge from b to c
+    const int one = ray_crosses(points, 2, p, {a, b, c}, false);
+    const int other = ray_crosses(points, 2, p, {b, d, c}, false);
+    EXPECT_EQ(one + other, 1);
+}
+
 }  // namespace
 }  // namespace realmodel::exact

@@ -23,7 +23,7 @@ namespace realmodel::interpolation {
 using Points = std::vector<std::array<double, 3>>;
 using Nodes = std::vector<std::array<double, 2>>;
 
-/// gamma between two places, written out anew.
+/// gamma between two positions, written out anew.
 inline double dense_gamma(const Variogram& v, double dx, double dy) {
     if (dx == 0 && dy == 0) return 0;
     const double azimuth = v.anisotropy.azimuth * std::numbers::pi / 180;

@@ -21,8 +21,9 @@ struct NodeConstraints {
 };
 
 struct DsiOptions {
-    double weight = 0;  ///< of a point's misfit against the roughness of one node; 0: points are met exactly
-    int threads = 0;    ///< 0: as many as there are
+    double weight =
+        0;  ///< of a point's misfit against the roughness of one node; 0: points are met exactly
+    int threads = 0;  ///< 0: as many as there are
 };
 
 struct DsiHeights {

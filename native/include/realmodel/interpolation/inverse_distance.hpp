@@ -12,11 +12,11 @@ class Progress;
 namespace realmodel::interpolation {
 
 struct InverseDistanceOptions {
-    double power = 2;     ///< positive
+    double power = 2;    ///< positive
     int neighbors = 16;  ///< nearest points in plan that are used; 0: all points
-    int threads = 0;      ///< 0: as many as there are
-    int octants = 0;      ///< at most so many points from each eighth of the directions; 0: any
-    double radius = 0;    ///< points farther away are left out, but for the nearest; 0: none is
+    int threads = 0;     ///< 0: as many as there are
+    int octants = 0;     ///< at most so many points from each eighth of the directions; 0: any
+    double radius = 0;   ///< points farther away are left out, but for the nearest; 0: none is
 };
 
 /// Means of the values of the nearest points weighted by distance^-power (Shepard 1968). A node on

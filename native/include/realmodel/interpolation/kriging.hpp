@@ -27,7 +27,8 @@ struct KrigingOptions {
 struct Kriged {
     std::vector<double> z;         ///< of each node
     std::vector<double> variance;  ///< of its error, squared units of z, not negative
-    std::int64_t alone = 0;  ///< nodes with no point within the radius: there the nearest alone is used
+    std::int64_t alone =
+        0;  ///< nodes with no point within the radius: there the nearest alone is used
 };
 
 /// Ordinary kriging (Matheron 1963; Chiles and Delfiner 2012, section 3.4), or with a drift

@@ -16,9 +16,9 @@ struct ThinPlateOptions {
     /// are met exactly.
     double smoothing = 0;
     int neighbors = 16;  ///< nearest in plan that make a node's spline; 0: all points, solved once
-    int threads = 0;      ///< 0: as many as there are
-    int octants = 0;      ///< at most so many points from each eighth of the directions; 0: any
-    double radius = 0;    ///< points farther away are left out, but for the nearest; 0: none is
+    int threads = 0;     ///< 0: as many as there are
+    int octants = 0;     ///< at most so many points from each eighth of the directions; 0: any
+    double radius = 0;   ///< points farther away are left out, but for the nearest; 0: none is
 };
 
 /// Thin plate splines (Duchon 1977; Wahba 1990, "Spline models for observational data",

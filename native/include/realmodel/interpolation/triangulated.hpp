@@ -30,7 +30,7 @@ std::vector<double> linear_on_triangulation(std::span<const std::array<double, 3
 /// and where a node is so near its border that rounding spoils the areas, as
 /// linear_on_triangulation. The same arguments, result and errors.
 std::vector<double> natural_neighbors(std::span<const std::array<double, 3>> points,
-                                       std::span<const std::array<double, 2>> nodes, int threads,
-                                       Progress* progress = nullptr);
+                                      std::span<const std::array<double, 2>> nodes, int threads,
+                                      Progress* progress = nullptr);
 
 }  // namespace realmodel::interpolation

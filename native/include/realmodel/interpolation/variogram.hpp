@@ -66,8 +66,8 @@ struct Variogram {
     double gamma(double distance) const;
 };
 
-/// Ranges, sills and ratios must be positive, 0 <= nugget <= sill, nugget and further sills together
-/// no more than the sill, all finite.
+/// Ranges, sills and ratios must be positive, 0 <= nugget <= sill, nugget and further sills
+/// together no more than the sill, all finite.
 /// @throws InputError kind "variogram" or "anisotropy"
 void check_variogram(const Variogram& variogram);
 void check_anisotropy(const Anisotropy& anisotropy);

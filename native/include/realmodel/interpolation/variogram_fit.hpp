@@ -32,7 +32,7 @@ ExperimentalVariogram experimental_variogram(std::span<const std::array<double, 
 
 struct FitOptions {
     Drift drift = Drift::kConstant;
-    int neighbors = 32;            ///< from which points that are left out are predicted, 1 .. 64
+    int neighbors = 32;             ///< from which points that are left out are predicted, 1 .. 64
     int threads = 0;                ///< 0: as many as there are
     bool finds_anisotropy = false;  ///< instead of taking the one that is given
 };
@@ -43,17 +43,17 @@ struct FittedVariogram {
 };
 
 /// Fits a variogram to points. Each model, with and without a nugget, is fitted to the experimental
-/// values by weighted least squares (weights pairs / lag^2: Chiles and Delfiner 2012, section 2.6.2,
-/// as gstat does). Around these fits further nuggets, ranges and a second, rougher structure (an
-/// exponential one, or one of a quarter of the range) are tried, each with the sill that fits best.
-/// Of all candidates the one is chosen with which kriging predicts points that are left out one by
-/// one best from their nearest others (root mean square error, errors beyond twenty deviations
-/// counted as twenty): 4000 points from 16 others search, and up to 10,000 points from all the
-/// neighbors choose among the best eight. Among equally good ones, within 0.2 percent, the one
-/// without a second structure, then the one that fits the experimental values best. Then ranges and
-/// sill are scaled until 95 % of those errors lie within two kriging deviations: variances are
-/// honest. Constant values, or fewer than three points, give a spherical model whose sill is tiny or
-/// that of the points.
+/// values by weighted least squares (weights pairs / lag^2: Chiles and Delfiner 2012,
+/// section 2.6.2, as gstat does). Around these fits further nuggets, ranges and a second, rougher
+/// structure (an exponential one, or one of a quarter of the range) are tried, each with the sill
+/// that fits best. Of all candidates the one is chosen with which kriging predicts points that are
+/// left out one by one best from their nearest others (root mean square error, errors beyond twenty
+/// deviations counted as twenty): 4000 points from 16 others search, and up to 10,000 points from
+/// all the neighbors choose among the best eight. Among equally good ones, within 0.2 percent, the
+/// one without a second structure, then the one that fits the experimental values best. Then ranges
+/// and sill are scaled until 95 % of those errors lie within two kriging deviations: variances are
+/// honest. Constant values, or fewer than three points, give a spherical model whose sill is tiny
+/// or that of the points.
 ///
 /// With finds_anisotropy ratio and azimuth are searched in the same way, from 30 points on that
 /// spread in two directions; one is accepted where it lowers the mean square of the errors by 3 %

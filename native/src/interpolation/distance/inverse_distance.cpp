@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "interpolation/neighbors/neighbor_search.hpp"
 #include "interpolation/node_loop.hpp"
@@ -12,26 +13,6 @@
 namespace realmodel::interpolation {
 
 namespace {
-
-/// A weighted mean that grows point by point.
-class Mean {
-public:
-    Mean(double nearest_squared_distance, double power)
-        : nearest_(nearest_squared_distance), half_power_(power / 2) {}
-
-    void add(double squared_distance, double value) {
-        // Relative to the nearest point, so that no power overflows.
-        const double closeness = nearest_ / squared_distance;
-        const double weight = half_power_ == 1 ? closeness : std::pow(closeness, half_power_);
-        sum_ += weight * value;
-        weights_ += weight;
-    }
-    double value() const { return sum_ / weights_; }
-
-private:
-    double nearest_, half_power_;
-    double sum_ = 0, weights_ = 0;
-};
 
 void check_options(const InverseDistanceOptions& options) {
     if (!(options.power > 0) || !std::isfinite(options.power)) {
@@ -57,7 +38,9 @@ std::vector<double> means(const DataPoints& data, std::span<const Position> node
     const NodeLoop loop{z.size(), all ? 1 + 1'000'000 / points : 256, options.threads, progress,
                         "inverse distance"};
     loop.over_nodes(
-        [&] { return Scratch{NeighborSearch(data, tree, neighborhood), {}}; },
+        [&] {
+            return Scratch{NeighborSearch(data, tree, neighborhood), {}};
+        },
         [&](Scratch& own, std::size_t i) {
             const Position node = leave_out ? data.local[i] : data.to_local(nodes[i]);
             const std::int32_t left_out =
@@ -74,18 +57,23 @@ std::vector<double> means(const DataPoints& data, std::span<const Position> node
                 z[i] = base;
                 return;
             }
-            Mean mean(nearest.squared_distance, options.power);
-            if (all) {
-                for (std::size_t p = 0; p < points; ++p) {
-                    if (static_cast<std::int32_t>(p) == left_out) continue;
-                    const double dx = node[0] - data.local[p][0], dy = node[1] - data.local[p][1];
-                    mean.add(dx * dx + dy * dy, data.values[p] - base);
-                }
-            } else {
-                for (const spatial::Neighbour& n : own.near)
-                    mean.add(n.squared_distance, data.values[n.point] - base);
+            double sum = 0, weights = 0;
+            const auto add = [&](double squared_distance, std::int32_t point) {
+                // Relative to the nearest point, so that no power overflows.
+                const double closeness = nearest.squared_distance / squared_distance;
+                const double weight =
+                    options.power == 2 ? closeness : std::pow(closeness, options.power / 2);
+                sum += weight * (data.values[point] - base);
+                weights += weight;
+            };
+            for (const spatial::Neighbour& n : own.near) {
+                if (!all) add(n.squared_distance, n.point);
             }
-            z[i] = base + mean.value();
+            for (std::int32_t p = 0; all && std::cmp_less(p, points); ++p) {
+                const double dx = node[0] - data.local[p][0], dy = node[1] - data.local[p][1];
+                if (p != left_out) add(dx * dx + dy * dy, p);
+            }
+            z[i] = base + sum / weights;
         });
     return z;
 }

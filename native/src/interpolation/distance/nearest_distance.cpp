@@ -28,11 +28,12 @@ std::vector<double> nearest_distances(std::span<const std::array<double, 3>> poi
     const spatial::NearestPoints tree(positions);
     std::vector<double> out(nodes.size());
     const NodeLoop loop{nodes.size(), 1024, threads, progress, "distances to points"};
-    loop.over_nodes([] { return std::vector<spatial::Neighbour>(); },
-                    [&](std::vector<spatial::Neighbour>& near, std::size_t i) {
-                        tree.find({nodes[i][0] - points[0][0], nodes[i][1] - points[0][1]}, 1, near);
-                        out[i] = std::sqrt(near[0].squared_distance);
-                    });
+    loop.over_nodes(
+        [] { return std::vector<spatial::Neighbour>(); },
+        [&](std::vector<spatial::Neighbour>& near, std::size_t i) {
+            tree.find({nodes[i][0] - points[0][0], nodes[i][1] - points[0][1]}, 1, near);
+            out[i] = std::sqrt(near[0].squared_distance);
+        });
     return out;
 }
 

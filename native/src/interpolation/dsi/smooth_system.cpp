@@ -2,6 +2,7 @@
 #include "interpolation/dsi/smooth_system.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -12,51 +13,44 @@ namespace {
 constexpr int kMostIterations = 400;
 constexpr int kIterationsBeforeFactor = 60;
 constexpr std::size_t kMostFactored = 100'000;
-constexpr double held =
-    1e-13;  // of the diagonal: what nothing holds must not make a factor singular
+// Of the diagonal: heights that no constraint holds must not make a factor singular.
+constexpr double kHeld = 1e-13;
 
 }  // namespace
 
-SmoothSystem::SmoothSystem(std::span<const Place> nodes, std::span<const Hinge> hinges,
-                           const SplineGrid& grid, int threads, const std::function<void()>& check)
+SmoothSystem::SmoothSystem(std::span<const Position> nodes,
+                           std::span<const std::size_t> first_in_cell,
+                           std::span<const Hinge> hinges, const SplineGrid& grid, int threads,
+                           const std::function<void()>& check)
     : nodes_(nodes),
       threads_(threads),
       check_(check),
       rows_(nodes.size(), hinges, threads),
       levels_(grid, nodes, hinges, threads, check),
-      first_in_cell_(grid.cells() + 1, 0),
+      first_in_cell_(first_in_cell),
       sums_(grid.cells()) {
+    assert(first_in_cell.size() == grid.cells() + 1 && first_in_cell.back() == nodes.size());
     smoother_.resize(nodes.size());
-    for (const Place& node : nodes)
-        ++first_in_cell_[grid.cell_of(node) + 1];
-    for (std::size_t c = 1; c < first_in_cell_.size(); ++c)
-        first_in_cell_[c] += first_in_cell_[c - 1];
 }
 
 double SmoothSystem::stiffness(const std::array<std::int32_t, 3>& nodes) const {
     double sum = 0;
     for (const std::int32_t node : nodes)
-        sum += rows_.rough_diagonal()[static_cast<std::size_t>(node)];
+        sum += rows_.rough_diagonal()[node];
     return sum > 0 ? sum / 3 : 1;
 }
 
-void SmoothSystem::set_wishes(std::span<const Wish> wishes) {
-    rows_.take_back();
-    std::vector<Pull> pulls;
-    pulls.reserve(wishes.size());
-    for (const Wish& wish : wishes) {
-        Place place{};
-        const std::size_t corners = wish.at_node() ? 1 : 3;
-        for (std::size_t a = 0; a < corners; ++a) {
-            const double pull = wish.strength * wish.weights[a];
-            for (std::size_t b = 0; b < corners; ++b)
-                rows_.add(wish.nodes[a], wish.nodes[b], pull * wish.weights[b]);
-            for (std::size_t axis = 0; axis < 2; ++axis) {
-                place[axis] +=
-                    wish.weights[a] * nodes_[static_cast<std::size_t>(wish.nodes[a])][axis];
-            }
+void SmoothSystem::set_constraints(std::span<const Constraint> constraints) {
+    rows_.remove_added();
+    std::vector<WeightedPosition> positions;
+    for (const Constraint& c : constraints) {
+        if (!c.active) continue;
+        for (std::size_t a = 0; a < c.corners(); ++a) {
+            const double strength = c.strength * c.weights[a];
+            for (std::size_t b = 0; b < c.corners(); ++b)
+                rows_.add(c.nodes[a], c.nodes[b], strength * c.weights[b]);
         }
-        pulls.push_back({place, wish.strength});
+        positions.push_back({c.position(nodes_), c.strength});
     }
     Vector inverse_diagonal(nodes_.size()), ratio(nodes_.size());
     in_pieces(nodes_.size(), threads_, [&](std::size_t begin, std::size_t end) {
@@ -70,7 +64,7 @@ void SmoothSystem::set_wishes(std::span<const Wish> wishes) {
     check_();
     const double largest = largest_eigenvalue(rows_, inverse_diagonal, bound, threads_);
     smoother_.set(std::move(inverse_diagonal), largest);
-    levels_.set_pulls(pulls);
+    levels_.set_constraints(positions);
     if (factor_) factor();  // a mesh that asked for it once does so again
 }
 
@@ -90,7 +84,7 @@ double SmoothSystem::precondition(const Vector& residual, Vector& out) {
     return smoother_.after(rows_, residual, out, threads_);
 }
 
-/// What the splines' grids say to the residual that smoothing leaves.
+/// The correction of the splines' grids to the residual that smoothing leaves.
 void SmoothSystem::correct() {
     const SplineGrid& grid = levels_.grid();
     const Vector& residual = smoother_.residual();
@@ -100,7 +94,7 @@ void SmoothSystem::correct() {
             SplineGrid::Weights sums{};
             for (std::size_t i = first_in_cell_[c]; i < first_in_cell_[c + 1]; ++i) {
                 const auto [x, y] = grid.values_along(nodes_[i], column, row);
-                for (std::size_t k = 0; k < SplineGrid::reach; ++k)
+                for (std::size_t k = 0; k < SplineGrid::kReach; ++k)
                     sums[k] += y[k / 3] * residual[i] * x[k % 3];
             }
             sums_[c] = sums;
@@ -110,7 +104,7 @@ void SmoothSystem::correct() {
     for_rows(grid.rows() + 2, threads_, [&](std::size_t row) {
         double* const to = right.data() + grid.number(0, row);
         std::fill(to, to + grid.columns() + 2, 0.0);
-        for (std::size_t k = 0; k < SplineGrid::reach; ++k) {
+        for (std::size_t k = 0; k < SplineGrid::kReach; ++k) {
             if (row < k / 3 || row - k / 3 >= grid.rows()) continue;
             const SplineGrid::Weights* from = sums_.data() + (row - k / 3) * grid.columns();
             for (std::size_t column = 0; column < grid.columns(); ++column)
@@ -145,7 +139,7 @@ void SmoothSystem::factor() {
             if (column <= at) entries.emplace_back(at, column, value);
         });
         const double diagonal = rows_.diagonal(row);
-        entries.emplace_back(at, at, held * (diagonal > 0 ? diagonal : 1));
+        entries.emplace_back(at, at, kHeld * (diagonal > 0 ? diagonal : 1));
     }
     const auto count = static_cast<Eigen::Index>(nodes_.size());
     Eigen::SparseMatrix<double> matrix(count, count);
@@ -199,7 +193,7 @@ int SmoothSystem::iterate(Vector& z, const Vector& right, double goal, int most,
                     sum += direction[i] * product[i];
                 return sum;
             });
-        if (!(curvature > 0)) break;  // all that is left is rounding
+        if (!(curvature > 0)) break;  // only rounding is left
         const double step = energy / curvature;
         in_pieces(count, threads_, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -211,9 +205,8 @@ int SmoothSystem::iterate(Vector& z, const Vector& right, double goal, int most,
         ratio = next / energy;
         energy = next;
         // The error falls by nearly the same factor each time.
-        if (start > goal && energy > 0) {
+        if (start > goal && energy > 0)
             report(std::log(start / std::sqrt(energy)) / std::log(start / goal));
-        }
     }
     converged_ = !(energy > goal * goal) || iteration < most;
     return iteration;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smoothing by polynomials, the fine part of multigrid. Private.
 #pragma once
 
 #include <algorithm>
@@ -14,16 +13,16 @@
 
 namespace realmodel::interpolation {
 
-/// Smooths A x = b before and after a correction from coarser functions, both times by the same
-/// Chebyshev polynomial of D^-1 A on the upper part of its spectrum (Adams, Brezina, Hu and
-/// Tuminaro 2003), so that the whole is symmetric.
+/// The fine part of multigrid: smooths A x = b before and after a correction from coarser
+/// functions, both times by the same Chebyshev polynomial of D^-1 A on the upper part of its
+/// spectrum (Adams, Brezina, Hu and Tuminaro 2003), so that the whole is symmetric.
 ///
 /// A Matrix has sweep(), of its rows in pieces; rows(piece), the first of them and one beyond the
-/// last; times(piece, x, out), the products of these rows, put from out[0] on; no more than
-/// kMostRows.
+/// last; times(piece, x, out), the products of these rows, from out[0] on; kMostRows, the
+/// most rows of a piece.
 class Smoother {
 public:
-    static constexpr std::size_t degree = 3;
+    static constexpr std::size_t kDegree = 3;
 
     void resize(std::size_t count) {
         residual_.assign(count, 0.0);
@@ -39,7 +38,7 @@ public:
     void before(const Matrix& matrix, const Vector& right, Vector& x, int threads);
     const Vector& residual() const { return residual_; }
 
-    /// To be set between before() and after(): what coarser functions say to the residual.
+    /// To be set between before() and after(): the correction from coarser functions.
     Vector& correction() { return steps_.back(); }
 
     /// Adds the correction, and the polynomial of what is left then.
@@ -49,19 +48,19 @@ public:
 
 private:
     // Step k is old[k] times the one before, and fresh[k] D^-1 times the residual.
-    std::array<double, degree> old_{}, fresh_{};
+    std::array<double, kDegree> old_{}, fresh_{};
     Vector inverse_diagonal_, residual_;
-    std::array<Vector, degree> steps_;
+    std::array<Vector, kDegree> steps_;
 };
 
 inline void Smoother::set(Vector inverse_diagonal, double largest) {
-    constexpr double share = 0.08;  // of the spectrum is left to coarser functions
+    constexpr double kShare = 0.08;  // of the spectrum is left to coarser functions
     inverse_diagonal_ = std::move(inverse_diagonal);
-    const double high = largest, low = share * largest;
+    const double high = largest, low = kShare * largest;
     const double theta = (high + low) / 2, delta = (high - low) / 2, sigma = theta / delta;
     double rho = 1 / sigma;
     fresh_[0] = 1 / theta;
-    for (std::size_t k = 1; k < degree; ++k) {
+    for (std::size_t k = 1; k < kDegree; ++k) {
         const double next = 1 / (2 * sigma - rho);
         old_[k] = next * rho;
         fresh_[k] = 2 * next / delta;
@@ -71,7 +70,7 @@ inline void Smoother::set(Vector inverse_diagonal, double largest) {
 
 template <class Matrix>
 void Smoother::before(const Matrix& matrix, const Vector& right, Vector& x, int threads) {
-    matrix.sweep().run(degree + 1, threads, [&](std::size_t stage, std::ptrdiff_t piece) {
+    matrix.sweep().run(kDegree + 1, threads, [&](std::size_t stage, std::ptrdiff_t piece) {
         const auto [begin, end] = matrix.rows(piece);
         if (stage == 0) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -85,7 +84,7 @@ void Smoother::before(const Matrix& matrix, const Vector& right, Vector& x, int 
         matrix.times(piece, last.data(), product.data());
         for (std::size_t i = begin; i < end; ++i)
             residual_[i] -= product[i - begin];
-        if (stage == degree) return;
+        if (stage == kDegree) return;
         const double old = old_[stage], fresh = fresh_[stage];
         Vector& step = steps_[stage];
         for (std::size_t i = begin; i < end; ++i) {
@@ -97,7 +96,7 @@ void Smoother::before(const Matrix& matrix, const Vector& right, Vector& x, int 
 
 template <class Matrix>
 double Smoother::after(const Matrix& matrix, const Vector& right, Vector& x, int threads) {
-    return matrix.sweep().sum(degree, threads, [&](std::size_t stage, std::ptrdiff_t piece) {
+    return matrix.sweep().sum(kDegree, threads, [&](std::size_t stage, std::ptrdiff_t piece) {
         const auto [begin, end] = matrix.rows(piece);
         std::array<double, Matrix::kMostRows> product;
         const Vector& last = stage == 0 ? correction() : steps_[stage - 1];
@@ -112,7 +111,7 @@ double Smoother::after(const Matrix& matrix, const Vector& right, Vector& x, int
             product[i - begin] = old * last[i] + fresh * inverse_diagonal_[i] * residual_[i];
             x[i] += product[i - begin];
         }
-        if (stage + 1 < degree) {  // a last step is not needed again
+        if (stage + 1 < kDegree) {  // a last step is not needed again
             std::copy_n(product.data(), end - begin, steps_[stage].data() + begin);
             return 0.0;
         }

@@ -12,7 +12,7 @@ using Weights3 = std::array<double, 3>;
 Weights3 slope(double u) {
     return {u - 1, 1 - 2 * u, u};
 }
-constexpr Weights3 curvature{1, -2, 1};
+constexpr Weights3 kCurvature{1, -2, 1};
 
 SplineGrid::Weights product(const Weights3& x, const Weights3& y, double scale) {
     SplineGrid::Weights out{};
@@ -25,45 +25,45 @@ SplineGrid::Weights product(const Weights3& x, const Weights3& y, double scale) 
 
 }  // namespace
 
-SplineGrid::SplineGrid(const Place& low, double cell, std::size_t columns, std::size_t rows)
+SplineGrid::SplineGrid(const Position& low, double cell, std::size_t columns, std::size_t rows)
     : low_(low), cell_(cell), inverse_cell_(1 / cell), columns_(columns), rows_(rows) {}
 
 SplineGrid SplineGrid::coarser() const {
     return {low_, 2 * cell_, (columns_ + 1) / 2, (rows_ + 1) / 2};
 }
 
-std::size_t SplineGrid::cell_of(const Place& place) const {
+std::size_t SplineGrid::cell_of(const Position& position) const {
     const auto along = [&](int axis, std::size_t count) {
-        const double at = (place[axis] - low_[axis]) / cell_;
+        const double at = (position[axis] - low_[axis]) / cell_;
         return at > 0 ? std::min(static_cast<std::size_t>(at), count - 1) : 0;
     };
     return along(1, rows_) * columns_ + along(0, columns_);
 }
 
-SplineGrid::Weights SplineGrid::values(const Place& place, std::size_t cell) const {
-    const auto [x, y] = values_along(place, cell % columns_, cell / columns_);
+SplineGrid::Weights SplineGrid::values(const Position& position, std::size_t cell) const {
+    const auto [x, y] = values_along(position, cell % columns_, cell / columns_);
     return product(x, y, 1);
 }
 
-SplineGrid::Weights SplineGrid::bends(const Place& place, std::size_t cell,
+SplineGrid::Weights SplineGrid::bends(const Position& position, std::size_t cell,
                                       const std::array<double, 3>& bending) const {
-    const double u = (place[0] - low_[0]) / cell_ - static_cast<double>(cell % columns_);
-    const double v = (place[1] - low_[1]) / cell_ - static_cast<double>(cell / columns_);
+    const double u = (position[0] - low_[0]) / cell_ - static_cast<double>(cell % columns_);
+    const double v = (position[1] - low_[1]) / cell_ - static_cast<double>(cell / columns_);
     const double scale = 1 / (cell_ * cell_);
-    const Weights xx = product(curvature, along(v), scale * bending[0]);
+    const Weights xx = product(kCurvature, along(v), scale * bending[0]);
     const Weights xy = product(slope(u), slope(v), scale * bending[1]);
-    const Weights yy = product(along(u), curvature, scale * bending[2]);
+    const Weights yy = product(along(u), kCurvature, scale * bending[2]);
     Weights out{};
-    for (std::size_t k = 0; k < reach; ++k)
+    for (std::size_t k = 0; k < kReach; ++k)
         out[k] = xx[k] + xy[k] + yy[k];
     return out;
 }
 
 void add_square(SplineGrid::Element& element, const SplineGrid::Weights& weights, double strength) {
-    for (std::size_t a = 0; a < SplineGrid::reach; ++a) {
+    for (std::size_t a = 0; a < SplineGrid::kReach; ++a) {
         const double scaled = strength * weights[a];
-        for (std::size_t b = 0; b < SplineGrid::reach; ++b)
-            element[SplineGrid::reach * a + b] += scaled * weights[b];
+        for (std::size_t b = 0; b < SplineGrid::kReach; ++b)
+            element[SplineGrid::kReach * a + b] += scaled * weights[b];
     }
 }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Quadratic B-splines on a grid of square cells. Private.
 #pragma once
 
 #include <array>
@@ -16,14 +15,14 @@ namespace realmodel::interpolation {
 /// Uniform biquadratic B-splines on square cells over a box. Nine of them reach over each cell.
 class SplineGrid {
 public:
-    static constexpr int reach = 9;
-    using Weights = std::array<double, reach>;
-    using Element = std::array<double, reach * reach>;
+    static constexpr int kReach = 9;
+    using Weights = std::array<double, kReach>;
+    using Element = std::array<double, kReach * kReach>;
 
-    SplineGrid(const Place& low, double cell, std::size_t columns, std::size_t rows);
+    SplineGrid(const Position& low, double cell, std::size_t columns, std::size_t rows);
     SplineGrid coarser() const;
 
-    Place corner() const { return low_; }
+    Position corner() const { return low_; }
     double cell() const { return cell_; }
     std::size_t columns() const { return columns_; }
     std::size_t rows() const { return rows_; }
@@ -40,23 +39,24 @@ public:
         return (row + 2) * stride() + column + 2;
     }
 
-    std::size_t cell_of(const Place& place) const;
-    Weights values(const Place& place, std::size_t cell) const;
+    std::size_t cell_of(const Position& position) const;
+    Weights values(const Position& position, std::size_t cell) const;
     /// The factors of values: the (3 j + i)-th is second[j] * first[i].
-    std::array<std::array<double, 3>, 2> values_along(const Place& place, std::size_t column,
+    std::array<std::array<double, 3>, 2> values_along(const Position& position, std::size_t column,
                                                       std::size_t row) const {
-        return {along((place[0] - low_[0]) * inverse_cell_ - static_cast<double>(column)),
-                along((place[1] - low_[1]) * inverse_cell_ - static_cast<double>(row))};
+        return {along((position[0] - low_[0]) * inverse_cell_ - static_cast<double>(column)),
+                along((position[1] - low_[1]) * inverse_cell_ - static_cast<double>(row))};
     }
     /// Of a surface with these coefficients: bending . (its second derivatives xx, xy, yy).
-    Weights bends(const Place& place, std::size_t cell, const std::array<double, 3>& bending) const;
+    Weights bends(const Position& position, std::size_t cell,
+                  const std::array<double, 3>& bending) const;
 
 private:
     static std::array<double, 3> along(double u) {
         return {0.5 * (1 - u) * (1 - u), 0.5 + u * (1 - u), 0.5 * u * u};
     }
 
-    Place low_;
+    Position low_;
     double cell_, inverse_cell_;
     std::size_t columns_, rows_;
 };

@@ -4,49 +4,81 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/grouped_items.hpp"
+
 namespace realmodel::interpolation {
 
 namespace {
 
 constexpr std::size_t kCoarsestCoefficients = 300;
-// Of the mean roughness on the diagonal: what no roughness and no pull holds (outside the mesh, or
-// a tilt of all) is held by this much, in the preconditioner only.
-constexpr double held = 1e-10;
+// Of the mean roughness on the diagonal: what neither roughness nor constraints hold (outside the
+// mesh, or a tilt of all) is held by this much, in the preconditioner only.
+constexpr double kHeld = 1e-10;
 
 /// The splines on half a cell from those on the cell: row k gives the k-th on the half.
-constexpr double halves[2][3][3] = {{{0.75, 0.25, 0}, {0.25, 0.75, 0}, {0, 0.75, 0.25}},
-                                    {{0.25, 0.75, 0}, {0, 0.75, 0.25}, {0, 0.25, 0.75}}};
+constexpr double kHalves[2][3][3] = {{{0.75, 0.25, 0}, {0.25, 0.75, 0}, {0, 0.75, 0.25}},
+                                     {{0.25, 0.75, 0}, {0, 0.75, 0.25}, {0, 0.25, 0.75}}};
+
+/// Adds S^T from S, S the splines on a quarter of a cell from those on the cell.
+void add_quarter(SplineGrid::Element& to, const SplineGrid::Element& from, std::size_t quarter) {
+    double s[9][9];
+    for (std::size_t a = 0; a < 9; ++a) {
+        for (std::size_t b = 0; b < 9; ++b)
+            s[a][b] = kHalves[quarter % 2][a % 3][b % 3] * kHalves[quarter / 2][a / 3][b / 3];
+    }
+    double half[9][9] = {};
+    for (std::size_t a = 0; a < 9; ++a) {
+        for (std::size_t k = 0; k < 9; ++k) {
+            for (std::size_t b = 0; b < 9; ++b)
+                half[a][b] += from[9 * a + k] * s[k][b];
+        }
+    }
+    for (std::size_t k = 0; k < 9; ++k) {
+        for (std::size_t a = 0; a < 9; ++a) {
+            for (std::size_t b = 0; b < 9; ++b)
+                to[9 * a + b] += s[k][a] * half[k][b];
+        }
+    }
+}
+
+/// The coefficients of a grid as a matrix: (column, row).
+auto coefficients_of(const SplineGrid& grid, Vector& values) {
+    return Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(
+        values.data() + grid.number(0, 0), static_cast<Eigen::Index>(grid.columns() + 2),
+        static_cast<Eigen::Index>(grid.rows() + 2),
+        Eigen::OuterStride<>(static_cast<Eigen::Index>(grid.stride())));
+}
+
+double trace(const SplineGrid::Element& element) {
+    double sum = 0;
+    for (std::size_t k = 0; k < SplineGrid::kReach; ++k)
+        sum += element[(SplineGrid::kReach + 1) * k];
+    return sum;
+}
 
 }  // namespace
 
-SplineLevels::SplineLevels(const SplineGrid& grid, std::span<const Place> nodes,
+SplineLevels::SplineLevels(const SplineGrid& grid, std::span<const Position> nodes,
                            std::span<const Hinge> hinges, int threads,
                            const std::function<void()>& check)
     : threads_(threads), check_(check), rough_(grid.cells()) {
     // Hinges by cells, so that each cell sums its own in their order.
-    std::vector<std::size_t> first(grid.cells() + 1, 0);
-    std::vector<std::int32_t> cell_of(hinges.size()), held_by(hinges.size());
-    for (std::size_t h = 0; h < hinges.size(); ++h) {
-        cell_of[h] = static_cast<std::int32_t>(grid.cell_of(hinges[h].middle));
-        ++first[static_cast<std::size_t>(cell_of[h]) + 1];
-    }
-    for (std::size_t c = 1; c < first.size(); ++c)
-        first[c] += first[c - 1];
-    std::vector<std::size_t> next(first.begin(), first.end() - 1);
-    for (std::size_t h = 0; h < hinges.size(); ++h)
-        held_by[next[static_cast<std::size_t>(cell_of[h])]++] = static_cast<std::int32_t>(h);
+    const auto in_cell = grouped<std::int32_t>(grid.cells(), [&](const auto& visit) {
+        for (std::size_t h = 0; h < hinges.size(); ++h)
+            visit(grid.cell_of(hinges[h].middle), static_cast<std::int32_t>(h));
+    });
     check_();
     in_pieces(grid.cells(), threads_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
             rough_[c].fill(0);
-            for (std::size_t k = first[c]; k < first[c + 1]; ++k) {
-                const Hinge& h = hinges[static_cast<std::size_t>(held_by[k])];
+            for (const std::int32_t number : in_cell[c]) {
+                const Hinge& h = hinges[number];
                 add_square(rough_[c], grid.bends(h.middle, c, h.bending), 1);
             }
         }
     });
     levels_.emplace_back(grid);
-    fill_up(nodes, hinges);
+    fill_border_cells(nodes, hinges);
     while (levels_.back().stencils.grid().coefficients() > kCoarsestCoefficients)
         levels_.emplace_back(levels_.back().stencils.grid().coarser());
     for (Level& level : levels_) {
@@ -57,21 +89,16 @@ SplineLevels::SplineLevels(const SplineGrid& grid, std::span<const Place> nodes,
     }
 }
 
-/// Cells that the border of the mesh cuts get the roughness of a whole one, as if the mesh went on
-/// to their end: splines of which only a tip reaches the mesh would else be all but free. (That is
-/// harmless: a smooth surface can be continued smoothly.)
-void SplineLevels::fill_up(std::span<const Place> nodes, std::span<const Hinge> hinges) {
+/// Cells that the border of the mesh cuts get the roughness of a whole one, as if the mesh
+/// continued to their end: splines of which only a tip reaches the mesh would otherwise be nearly
+/// free. (That is harmless: a smooth surface can be continued smoothly.)
+void SplineLevels::fill_border_cells(std::span<const Position> nodes,
+                                     std::span<const Hinge> hinges) {
     const SplineGrid& grid = levels_.front().stencils.grid();
     std::vector<char> touched(grid.cells(), 0);
-    for (const Place& node : nodes)
+    for (const Position& node : nodes)
         touched[grid.cell_of(node)] = 1;
     std::vector<double> traces;
-    const auto trace = [](const SplineGrid::Element& element) {
-        double sum = 0;
-        for (std::size_t k = 0; k < SplineGrid::reach; ++k)
-            sum += element[(SplineGrid::reach + 1) * k];
-        return sum;
-    };
     for (std::size_t c = 0; c < grid.cells(); ++c) {
         if (const double t = trace(rough_[c]); t > 0) traces.push_back(t);
     }
@@ -85,15 +112,15 @@ void SplineLevels::fill_up(std::span<const Place> nodes, std::span<const Hinge> 
         for (std::size_t k = 0; k < 3; ++k)
             size[k] += h.bending[k] * h.bending[k];
     }
-    const Place corner = grid.corner();
+    const Position corner = grid.corner();
     constexpr std::array<double, 2> at{0.2113248654051871, 0.7886751345948129};  // Gauss
     for (const double u : at) {
         for (const double v : at) {
-            const Place place{corner[0] + u * grid.cell(), corner[1] + v * grid.cell()};
+            const Position position{corner[0] + u * grid.cell(), corner[1] + v * grid.cell()};
             for (std::size_t k = 0; k < 3; ++k) {
                 std::array<double, 3> bending{};
                 bending[k] = 1;
-                add_square(whole, grid.bends(place, 0, bending), size[k]);
+                add_square(whole, grid.bends(position, 0, bending), size[k]);
             }
         }
     }
@@ -106,20 +133,20 @@ void SplineLevels::fill_up(std::span<const Place> nodes, std::span<const Hinge> 
     }
 }
 
-void SplineLevels::set_pulls(std::span<const Pull> pulls) {
+void SplineLevels::set_constraints(std::span<const WeightedPosition> constraints) {
     std::vector<SplineGrid::Element> elements = rough_;
     const SplineGrid& finest = levels_.front().stencils.grid();
-    double trace = 0;
+    double whole = 0;
     for (const SplineGrid::Element& element : elements) {
-        for (std::size_t k = 0; k < SplineGrid::reach; ++k)
-            trace += element[(SplineGrid::reach + 1) * k];
+        for (std::size_t k = 0; k < SplineGrid::kReach; ++k)
+            whole += element[(SplineGrid::kReach + 1) * k];
     }
-    for (const Pull& pull : pulls) {
-        const std::size_t cell = finest.cell_of(pull.place);
-        add_square(elements[cell], finest.values(pull.place, cell), pull.strength);
+    for (const WeightedPosition& c : constraints) {
+        const std::size_t cell = finest.cell_of(c.position);
+        add_square(elements[cell], finest.values(c.position, cell), c.strength);
     }
     const double least =
-        trace > 0 ? held * trace / static_cast<double>(finest.coefficients()) : 1.0;
+        whole > 0 ? kHeld * whole / static_cast<double>(finest.coefficients()) : 1.0;
     for (std::size_t at = 0; at < levels_.size(); ++at) {
         check_();
         if (at > 0) restrict_elements(elements, levels_[at - 1].stencils.grid());
@@ -136,29 +163,11 @@ void SplineLevels::restrict_elements(std::vector<SplineGrid::Element>& elements,
     in_pieces(coarse.cells(), threads_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
             out[c].fill(0);
-            for (std::size_t part = 0; part < 4; ++part) {
-                const std::size_t column = 2 * (c % coarse.columns()) + part % 2;
-                const std::size_t row = 2 * (c / coarse.columns()) + part / 2;
+            for (std::size_t quarter = 0; quarter < 4; ++quarter) {
+                const std::size_t column = 2 * (c % coarse.columns()) + quarter % 2;
+                const std::size_t row = 2 * (c / coarse.columns()) + quarter / 2;
                 if (column >= fine.columns() || row >= fine.rows()) continue;
-                const SplineGrid::Element& from = elements[row * fine.columns() + column];
-                double s[9][9];
-                for (std::size_t a = 0; a < 9; ++a) {
-                    for (std::size_t b = 0; b < 9; ++b)
-                        s[a][b] = halves[part % 2][a % 3][b % 3] * halves[part / 2][a / 3][b / 3];
-                }
-                double half[9][9] = {};
-                for (std::size_t a = 0; a < 9; ++a) {
-                    for (std::size_t k = 0; k < 9; ++k) {
-                        for (std::size_t b = 0; b < 9; ++b)
-                            half[a][b] += from[9 * a + k] * s[k][b];
-                    }
-                }
-                for (std::size_t k = 0; k < 9; ++k) {
-                    for (std::size_t a = 0; a < 9; ++a) {
-                        for (std::size_t b = 0; b < 9; ++b)
-                            out[c][9 * a + b] += s[k][a] * half[k][b];
-                    }
-                }
+                add_quarter(out[c], elements[row * fine.columns() + column], quarter);
             }
         }
     });
@@ -186,29 +195,22 @@ void SplineLevels::assemble(Level& level, const std::vector<SplineGrid::Element>
     level.smoother.set(std::move(inverse_diagonal), largest);
 }
 
-/// Small grids are done before threads have met.
+/// Small grids are done before other threads have met.
 int SplineLevels::threads_of(const SplineGrid& grid) const {
     return grid.coefficients() > 65536 ? threads_ : 1;
 }
 
 void SplineLevels::factor_coarsest(double least) {
-    const Level& level = levels_.back();
-    coarsest_numbers_.clear();
-    for (std::size_t row = 0; row < level.stencils.grid().rows() + 2; ++row) {
-        for (std::size_t column = 0; column < level.stencils.grid().columns() + 2; ++column)
-            coarsest_numbers_.push_back(level.stencils.grid().number(column, row));
-    }
-    const auto count = static_cast<Eigen::Index>(coarsest_numbers_.size());
+    const SplineStencils& stencils = levels_.back().stencils;
+    const auto width = static_cast<Eigen::Index>(stencils.grid().columns() + 2);
+    const auto height = static_cast<Eigen::Index>(stencils.grid().rows() + 2);
+    const Eigen::Index count = width * height;
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
-    const auto width = static_cast<Eigen::Index>(level.stencils.grid().columns() + 2);
-    const auto height = static_cast<Eigen::Index>(level.stencils.grid().rows() + 2);
     for (Eigen::Index a = 0; a < count; ++a) {
         for (Eigen::Index k = 0; k < 25; ++k) {
             const Eigen::Index column = a % width + k % 5 - 2, row = a / width + k / 5 - 2;
             if (column < 0 || row < 0 || column >= width || row >= height) continue;
-            matrix(a, row * width + column) = level.stencils.entry(
-                static_cast<std::size_t>(a % width), static_cast<std::size_t>(a / width),
-                static_cast<std::size_t>(k));
+            matrix(a, row * width + column) = stencils.entry(a % width, a / width, k);
         }
         matrix(a, a) += least;
     }
@@ -224,13 +226,10 @@ void SplineLevels::cycle(std::size_t at) {
     check_();
     Level& level = levels_[at];
     if (at + 1 == levels_.size()) {
-        const auto count = static_cast<Eigen::Index>(coarsest_numbers_.size());
-        Eigen::VectorXd right(count);
-        for (Eigen::Index k = 0; k < count; ++k)
-            right(k) = level.right[coarsest_numbers_[static_cast<std::size_t>(k)]];
-        const Eigen::VectorXd x = coarsest_.solve(right);
-        for (Eigen::Index k = 0; k < count; ++k)
-            level.x[coarsest_numbers_[static_cast<std::size_t>(k)]] = x(k);
+        const SplineGrid& grid = level.stencils.grid();
+        const Eigen::MatrixXd right = coefficients_of(grid, level.right);
+        const Eigen::VectorXd x = coarsest_.solve(right.reshaped());
+        coefficients_of(grid, level.x) = x.reshaped(right.rows(), right.cols());
         return;
     }
     const int threads = threads_of(level.stencils.grid());
@@ -241,20 +240,20 @@ void SplineLevels::cycle(std::size_t at) {
     const SplineGrid &fine = level.stencils.grid(), &grid = coarse.stencils.grid();
     // A coarse coefficient from the fine ones 2 i - 2 .. 2 i + 1 along each axis; what lies beside
     // the grid is 0.
-    constexpr std::array<double, 4> mask{0.25, 0.75, 0.75, 0.25};
+    constexpr std::array<double, 4> kMask{0.25, 0.75, 0.75, 0.25};
     for_rows(grid.rows() + 2, threads, [&](std::size_t row) {
         Vector line(fine.columns() + 8, 0.0);  // of fine columns from -2 on
         for (std::size_t j = 0; j < 4; ++j) {
             if (2 * row + j < 2 || 2 * row + j - 2 >= fine.rows() + 2) continue;
             const double* from = residual.data() + fine.number(0, 2 * row + j - 2);
             for (std::size_t i = 0; i < fine.columns() + 2; ++i)
-                line[i + 2] += mask[j] * from[i];
+                line[i + 2] += kMask[j] * from[i];
         }
         double* to = coarse.right.data() + grid.number(0, row);
         for (std::size_t column = 0; column < grid.columns() + 2; ++column) {
             const double* from = line.data() + 2 * column;
             to[column] =
-                mask[0] * from[0] + mask[1] * from[1] + mask[2] * from[2] + mask[3] * from[3];
+                kMask[0] * from[0] + kMask[1] * from[1] + kMask[2] * from[2] + kMask[3] * from[3];
         }
     });
     cycle(at + 1);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Multigrid on grids of quadratic B-splines: the coarse part of a preconditioner. Private.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -10,33 +9,34 @@
 #include <vector>
 
 #include "interpolation/data_points.hpp"
-#include "interpolation/dsi/roughness.hpp"
+#include "interpolation/dsi/hinges.hpp"
 #include "interpolation/dsi/smoother.hpp"
 #include "interpolation/dsi/spline_grid.hpp"
 #include "interpolation/dsi/vectors.hpp"
 
 namespace realmodel::interpolation {
 
-/// Something that pulls a surface at a place: its square times `strength` is added.
-struct Pull {
-    Place place;
+/// A constraint of a surface at a position: `strength` times the squared height there is added.
+struct WeightedPosition {
+    Position position;
     double strength;
 };
 
-/// Solves roughness and pulls approximately on the grid, by one V-cycle over ever coarser grids. A
-/// symmetric positive operator, as conjugate gradients need it of a preconditioner.
+/// Multigrid on grids of quadratic B-splines, the coarse part of a preconditioner: solves roughness
+/// and constraints approximately on the grid, by one V-cycle over ever coarser grids. A symmetric
+/// positive operator, as conjugate gradients need it.
 class SplineLevels {
 public:
-    /// Throws whatever `check` throws; it is called often.
-    SplineLevels(const SplineGrid& grid, std::span<const Place> nodes,
+    /// @param check  throws to stop; it is called often
+    SplineLevels(const SplineGrid& grid, std::span<const Position> nodes,
                  std::span<const Hinge> hinges, int threads, const std::function<void()>& check);
 
-    /// To be called before solve(), and again when pulls change.
-    void set_pulls(std::span<const Pull> pulls);
+    /// To be called before solve(), and again when constraints change.
+    void set_constraints(std::span<const WeightedPosition> constraints);
 
     const SplineGrid& grid() const { return levels_.front().stencils.grid(); }
 
-    /// The right side, of grid().length(), to be filled; then the solution after solve().
+    /// The right side, of grid().length(), to be set before solve(), and the solution after it.
     Vector& right() { return levels_.front().right; }
     const Vector& solution() const { return levels_.front().x; }
     void solve();
@@ -49,7 +49,7 @@ private:
         Vector right, x;
     };
 
-    void fill_up(std::span<const Place> nodes, std::span<const Hinge> hinges);
+    void fill_border_cells(std::span<const Position> nodes, std::span<const Hinge> hinges);
     void restrict_elements(std::vector<SplineGrid::Element>& elements,
                            const SplineGrid& fine) const;
     void assemble(Level& level, const std::vector<SplineGrid::Element>& elements, double least);
@@ -62,7 +62,6 @@ private:
     std::vector<SplineGrid::Element> rough_;  // of the finest grid
     std::vector<Level> levels_;
     Eigen::LDLT<Eigen::MatrixXd> coarsest_;
-    std::vector<std::size_t> coarsest_numbers_;
 };
 
 }  // namespace realmodel::interpolation

@@ -18,15 +18,25 @@ inline constexpr double kPerLog2 = 1.4426950408889634;
 inline constexpr double kLog2High = 6.93147180369123816490e-01;
 inline constexpr double kLog2Low = 1.90821492927058770002e-10;
 inline constexpr double kRounder = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds
-inline constexpr double kSeries[] = {
-    1.0 / 6227020800.0, 1.0 / 479001600.0, 1.0 / 39916800.0, 1.0 / 3628800.0, 1.0 / 362880.0,
-    1.0 / 40320.0,      1.0 / 5040.0,      1.0 / 720.0,      1.0 / 120.0,     1.0 / 24.0,
-    1.0 / 6.0,          0.5,               1.0,              1.0};
+inline constexpr double kSeries[] = {1.0 / 6227020800.0,
+                                     1.0 / 479001600.0,
+                                     1.0 / 39916800.0,
+                                     1.0 / 3628800.0,
+                                     1.0 / 362880.0,
+                                     1.0 / 40320.0,
+                                     1.0 / 5040.0,
+                                     1.0 / 720.0,
+                                     1.0 / 120.0,
+                                     1.0 / 24.0,
+                                     1.0 / 6.0,
+                                     0.5,
+                                     1.0,
+                                     1.0};
 inline constexpr int kTerms = static_cast<int>(sizeof kSeries / sizeof *kSeries);
 }  // namespace exponential
 
-/// exp(-x), x >= 0, of a double or of a vector of doubles. Our own, because the C library's computes
-/// differently on processors with fused multiply-add, and could give other bytes there.
+/// exp(-x), x >= 0, of a double or of a vector of doubles. Our own, because the C library's
+/// computes differently on processors with fused multiply-add, and could give other bytes there.
 /// @tparam Bits  the unsigned 64-bit number, or vector of them, with the bytes of a Number
 template <class Bits = std::uint64_t, class Number>
 inline Number decay(Number x) {

@@ -19,7 +19,8 @@ inline constexpr double kRedundantVariance = 1e-10;
 
 /// The estimate, less `base`, from what elimination leaves: with C = L L^T the covariance matrix of
 /// the data, u = L^-1 c (c: covariances with the node), s = L^-1 1, t = L^-1 (values - base), given
-/// as scalar products (Chiles and Delfiner 2012, section 3.4.1, the Lagrange multiplier eliminated).
+/// as scalar products (Chiles and Delfiner 2012, section 3.4.1, the Lagrange multiplier
+/// eliminated).
 template <class Number>
 inline EstimateOf<Number> ordinary_kriging(Number uu, Number us, Number ut, Number ss, Number st) {
     const Number excess = us - 1;

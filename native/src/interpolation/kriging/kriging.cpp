@@ -87,9 +87,9 @@ void krige_in_lanes(const KrigingTask& task) {
         const auto share = [&](std::size_t done) {
             return static_cast<double>(done) / static_cast<double>(count);
         };
-        NodeLoop{here,          nodes_in_chunk(neighbors), task.options.threads,
-                 task.progress, "kriging",                 share(first),
-                 share(first + here)}
+        NodeLoop{
+            here,         nodes_in_chunk(neighbors), task.options.threads, task.progress, "kriging",
+            share(first), share(first + here)}
             .over_chunks(make, [&](Scratch& own, std::size_t begin, std::size_t end) {
                 own.nodes.clear();
                 for (std::size_t k = begin; k < end; ++k) {
@@ -116,8 +116,9 @@ void krige_from_all(const KrigingTask& task) {
     const double solve_work = n * n * static_cast<double>(task.count());
     const double factor_share = factor_work / (factor_work + solve_work);
     const UniqueNeighborhood all(task, factor_share);
-    NodeLoop{task.count(),  kNodesAtOnce,              task.options.threads,
-             task.progress, "kriging from all points", factor_share}
+    NodeLoop{
+        task.count(), kNodesAtOnce, task.options.threads, task.progress, "kriging from all points",
+        factor_share}
         .over_chunks([&] { return all.scratch(); },
                      [&](UniqueNeighborhood::Scratch& own, std::size_t begin, std::size_t end) {
                          if (task.leaves_out) {
@@ -134,8 +135,8 @@ Kriged krige_nodes(const DataPoints& data, std::span<const Position> nodes, bool
     const spatial::NearestPoints tree(data.local);
     const Covariance covariance(variogram);
     Kriged out;
-    const KrigingTask task{data,  tree,       covariance,     options,  nodes,
-                           leaves_out, variogram.sill, progress, out};
+    const KrigingTask task{data,       tree,           covariance, options, nodes,
+                           leaves_out, variogram.sill, progress,   out};
     out.z.resize(task.count());
     out.variance.resize(task.count());
     const auto neighbors = static_cast<std::size_t>(options.neighbors);

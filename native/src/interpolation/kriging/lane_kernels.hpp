@@ -8,7 +8,8 @@ namespace realmodel::interpolation {
 
 struct CovariancePart;
 
-/// Kriging systems are solved side by side, each in a lane of vector registers; number k of system s is element kLanes * k + s of an array.
+/// Kriging systems are solved side by side, each in a lane of vector registers; number k of system
+/// s is element kLanes * k + s of an array.
 inline constexpr int kLanes = 8;
 
 /// The most points of a system, and terms of a drift.
@@ -34,17 +35,17 @@ struct LaneSystems {
 struct LaneKernels {
     const char* name;
 
-    /// out[i]: covariance of positions that differ by dx[i], dy[i]; count a multiple of kLanes, arrays
-    /// aligned to 64 bytes.
+    /// out[i]: covariance of positions that differ by dx[i], dy[i]; count a multiple of kLanes,
+    /// arrays aligned to 64 bytes.
     void (*covariances)(const CovariancePart* parts, std::size_t part_count, const double* dx,
                         const double* dy, double* out, std::size_t count);
 
     /// Estimates less the first value, and variances in units of the sill; of ordinary kriging.
     void (*krige)(const LaneSystems& systems, double* estimates, double* variances);
 
-    /// The same about a drift whose terms but the first are 0 at the node. well_posed: 1, or 0 for a
-    /// system in which a point is redundant or the points hardly distinguish the terms: its estimate
-    /// means nothing.
+    /// The same about a drift whose terms but the first are 0 at the node. well_posed: 1, or 0 for
+    /// a system in which a point is redundant or the points hardly distinguish the terms: its
+    /// estimate means nothing.
     void (*krige_about_drift)(const LaneSystems& systems, double* estimates, double* variances,
                               double* well_posed);
 };

@@ -65,13 +65,11 @@ bool LaneKriging::add(const Node& node, std::span<const std::int32_t> nearest) {
     assert(nearest.size() >= n);
     std::size_t count = 0;
     for (std::size_t k = 0; count < n; ++k) {
-        if (candidates[nearest[k]] != node.left_out)
-            chosen[count++] = nearest[k];
+        if (candidates[nearest[k]] != node.left_out) chosen[count++] = nearest[k];
     }
     double* rows = rows_.data() + lane;
     for (std::size_t i = 0; i < n; ++i) {
-        const double* covariances =
-            table_.data() + chosen[i] * candidates.size();
+        const double* covariances = table_.data() + chosen[i] * candidates.size();
         for (std::size_t j = 0; j <= i; ++j, rows += kLanes)
             *rows = covariances[chosen[j]];
     }

@@ -27,9 +27,10 @@ private:
     std::vector<double> numbers_;
 };
 
-/// Kriging of many nodes from a few points each: takes nodes that lie close together, block by block,
-/// and solves their systems side by side. One for each thread. Without a drift the estimates are, to
-/// the last bit, those of NeighborKriging; with one, systems that are not well posed are left to it.
+/// Kriging of many nodes from a few points each: takes nodes that lie close together, block by
+/// block, and solves their systems side by side. One for each thread. Without a drift the estimates
+/// are, to the last bit, those of NeighborKriging; with one, systems that are not well posed are
+/// left to it.
 class LaneKriging {
 public:
     static constexpr std::size_t kMostNeighbors = kMostLanePoints;

@@ -21,14 +21,15 @@ TiledCholesky::TiledCholesky(Eigen::Index order, const Entry& entry, double redu
     // work(i, j) for the tiles of columns first .. last, until the caller cancels.
     const auto for_tiles = [&](Eigen::Index from_row, Eigen::Index first, Eigen::Index last,
                                const auto& work) {
-        parallel_chunks(static_cast<std::size_t>(side_ - from_row), threads, progress,
-                        [&](std::size_t row) {
-                            const Eigen::Index i = from_row + static_cast<Eigen::Index>(row);
-                            const Eigen::Index end = std::min(i, last);
-                            for (Eigen::Index j = first; j <= end && !cancelled(progress); ++j)
-                                work(i, j);
-                        },
-                        0);
+        parallel_chunks(
+            static_cast<std::size_t>(side_ - from_row), threads, progress,
+            [&](std::size_t row) {
+                const Eigen::Index i = from_row + static_cast<Eigen::Index>(row);
+                const Eigen::Index end = std::min(i, last);
+                for (Eigen::Index j = first; j <= end && !cancelled(progress); ++j)
+                    work(i, j);
+            },
+            0);
     };
     for_tiles(0, 0, side_, [&](Eigen::Index i, Eigen::Index j) { fill(i, j, entry); });
     // The right-looking form: after column k the rest of the matrix is what its factor must give.

@@ -23,13 +23,11 @@ UniqueNeighborhood::UniqueNeighborhood(const KrigingTask& task, double factor_sh
           },
           kRedundantVariance, task.options.threads, task.progress, factor_share) {
     const Eigen::Index terms = drift_terms(task.options.drift);
-    Eigen::MatrixXd plain(count_, terms), given(count_, terms + 1);
-    for (Eigen::Index p = 0; p < count_; ++p) {
-        plain.row(p) = frame_.terms(position(p));
-        given(p, terms) = task.data.values[p] - base_;
-    }
+    Eigen::MatrixXd plain = frame_.terms(std::span<const Position>(task.data.local));
+    Eigen::MatrixXd given(count_, terms + 1);
     given.leftCols(terms) = plain;
     for (Eigen::Index p = 0; p < count_; ++p) {
+        given(p, terms) = task.data.values[p] - base_;
         if (factor_.left_out(p)) plain.row(p).setZero();
     }
     factor_.solve(given, task.progress);

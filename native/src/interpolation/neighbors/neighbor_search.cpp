@@ -42,15 +42,15 @@ void require_memory(double bytes, double points, const char* what, int fewer) {
 }
 
 NeighborSearch::NeighborSearch(const DataPoints& data, const spatial::NearestPoints& tree,
-                                 const Neighborhood& neighborhood)
+                               const Neighborhood& neighborhood)
     : tree_(tree),
       plain_(neighborhood.plain()),
       limit_(neighborhood.neighbors > 0 ? static_cast<std::size_t>(neighborhood.neighbors)
-                                          : data.local.size()),
+                                        : data.local.size()),
       octant_limit_(neighborhood.octants > 0 ? static_cast<std::size_t>(neighborhood.octants)
-                                              : data.local.size()),
+                                             : data.local.size()),
       squared_radius_(neighborhood.radius > 0 ? neighborhood.radius * neighborhood.radius
-                                               : std::numeric_limits<double>::infinity()) {
+                                              : std::numeric_limits<double>::infinity()) {
     limit_ = std::min(limit_, 8 * std::min(octant_limit_, data.local.size()));
     const bool by_octants = octant_limit_ < limit_;
     if (by_octants || (neighborhood.radius > 0 && limit_ > kMostInOrder)) {
@@ -61,7 +61,7 @@ NeighborSearch::NeighborSearch(const DataPoints& data, const spatial::NearestPoi
 }
 
 bool NeighborSearch::find(const Position& position, std::vector<spatial::Neighbour>& found,
-                           std::int32_t left_out) {
+                          std::int32_t left_out) {
     if (plain_ && left_out == kNobody) {
         tree_.find(position, limit_, found);
         return true;

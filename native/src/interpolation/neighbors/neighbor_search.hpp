@@ -15,8 +15,8 @@ namespace realmodel::interpolation {
 /// Which points make a node's system.
 struct Neighborhood {
     int neighbors = 16;  ///< at most so many; 0: no limit
-    int octants = 0;      ///< at most so many from each eighth of the directions; 0: no limit
-    double radius = 0;    ///< none farther than this, in plan; 0: no limit
+    int octants = 0;     ///< at most so many from each eighth of the directions; 0: no limit
+    double radius = 0;   ///< none farther than this, in plan; 0: no limit
 
     bool plain() const { return octants == 0 && radius == 0; }
 };
@@ -34,7 +34,7 @@ void require_memory(double bytes, double points, const char* what, int fewer);
 class NeighborSearch {
 public:
     NeighborSearch(const DataPoints& data, const spatial::NearestPoints& tree,
-                    const Neighborhood& neighborhood);
+                   const Neighborhood& neighborhood);
 
     static constexpr std::int32_t kNobody = -1;
 

@@ -45,9 +45,7 @@ public:
         positions_.assign(positions.begin(), positions.end());
         frame_.emplace(positions_, Drift::kLinear);
         const auto n = static_cast<Eigen::Index>(positions_.size());
-        terms_.resize(n, drift_terms(Drift::kLinear));
-        for (Eigen::Index i = 0; i < n; ++i)
-            terms_.row(i) = frame_->terms(positions_[i]);
+        terms_ = frame_->terms(std::span<const Position>(positions_));
         basis_.make(terms_, terms_);
         const Eigen::Index terms = basis_.size();
         base_ = values[0];
@@ -56,8 +54,7 @@ public:
         for (Eigen::Index i = 0; i < n; ++i) {
             const Position& a = positions_[i];
             for (Eigen::Index j = 0; j < i; ++j) {
-                matrix_(i, j) = kernel(squared_distance(a, positions_[j]) /
-                                       (unit_ * unit_));
+                matrix_(i, j) = kernel(squared_distance(a, positions_[j]) / (unit_ * unit_));
                 matrix_(j, i) = matrix_(i, j);
             }
             matrix_(i, i) = smoothing_;
@@ -78,8 +75,7 @@ public:
             sum += weights_(n + k) * terms(k);
         for (Eigen::Index i = 0; i < n; ++i) {
             sum +=
-                weights_(i) * kernel(squared_distance(position, positions_[i]) /
-                                     (unit_ * unit_));
+                weights_(i) * kernel(squared_distance(position, positions_[i]) / (unit_ * unit_));
         }
         return base_ + sum;
     }
@@ -113,8 +109,7 @@ std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
     const Neighborhood neighborhood{options.neighbors, options.octants, options.radius};
     const double spacing = mean_spacing(data.local);
     const std::size_t points_used = static_cast<std::size_t>(options.neighbors);
-    const bool all =
-        neighborhood.plain() && (points_used == 0 || points_used >= data.local.size());
+    const bool all = neighborhood.plain() && (points_used == 0 || points_used >= data.local.size());
     Spline whole(spacing, options.smoothing);
     if (all) {
         const auto order = static_cast<double>(data.local.size() + 3);
@@ -133,7 +128,9 @@ std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
     };
     const NodeLoop loop{nodes.size(), 256, options.threads, progress, "thin plate spline"};
     loop.over_nodes(
-        [&] { return Scratch{whole, NeighborSearch(data, tree, neighborhood), {}, {}, {}}; },
+        [&] {
+            return Scratch{whole, NeighborSearch(data, tree, neighborhood), {}, {}, {}};
+        },
         [&](Scratch& own, std::size_t i) {
             const Position node = data.to_local(nodes[i]);
             tree.find(node, 1, own.near);

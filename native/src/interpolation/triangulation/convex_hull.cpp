@@ -26,16 +26,19 @@ ConvexHull::ConvexHull(std::vector<Position> positions) {
 }
 
 bool ConvexHull::contains(const Position& position) const {
-    if (lower_.empty() || position[0] < lower_.front()[0] || position[0] > lower_.back()[0]) return false;
+    if (lower_.empty() || position[0] < lower_.front()[0] || position[0] > lower_.back()[0])
+        return false;
     const auto left_of = [](const Position& a, double x) { return a[0] < x; };
     const auto right_of = [](double x, const Position& a) { return x < a[0]; };
     const auto low = std::lower_bound(lower_.begin(), lower_.end(), position[0], left_of);
-    if ((*low)[0] == position[0] ? position[1] < (*low)[1] : exact::orient2d(*(low - 1), *low, position) < 0) {
+    if ((*low)[0] == position[0] ? position[1] < (*low)[1]
+                                 : exact::orient2d(*(low - 1), *low, position) < 0) {
         return false;
     }
     const auto beyond = std::upper_bound(upper_.begin(), upper_.end(), position[0], right_of);
     const Position& before = *(beyond - 1);
-    return before[0] == position[0] ? position[1] <= before[1] : exact::orient2d(before, *beyond, position) <= 0;
+    return before[0] == position[0] ? position[1] <= before[1]
+                                    : exact::orient2d(before, *beyond, position) <= 0;
 }
 
 std::vector<ConvexHull::Position> ConvexHull::corners() const {

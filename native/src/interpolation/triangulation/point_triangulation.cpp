@@ -2,6 +2,7 @@
 #include "interpolation/triangulation/point_triangulation.hpp"
 
 #include <CGAL/Spatial_sort_traits_adapter_2.h>
+#include <CGAL/property_map.h>
 #include <CGAL/spatial_sort.h>
 
 #include <algorithm>
@@ -11,37 +12,21 @@
 
 namespace realmodel::interpolation {
 
-namespace {
-
-/// Gives CGAL's sort the point of a number.
-struct PositionOfNumber {
-    using key_type = std::int32_t;
-    using value_type = PointTriangulation::Kernel::Point_2;
-    using reference = value_type;
-    using category = boost::readable_property_map_tag;
-
-    const Position* positions;
-
-    friend value_type get(const PositionOfNumber& map, std::int32_t number) {
-        const Position& p = map.positions[number];
-        return {p[0], p[1]};
-    }
-};
-
-}  // namespace
-
 PointTriangulation::PointTriangulation(const DataPoints& data, const Progress* progress)
     : data_(data), tree_(data.local), vertices_(data.local.size()) {
-    std::vector<std::int32_t> order(data.local.size());
+    std::vector<Kernel::Point_2> points;
+    for (const auto& [x, y] : data.local)
+        points.emplace_back(x, y);
+    std::vector<std::int32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0);
-    const PositionOfNumber map{data.local.data()};
+    using PointOf = CGAL::Pointer_property_map<Kernel::Point_2>::const_type;
     CGAL::spatial_sort(order.begin(), order.end(),
-                       CGAL::Spatial_sort_traits_adapter_2<Kernel, PositionOfNumber>(map));
+                       CGAL::Spatial_sort_traits_adapter_2<Kernel, PointOf>(points.data()));
     Face last;
     std::size_t inserted = 0;
     for (const std::int32_t point : order) {
         if (++inserted % 1024 == 0 && progress != nullptr) progress->check();
-        const Delaunay::Vertex_handle vertex = delaunay_.insert(get(map, point), last);
+        const Delaunay::Vertex_handle vertex = delaunay_.insert(points[point], last);
         vertex->info() = point;
         vertices_[point] = vertex;
         last = vertex->face();

@@ -15,8 +15,8 @@
 
 namespace realmodel::interpolation {
 
-/// The Delaunay triangulation of data points, in local coordinates; its vertices have the numbers of
-/// their points. Several threads may ask at once.
+/// The Delaunay triangulation of data points, in local coordinates; its vertices have the numbers
+/// of their points. Several threads may ask at once.
 class PointTriangulation {
 public:
     using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -30,7 +30,8 @@ public:
     const Delaunay& delaunay() const { return delaunay_; }
 
     /// A triangle at the point nearest to a position: where the search for it begins, so that what
-    /// is found on ties depends on the position alone. No triangle where the points lie in one line.
+    /// is found on ties depends on the position alone. No triangle where the points lie in one
+    /// line.
     Face near(const Position& position, std::vector<spatial::Neighbour>& found) const;
 
     /// Value at a position inside `face`, linear between its corners.

@@ -22,11 +22,12 @@ using Delaunay = PointTriangulation::Delaunay;
 // are rounding.
 constexpr double kAreasAgree = 1e-7;
 
-/// value(data, triangulation, node, face) for each node in a triangle; the border's value elsewhere.
+/// value(data, triangulation, node, face) for each node in a triangle; the border's value
+/// elsewhere.
 template <class Value>
 std::vector<double> on_triangulation(std::span<const std::array<double, 3>> points,
-                                     std::span<const Position> nodes, int threads, Progress* progress,
-                                     const char* text, Value&& value) {
+                                     std::span<const Position> nodes, int threads,
+                                     Progress* progress, const char* text, Value&& value) {
     require_finite_nodes(nodes);
     const DataPoints data = prepare_points(points);
     const PointTriangulation triangulation(data, progress);
@@ -55,8 +56,8 @@ std::vector<double> on_triangulation(std::span<const std::array<double, 3>> poin
 }
 
 /// Sibson's coordinates, checked: their weighted mean must give the node back.
-double natural(const DataPoints& data, const PointTriangulation& triangulation, const Position& node,
-               Face face) {
+double natural(const DataPoints& data, const PointTriangulation& triangulation,
+               const Position& node, Face face) {
     using Weight = std::pair<Delaunay::Vertex_handle, double>;
     thread_local std::vector<Weight> weights;
     weights.clear();
@@ -93,8 +94,8 @@ std::vector<double> linear_on_triangulation(std::span<const std::array<double, 3
 }
 
 std::vector<double> natural_neighbors(std::span<const std::array<double, 3>> points,
-                                       std::span<const std::array<double, 2>> nodes, int threads,
-                                       Progress* progress) {
+                                      std::span<const std::array<double, 2>> nodes, int threads,
+                                      Progress* progress) {
     return on_triangulation(points, nodes, threads, progress, "natural neighbors", natural);
 }
 

@@ -34,7 +34,8 @@ CurveFit stretched(CurveFit fit, const Anisotropy& anisotropy) {
     return fit;
 }
 
-Anisotropy find_anisotropy(const LeaveOneOut& points, const CurveFit& fit, const CappedSquare& square_of) {
+Anisotropy find_anisotropy(const LeaveOneOut& points, const CurveFit& fit,
+                           const CappedSquare& square_of) {
     const auto square = [&](const Vector& v) {
         const Anisotropy anisotropy = anisotropy_of(v);
         const Variogram variogram = variogram_of(stretched(fit, anisotropy), anisotropy);

@@ -8,9 +8,9 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr double kOutlying = 20;     // deviations: larger errors count as this one
-constexpr double kWithinTwo = 0.95;  // share of errors within two deviations where they are honest
-constexpr double kSurely = 2;        // standard errors of a mean difference of squares
+constexpr double kOutlying = 20;      // deviations: larger errors count as this one
+constexpr double kWithinTwo = 0.95;   // share of errors within two deviations where they are honest
+constexpr double kSurely = 2;         // standard errors of a mean difference of squares
 constexpr double kWorthwhile = 0.03;  // of the mean square: less is not worth another variogram
 
 }  // namespace
@@ -42,7 +42,8 @@ double CappedSquare::operator()(std::span<const double> errors) const {
     return sum / static_cast<double>(errors.size());
 }
 
-bool CappedSquare::surely_less(std::span<const double> errors, std::span<const double> others) const {
+bool CappedSquare::surely_less(std::span<const double> errors,
+                               std::span<const double> others) const {
     const auto count = static_cast<double>(errors.size());
     double all = 0, sum = 0, squares = 0;
     for (std::size_t i = 0; i < errors.size(); ++i) {

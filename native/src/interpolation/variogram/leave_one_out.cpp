@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "interpolation/kriging/neighbor_kriging.hpp"
 #include "interpolation/kriging/lane_kriging.hpp"
+#include "interpolation/kriging/neighbor_kriging.hpp"
 #include "interpolation/node_loop.hpp"
 #include "realmodel/spatial/nearest_points.hpp"
 
@@ -21,7 +21,7 @@ static_assert(kMostNeighbors <= LaneKriging::kMostNeighbors);
 }  // namespace
 
 LeaveOneOut::LeaveOneOut(const DataPoints& data, std::size_t neighbors, std::size_t most,
-                             int threads, Progress* progress)
+                         int threads, Progress* progress)
     : data_(data),
       neighbors_(std::min({neighbors, data.local.size() - 1, kMostNeighbors})),
       threads_(threads),

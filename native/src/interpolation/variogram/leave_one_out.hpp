@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "interpolation/kriging/covariance.hpp"
 #include "interpolation/data_points.hpp"
+#include "interpolation/kriging/covariance.hpp"
 #include "realmodel/interpolation/drift.hpp"
 
 namespace realmodel {
@@ -26,12 +26,13 @@ public:
     /// @param neighbors  1 .. 64; fewer where there are not so many others
     /// @param most        points that are left out, where there are so many
     LeaveOneOut(const DataPoints& data, std::size_t neighbors, std::size_t most, int threads,
-                  Progress* progress);
+                Progress* progress);
 
     std::size_t size() const { return left_out_.size(); }
     std::size_t neighbors() const { return neighbors_; }
 
-    /// By ordinary kriging, or with a drift, which is slower. The same bytes for any number of threads.
+    /// By ordinary kriging, or with a drift, which is slower. The same bytes for any number of
+    /// threads.
     /// @throws Cancelled
     PredictionErrors errors(const Covariance& covariance, Drift drift = Drift::kConstant) const;
 

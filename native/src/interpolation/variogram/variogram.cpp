@@ -26,6 +26,10 @@ std::string number_text(double number) {
     return text;
 }
 
+bool is_positive(double number) {
+    return number > 0 && std::isfinite(number);
+}
+
 }  // namespace
 
 std::string_view name_of(VariogramModel model) {
@@ -80,36 +84,31 @@ double Variogram::gamma(double distance) const {
 }
 
 void check_variogram(const Variogram& variogram) {
-    const auto refuse = [](const std::string& what) { throw InputError("variogram", what); };
-    if (!(variogram.range > 0) || !std::isfinite(variogram.range)) {
-        refuse("the variogram's range is " + number_text(variogram.range) +
-               "; it must be positive");
-    }
-    if (!(variogram.sill > 0) || !std::isfinite(variogram.sill)) {
-        refuse("the variogram's sill is " + number_text(variogram.sill) + "; it must be positive");
-    }
-    if (!(variogram.nugget >= 0) || !(variogram.nugget <= variogram.sill)) {
-        refuse("the variogram's nugget is " + number_text(variogram.nugget) +
-               "; it must lie between 0 and the sill, " + number_text(variogram.sill) +
-               ", which includes it");
-    }
+    const auto require = [](bool right, const std::string& what) {
+        if (!right) throw InputError("variogram", what);
+    };
+    const std::string sill = number_text(variogram.sill);
+    require(is_positive(variogram.range),
+            "the variogram's range is " + number_text(variogram.range) + "; it must be positive");
+    require(is_positive(variogram.sill),
+            "the variogram's sill is " + sill + "; it must be positive");
+    require(variogram.nugget >= 0 && variogram.nugget <= variogram.sill,
+            "the variogram's nugget is " + number_text(variogram.nugget) +
+                "; it must lie between 0 and the sill, " + sill + ", which includes it");
     check_anisotropy(variogram.anisotropy);
     for (const NestedStructure& nested : variogram.further) {
-        if (!(nested.range > 0) || !std::isfinite(nested.range) || !(nested.sill > 0) ||
-            !std::isfinite(nested.sill)) {
-            refuse("a structure of the variogram has range " + number_text(nested.range) +
-                   " and sill " + number_text(nested.sill) + "; both must be positive");
-        }
+        require(is_positive(nested.range) && is_positive(nested.sill),
+                "a structure of the variogram has range " + number_text(nested.range) +
+                    " and sill " + number_text(nested.sill) + "; both must be positive");
         check_anisotropy(nested.anisotropy);
     }
-    if (!(variogram.first_sill() >= -1e-12 * variogram.sill)) {
-        refuse("nugget and structures of the variogram have more than its sill, " +
-               number_text(variogram.sill) + ", together");
-    }
+    require(
+        variogram.first_sill() >= -1e-12 * variogram.sill,
+        "nugget and structures of the variogram have more than its sill, " + sill + ", together");
 }
 
 void check_anisotropy(const Anisotropy& anisotropy) {
-    if (!(anisotropy.ratio > 0) || !std::isfinite(anisotropy.ratio)) {
+    if (!is_positive(anisotropy.ratio)) {
         throw InputError("anisotropy", "the anisotropy's ratio is " +
                                            number_text(anisotropy.ratio) + "; it must be positive");
     }

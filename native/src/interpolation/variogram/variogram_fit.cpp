@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include "interpolation/variogram/anisotropy_search.hpp"
 #include "interpolation/drift_basis.hpp"
-#include "interpolation/variogram/experimental_variogram.hpp"
+#include "interpolation/variogram/anisotropy_search.hpp"
 #include "interpolation/variogram/capped_square.hpp"
+#include "interpolation/variogram/experimental_variogram.hpp"
 #include "interpolation/variogram/leave_one_out.hpp"
 #include "interpolation/variogram/variogram_search.hpp"
 #include "realmodel/base/errors.hpp"
@@ -46,11 +46,11 @@ public:
           few_(data, std::min(static_cast<std::size_t>(options.neighbors), kNeighborsSearched),
                kPointsSearched, options.threads, progress) {}
 
-    /// Leaves `out` as it is where no model fits at all. Its experimental values and its variogram's
-    /// anisotropy are given; they change where an anisotropy is found.
+    /// Leaves `out` as it is where no model fits at all. Its experimental values and its
+    /// variogram's anisotropy are given; they change where an anisotropy is found.
     void make(FittedVariogram& out) {
-        const bool finds = options_.finds_anisotropy &&
-                           data_.local.size() >= kLeastForAnisotropy && spread_in_plan(data_);
+        const bool finds = options_.finds_anisotropy && data_.local.size() >= kLeastForAnisotropy &&
+                           spread_in_plan(data_);
         std::vector<Candidate> all = search(out, kAllVariogramModels, 0, finds ? 0.35 : 0.7);
         if (all.empty()) return;
         if (finds) {
@@ -89,8 +89,8 @@ private:
         const Anisotropy& anisotropy = about.variogram.anisotropy;
         VariogramSearch search(few_, about.experimental, anisotropy, extent(anisotropy),
                                square_of_);
-        std::vector<Candidate> all = search.run(
-            models, [&](double share) { report(from + share * (to - from)); });
+        std::vector<Candidate> all =
+            search.run(models, [&](double share) { report(from + share * (to - from)); });
         keep_agreeing(all);
         return all;
     }
@@ -102,8 +102,8 @@ private:
         return square_of_->surely_less(with.errors, without.errors);
     }
 
-    /// By all the points, among the best by a part of them. Of equally good ones one without a rough
-    /// part, and of these the one that fits the experimental values best.
+    /// By all the points, among the best by a part of them. Of equally good ones one without a
+    /// rough part, and of these the one that fits the experimental values best.
     Candidate last_choice(std::vector<Candidate> all, const Anisotropy& anisotropy) const {
         std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
             return a.square < b.square;
@@ -153,9 +153,9 @@ private:
         scale /= left_undone;
         const double power = growth(variogram, out.experimental.lags.front());
         const double longest = std::max(variogram.range, extent(variogram.anisotropy));
-        double part = 1;  // of the step that would do it all
+        double reach = 1;  // share of the step that would do it all
         for (int step = 0; step < 4 && std::abs(std::log(scale)) > 0.05; ++step) {
-            const double times = std::min(std::clamp(std::pow(scale, -part / power), 0.5, 2.0),
+            const double times = std::min(std::clamp(std::pow(scale, -reach / power), 0.5, 2.0),
                                           std::max(longest / variogram.range, 1.0));
             Variogram moved = variogram;
             moved.range *= times;
@@ -165,7 +165,7 @@ private:
             const double with_range = honest_sill(with_moved) / moved.sill / left_undone;
             if (!(std::abs(std::log(with_range)) < std::abs(std::log(scale))) ||
                 (*square_of_)(with_moved.errors) > kHardlyWorse * square) {
-                part /= 2;
+                reach /= 2;
                 continue;
             }
             variogram = moved;

@@ -10,9 +10,10 @@ namespace realmodel::interpolation {
 
 namespace {
 
-constexpr double kContradicting = 8;  // times: the sills that errors and experimental values ask for
-constexpr double kHopeless = 2;       // times the best mean square: such a model is not varied
-constexpr double kHopeful = 1.3;      // times the best mean square: such a one is made rougher
+constexpr double kContradicting =
+    8;                            // times: the sills that errors and experimental values ask for
+constexpr double kHopeless = 2;   // times the best mean square: such a model is not varied
+constexpr double kHopeful = 1.3;  // times the best mean square: such a one is made rougher
 // A mean square that is lower by no more than this share, or by the share of so many points, may be
 // so by chance.
 constexpr double kChanceShare = 0.001;
@@ -65,9 +66,9 @@ struct Step {
 };
 
 constexpr Step kSteps[] = {{nullptr, &Curve::rough_share, 1.8},
-                          {nullptr, &Curve::range, 1.4},
-                          {nullptr, &Curve::rough_range, 1.6},
-                          {&CurveFit::nugget, nullptr, 2}};
+                           {nullptr, &Curve::range, 1.4},
+                           {nullptr, &Curve::rough_range, 1.6},
+                           {&CurveFit::nugget, nullptr, 2}};
 constexpr double kMostRough = 0.6;  // share of the rougher part
 
 }  // namespace
@@ -225,7 +226,8 @@ void VariogramSearch::vary(const Candidate& start) {
 void VariogramSearch::roughen(VariogramModel model) {
     const std::vector<RougherPart> parts = parts_for(model);
     const Candidate* const plain = best_with(model);
-    if (parts.empty() || plain == nullptr || plain->square > kHopeful * best_of(all_).square) return;
+    if (parts.empty() || plain == nullptr || plain->square > kHopeful * best_of(all_).square)
+        return;
     const CurveFit start = plain->fit;
     const double longest = std::max(start.curve.range, longest_);
     for (const RougherPart& part : parts) {

@@ -39,17 +39,17 @@ TEST(NearestDistances, Refuses) {
 }
 
 TEST(NearestPoints, WithinADistanceAllOrNone) {
-    const Nodes places = scattered_nodes(500, 100);
-    const spatial::NearestPoints tree(places);
+    const Nodes positions = scattered_nodes(500, 100);
+    const spatial::NearestPoints tree(positions);
     std::vector<spatial::Neighbour> found;
     ASSERT_TRUE(tree.within({50, 50}, 20, 500, found));
-    std::vector<bool> seen(places.size(), false);
+    std::vector<bool> seen(positions.size(), false);
     for (const spatial::Neighbour& n : found) {
         ASSERT_FALSE(seen[static_cast<std::size_t>(n.point)]);
         seen[static_cast<std::size_t>(n.point)] = true;
     }
-    for (std::size_t i = 0; i < places.size(); ++i)
-        EXPECT_EQ(seen[i], std::hypot(places[i][0] - 50, places[i][1] - 50) <= 20);
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        EXPECT_EQ(seen[i], std::hypot(positions[i][0] - 50, positions[i][1] - 50) <= 20);
     EXPECT_FALSE(tree.within({50, 50}, 20, found.size() - 1, found));
 }
 

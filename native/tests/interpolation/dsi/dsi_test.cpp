@@ -9,115 +9,13 @@
 #include <string>
 
 #include "../dense_kriging.hpp"
-#include "interpolation/dsi/roughness.hpp"
-#include "interpolation/dsi/spline_levels.hpp"
+#include "interpolation/dsi/vectors.hpp"
+#include "lattice.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
 
 namespace realmodel::interpolation {
 namespace {
-
-struct Lattice {
-    Nodes nodes;
-    std::vector<std::array<std::int32_t, 3>> triangles;
-};
-
-/// Rows of right triangles, every other row turned, jittered inside.
-Lattice lattice(int columns, int rows, double jitter = 0.2) {
-    std::mt19937 random(7);
-    const auto shift = [&] {
-        return jitter * (static_cast<double>(random()) / 4294967296.0 - 0.5);
-    };
-    Lattice out;
-    for (int j = 0; j < rows; ++j) {
-        for (int i = 0; i < columns; ++i) {
-            const bool inner = i > 0 && j > 0 && i < columns - 1 && j < rows - 1;
-            out.nodes.push_back({i + (inner ? shift() : 0), j + (inner ? shift() : 0)});
-            if (i == columns - 1 || j == rows - 1) continue;
-            const std::int32_t a = j * columns + i, b = a + 1, c = a + columns, d = c + 1;
-            if ((i + j) % 2 == 0) {
-                out.triangles.push_back({a, b, d});
-                out.triangles.push_back({a, d, c});
-            } else {
-                out.triangles.push_back({a, b, c});
-                out.triangles.push_back({b, d, c});
-            }
-        }
-    }
-    return out;
-}
-
-TEST(Roughness, LinearHeightsHaveNoneAndQuadraticOnesWhatTheyBend) {
-    const Lattice mesh = lattice(9, 7);
-    const auto of_mesh = hinges(mesh.nodes, mesh.triangles);
-    EXPECT_EQ(of_mesh.size(), 8 * 6 + 7 * 6 + 8 * 5U);  // diagonals, and inner edges along the axes
-    const SparseRows rows(mesh.nodes.size(), of_mesh, 2);
-    Vector plane, bowl;
-    for (const auto& [x, y] : mesh.nodes) {
-        plane.push_back(3 + 2 * x - y);
-        bowl.push_back(x * x - 3 * x * y + 0.5 * y * y);
-    }
-    for (std::size_t i = 0; i < plane.size(); ++i)
-        EXPECT_NEAR(rows.times(i, plane.data()), 0, 1e-12);
-    double energy = 0, bent = 0;
-    for (std::size_t i = 0; i < bowl.size(); ++i)
-        energy += bowl[i] * rows.times(i, bowl.data());
-    for (const Hinge& h : of_mesh)
-        bent += std::pow(h.bending[0] * 2 + h.bending[1] * -3 + h.bending[2] * 1, 2);
-    EXPECT_NEAR(energy, bent, 1e-9 * energy);
-    EXPECT_GT(energy, 1);
-}
-
-TEST(SplineGrid, SumsToOneAndBendsAsItsSecondDerivatives) {
-    const SplineGrid grid({10, 20}, 0.5, 7, 5);
-    for (const Place& place : {Place{10, 20}, {11.3, 21.1}, {13.49, 22.49}, {13.5, 22.5}}) {
-        const std::size_t cell = grid.cell_of(place);
-        const auto values = grid.values(place, cell);
-        double sum = 0;
-        for (const double v : values)
-            sum += v;
-        EXPECT_NEAR(sum, 1, 1e-14);
-        constexpr double h = 1e-4;
-        const auto at = [&](double dx, double dy) {
-            return grid.values({place[0] + dx, place[1] + dy}, cell);
-        };
-        const auto bends = grid.bends(place, cell, {2, -1, 3});
-        for (std::size_t k = 0; k < SplineGrid::reach; ++k) {
-            const double xx = (at(h, 0)[k] - 2 * values[k] + at(-h, 0)[k]) / (h * h);
-            const double yy = (at(0, h)[k] - 2 * values[k] + at(0, -h)[k]) / (h * h);
-            const double xy =
-                (at(h, h)[k] - at(-h, h)[k] - at(h, -h)[k] + at(-h, -h)[k]) / (4 * h * h);
-            EXPECT_NEAR(bends[k], 2 * xx - xy + 3 * yy, 1e-5);
-        }
-    }
-}
-
-TEST(SplineLevels, IsSymmetricPositive) {
-    const Lattice mesh = lattice(80, 60);
-    const auto of_mesh = hinges(mesh.nodes, mesh.triangles);
-    const SplineGrid grid({0, 0}, 2, 40, 30);
-    SplineLevels levels(grid, mesh.nodes, of_mesh, 1, [] {});
-    levels.set_pulls(std::vector<Pull>{{{5, 5}, 10}, {{70, 8}, 10}, {{33, 50}, 10}});
-    std::mt19937 random(3);
-    const auto drawn = [&] {
-        Vector v(grid.length(), 0.0);
-        for (std::size_t row = 0; row < grid.rows() + 2; ++row) {
-            for (std::size_t column = 0; column < grid.columns() + 2; ++column)
-                v[grid.number(column, row)] = static_cast<double>(random()) / 4294967296.0 - 0.5;
-        }
-        return v;
-    };
-    const Vector a = drawn(), b = drawn();
-    const auto solved = [&](const Vector& right) {
-        levels.right() = right;
-        levels.solve();
-        return levels.solution();
-    };
-    const Vector x = solved(a), y = solved(b);
-    EXPECT_NEAR(dot(a, y, 1), dot(b, x, 1), 1e-6 * std::abs(dot(a, x, 1)));
-    EXPECT_GT(dot(a, x, 1), 0);
-    EXPECT_GT(dot(b, y, 1), 0);
-}
 
 Points on(const Lattice& mesh, int count, const std::function<double(double, double)>& height) {
     Points points = hills(count, 1);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <new>
 #include <random>
 
 namespace realmodel::interpolation {
@@ -41,6 +42,22 @@ TEST(StagedSweep, EachPieceFindsWhatItReachesDoneAtTheStageBefore) {
                 for (const auto& stages : done)
                     EXPECT_EQ(stages, 4);
             }
+        }
+    }
+}
+
+TEST(StagedSweep, WhatAPieceThrowsReachesTheCaller) {
+    std::vector<StagedSweep::Reach> reach;
+    for (std::ptrdiff_t p = 0; p < 100; ++p)
+        reach.emplace_back(std::max<std::ptrdiff_t>(0, p - 2), std::min<std::ptrdiff_t>(99, p + 2));
+    const StagedSweep sweep(reach);
+    for (const int threads : {1, 2, 5}) {
+        for (const std::size_t failing : {0U, 2U}) {
+            EXPECT_THROW(sweep.run(3, threads,
+                                   [&](std::size_t stage, std::ptrdiff_t piece) {
+                                       if (stage == failing && piece == 50) throw std::bad_alloc();
+                                   }),
+                         std::bad_alloc);
         }
     }
 }

@@ -33,8 +33,7 @@ InputError refusal(const std::function<void()>& run) {
 void expect_as_dense(const Points& points, const Nodes& nodes, const Variogram& variogram,
                      int neighbors, double tolerance) {
     const Kriged kriged = krige(points, nodes, variogram, {neighbors, 0});
-    const std::size_t count =
-        neighbors == 0 ? points.size() : static_cast<std::size_t>(neighbors);
+    const std::size_t count = neighbors == 0 ? points.size() : static_cast<std::size_t>(neighbors);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto [z, variance] = dense_kriging(points, nodes[i], variogram, count);
         ASSERT_NEAR(kriged.z[i], z, tolerance * variogram.sill);

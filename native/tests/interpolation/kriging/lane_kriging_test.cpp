@@ -8,10 +8,8 @@
 #include <vector>
 
 #include "../dense_kriging.hpp"
-#include "interpolation/kriging/drift_kriging.hpp"
-#include "interpolation/kriging/local_kriging.hpp"
+#include "interpolation/kriging/neighbor_kriging.hpp"
 #include "interpolation/neighbors/neighbor_search.hpp"
-#include "interpolation/node_order.hpp"
 
 namespace realmodel::interpolation {
 namespace {
@@ -44,14 +42,14 @@ std::vector<Estimate> one_by_one(const DataPoints& data, const Covariance& covar
                                  std::span<const LaneKriging::Node> nodes, int neighbors) {
     const spatial::NearestPoints tree(data.local);
     NeighborSearch search(data, tree, {neighbors, 0, 0});
-    LocalKriging kriging(data, covariance);
+    NeighborKriging kriging(data, covariance, Drift::kConstant);
     std::vector<spatial::Neighbour> near;
     std::vector<Estimate> out;
     for (const LaneKriging::Node& node : nodes) {
-        search.find(node.place, near, node.left_out);
+        search.find(node.position, near, node.left_out);
         const bool on_point = node.left_out < 0 && near[0].squared_distance == 0;
         out.push_back(on_point ? Estimate{data.values[static_cast<std::size_t>(near[0].point)], 0}
-                               : kriging.at(node.place, near, [] { return false; }));
+                               : kriging.at(node.position, near));
     }
     return out;
 }
@@ -124,14 +122,15 @@ TEST(LaneKriging, NodesFarApartAndOnPoints) {
     expect_same_bytes(points, nodes, {VariogramModel::kSpherical, 300, 9}, 12, false);
 }
 
-/// All kernels the same bytes, and what DriftKriging says of each node; how many were left to it.
+/// All kernels the same bytes, and what NeighborKriging says of each node; how many were left to
+/// it.
 std::size_t left_to_others(const Points& points, const Nodes& nodes, const Variogram& variogram,
                            int neighbors, Drift drift) {
     const DataPoints data = prepare_points(points);
     const Covariance covariance(variogram);
     const spatial::NearestPoints tree(data.local);
     NeighborSearch search(data, tree, {neighbors, 0, 0});
-    DriftKriging plain(data, covariance, drift);
+    NeighborKriging plain(data, covariance, drift);
     std::vector<spatial::Neighbour> near;
     std::vector<LaneKriging::Node> all;
     for (std::uint32_t i = 0; i < nodes.size(); ++i)
@@ -152,9 +151,9 @@ std::size_t left_to_others(const Points& points, const Nodes& nodes, const Vario
     }
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (first[i].variance == -1) continue;
-        search.find(all[i].place, near);
+        search.find(all[i].position, near);
         if (near[0].squared_distance == 0) continue;
-        const Estimate one = plain.at(all[i].place, near, [] { return false; });
+        const Estimate one = plain.at(all[i].position, near);
         EXPECT_NEAR(first[i].value, one.value, 1e-9 * (1 + one.variance)) << i;
         EXPECT_NEAR(first[i].variance, one.variance, 1e-9 * (1 + one.variance)) << i;
     }
@@ -185,38 +184,6 @@ TEST(LaneKriging, ADriftThatThePointsDoNotShowIsLeftToOthers) {
     EXPECT_EQ(left_to_others(scattered, nodes, v, 5, Drift::kQuadratic), nodes.size());
     const Variogram smooth{VariogramModel::kGaussian, 3000, 9, 0, {}, {}};
     EXPECT_GT(left_to_others(some_points("grid", 400), nodes, smooth, 16, Drift::kLinear), 0U);
-}
-
-TEST(Decay, WithinTwoUnitsInTheLastPlace) {
-    for (int i = 0; i < 200000; ++i) {
-        const double x = i < 100000 ? i * 7e-3 : (i - 100000) * 1e-5;
-        const double told = decay(x), exact = std::exp(-x);
-        ASSERT_NEAR(told, exact, 4.5e-16 * exact) << x;
-    }
-    EXPECT_EQ(decay(0), 1);
-    EXPECT_LT(decay(1e300), 1e-300);
-}
-
-TEST(AlongCurve, GoesFromCellToNeighboringCell) {
-    Nodes nodes;
-    for (int i = 0; i < 64; ++i) {
-        for (int j = 0; j < 64; ++j)
-            nodes.push_back({3.0 * j, 3.0 * i});
-    }
-    const std::vector<std::uint32_t> order = along_curve(nodes);
-    std::vector<bool> seen(nodes.size(), false);
-    double length = 0;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        ASSERT_FALSE(seen[order[k]]);
-        seen[order[k]] = true;
-        if (k == 0) continue;
-        const Place &a = nodes[order[k - 1]], &b = nodes[order[k]];
-        length += std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]);
-    }
-    // The cells of the curve are not quite those of the grid: a few steps are of two cells.
-    EXPECT_LT(length, 1.05 * 3 * static_cast<double>(nodes.size()));
-    EXPECT_TRUE(along_curve({}).empty());
-    EXPECT_EQ(along_curve(Nodes{{1, 1}, {1, 1}}), (std::vector<std::uint32_t>{0, 1}));
 }
 
 }  // namespace

@@ -163,17 +163,17 @@ TEST(LeftOut, AsKrigingWithoutThePoint) {
     for (const Drift drift : {Drift::kConstant, Drift::kLinear, Drift::kQuadratic}) {
         for (const int neighbors : {0, 12}) {
             const KrigingOptions options = with(drift, neighbors, 1);
-            const Kriged told = krige_left_out(points, spherical, options);
-            ASSERT_EQ(told.z.size(), points.size());
-            EXPECT_EQ(told.z[5], told.z.back());
+            const Kriged found = krige_left_out(points, spherical, options);
+            ASSERT_EQ(found.z.size(), points.size());
+            EXPECT_EQ(found.z[5], found.z.back());
             for (std::size_t i = 0; i < 90; i += 7) {
                 Points others = points;
                 others.pop_back();
                 others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
                 const Kriged alone =
                     krige(others, Nodes{{points[i][0], points[i][1]}}, spherical, options);
-                EXPECT_NEAR(told.z[i], alone.z[0], 1e-8);
-                EXPECT_NEAR(told.variance[i], alone.variance[0], 1e-9);
+                EXPECT_NEAR(found.z[i], alone.z[0], 1e-8);
+                EXPECT_NEAR(found.variance[i], alone.variance[0], 1e-9);
             }
         }
     }
@@ -184,8 +184,8 @@ TEST(LeftOut, WhatOthersTellWhollyOrNotAtAll) {
     EXPECT_EQ(alone.z[0], 3);
     EXPECT_TRUE(std::isinf(alone.variance[0]));
     // Three points make a plane; two of them a line only.
-    const Kriged three =
-        krige_left_out(Points{{0, 0, 0}, {1, 0, 1}, {0, 1, -2}}, spherical, with(Drift::kLinear, 0));
+    const Kriged three = krige_left_out(Points{{0, 0, 0}, {1, 0, 1}, {0, 1, -2}}, spherical,
+                                        with(Drift::kLinear, 0));
     for (const double z : three.z)
         EXPECT_TRUE(std::isfinite(z));
     // Nearly singular: most of these points the others tell to the last digit.
@@ -193,9 +193,9 @@ TEST(LeftOut, WhatOthersTellWhollyOrNotAtAll) {
     for (int i = 0; i < 144; ++i)
         smooth.push_back({1.0 * (i % 12), 1.0 * (i / 12), 0.5 * (i % 12)});
     const Variogram gaussian{VariogramModel::kGaussian, 30, 10, 0, {}, {}};
-    const Kriged told = krige_left_out(smooth, gaussian, {0, 0});
+    const Kriged found = krige_left_out(smooth, gaussian, {0, 0});
     for (std::size_t i = 0; i < smooth.size(); ++i)
-        EXPECT_NEAR(told.z[i], smooth[i][2], 0.01);
+        EXPECT_NEAR(found.z[i], smooth[i][2], 0.01);
 }
 
 }  // namespace

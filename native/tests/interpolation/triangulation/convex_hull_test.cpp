@@ -38,21 +38,21 @@ TEST(ConvexHull, WithoutArea) {
 
 TEST(ConvexHull, EveryPointIsInItAndEveryTurnIsLeft) {
     const Points points = hills(300, 10, {4e5, 5e6});
-    Nodes places;
+    Nodes positions;
     for (const auto& p : points)
-        places.push_back({p[0], p[1]});
-    const ConvexHull hull(places);
+        positions.push_back({p[0], p[1]});
+    const ConvexHull hull(positions);
     const Nodes corners = hull.corners();
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const auto& a = corners[i];
         const auto& b = corners[(i + 1) % corners.size()];
         EXPECT_EQ(exact::orient2d(a, b, corners[(i + 2) % corners.size()]), 1);
-        for (const auto& p : places)
+        for (const auto& p : positions)
             ASSERT_GE(exact::orient2d(a, b, p), 0);
         EXPECT_TRUE(hull.contains(a));
         EXPECT_FALSE(hull.contains({a[0] + (a[0] - 4e5 - 5), a[1] + (a[1] - 5e6 - 5)}));
     }
-    for (const std::uint8_t outside : outside_hull(points, places, 0))
+    for (const std::uint8_t outside : outside_hull(points, positions, 0))
         EXPECT_EQ(outside, 0);
     EXPECT_EQ(outside_hull(points, Nodes{{0, 0}}, 1), (std::vector<std::uint8_t>{1}));
     EXPECT_THROW(outside_hull(points, Nodes{{std::nan(""), 0}}, 1), InputError);

@@ -11,7 +11,7 @@
 namespace realmodel::interpolation {
 namespace {
 
-/// One draw of a normal field with a given variogram at scattered places.
+/// One draw of a normal field with a given variogram at scattered positions.
 Points drawn_field(const Variogram& v, int count, double size, unsigned seed) {
     Points points = hills(count, size, {3e5, 4e6}, seed);
     std::vector<Variogram> parts{v};
@@ -165,10 +165,10 @@ TEST(VariogramFit, VariancesAreHonest) {
         for (int i = 0; every > 0 && i < 900; i += every)
             points[static_cast<std::size_t>(i)][2] += 4;
         const Variogram v = fit_variogram(points, {}).variogram;
-        const Kriged told = krige_left_out(points, v, {32, 0});
+        const Kriged found = krige_left_out(points, v, {32, 0});
         int within = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            if (std::abs(told.z[i] - points[i][2]) <= 2 * std::sqrt(told.variance[i])) ++within;
+            if (std::abs(found.z[i] - points[i][2]) <= 2 * std::sqrt(found.variance[i])) ++within;
         }
         EXPECT_GT(within, 0.92 * 900);
         EXPECT_LT(within, 0.975 * 900);
@@ -192,10 +192,10 @@ TEST(VariogramFit, FindsAnAnisotropyWhereThereIsOne) {
     // Distances of the experimental values are those under it.
     EXPECT_EQ(fitted.experimental.gamma, experimental_variogram(points, found).gamma);
     const auto square = [&](const Variogram& v) {
-        const Kriged told = krige_left_out(points, v, {32, 0});
+        const Kriged found = krige_left_out(points, v, {32, 0});
         double sum = 0;
         for (std::size_t i = 0; i < points.size(); ++i)
-            sum += std::pow(told.z[i] - points[i][2], 2);
+            sum += std::pow(found.z[i] - points[i][2], 2);
         return sum;
     };
     EXPECT_LT(square(fitted.variogram), 0.97 * square(fit_variogram(points, {}).variogram));
@@ -207,8 +207,9 @@ TEST(VariogramFit, FindsNoAnisotropyWhereThereIsNone) {
     Points line;
     for (int i = 0; i < 200; ++i)
         line.push_back({1.0 * i, 3.0 * i + 1e-3 * (i % 7), std::sin(0.3 * i)});
-    for (const Points& points : {drawn_field({VariogramModel::kMatern32, 60, 4, 0, {}}, 900, 200, 3),
-                                 hills(20, 100), line}) {
+    for (const Points& points :
+         {drawn_field({VariogramModel::kMatern32, 60, 4, 0, {}}, 900, 200, 3), hills(20, 100),
+          line}) {
         const FittedVariogram found = fit_variogram(points, {}, nullptr, options);
         const FittedVariogram plain = fit_variogram(points, {});
         EXPECT_EQ(found.variogram.anisotropy.ratio, 1);
@@ -219,8 +220,12 @@ TEST(VariogramFit, FindsNoAnisotropyWhereThereIsNone) {
 
 TEST(VariogramFit, ARougherPartWhereItTellsPointsBetter) {
     // Smooth from afar and rough from near: no single model is both.
-    const Variogram truth{
-        VariogramModel::kMatern52, 300, 20.6, 0, {}, {{VariogramModel::kExponential, 300, 0.6, {}}}};
+    const Variogram truth{VariogramModel::kMatern52,
+                          300,
+                          20.6,
+                          0,
+                          {},
+                          {{VariogramModel::kExponential, 300, 0.6, {}}}};
     const Points points = drawn_field(truth, 1000, 200, 11);
     const FittedVariogram fitted = fit_variogram(points, {});
     expect_usable(fitted);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The roughness of a triangulated surface: how its slope changes across edges. Private.
 #pragma once
 
 #include <algorithm>
@@ -8,47 +7,35 @@
 #include <span>
 #include <vector>
 
-#include "interpolation/data_points.hpp"
+#include "base/grouped_items.hpp"
+#include "interpolation/dsi/hinges.hpp"
 #include "interpolation/dsi/staged_sweep.hpp"
 #include "interpolation/dsi/vectors.hpp"
 
 namespace realmodel::interpolation {
 
-/// An inner edge with the two triangles at it: (g . z of the four nodes)^2 is what it adds to the
-/// roughness. g of a linear function is 0.
-struct Hinge {
-    std::array<std::int32_t, 4> nodes;
-    std::array<double, 4> g;
-    Place middle;                   ///< of the edge
-    std::array<double, 3> bending;  ///< g . z for surfaces with the second derivatives xx, xy, yy
-};
-
-/// The hinges of a mesh; triangles may turn either way, those without area have none. A triangle
-/// with no hinge at all has one of stiffness 0, so that each triangle's corners share a row.
-std::vector<Hinge> hinges(std::span<const Place> nodes,
-                          std::span<const std::array<std::int32_t, 3>> triangles);
-
-/// Rows of a symmetric sparse matrix: the roughness, and what is added to it.
+/// Rows of a symmetric sparse matrix: the roughness of a mesh, and what is added to it. A matrix
+/// for Smoother.
 class SparseRows {
 public:
-    /// The matrix of the roughness: z^T A z.
+    /// The matrix A of the roughness z^T A z.
     SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int threads);
 
     std::size_t size() const { return size_; }
 
-    /// Of the roughness alone.
+    /// The diagonal of the roughness alone.
     const Vector& rough_diagonal() const { return rough_diagonal_; }
 
     /// Adds to an entry whose row and column are corners of one triangle, or the same.
     void add(std::int32_t row, std::int32_t column, double value);
-    /// The roughness alone again.
-    void take_back();
+    /// The roughness alone is left.
+    void remove_added();
 
     double diagonal(std::size_t row) const { return value_[diagonal_[row]]; }
     /// Sum of the magnitudes of a row.
     double magnitude(std::size_t row) const;
 
-    /// Calls visit(column, value) for the entries of a row; what fills it up is 0 on the diagonal.
+    /// Calls visit(column, value) for the entries of a row; zeros on the diagonal pad it.
     template <class Visit>
     void for_entries(std::size_t row, Visit&& visit) const {
         const std::size_t slice = row / kSideBySide;
@@ -65,7 +52,7 @@ public:
         return sum;
     }
 
-    /// As Smoother wants it.
+    // What Smoother needs.
     static constexpr std::size_t kMostRows = 1024;
     const StagedSweep& sweep() const { return sweep_; }
     std::array<std::size_t, 2> rows(std::ptrdiff_t piece) const {
@@ -86,14 +73,23 @@ public:
     }
 
 private:
+    struct Entry {
+        std::int32_t column;
+        double value;
+    };
     struct Changed {
         std::size_t entry;
         double before;
     };
+    using HingesOfNodes = GroupedItems<std::int32_t>;
+    static void find_row(std::size_t row, std::span<const Hinge> hinges, const HingesOfNodes& of,
+                         std::vector<Entry>& entries);
+    void fill_slice(std::size_t slice, std::span<const Hinge> hinges, const HingesOfNodes& of,
+                    std::vector<Entry>& entries);
     void make_sweep();
 
-    // Rows lie in slices of a few side by side, filled up to the longest, so that the processor
-    // does not have to guess where each ends (SELL: Kreutzer and others 2014).
+    // Rows lie in slices of a few side by side, padded to the longest, so that the processor does
+    // not have to guess where each ends (SELL: Kreutzer and others 2014).
     static constexpr std::size_t kSideBySide = 4;
     std::size_t size_;
     std::vector<std::size_t> first_;     // entry of each slice
