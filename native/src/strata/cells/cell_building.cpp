@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "strata/cells/cell_building.hpp"
 
+#include <cassert>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "realmodel/base/memory.hpp"
 #include "strata/cells/assembly.hpp"
+#include "strata/cells/closedness.hpp"
 #include "strata/cells/distinct_positions.hpp"
 #include "strata/cells/node_cells.hpp"
 #include "strata/cells/whole_faces.hpp"
@@ -58,6 +61,18 @@ Conformed conform(exact::PlanArrangement& geometry, const Construction& construc
     }
 }
 
+/// Names the cells that rounding left without a volume.
+Warning left_flat(const std::vector<FlatCell>& flat, const CellComplex& complex) {
+    const auto& [cell, at] = flat.front();
+    Warning warning{"flat_cells", complex.cell_block[static_cast<std::size_t>(cell)], {}, {}};
+    for (const FlatCell& one : flat)
+        warning.items.push_back(one.cell);
+    warning.text = std::to_string(flat.size()) + (flat.size() == 1 ? " cell is" : " cells are") +
+                   " thinner than the spacing of doubles and stayed flat, the first at (" +
+                   std::to_string(at[0]) + ", " + std::to_string(at[1]) + ")";
+    return warning;
+}
+
 }  // namespace
 
 CellComplex build_cells(exact::PlanArrangement& geometry, Construction& construction,
@@ -91,7 +106,8 @@ CellComplex build_cells(exact::PlanArrangement& geometry, Construction& construc
                 node = node < 0 ? kOutsideCell : cell_of_node[static_cast<std::size_t>(node)];
         }
     }
-    make_distinct(geometry, faces, c.places, c.loops, threads, progress);
+    const std::vector<FlatCell> flat =
+        make_distinct(geometry, faces, c.places, c.loops, threads, progress);
     std::optional<UntouchedTriangles> untouched;
     if (blocks != nullptr) {
         c.walls.walls.assign(1, join_stretches(c.walls.stretches, cell_of_node, faces, c.crossings,
@@ -105,6 +121,8 @@ CellComplex build_cells(exact::PlanArrangement& geometry, Construction& construc
         assemble(faces, surface_of_plane, std::move(c.loops), std::move(c.walls.walls),
                  std::move(cell_block), threads, progress);
     if (untouched) untouched->add_to(complex, cell_of_node);
+    assert(are_closed(complex));
+    if (!flat.empty()) complex.warnings.push_back(left_flat(flat, complex));
     return complex;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "base/parallel_counts.hpp"
 #include "base/ulp.hpp"
@@ -95,20 +96,25 @@ public:
           threads_(threads),
           progress_(progress) {}
 
-    /// Spreads what there is; false where there was nothing.
-    bool spread() {
-        std::vector<std::int32_t> cells = cells_of_flat_faces();
-        if (cells.empty()) return false;
+    /// Finds the cells; whether there are any.
+    bool find() {
+        cells_ = cells_of_flat_faces();
+        if (cells_.empty()) return false;
         // Few, and all of their faces must be flat.
-        std::vector<Extent> extents(cells.size());
-        for_each_corner(cells, [&](std::size_t i, std::size_t place) {
-            extents[i].include(spreader_.at(place));
-        });
-        std::vector<std::array<std::int64_t, 2>> to_move(cells.size(), {-1, -1});
+        find_faces();
+        extents_.assign(cells_.size(), {});
+        for_each_corner(
+            [&](std::size_t i, std::size_t place) { extents_[i].include(spreader_.at(place)); });
+        return std::any_of(extents_.begin(), extents_.end(),
+                           [](const Extent& e) { return e.is_flat(0) || e.is_flat(1); });
+    }
+    /// Spreads those found last; false where no place of them may move.
+    bool spread() {
+        std::vector<std::array<std::int64_t, 2>> to_move(cells_.size(), {-1, -1});
         bool any = false;
-        for_each_corner(cells, [&](std::size_t i, std::size_t place) {
+        for_each_corner([&](std::size_t i, std::size_t place) {
             for (std::size_t axis = 0; axis < 2; ++axis) {
-                if (!extents[i].is_flat(axis) || !spreader_.movable(place)) continue;
+                if (!extents_[i].is_flat(axis) || !spreader_.movable(place)) continue;
                 to_move[i][axis] = std::max(to_move[i][axis], static_cast<std::int64_t>(place));
                 any = true;
             }
@@ -120,6 +126,15 @@ public:
             }
         }
         return any;
+    }
+    /// Those found last.
+    std::vector<FlatCell> found() const {
+        std::vector<FlatCell> flat;
+        for (std::size_t i = 0; i < cells_.size(); ++i) {
+            if (extents_[i].is_flat(0) || extents_[i].is_flat(1))
+                flat.push_back({cells_[i], extents_[i].low});
+        }
+        return flat;
     }
 
 private:
@@ -150,39 +165,52 @@ private:
         return same_x || same_y;
     }
 
-    /// The cells above and below faces that are flat themselves, ascending.
-    std::vector<std::int32_t> cells_of_flat_faces() const {
+    /// Appends what collect(face, found) finds of all faces, in their order.
+    template <class Found, class Collect>
+    std::vector<Found> collected(const Collect& collect) const {
         constexpr std::size_t kFaces = 1 << 13;
-        std::vector<std::vector<std::int32_t>> found((faces_.size() + kFaces - 1) / kFaces);
+        std::vector<std::vector<Found>> found((faces_.size() + kFaces - 1) / kFaces);
         parallel_ranges(faces_.size(), kFaces, threads_, progress_,
                         [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t f = begin; f < end; ++f) {
-                                prefetch_face(f);
-                                if (!is_flat(faces_.polygons[f])) continue;
-                                for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
-                                    if (cell != kOutsideCell) found[begin / kFaces].push_back(cell);
-                                }
-                            }
+                            for (std::size_t f = begin; f < end; ++f)
+                                collect(f, found[begin / kFaces]);
                         });
-        std::vector<std::int32_t> cells;
+        std::vector<Found> all;
         for (const auto& some : found)
-            cells.insert(cells.end(), some.begin(), some.end());
+            all.insert(all.end(), some.begin(), some.end());
+        return all;
+    }
+
+    /// The cells above and below faces that are flat themselves, ascending.
+    std::vector<std::int32_t> cells_of_flat_faces() const {
+        auto cells = collected<std::int32_t>([&](std::size_t f, auto& found) {
+            prefetch_face(f);
+            if (!is_flat(faces_.polygons[f])) return;
+            for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
+                if (cell != kOutsideCell) found.push_back(cell);
+            }
+        });
         std::sort(cells.begin(), cells.end());
         cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
         return cells;
     }
 
-    /// Calls visit(i, place) for every corner of every face of the i-th of some cells.
-    template <class Visit>
-    void for_each_corner(const std::vector<std::int32_t>& cells, const Visit& visit) const {
-        for (std::size_t f = 0; f < faces_.size(); ++f) {
-            poll(progress_, f);
+    void find_faces() {
+        of_cells_ = collected<std::pair<std::size_t, std::size_t>>([&](std::size_t f, auto& found) {
             for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
-                const auto at = std::lower_bound(cells.begin(), cells.end(), cell);
-                if (at == cells.end() || *at != cell) continue;
-                for (const Corner& corner : faces_.polygons[f])
-                    visit(static_cast<std::size_t>(at - cells.begin()), place_of(corner));
+                const auto at = std::lower_bound(cells_.begin(), cells_.end(), cell);
+                if (at != cells_.end() && *at == cell)
+                    found.emplace_back(static_cast<std::size_t>(at - cells_.begin()), f);
             }
+        });
+    }
+
+    /// Calls visit(i, place) for every corner of every face of the i-th of the cells.
+    template <class Visit>
+    void for_each_corner(const Visit& visit) const {
+        for (const auto& [i, face] : of_cells_) {
+            for (const Corner& corner : faces_.polygons[face])
+                visit(i, place_of(corner));
         }
     }
 
@@ -191,18 +219,26 @@ private:
     Spreader& spreader_;
     int threads_;
     const Progress* progress_;
+    std::vector<std::int32_t> cells_;                            ///< with a flat face, ascending
+    std::vector<Extent> extents_;                                ///< of each of them
+    std::vector<std::pair<std::size_t, std::size_t>> of_cells_;  ///< which of them, and a face
 };
 
 }  // namespace
 
-void make_distinct(const exact::PlanArrangement& geometry, const FaceList& faces,
-                   const PlanVertices& places, ConformedFaces& loops, int threads,
-                   const Progress* progress) {
+std::vector<FlatCell> make_distinct(const exact::PlanArrangement& geometry, const FaceList& faces,
+                                    const PlanVertices& places, ConformedFaces& loops, int threads,
+                                    const Progress* progress) {
     Spreader spreader(geometry, places);
     spreader.separate();
-    // Moving one cell's place may flatten its neighbour; a few rounds settle it.
+    // Moving one cell's place may flatten its neighbor; a few rounds settle it.
+    constexpr int kRounds = 16;
     FlatCells flat(faces, places, spreader, threads, progress);
-    for (int round = 0; round < 16 && flat.spread(); ++round) {
+    std::vector<FlatCell> left;
+    for (int round = 0; flat.find(); ++round) {
+        if (round < kRounds && flat.spread()) continue;
+        left = flat.found();
+        break;
     }
     for (const auto& [place, position] : spreader.moved()) {
         for (auto v = loops.place_offsets[place]; v < loops.place_offsets[place + 1]; ++v) {
@@ -211,6 +247,7 @@ void make_distinct(const exact::PlanArrangement& geometry, const FaceList& faces
             vertex[1] = position[1];
         }
     }
+    return left;
 }
 
 }  // namespace realmodel::strata

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "strata/overlay/facet_clipper.hpp"
 
+#include <cassert>
+
 namespace realmodel::strata {
 
 using exact::Sides;
@@ -121,10 +123,12 @@ PolygonView FacetClipper::follow(PolygonView window) {
     if (inside == all) return facet_;
     result_.clear();
     const auto edge_crossed = [&](std::size_t i, bool outwards) {
-        std::size_t j = 0;
-        while (!bit(crossed_[j], i) || bit(edges_[j].corners.left(), i) != outwards)
-            ++j;
-        return j;
+        // a crossing is in a window's edge as in the facet's, for the predicates agree
+        for (std::size_t j = 0; j < n; ++j) {
+            if (bit(crossed_[j], i) && bit(edges_[j].corners.left(), i) == outwards) return j;
+        }
+        assert(false);
+        return n - 1;
     };
     for (std::size_t i = 0; i < m; ++i) {
         if (bit(inside, i)) result_.push_back(facet_[i]);

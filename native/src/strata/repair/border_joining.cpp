@@ -12,6 +12,7 @@
 #include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "exact/orient2d.hpp"
+#include "strata/limits.hpp"
 
 namespace realmodel::strata {
 
@@ -54,9 +55,10 @@ struct Mesh {
 
 /// The edges that one triangle only has, by vertex numbers, the lower first.
 std::vector<std::array<std::int32_t, 2>> single_edges(const Mesh& mesh, const Progress* progress) {
+    check_triangle_count(mesh.size());
     std::vector<std::array<std::int32_t, 3>> triangles;
     triangles.reserve(mesh.size());
-    std::vector<std::int32_t> offsets(mesh.vertices.size() / mesh.columns + 1, 0);
+    std::vector<std::uint32_t> offsets(mesh.vertices.size() / mesh.columns + 1, 0);
     const auto lower = [](const std::array<std::int32_t, 3>& v, std::size_t i) {
         return static_cast<std::size_t>(std::min(v[i], v[(i + 1) % 3]));
     };
@@ -71,12 +73,12 @@ std::vector<std::array<std::int32_t, 2>> single_edges(const Mesh& mesh, const Pr
     for (std::size_t i = 1; i < offsets.size(); ++i)
         offsets[i] += offsets[i - 1];
     std::vector<std::int32_t> higher(3 * triangles.size());
-    std::vector<std::int32_t> free(offsets.begin(), offsets.end() - 1);
+    std::vector<std::uint32_t> free(offsets.begin(), offsets.end() - 1);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         poll(progress, t);
         for (std::size_t i = 0; i < 3; ++i) {
             const auto& v = triangles[t];
-            higher[static_cast<std::size_t>(free[lower(v, i)]++)] = std::max(v[i], v[(i + 1) % 3]);
+            higher[free[lower(v, i)]++] = std::max(v[i], v[(i + 1) % 3]);
         }
     }
     std::vector<std::array<std::int32_t, 2>> single;

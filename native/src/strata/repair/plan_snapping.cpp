@@ -9,12 +9,14 @@
 #include "base/parallel.hpp"
 #include "base/sort_doubles.hpp"
 #include "exact/orient2d.hpp"
+#include "strata/repair/surface_input.hpp"
 
 namespace realmodel::strata {
 
 namespace {
 
 using PlanPosition = std::array<double, 2>;
+using SpacePosition = std::array<double, 3>;
 
 /// One mesh of the input, of a surface (three columns) or a region (two).
 struct PlanMesh {
@@ -25,6 +27,10 @@ struct PlanMesh {
     std::size_t size() const { return vertices.size() / columns; }
     PlanPosition position(std::size_t v) const {
         return {vertices[v * columns], vertices[v * columns + 1]};
+    }
+    SpacePosition corner(std::size_t v) const {
+        return {vertices[v * columns], vertices[v * columns + 1],
+                columns < 3 ? 0.0 : vertices[v * columns + 2]};
     }
 };
 
@@ -38,8 +44,16 @@ std::vector<PlanMesh> meshes_of(std::span<const StackInput> rocks) {
     return meshes;
 }
 
-bool is_finite(const PlanPosition& p) {
-    return std::isfinite(p[0]) && std::isfinite(p[1]);
+template <class Position>
+bool is_finite(const Position& p) {
+    return std::all_of(p.begin(), p.end(), [](double c) { return std::isfinite(c); });
+}
+
+/// What orients a triangle: in plan, or where it has no area there whether it has none in space.
+int orientation(const std::array<SpacePosition, 3>& p) {
+    const int in_plan = exact::orient2d({p[0][0], p[0][1]}, {p[1][0], p[1][1]}, {p[2][0], p[2][1]});
+    constexpr int kUpright = 2;
+    return in_plan != 0 || in_one_line(p[0], p[1], p[2]) ? in_plan : kUpright;
 }
 
 /// Calls visit(position) for all vertices; what the builder refuses later (numbers that are not
@@ -63,13 +77,13 @@ void for_each_triangle(std::span<const StackInput> rocks, const Progress* progre
     for (const PlanMesh& mesh : meshes_of(rocks)) {
         for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
             poll(progress, t);
-            std::array<PlanPosition, 3> corners;
+            std::array<SpacePosition, 3> corners;
             bool sound = true;
             for (std::size_t i = 0; i < 3; ++i) {
                 const std::int32_t v = mesh.triangles[t + i];
                 sound = sound && v >= 0 && static_cast<std::size_t>(v) < mesh.size();
                 if (!sound) break;
-                corners[i] = mesh.position(static_cast<std::size_t>(v));
+                corners[i] = mesh.corner(static_cast<std::size_t>(v));
                 sound = is_finite(corners[i]);
             }
             if (sound) visit(corners);
@@ -161,12 +175,11 @@ PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads,
                               join_close(values[1], reach[1], left_alone[1])};
         if (snapping.empty()) return snapping;
         bool turned = false;
-        for_each_triangle(rocks, progress, [&](const std::array<PlanPosition, 3>& p) {
-            std::array<PlanPosition, 3> q;
+        for_each_triangle(rocks, progress, [&](const std::array<SpacePosition, 3>& p) {
+            std::array<SpacePosition, 3> q;
             for (std::size_t i = 0; i < 3; ++i)
-                q[i] = {snapping.x(p[i][0]), snapping.y(p[i][1])};
-            if (p == q || exact::orient2d(p[0], p[1], p[2]) == exact::orient2d(q[0], q[1], q[2]))
-                return;
+                q[i] = {snapping.x(p[i][0]), snapping.y(p[i][1]), p[i][2]};
+            if (p == q || orientation(p) == orientation(q)) return;
             turned = true;
             for (std::size_t i = 0; i < 3; ++i) {
                 for (std::size_t axis = 0; axis < 2; ++axis)

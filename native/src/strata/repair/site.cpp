@@ -8,7 +8,7 @@
 
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
-#include "strata/repair/limits.hpp"
+#include "strata/limits.hpp"
 #include "strata/repair/surface_input.hpp"
 
 namespace realmodel::strata {

@@ -9,7 +9,7 @@
 #include "base/parallel_counts.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
-#include "strata/repair/limits.hpp"
+#include "strata/limits.hpp"
 
 namespace realmodel::strata {
 
@@ -52,14 +52,6 @@ void check_corners(const SurfaceView& surface, int index, std::size_t begin, std
                              " of " + std::to_string(count),
                          index, {t});
     }
-}
-
-bool in_one_line(const std::array<double, 3>& a, const std::array<double, 3>& b,
-                 const std::array<double, 3>& c) {
-    for (const auto& [i, j] : {std::array<std::size_t, 2>{0, 1}, {0, 2}, {1, 2}}) {
-        if (exact::orient2d({a[i], a[j]}, {b[i], b[j]}, {c[i], c[j]}) != 0) return false;
-    }
-    return true;
 }
 
 /// What the triangles of a range are used as, and which of them have no area.
@@ -264,6 +256,14 @@ private:
 };
 
 }  // namespace
+
+bool in_one_line(const std::array<double, 3>& a, const std::array<double, 3>& b,
+                 const std::array<double, 3>& c) {
+    for (const auto& [i, j] : {std::array<std::size_t, 2>{0, 1}, {0, 2}, {1, 2}}) {
+        if (exact::orient2d({a[i], a[j]}, {b[i], b[j]}, {c[i], c[j]}) != 0) return false;
+    }
+    return true;
+}
 
 std::vector<EnteredSurface> enter_surfaces(PlanArrangement& geometry,
                                            std::span<const SurfaceView> surfaces, int first_index,

@@ -9,6 +9,10 @@
 
 namespace realmodel::strata {
 
+/// Whether three points of space lie in one line.
+bool in_one_line(const std::array<double, 3>& a, const std::array<double, 3>& b,
+                 const std::array<double, 3>& c);
+
 /// Checks surfaces, enters their vertices and links their triangles; leaves out triangles without
 /// area (with a warning). The first of them is number `first_index` of all.
 /// @throws InputError kinds not_finite, bad_index, vertical_triangle

@@ -11,6 +11,7 @@
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/meshing/triangulation.hpp"
+#include "strata/limits.hpp"
 
 namespace realmodel::strata {
 
@@ -48,6 +49,7 @@ struct VertexRange {
 
 PlanLinks link_triangles(std::span<const PlanTriangle> triangles, const Progress* progress) {
     const std::size_t count = triangles.size();
+    check_triangle_count(count);
     PlanLinks links;
     links.neighbour.assign(count, {-1, -1, -1});
     VertexRange range;
@@ -70,16 +72,14 @@ PlanLinks link_triangles(std::span<const PlanTriangle> triangles, const Progress
             }
         }
     };
-    std::vector<std::int32_t> offsets(range.size() + 1, 0);
+    std::vector<std::uint32_t> offsets(range.size() + 1, 0);
     for_all([&](std::size_t lower, Pass) { ++offsets[lower + 1]; });
     for (std::size_t r = 1; r < offsets.size(); ++r)
         offsets[r] += offsets[r - 1];
     FlatArray<Pass> passes(3 * count);
     {
-        std::vector<std::int32_t> free(offsets.begin(), offsets.end() - 1);
-        for_all([&](std::size_t lower, Pass pass) {
-            passes[static_cast<std::size_t>(free[lower]++)] = pass;
-        });
+        std::vector<std::uint32_t> free(offsets.begin(), offsets.end() - 1);
+        for_all([&](std::size_t lower, Pass pass) { passes[free[lower]++] = pass; });
     }
     for (std::size_t r = 0; r + 1 < offsets.size(); ++r) {
         poll(progress, r);
@@ -224,17 +224,17 @@ std::optional<FrameTriangles> fill_frame(const PlanArrangement& geometry,
     constexpr std::int32_t kUnknown = std::numeric_limits<std::int32_t>::min();
     FrameTriangles result;
     result.covered.assign(mesh.triangles.size(), kUnknown);
-    std::vector<std::size_t> pending;
+    std::vector<std::size_t> to_visit;
     const std::int32_t corner = local(frame[0]);
-    for (std::size_t t = 0; t < mesh.triangles.size() && pending.empty(); ++t) {
+    for (std::size_t t = 0; t < mesh.triangles.size() && to_visit.empty(); ++t) {
         const auto& v = mesh.triangles[t];
         if (v[0] != corner && v[1] != corner && v[2] != corner) continue;
         result.covered[t] = 0;
-        pending.push_back(t);
+        to_visit.push_back(t);
     }
-    while (!pending.empty()) {
-        const std::size_t t = pending.back();
-        pending.pop_back();
+    while (!to_visit.empty()) {
+        const std::size_t t = to_visit.back();
+        to_visit.pop_back();
         for (std::size_t i = 0; i < 3; ++i) {
             if (mesh.neighbors[t][i] < 0) continue;
             const auto n = static_cast<std::size_t>(mesh.neighbors[t][i]);
@@ -243,7 +243,7 @@ std::optional<FrameTriangles> fill_frame(const PlanArrangement& geometry,
                 mesh.constrained[t][i] ? net(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3])
                                        : 0;
             result.covered[n] = result.covered[t] - step;
-            pending.push_back(n);
+            to_visit.push_back(n);
         }
     }
     for (const auto& triangle : mesh.triangles) {
