@@ -17,17 +17,17 @@ PointTriangulation::PointTriangulation(const DataPoints& data, const Progress* p
     std::vector<Kernel::Point_2> points;
     for (const auto& [x, y] : data.local)
         points.emplace_back(x, y);
-    std::vector<std::int32_t> order(points.size());
-    std::iota(order.begin(), order.end(), 0);
+    std::vector<std::size_t> order(points.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
     using PointOf = CGAL::Pointer_property_map<Kernel::Point_2>::const_type;
     CGAL::spatial_sort(order.begin(), order.end(),
                        CGAL::Spatial_sort_traits_adapter_2<Kernel, PointOf>(points.data()));
     Face last;
     std::size_t inserted = 0;
-    for (const std::int32_t point : order) {
+    for (const std::size_t point : order) {
         if (++inserted % 1024 == 0 && progress != nullptr) progress->check();
         const Delaunay::Vertex_handle vertex = delaunay_.insert(points[point], last);
-        vertex->info() = point;
+        vertex->info() = static_cast<std::int32_t>(point);
         vertices_[point] = vertex;
         last = vertex->face();
     }
