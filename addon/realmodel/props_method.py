@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of a surface that are options of methods, made from the registry of these (core/methods.py)."""
+"""The settings of a surface that are options of methods, made from their registry (core/methods.py)."""
 
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 

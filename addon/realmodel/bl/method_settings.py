@@ -29,7 +29,7 @@ def _shown(name, option):
     return switch_of(name), (name, *beside)
 
 
-# Settings that the panel shows for an option: the switch before it, if it has one, its own, and those beside it.
+# Settings that the panel shows for an option: the switch before it, if it has one, its own and those beside.
 SHOWN = {name: _shown(name, option) for name, option in OPTIONS.items()}
 READY_MESHES = ("MESH_OBJECT", "MESH_FILE")  # sources of surfaces that are not interpolated
 _VARIOGRAM = ("range", "sill", "nugget")

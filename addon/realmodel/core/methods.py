@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The methods that give heights to a planar mesh: one registry (docs/extending.md). The keys of the project
-file and their checks, the settings and labels of the panel, and the tables of docs/project_file.md follow from
-it.
+"""The methods that give heights to a planar mesh: one registry (docs/extending.md). From it follow the keys
+of the project file and their checks, the settings and labels of the panel, and the tables of
+docs/project_file.md.
 
 What a method does with its options is in the package `heights`, one module for each kind.
 """
@@ -24,13 +24,13 @@ Words = Mapping[str, tuple[str, str]]  # label and tooltip in the panel, by word
 
 @dataclass(frozen=True)
 class Option:
-    """default: its value where it is not given. check(name, value) returns the value as the method takes it, or
-    raises OptionRefused.
+    """default: its value where it is not given. check(name, value) returns the value as the method takes it,
+    or raises OptionRefused.
 
     For the panel: kind, one of "number", "length", "whole", "word", "surface" and "table" (which has settings
     of its own); label and tip; words, of the kind "word"; start, low and high: the value before it is given,
-    and its bounds. switch: label and tip of a tick, off where the option is not given; beside: the option whose
-    tick this one shares. zero_is_none: 0 in the panel means that it is not given.
+    and its bounds. switch: label and tip of a tick, off where the option is not given; beside: the option
+    whose tick this one shares. zero_is_none: 0 in the panel means that it is not given.
     For the documents: unset, what None means, and more, what there is to say beside the tip.
     """
 
@@ -52,14 +52,14 @@ class Option:
 
 @dataclass(frozen=True)
 class Method:
-    """label and tip: in the panel. run: the function of the package `heights` that does it, "module.function";
-    None for "auto", which chooses another. options: by name.
+    """label and tip: in the panel. run: the function of the package `heights` that does it,
+    "module.function"; None for "auto", which chooses another. options: by name.
 
     instead_of_points: the option that tells what points would, where there is one. on_mesh: whether it needs
     the triangles of the nodes. leaves_one_out: it can tell each point from the others at once. is_local: it
     gives on a part of the nodes what it gives on all, and is cheap. spreads_thickness: `parallel` may use it.
-    has_shape: its surface has a shape of its own, for which one or two points are too few. tamed_by: what to do
-    where its heights run away from those of the points.
+    has_shape: its surface has a shape of its own, for which one or two points are too few. tamed_by: what to
+    do where its heights run away from those of the points.
     """
 
     label: str
@@ -127,8 +127,8 @@ _VARIOGRAM = {
         check.variogram,
         "table",
         unset="fitted",
-        more='`{model = "spherical", range = 60, sill = 4, nugget = 0}`, or nested: `{nugget = 0, structures = '
-        "[{model, range, sill, anisotropy}, ...]}`",
+        more='`{model = "spherical", range = 60, sill = 4, nugget = 0}`, or nested: `{nugget = 0, '
+        "structures = [{model, range, sill, anisotropy}, ...]}`",
     ),
     "anisotropy": Option(
         None,
@@ -147,8 +147,8 @@ _EXTRAPOLATE = {
         "Outside",
         "What happens beyond the points",
         EXTRAPOLATE,
-        more='outside their convex hull: `"nearest"` takes the nearest point\'s height, `"none"` gives none: the '
-        "surface ends there",
+        more='outside their convex hull: `"nearest"` takes the nearest point\'s height, `"none"` gives '
+        "none: the surface ends there",
     )
 }
 
