@@ -23,7 +23,7 @@ def _setting(name, option):
     given["default"] = option.start
     given |= {key: bound for key, bound in (("min", option.low), ("max", option.high)) if bound is not None}
     if option.kind == "whole":
-        return IntProperty(**given)
+        return IntProperty(**given | {"default": int(option.start)})
     return FloatProperty(**given, subtype="DISTANCE" if option.kind == "length" else "NONE")
 
 

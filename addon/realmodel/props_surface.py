@@ -15,6 +15,7 @@ from bpy.props import (
 from . import props_method, props_reading
 from .bl import changes, settings
 from .core.methods import DEFAULT_METHOD, METHODS
+from .core.readers.mesh_file import MESH_FORMATS
 from .core.rules import DEFAULT_RULE, RULES
 from .core.variogram import VARIOGRAM_MODELS
 
@@ -22,7 +23,11 @@ SOURCES = (
     ("POINTS_FILE", "Points file", "Text file with x, y and z of points that the surface is laid through"),
     ("POINTS_OBJECT", "Points object", "The vertices of a mesh object are points of the surface"),
     ("MESH_OBJECT", "Mesh object", "A mesh object of the scene, with its modifiers, is the surface"),
-    ("MESH_FILE", "Mesh file", "File with the triangles of the surface (OFF)"),
+    (
+        "MESH_FILE",
+        "Mesh file",
+        f"File with the triangles of the surface ({', '.join(known.name for known in MESH_FORMATS)})",
+    ),
     ("NONE", "No points", "For methods that make a surface without points: constant, parallel"),
 )
 
