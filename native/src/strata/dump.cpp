@@ -56,6 +56,11 @@ private:
     std::size_t vertices_ = 0;
 };
 
+std::string group_name(std::int32_t surface) {
+    if (surface >= 0) return "surface_" + std::to_string(surface);
+    return surface == kWall ? "walls" : surface == kBase ? "base" : "cut";
+}
+
 /// Polygons of a pool, each in its plane, in groups by surface.
 void dump_polygons(const PlanArrangement& geometry, const PolygonPool& polygons,
                    const GrowingArray<PlaneId>& plane, const GrowingArray<std::int32_t>& surface,
@@ -68,7 +73,7 @@ void dump_polygons(const PlanArrangement& geometry, const PolygonPool& polygons,
     ObjFile file(path);
     std::vector<Position> corners;
     for (const auto& [number, members] : of_surface) {
-        file.begin_group(number < 0 ? "base" : "surface_" + std::to_string(number));
+        file.begin_group(number < 0 ? group_name(kBase) : group_name(number));
         for (const std::size_t p : members) {
             corners.clear();
             for (const Corner& corner : polygons[p]) {
@@ -129,18 +134,19 @@ void dump_arrangement(const PlanArrangement& geometry, const char* path) {
     }
 }
 
-void dump_walls(const ConformedFaces& faces, const std::vector<WallBatch>& walls,
-                const char* path) {
+void dump_complex(const CellComplex& cells, const char* path) {
+    std::map<std::int32_t, std::vector<std::size_t>> of_surface;
+    for (std::size_t f = 0; f < cells.face_surface.size(); ++f)
+        of_surface[cells.face_surface[f]].push_back(f);
     ObjFile file(path);
-    for (const Position& position : faces.positions)
-        file.add_vertex(position);
-    file.begin_group("walls");
-    for (const WallBatch& batch : walls) {
-        std::size_t first = 0;
-        for (const std::int32_t size : batch.sizes) {
-            const auto corners = static_cast<std::size_t>(size);
-            file.add_face(std::span(batch.vertices).subspan(first, corners));
-            first += corners;
+    for (const Position& vertex : cells.vertices)
+        file.add_vertex(vertex);
+    for (const auto& [surface, faces] : of_surface) {
+        file.begin_group(group_name(surface));
+        for (const std::size_t f : faces) {
+            const auto first = static_cast<std::size_t>(cells.face_offsets[f]);
+            const auto end = static_cast<std::size_t>(cells.face_offsets[f + 1]);
+            file.add_face({cells.face_vertices.data() + first, end - first});
         }
     }
 }

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <vector>
-
 #include "exact/plan_arrangement.hpp"
-#include "strata/conform/conforming.hpp"
+#include "realmodel/strata/stack.hpp"
 #include "strata/overlay/envelope.hpp"
 
 // Pictures of what the steps work on, as Wavefront OBJ files, for whoever looks for an error:
@@ -27,8 +25,7 @@ void dump_faces(const exact::PlanArrangement& geometry, const FaceList& faces, c
 /// supporting lines across the box of the input, edges and traces in a group each.
 void dump_arrangement(const exact::PlanArrangement& geometry, const char* path);
 
-/// The walls between columns; the vertices are those of the complex, with their positions
-/// (set_vertex_positions) given.
-void dump_walls(const ConformedFaces& faces, const std::vector<WallBatch>& walls, const char* path);
+/// The cells of a finished complex, in a group for each surface, "walls", "base" and "cut".
+void dump_complex(const CellComplex& cells, const char* path);
 
 }  // namespace realmodel::strata

@@ -98,16 +98,19 @@ TEST_F(DumpTest, AnArrangementIsItsPointsAndLines) {
     EXPECT_NEAR(ends[1][0], 4, 1e-12);
 }
 
-TEST_F(DumpTest, WallsShareTheVerticesOfTheComplex) {
-    ConformedFaces conformed;
-    conformed.positions = {{0, 0, 0}, {1, 0, 0}, {1, 0, 5}, {0, 0, 7.25}};
-    const std::vector<WallBatch> walls{{{3}, {0, 1, 2}, {{0, -1}}}, {{4}, {0, 1, 2, 3}, {{1, -1}}}};
-    dump_walls(conformed, walls, path_.c_str());
+TEST_F(DumpTest, AComplexHasItsWallsInAGroup) {
+    CellComplex cells;  // a wall and a face of surface 2 that share an edge
+    cells.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 0, 5}, {0, 0, 7.25}, {0, 1, 7.25}};
+    cells.face_offsets = {0, 4, 7};
+    cells.face_vertices = {0, 1, 2, 3, 3, 2, 4};
+    cells.face_surface = {kWall, 2};
+    dump_complex(cells, path_.c_str());
     const ReadBack read = read_back(path_);
-    ASSERT_EQ(read.vertices.size(), 4u);
+    EXPECT_EQ(read.groups, (std::vector<std::string>{"walls", "surface_2"}));
+    ASSERT_EQ(read.vertices.size(), 5u);
     EXPECT_EQ(read.vertices[3], (Position{0, 0, 7.25}));
     ASSERT_EQ(read.faces.size(), 2u);
-    EXPECT_EQ(read.faces[1], (std::vector<std::size_t>{0, 1, 2, 3}));
+    EXPECT_EQ(read.faces[0], (std::vector<std::size_t>{0, 1, 2, 3}));
 }
 
 TEST_F(DumpTest, AFileThatCannotBeWrittenIsAnError) {
