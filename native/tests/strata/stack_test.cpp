@@ -425,5 +425,28 @@ TEST(Stack, BlocksAreMergedColumns) {
         EXPECT_NEAR(blocks.volumes[k], columns.volumes[k], 1e-12);
 }
 
+TEST(Stack, LimitsHoldForTheRegionAndTheBaseToo) {
+    const OwnedSurface floor = flat(0), top = flat(1);
+    const std::vector<double> corners{0, 0, 1e60, 0, 0, 1};
+    const std::vector<std::int32_t> triangle{0, 1, 2};
+    const auto refusal = [](const StackInput& input) -> std::string {
+        try {
+            build_stack(input, 1, nullptr);
+        } catch (const InputError& e) {
+            EXPECT_EQ(e.kind, "not_finite");
+            return e.what();
+        }
+        return {};
+    };
+    StackInput input{{floor.view(), top.view()}, {}, {}, {}};
+    input.region = RegionView{corners, triangle};
+    EXPECT_NE(refusal(input).find("corner 1 of the region"), std::string::npos);
+    input.region.reset();
+    for (const double base : {-1e60, std::nan("")}) {
+        input.base_elevation = base;
+        EXPECT_NE(refusal(input).find("base elevation"), std::string::npos);
+    }
+}
+
 }  // namespace
 }  // namespace realmodel::strata

@@ -2,6 +2,8 @@
 #include "strata/overlay/pieces.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -21,6 +23,35 @@ bool same_corners(PolygonView a, PolygonView b) {
         j = j + 1 < b.size() ? j + 1 : 0;
     }
     return true;
+}
+
+/// Twice the area of a polygon, seen from a position near it.
+[[maybe_unused]] double twice_area(LocalArrangement& scope, PolygonView polygon,
+                                   const std::array<double, 2>& origin) {
+    double sum = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const auto p = scope.rounded(polygon[i].point);
+        const auto q = scope.rounded(polygon[i + 1 < polygon.size() ? i + 1 : 0].point);
+        sum += (p[0] - origin[0]) * (q[1] - origin[1]) - (q[0] - origin[0]) * (p[1] - origin[1]);
+    }
+    return sum;
+}
+
+/// Whether pieces tile their facet, as far as the sum of rounded areas says.
+[[maybe_unused]] bool tile(LocalArrangement& scope, const Pieces& pieces, PolygonView facet) {
+    const auto origin = scope.rounded(facet[0].point);
+    double reach = 0;
+    for (const Corner& corner : facet) {
+        const auto p = scope.rounded(corner.point);
+        reach = std::max({reach, std::abs(p[0] - origin[0]), std::abs(p[1] - origin[1])});
+    }
+    const double area = twice_area(scope, facet, origin);
+    double sum = 0;
+    for (const Piece& piece : pieces.list)
+        sum += twice_area(scope, pieces.outline(piece), origin);
+    const double ulps = 0x1p-48 * (std::abs(origin[0]) + std::abs(origin[1]) + reach);
+    return std::abs(sum - area) <=
+           1e-9 * area + ulps * reach * static_cast<double>(4 + pieces.corners.size());
 }
 
 }  // namespace
@@ -74,6 +105,7 @@ void PieceFinder::add_all(std::span<const std::int32_t> polygons, const Facet& f
 const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
     const Facet facet = facet_of(outline, plane);
     if (!begin(facet)) add_all({candidates_.begin(), candidates_.end()}, facet);
+    assert(plane < 0 || tile(scope_, pieces_, outline));
     return pieces_;
 }
 
@@ -96,6 +128,7 @@ const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
     }
     add_all({higher_.begin(), higher_.end()}, facet);
     add_all({c, candidates_.end()}, facet);
+    assert(tile(scope_, pieces_, outline));
     return pieces_;
 }
 

@@ -20,25 +20,17 @@ std::int32_t merged(std::int32_t a, std::int32_t b) {
     return b == kNoBlock ? a : kSeveral;
 }
 
-/// Heights in tiles, and the blocks beneath facets there.
-struct FacetTiles {
-    explicit FacetTiles(std::size_t tiles)
-        : low(tiles, HUGE_VAL), high(tiles, -HUGE_VAL), block(tiles, kNoBlock) {}
-    std::vector<double> low, high;
-    std::vector<std::int32_t> block;  ///< or kSeveral
-};
-
 }  // namespace
 
 void WholeTriangleFilter::begin(const BlockTiling& tiling) {
     tiling_ = &tiling;
-    low_.clear();
+    surface_tiles_ = {};
 }
 
 /// Finds where everything is.
 void WholeTriangleFilter::locate(const FacetView& facets) {
     const BlockTiling& tiling = *tiling_;
-    const bool is_new = low_.empty();
+    const bool is_new = surface_tiles_.low.empty();
     if (is_new) surface_at.resize(tiling.size());
     facet_at.resize(facets.size());
     const std::size_t own = is_new ? tiling.size() : 0;
@@ -61,24 +53,38 @@ void WholeTriangleFilter::locate(const FacetView& facets) {
                             }
                         }
                     });
-    if (!is_new) return;
-    low_.assign(tiles().size(), HUGE_VAL);
-    high_.assign(tiles().size(), -HUGE_VAL);
+    parallel_chunks(2, threads_, progress_, [&](std::size_t which) {
+        if (which == 0 && is_new) measure_surface();
+        if (which == 1) measure_facets(facets);
+    });
+}
+
+void WholeTriangleFilter::measure_surface() {
+    surface_tiles_ = TileHeights(tiles().size());
     is_empty.assign(tiles().size(), 0);
-    for (std::size_t t = 0; t < tiling.size(); ++t) {
+    for (std::size_t t = 0; t < tiling_->size(); ++t) {
         poll(progress_, t);
-        const TriangleBounds& b = surface_at[t].bounds;
-        tiles().for_each(surface_at[t].span, [&](std::size_t tile) {
-            low_[tile] = std::min(low_[tile], b.low);
-            high_[tile] = std::max(high_[tile], b.high);
-        });
+        surface_tiles_.include(tiles(), surface_at[t]);
     }
-    for (const PlanTriangle& t : tiling.empty) {
+    for (const PlanTriangle& t : tiling_->empty) {
         tiles().for_each_centre_in(corners_of(geometry_, t),
                                    [&](std::size_t tile) { is_empty[tile] = 1; });
     }
-    for (std::size_t tile = 0; tile < low_.size(); ++tile) {
-        if (low_[tile] > high_[tile]) is_empty[tile] = 1;
+    for (std::size_t tile = 0; tile < is_empty.size(); ++tile) {
+        if (surface_tiles_.low[tile] > surface_tiles_.high[tile]) is_empty[tile] = 1;
+    }
+}
+
+void WholeTriangleFilter::measure_facets(const FacetView& facets) {
+    facet_tiles_ = TileHeights(tiles().size());
+    block_tiles_.assign(tiles().size(), kNoBlock);
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+        poll(progress_, f);
+        if (facets.plane(f) < 0) continue;
+        facet_tiles_.include(tiles(), facet_at[f]);
+        tiles().for_each(facet_at[f].span, [&](std::size_t tile) {
+            block_tiles_[tile] = merged(block_tiles_[tile], facets.block(f));
+        });
     }
 }
 
@@ -103,16 +109,6 @@ void WholeTriangleFilter::compare(const FacetView& facets) {
 }
 
 void WholeTriangleFilter::classify_surface(const FacetView& facets) {
-    FacetTiles in_tiles(tiles().size());
-    for (std::size_t f = 0; f < facets.size(); ++f) {
-        poll(progress_, f);
-        if (facets.plane(f) < 0) continue;
-        tiles().for_each(facet_at[f].span, [&](std::size_t tile) {
-            in_tiles.low[tile] = std::min(in_tiles.low[tile], facet_at[f].bounds.low);
-            in_tiles.high[tile] = std::max(in_tiles.high[tile], facet_at[f].bounds.high);
-            in_tiles.block[tile] = merged(in_tiles.block[tile], facets.block(f));
-        });
-    }
     surface.assign(tiling_->size(), Standing::kExact);
     block.assign(tiling_->size(), kSeveral);
     const auto classify = [&](std::size_t t) {
@@ -135,9 +131,9 @@ void WholeTriangleFilter::classify_surface(const FacetView& facets) {
                 high = HUGE_VAL;
                 over = merged(over, kSkyBlock);
             } else {
-                low = std::min(low, in_tiles.low[tile]);
-                high = std::max(high, in_tiles.high[tile]);
-                over = merged(over, in_tiles.block[tile]);
+                low = std::min(low, facet_tiles_.low[tile]);
+                high = std::max(high, facet_tiles_.high[tile]);
+                over = merged(over, block_tiles_[tile]);
             }
             return over == kSeveral;
         });
@@ -222,8 +218,8 @@ void WholeTriangleFilter::classify_facets(const FacetView& facets) {
                 any_empty = true;
             } else {
                 any_surface = true;
-                low = std::min(low, low_[tile]);
-                high = std::max(high, high_[tile]);
+                low = std::min(low, surface_tiles_.low[tile]);
+                high = std::max(high, surface_tiles_.high[tile]);
             }
             return any_empty && any_surface;
         });

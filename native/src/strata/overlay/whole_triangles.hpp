@@ -19,6 +19,20 @@ struct TileBounds {
     TileSpan span;
 };
 
+/// Between which heights things lie in each tile.
+struct TileHeights {
+    std::vector<double> low, high;
+
+    TileHeights() = default;
+    explicit TileHeights(std::size_t tiles) : low(tiles, HUGE_VAL), high(tiles, -HUGE_VAL) {}
+    void include(const PlanTiles& tiles, const TileBounds& at) {
+        tiles.for_each(at.span, [&](std::size_t tile) {
+            low[tile] = std::min(low[tile], at.bounds.low);
+            high[tile] = std::max(high[tile], at.bounds.high);
+        });
+    }
+};
+
 /// What there is all over a tile that no border crosses: facets, the sky above all, nothing.
 enum class Cover : std::uint8_t { kFacets, kSkyOnly, kNothing };
 
@@ -105,9 +119,9 @@ public:
     std::vector<Standing> facet;
 
 private:
-    struct TileHeights;
-
     void locate(const FacetView& facets);
+    void measure_surface();
+    void measure_facets(const FacetView& facets);
     void classify_surface(const FacetView& facets);
     void compare_surface(const FacetView& facets, const std::vector<std::uint8_t>& is_wanted);
     void compare_triangle(const FacetView& facets, const class TileBins& bins, std::size_t t);
@@ -127,8 +141,9 @@ private:
     int threads_;
     const Progress* progress_;
     const BlockTiling* tiling_ = nullptr;
-    std::vector<double> low_, high_;        ///< of the surface in each tile
-    std::vector<std::uint8_t> is_unclear_;  ///< of each tile: exact triangles or parts meet it
+    TileHeights surface_tiles_, facet_tiles_;
+    std::vector<std::int32_t> block_tiles_;  ///< beneath the facets in each tile, or kSeveral
+    std::vector<std::uint8_t> is_unclear_;   ///< of each tile: exact triangles or parts meet it
     std::vector<std::uint8_t>
         is_same_;  ///< of each plane, for raised surfaces: a facet, a triangle
 };

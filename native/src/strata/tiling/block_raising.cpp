@@ -73,8 +73,7 @@ BlockBound BlockRaising::first(const BlockTiling& e) {
 }
 
 BlockBound BlockRaising::cover(const BlockBound& older, const BlockTiling& newer,
-                               const BlockTiling& surface) {
-    (void)surface;
+                               const BlockTiling& /* the one begun with */) {
     const FacetView facets = view(older);
     filter_.cover(facets);
     const SurfaceTiling part = filter_.exact_part(geometry_, links_, facets);

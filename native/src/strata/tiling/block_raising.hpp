@@ -33,7 +33,7 @@ public:
     void begin(const BlockTiling& surface) { filter_.begin(surface); }
     BlockTiling raise(const BlockTiling& surface, const BlockBound& bound);
     BlockBound first(const BlockTiling& e);
-    BlockBound cover(const BlockBound& older, const BlockTiling& newer, const BlockTiling& surface);
+    BlockBound cover(const BlockBound& older, const BlockTiling& newer, const BlockTiling&);
 
 private:
     static FacetView view(const BlockBound& bound) {

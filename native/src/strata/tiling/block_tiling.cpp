@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "strata/tiling/block_tiling.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <numeric>
 
@@ -9,6 +10,23 @@
 namespace realmodel::strata {
 
 using exact::PlanArrangement;
+
+namespace {
+
+/// Whether neighbors have each other.
+[[maybe_unused]] bool are_symmetric(const TriangleLinks& links, PlaneId first) {
+    for (std::size_t p = static_cast<std::size_t>(first); p < links.neighbor.size(); ++p) {
+        for (const PlaneId n : links.neighbor[p]) {
+            if (n < 0) continue;
+            const auto& back = links.of(n);
+            if (std::find(back.begin(), back.end(), static_cast<PlaneId>(p)) == back.end())
+                return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
 
 BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
                               SurfacePlan plan, std::int32_t number, TriangleLinks& links,
@@ -41,6 +59,7 @@ BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedT
                 }
             }
         });
+    assert(are_symmetric(links, first));
     for (const auto& some : border)
         links.border.insert(links.border.end(), some.begin(), some.end());
     for (std::size_t t = 0; t < plan.filling->triangles.size(); ++t) {

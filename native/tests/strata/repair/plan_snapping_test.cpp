@@ -76,5 +76,19 @@ TEST(PlanSnapping, WhatIsWrongIsSaidOfTheInputAsGiven) {
     EXPECT_THROW(build({s}), InputError);
 }
 
+TEST(PlanSnapping, ATriangleWithoutAreaDoesNotBecomeAnUprightOne) {
+    // Its corners lie in one line of space; were the middle one moved, they would not.
+    OwnedSurface flat = box(0.1, 2, 0, 1);
+    flat.triangle(flat.vertex(0.5, 0.5, 0.5), flat.vertex(1, 0.5, 1), flat.vertex(1.5, 0.5, 1.5));
+    OwnedSurface other = box(0.1, 2, 9, 2);
+    for (int i = 0; i < 3; ++i) {
+        const auto a = other.vertex(above(1), 0.3 + 0.1 * i, 9);
+        other.triangle(a, a, a);
+    }
+    const StackInput input{{flat.view(), other.view()}, {}, {}, {}};
+    EXPECT_TRUE(find_snapping({&input, 1}).x.empty());
+    EXPECT_NO_THROW(build({flat, other}));
+}
+
 }  // namespace
 }  // namespace realmodel::strata
