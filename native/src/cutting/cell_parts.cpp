@@ -40,7 +40,8 @@ void CellCutter::add_uses_of_caps(const Polygons& caps, std::int32_t pieces) {
 void CellCutter::join_at_edge(std::span<const Use> uses, std::int8_t side, std::int32_t pieces,
                               DisjointSets& sets) {
     const std::int32_t cap_side = side == kBelow ? 0 : 1;
-    std::vector<const Use*> faces;
+    auto& faces = faces_at_edge_;
+    faces.clear();
     for (const Use& use : uses) {
         if (use.local < pieces && use.side == side) faces.push_back(&use);
     }
