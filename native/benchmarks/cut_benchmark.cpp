@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A model of crossing surfaces cut by another: seconds, parts, and a digest of both halves.
 //
-//   cut_benchmark [QUADS [CUTTER [THREADS [surface|fault|lattice|block]]]]
+//   cut_benchmark [QUADS [CUTTER [THREADS [surface|fault|lattice|block|flat|plane]]]]
 //
 // The model has ten surfaces of QUADS x QUADS x 2 triangles each on plan meshes of their own, in
 // columns. It is cut by a wavy surface of CUTTER x CUTTER x 2 triangles that rises across it, by an
 // upright one ("fault"), by one on an integer lattice through a model that stands on it as well
-// ("lattice"), or by a block of a model like it ("block").
+// ("lattice"), by a block of a model like it ("block"), by one flat quadrangle ("flat"), or by the
+// plane of that ("plane").
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -99,27 +100,32 @@ int main(int count, char** arguments) {
     };
     const int quads = number(1, 30), quads_of_cutter = number(2, 40), threads = number(3, 0);
     const std::string kind = count > 4 ? arguments[4] : "surface";
-    const bool lattice = kind == "lattice";
+    const bool lattice = kind == "lattice", is_flat = kind == "flat" || kind == "plane";
     const auto model = make_model(quads, lattice, 0, threads);
-    const Surface cutter =
-        make_surface(quads_of_cutter, [&](double u, double v) -> std::array<double, 3> {
+    const Surface cutter = make_surface(
+        is_flat ? 1 : quads_of_cutter, [&](double u, double v) -> std::array<double, 3> {
             const double size = lattice ? quads : 1.0;
             if (kind == "fault")
                 return {0.5 + 0.05 * std::sin(5 * u + 3 * v), 1.2 * u - 0.1, 8 * v - 3};
             if (lattice)
                 return {std::round(u * size), std::round(v * size),
                         std::round(8 + 3 * std::sin(u * 5) * v)};
+            if (is_flat) return {8 * u - 4, 8 * v - 4, 1.1 + 2.4 * u - 1.6 * v};
             const double x = -0.1 + 1.2 * u, y = -0.1 + 1.2 * v;
             return {x, y, 1.2 + 0.3 * std::sin(5 * x) * y};
         });
     const auto other = kind == "block" ? make_model(quads, false, 0.03, threads)
                                        : realmodel::strata::CellComplex{};
     const auto began = std::chrono::steady_clock::now();
-    const auto cut =
-        kind == "block"
-            ? realmodel::cutting::cut_by_block(view(model), view(other), 4, threads, nullptr)
-            : realmodel::cutting::cut_by_surface(view(model), {cutter.vertices, cutter.triangles},
-                                                 threads, nullptr);
+    const auto cut = [&] {
+        if (kind == "block")
+            return realmodel::cutting::cut_by_block(view(model), view(other), 4, threads, nullptr);
+        if (kind == "plane")
+            return realmodel::cutting::cut_by_plane(view(model), {{-4, -4, 1.1}, {-0.3, 0.2, 1}},
+                                                    threads, nullptr);
+        return realmodel::cutting::cut_by_surface(view(model), {cutter.vertices, cutter.triangles},
+                                                  threads, nullptr);
+    }();
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     Digest digest;

@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
     }
     std::printf("%d points, %zu nodes, threads %d (0: all)\n", point_count, nodes.size(), threads);
     time_it("variogram fit", points.size(), "points", [&] { (void)fit_variogram(points, {}); });
-    for (const VariogramModel model : {VariogramModel::spherical, VariogramModel::matern32}) {
+    for (const VariogramModel model : {VariogramModel::kSpherical, VariogramModel::kMatern32}) {
         for (const int neighbours : {16, 32}) {
             char name[80];
             std::snprintf(name, sizeof name, "kriging, %s, %d neighbours",
@@ -66,6 +66,6 @@ int main(int argc, char** argv) {
     const std::vector<std::array<double, 2>> part(
         nodes.begin(), nodes.begin() + std::min<std::ptrdiff_t>(20'000, std::ssize(nodes)));
     time_it("kriging, spherical, all of 1000 points", part.size(), "nodes", [&] {
-        (void)krige(few, part, {VariogramModel::spherical, 1500, 2500, 0, {}}, {0, threads});
+        (void)krige(few, part, {VariogramModel::kSpherical, 1500, 2500, 0, {}}, {0, threads});
     });
 }

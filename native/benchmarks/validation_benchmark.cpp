@@ -79,8 +79,8 @@ int main(int count, char** arguments) {
         return std::chrono::duration<double>(Clock::now() - since).count();
     };
     const auto begin = Clock::now();
-    strata::CellComplex model = strata::build_stack(input, threads, nullptr);
-    if (blocks) model = strata::merge_columns(model);
+    const strata::CellComplex model = strata::build_stack(
+        input, threads, nullptr, blocks ? strata::CellKind::kBlocks : strata::CellKind::kColumns);
     const double built = seconds(begin);
 
     const std::vector<double> no_base(model.volumes.size(),

@@ -39,9 +39,9 @@ interpolation::Variogram variogram_of(const std::string& model, double range, do
 }
 
 interpolation::Drift drift_of(const std::string& name) {
-    if (name == "constant") return interpolation::Drift::constant;
-    if (name == "linear") return interpolation::Drift::linear;
-    if (name == "quadratic") return interpolation::Drift::quadratic;
+    if (name == "constant") return interpolation::Drift::kConstant;
+    if (name == "linear") return interpolation::Drift::kLinear;
+    if (name == "quadratic") return interpolation::Drift::kQuadratic;
     throw InputError("option", "drift \"" + name + "\" is not known");
 }
 

@@ -96,7 +96,7 @@ void bind_surfaces(py::module_& module) {
 
 Outside the convex hull of the points the value at the nearest place of its border. Returns z (N,).
 Raises InputError: kind "no_points", "not_finite", "contradicting_points"; Cancelled.)");
-    module.def("natural_neighbour", &on_triangulation<interpolation::natural_neighbours>,
+    module.def("natural_neighbour", &on_triangulation<interpolation::natural_neighbors>,
                arg("points"), arg("nodes"), arg("threads") = 0, arg("control") = py::none(),
                R"(Natural neighbour interpolation (Sibson); arguments and result as tin.)");
     module.def(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Flags of every target, kept in two interface targets:
-#   realmodel_settings   language, optimisation, floating point, sanitizers: for all our code
+# Flags of our own targets, kept in interface targets that nobody else gets:
+#   realmodel_settings   floating point, sanitizers: for all our code
 #   realmodel_warnings   warnings as errors
 
 if(NOT CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
@@ -16,7 +16,7 @@ set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_SKIP_RPATH ON)
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
-set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g") # for the sanitizers: assertions stay
+set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1") # for the sanitizers: assertions stay, lines are named
 
 find_program(REALMODEL_CCACHE ccache)
 if(REALMODEL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

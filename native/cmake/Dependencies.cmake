@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Libraries the native part stands on (docs/dependencies.md gives the reason of each).
-# What they bring is collected in the interface target realmodel_dependencies.
+# What they bring is collected in the interface target realmodel_dependencies. No public header
+# includes any of them: who uses the library needs them only to link (RealModelConfig.cmake.in).
 
 find_package(Eigen3 REQUIRED NO_MODULE) # 3.4 or 5: asked for 3.4, Eigen says no to 5
 if(Eigen3_VERSION VERSION_LESS 3.4)

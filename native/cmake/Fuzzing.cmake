@@ -3,10 +3,12 @@
 
 file(GLOB fuzzing_sources CONFIGURE_DEPENDS fuzz/*.cpp)
 add_library(realmodel_fuzzing STATIC ${fuzzing_sources})
-target_include_directories(realmodel_fuzzing PUBLIC fuzz)
+target_include_directories(realmodel_fuzzing PUBLIC fuzz PRIVATE src)
 # Debian's property_tree includes a header that asks every reader to say so.
 set_source_files_properties(fuzz/case_file.cpp PROPERTIES COMPILE_DEFINITIONS BOOST_BIND_GLOBAL_PLACEHOLDERS)
-target_link_libraries(realmodel_fuzzing PUBLIC realmodel PRIVATE realmodel_warnings)
+target_link_libraries(realmodel_fuzzing
+    PUBLIC realmodel realmodel_settings
+    PRIVATE realmodel_dependencies realmodel_warnings)
 
 set(fuzzing_programs stack_fuzzer build_digests)
 if(REALMODEL_SANITIZE MATCHES "fuzzer-no-link") # preset fuzz: clang++'s libFuzzer
@@ -16,6 +18,10 @@ foreach(program IN LISTS fuzzing_programs)
     add_executable(${program} fuzz/programs/${program}.cpp)
     target_link_libraries(${program} PRIVATE realmodel_fuzzing realmodel_warnings)
 endforeach()
+# A debugger that has stopped in it can then call the functions of src/strata/dump.hpp.
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
+    target_link_options(stack_fuzzer PRIVATE -Wl,--undefined=realmodel_dump)
+endif()
 if(TARGET coverage_fuzzer)
     target_link_options(coverage_fuzzer PRIVATE -fsanitize=fuzzer)
 endif()

@@ -8,7 +8,7 @@
 
 namespace realmodel::fuzz {
 
-/// Something that a model must not be: its kind in a few words, which the minimiser holds on to,
+/// Something that a model must not be: its kind in a few words, which the minimizer holds on to,
 /// and a sentence.
 struct Defect {
     std::string kind, sentence;

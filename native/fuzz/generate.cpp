@@ -115,87 +115,87 @@ const std::vector<Family>& all_families() {
 /// Makes the surfaces of one rock mass.
 class Maker {
 public:
-    Maker(Chance& chance, const Family& family, int size, Place place)
-        : chance_(chance), family_(family), size_(size), placement_(chance, place) {
+    Maker(RandomSource& random, const Family& family, int size, Place place)
+        : random_(random), family_(family), size_(size), placement_(random, place) {
         heights_ = family.heights;
         if (place == Place::kUtm || place == Place::kRotated) {
             // slopes of 1e6 there: no double can say where such a plane lies
             std::erase(heights_, Height::kMagnitudes);
         }
-        if (chance.with(family.shared)) shared_ = plan();
+        if (random.with(family.shared)) shared_ = plan();
     }
 
     RockCase rock() {
         RockCase rock;
-        for (int k = chance_.between(family_.fewest, family_.most); k > 0; --k) {
+        for (int k = random_.between(family_.fewest, family_.most); k > 0; --k) {
             Mesh surface = raw_surface();
             previous_ = surface;
             placement_.apply(surface);
-            if (chance_.with(family_.ulp_heights)) nudge_heights(chance_, surface);
-            if (chance_.with(family_.ulp_plan)) nudge_plan(chance_, surface);
-            if (chance_.with(family_.flat)) add_flat_triangles(chance_, surface);
-            if (chance_.with(family_.disorder)) disorder(chance_, surface);
+            if (random_.with(family_.ulp_heights)) nudge_heights(random_, surface);
+            if (random_.with(family_.ulp_plan)) nudge_plan(random_, surface);
+            if (random_.with(family_.flat)) add_flat_triangles(random_, surface);
+            if (random_.with(family_.disorder)) disorder(random_, surface);
             rock.surfaces.push_back(std::move(surface));
         }
-        if (chance_.with(family_.region)) rock.region = region();
-        if (chance_.with(family_.base)) rock.base_elevation = base_below(rock);
-        if (chance_.with(family_.rules)) {
+        if (random_.with(family_.region)) rock.region = region();
+        if (random_.with(family_.base)) rock.base_elevation = base_below(rock);
+        if (random_.with(family_.rules)) {
             for (std::size_t k = 0; k < rock.surfaces.size(); ++k)
-                rock.rules.push_back(static_cast<Rule>(chance_.below(4)));
+                rock.rules.push_back(static_cast<Rule>(random_.below(4)));
         }
         return rock;
     }
 
 private:
-    PlanMesh plan() { return make_plan(chance_, chance_.one_of(family_.plans), size_); }
+    PlanMesh plan() { return make_plan(random_, random_.one_of(family_.plans), size_); }
 
     /// In lattice coordinates.
     Mesh raw_surface() {
-        if (!previous_.triangles.empty() && chance_.with(family_.repeated))
+        if (!previous_.triangles.empty() && random_.with(family_.repeated))
             return changed_a_little();
         const PlanMesh mesh = shared_ ? *shared_ : plan();
         Mesh surface{{}, mesh.triangles};
-        const HeightFunction z = make_height(chance_, chance_.one_of(heights_));
+        const HeightFunction z = make_height(random_, random_.one_of(heights_));
         for (const auto& [x, y] : mesh.vertices)
             surface.vertices.push_back({x, y, z(x, y)});
-        if (chance_.with(family_.apart)) {
-            const double dx = chance_.between(-size_, size_), dy = chance_.between(-size_, size_);
+        if (random_.with(family_.apart)) {
+            const double dx = random_.between(-size_, size_), dy = random_.between(-size_, size_);
             for (Point& p : surface.vertices)
                 p = {p[0] + dx, p[1] + dy, p[2]};
         }
-        if (chance_.with(family_.partial)) surface.triangles = some_triangles(chance_, mesh);
-        if (chance_.with(family_.jumps)) add_jumps(chance_, surface);
+        if (random_.with(family_.partial)) surface.triangles = some_triangles(random_, mesh);
+        if (random_.with(family_.jumps)) add_jumps(random_, surface);
         return surface;
     }
 
     Mesh changed_a_little() {
         Mesh surface = previous_;
-        for (int i = chance_.one_of({0, 0, 1, 3}); i > 0; --i)
-            surface.vertices[chance_.below(surface.vertices.size())][2] +=
-                chance_.one_of({-1, 1, 1, 2});
-        if (chance_.with(0.3)) {
+        for (int i = random_.one_of({0, 0, 1, 3}); i > 0; --i)
+            surface.vertices[random_.below(surface.vertices.size())][2] +=
+                random_.one_of({-1, 1, 1, 2});
+        if (random_.with(0.3)) {
             PlanMesh plan{{}, surface.triangles};
             for (const Point& p : surface.vertices)
                 plan.vertices.push_back({p[0], p[1]});
-            surface.triangles = some_triangles(chance_, plan);
+            surface.triangles = some_triangles(random_, plan);
         }
         return surface;
     }
 
     /// Whole, concave, with holes, in parts, on the lattice or off.
     std::optional<PlanMesh> region() {
-        const Plan kind = chance_.one_of({L, S, F});
-        PlanMesh mesh = shared_ && chance_.with(0.3) ? *shared_ : make_plan(chance_, kind, size_);
-        if (chance_.with(0.6)) mesh.triangles = some_triangles(chance_, mesh);
+        const Plan kind = random_.one_of({L, S, F});
+        PlanMesh mesh = shared_ && random_.with(0.3) ? *shared_ : make_plan(random_, kind, size_);
+        if (random_.with(0.6)) mesh.triangles = some_triangles(random_, mesh);
         constexpr std::array<double, 2> kMoves[] = {
             {1, 0}, {1, 0}, {1, 0}, {0.75, 0.125}, {2, -0.5}, {0.3, 0.1}, {1, 1.0 / 3}};
-        const auto [stretch, shift] = chance_.one_of(kMoves);
+        const auto [stretch, shift] = random_.one_of(kMoves);
         for (PlanPoint& p : mesh.vertices)
             p = {stretch * p[0] + shift, stretch * p[1] + shift};
         placement_.apply(mesh);
-        if (chance_.with(family_.ulp_plan)) {
+        if (random_.with(family_.ulp_plan)) {
             for (PlanPoint& p : mesh.vertices) {
-                if (chance_.with(0.3)) p[chance_.below(2)] = nudged(chance_, p[chance_.below(2)]);
+                if (random_.with(0.3)) p[random_.below(2)] = nudged(random_, p[random_.below(2)]);
             }
         }
         return compacted(mesh);
@@ -208,11 +208,11 @@ private:
             for (const Point& p : surface.vertices)
                 lowest = std::min(lowest, p[2]);
         }
-        return chance_.one_of({std::nextafter(lowest, -HUGE_VAL), lowest - 1, lowest - 1,
+        return random_.one_of({std::nextafter(lowest, -HUGE_VAL), lowest - 1, lowest - 1,
                                std::floor(lowest) - 2, lowest - 1e6});
     }
 
-    Chance& chance_;
+    RandomSource& random_;
     const Family& family_;
     int size_;
     Placement placement_;
@@ -222,17 +222,17 @@ private:
 };
 
 /// Deals the triangles of a plan mesh out as regions.
-std::vector<PlanMesh> dealt(Chance& chance, int size) {
-    const PlanMesh mesh = make_plan(chance, chance.one_of({L, S, F}), size);
-    const int count = chance.one_of({2, 2, 3});
+std::vector<PlanMesh> dealt(RandomSource& random, int size) {
+    const PlanMesh mesh = make_plan(random, random.one_of({L, S, F}), size);
+    const int count = random.one_of({2, 2, 3});
     std::vector<PlanMesh> regions(static_cast<std::size_t>(count), {mesh.vertices, {}});
     std::vector<Triangle> first;
-    const bool pieces = chance.with(0.5);
-    if (pieces) first = some_triangles(chance, mesh);
+    const bool pieces = random.with(0.5);
+    if (pieces) first = some_triangles(random, mesh);
     for (const Triangle& t : mesh.triangles) {
         const bool of_first = std::find(first.begin(), first.end(), t) != first.end();
         const int owner =
-            !pieces ? chance.between(0, count - 1) : (of_first ? 0 : chance.between(1, count - 1));
+            !pieces ? random.between(0, count - 1) : (of_first ? 0 : random.between(1, count - 1));
         regions[static_cast<std::size_t>(owner)].triangles.push_back(t);
     }
     std::erase_if(regions, [](const PlanMesh& region) { return region.triangles.empty(); });
@@ -250,26 +250,26 @@ std::vector<std::string> families() {
     return names;
 }
 
-StackCase make_stack(Chance& chance, std::size_t family, int smallest, int largest) {
+StackCase make_stack(RandomSource& random, std::size_t family, int smallest, int largest) {
     const Family& chosen = all_families()[family];
-    const int size = chance.between(smallest, largest);
-    const Place place = chance.one_of(chosen.places);
-    return {{Maker(chance, chosen, size, place).rock()}, chosen.name};
+    const int size = random.between(smallest, largest);
+    const Place place = random.one_of(chosen.places);
+    return {{Maker(random, chosen, size, place).rock()}, chosen.name};
 }
 
-StackCase make_rock_masses(Chance& chance, int largest) {
+StackCase make_rock_masses(RandomSource& random, int largest) {
     // families that stay on the lattice
     constexpr std::size_t kStacks[] = {1, 2, 3, 4, 12, 14, 17};
-    const int size = chance.between(1, largest);
+    const int size = random.between(1, largest);
     StackCase stack{{}, "rock masses"};
     const auto rock = [&] {
-        return Maker(chance, all_families()[chance.one_of(kStacks)], size, Place::kLattice).rock();
+        return Maker(random, all_families()[random.one_of(kStacks)], size, Place::kLattice).rock();
     };
-    for (const PlanMesh& region : dealt(chance, size)) {
+    for (const PlanMesh& region : dealt(random, size)) {
         stack.rocks.push_back(rock());
         stack.rocks.back().region = region;
     }
-    if (chance.with(0.5)) {  // a neighbour whose one long edge faces several shorter ones
+    if (random.with(0.5)) {  // a neighbor whose one long edge faces several shorter ones
         RockCase beside = rock();
         const double low = size, high = 2.0 * size;
         for (Mesh& surface : beside.surfaces) {
@@ -278,8 +278,8 @@ StackCase make_rock_masses(Chance& chance, int largest) {
         }
         beside.region = {{{low, 0}, {high, 0}, {high, low}, {low, low}}, {{0, 1, 2}, {0, 2, 3}}};
         stack.rocks.push_back(std::move(beside));
-    } else if (chance.with(0.5)) {
-        Placement(chance, chance.one_of({Place::kDecimal, Place::kUtm, Place::kRotated}))
+    } else if (random.with(0.5)) {
+        Placement(random, random.one_of({Place::kDecimal, Place::kUtm, Place::kRotated}))
             .apply(stack);
     }
     return stack;

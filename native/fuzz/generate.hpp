@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "chance.hpp"
+#include "random_source.hpp"
 #include "stack_case.hpp"
 
 namespace realmodel::fuzz {
@@ -15,9 +15,9 @@ std::vector<std::string> families();
 
 /// A stack of a family, on a lattice of `smallest` to `largest` squares a side. It may have to be
 /// repaired (repair.hpp) before the builder accepts it.
-StackCase make_stack(Chance& chance, std::size_t family, int smallest, int largest);
+StackCase make_stack(RandomSource& random, std::size_t family, int smallest, int largest);
 
 /// Two to four rock masses whose regions share borders; the same holds.
-StackCase make_rock_masses(Chance& chance, int largest);
+StackCase make_rock_masses(RandomSource& random, int largest);
 
 }  // namespace realmodel::fuzz

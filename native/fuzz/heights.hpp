@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "chance.hpp"
+#include "random_source.hpp"
 #include "stack_case.hpp"
 
 namespace realmodel::fuzz {
@@ -22,25 +22,25 @@ enum class Height {
 
 using HeightFunction = std::function<double(double x, double y)>;
 
-/// The function draws from the chance whenever it is called.
-HeightFunction make_height(Chance& chance, Height height);
+/// The function draws random numbers whenever it is called.
+HeightFunction make_height(RandomSource& random, Height height);
 
 // What surfaces come with. All keep the surface as it is but for what they say.
 
-/// A neighbouring double; beside zero mostly a number of the size of rounding errors.
-double nudged(Chance& chance, double value, int direction = 0);
+/// A neighboring double; beside zero mostly a number of the size of rounding errors.
+double nudged(RandomSource& random, double value, int direction = 0);
 
-void nudge_heights(Chance& chance, Mesh& mesh);
-void nudge_plan(Chance& chance, Mesh& mesh);
+void nudge_heights(RandomSource& random, Mesh& mesh);
+void nudge_plan(RandomSource& random, Mesh& mesh);
 
 /// Lifts triangles by whole numbers; corners are doubled there.
-void add_jumps(Chance& chance, Mesh& mesh);
+void add_jumps(RandomSource& random, Mesh& mesh);
 
 /// Adds triangles without area.
-void add_flat_triangles(Chance& chance, Mesh& mesh);
+void add_flat_triangles(RandomSource& random, Mesh& mesh);
 
 /// Permutes vertices and triangles, turns triangles round, doubles vertices.
-void disorder(Chance& chance, Mesh& mesh);
+void disorder(RandomSource& random, Mesh& mesh);
 
 /// Gives every triangle corners of its own.
 void unweld(Mesh& mesh);

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "chance.hpp"
+#include "random_source.hpp"
 #include "stack_case.hpp"
 
 namespace realmodel::fuzz {
@@ -12,10 +12,10 @@ namespace realmodel::fuzz {
 /// aside; a surface onto another's plane; a patch of one surface into another; holes, steps,
 /// needles, another scale of heights, another place in the world, rules, region, base, order of the
 /// surfaces.
-void mutate(Chance& chance, StackCase& stack);
+void mutate(RandomSource& random, StackCase& stack);
 
 /// Surfaces of `other` among those of `stack`, in its own place or fitted to it.
-void cross_over(Chance& chance, StackCase& stack, const StackCase& other);
+void cross_over(RandomSource& random, StackCase& stack, const StackCase& other);
 
 /// Case `number` of the endless sequence that a seed stands for: stacks of all families, their
 /// mutations and crossovers, and those of the corpus.
@@ -23,6 +23,6 @@ StackCase case_number(std::uint64_t seed, std::uint64_t number,
                       const std::vector<StackCase>& corpus);
 
 /// The case that a source of choices stands for.
-StackCase make_case(Chance& chance, const std::vector<StackCase>& corpus);
+StackCase make_case(RandomSource& random, const std::vector<StackCase>& corpus);
 
 }  // namespace realmodel::fuzz

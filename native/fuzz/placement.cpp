@@ -5,20 +5,20 @@
 
 namespace realmodel::fuzz {
 
-Placement::Placement(Chance& chance, Place place) : identity_(place == Place::kLattice) {
+Placement::Placement(RandomSource& random, Place place) : identity_(place == Place::kLattice) {
     if (identity_) return;
     if (place == Place::kRotated) {
         cosine_ = std::sqrt(0.75);
         sine_ = 0.5;
     }
     if (place == Place::kDecimal) {
-        step_ = chance.one_of({0.1, 1.0 / 3, 1e-3, 700.1});
+        step_ = random.one_of({0.1, 1.0 / 3, 1e-3, 700.1});
     } else {
-        step_ = chance.one_of({0.1, 1.0, 12.34, 40.115, 1.0 / 3});
-        origin_ = {4.5e6 + chance.uniform(), 5.3e6 + chance.uniform()};
+        step_ = random.one_of({0.1, 1.0, 12.34, 40.115, 1.0 / 3});
+        origin_ = {4.5e6 + random.uniform(), 5.3e6 + random.uniform()};
     }
     constexpr std::array<double, 2> kHeights[] = {{0, 1}, {-1700, 0.1}, {0, 0.01}, {311.7, 1}};
-    const auto [lift, stretch] = chance.one_of(kHeights);
+    const auto [lift, stretch] = random.one_of(kHeights);
     lift_ = lift;
     stretch_ = stretch;
 }

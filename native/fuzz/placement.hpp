@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "chance.hpp"
+#include "random_source.hpp"
 #include "stack_case.hpp"
 
 namespace realmodel::fuzz {
@@ -12,7 +12,7 @@ enum class Place { kLattice, kDecimal, kUtm, kRotated };
 /// A map from the lattice to model coordinates; its rounding is part of the test.
 class Placement {
 public:
-    Placement(Chance& chance, Place place);
+    Placement(RandomSource& random, Place place);
     void apply(Mesh& mesh) const;
     void apply(PlanMesh& mesh) const;
     void apply(StackCase& stack) const;

@@ -7,22 +7,22 @@
 #include <numeric>
 #include <set>
 
-#include "realmodel/exact/turn.hpp"
+#include "exact/orient2d.hpp"
 
 namespace realmodel::fuzz {
 
 namespace {
 
-using exact::turn;
+using exact::orient2d;
 
 std::int32_t add(PlanMesh& mesh, double x, double y) {
     mesh.vertices.push_back({x, y});
     return static_cast<std::int32_t>(mesh.vertices.size()) - 1;
 }
 
-PlanMesh lattice(Chance& chance, int n) {
+PlanMesh lattice(RandomSource& random, int n) {
     enum { kRising, kFalling, kRandom, kCrossed, kZigzag };
-    const int diagonals = chance.between(kRising, kZigzag);
+    const int diagonals = random.between(kRising, kZigzag);
     PlanMesh mesh;
     for (int j = 0; j <= n; ++j) {
         for (int i = 0; i <= n; ++i)
@@ -32,7 +32,7 @@ PlanMesh lattice(Chance& chance, int n) {
         for (int i = 0; i < n; ++i) {
             const std::int32_t a = j * (n + 1) + i, b = a + 1, c = a + n + 2, d = a + n + 1;
             int kind = diagonals;
-            if (kind == kRandom) kind = chance.with(0.5) ? kRising : kFalling;
+            if (kind == kRandom) kind = random.with(0.5) ? kRising : kFalling;
             if (kind == kZigzag) kind = (i + j) % 2 == 1 ? kRising : kFalling;
             if (kind == kRising) {
                 mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
@@ -48,47 +48,47 @@ PlanMesh lattice(Chance& chance, int n) {
     return mesh;
 }
 
-PlanMesh lattice_of_size(Chance& chance, int n, double size) {
-    PlanMesh mesh = lattice(chance, n);
+PlanMesh lattice_of_size(RandomSource& random, int n, double size) {
+    PlanMesh mesh = lattice(random, n);
     for (PlanPoint& p : mesh.vertices)
         p = {p[0] * size / n, p[1] * size / n};
     return mesh;
 }
 
-PlanMesh giant(Chance& chance, int n) {
-    if (!chance.with(0.3)) return lattice_of_size(chance, 1, n);
+PlanMesh giant(RandomSource& random, int n) {
+    if (!random.with(0.3)) return lattice_of_size(random, 1, n);
     const double size = n;
     return {{{-size, -size}, {3 * size, -size}, {-size, 3 * size}}, {{0, 1, 2}}};
 }
 
-PlanMesh scattered(Chance& chance, int n) {
-    const int fineness = chance.one_of({1, 1, 2, 4});
+PlanMesh scattered(RandomSource& random, int n) {
+    const int fineness = random.one_of({1, 1, 2, 4});
     const double step = 1.0 / fineness;
     std::vector<PlanPoint> points{{0, 0},
                                   {static_cast<double>(n), 0},
                                   {static_cast<double>(n), static_cast<double>(n)},
                                   {0, static_cast<double>(n)}};
-    int count = chance.between(0, 8);
-    if (chance.with(0.2)) {
-        points.resize(chance.below(4));
+    int count = random.between(0, 8);
+    if (random.with(0.2)) {
+        points.resize(random.below(4));
         count = std::max(count, 4);
     }
     std::set<PlanPoint> known(points.begin(), points.end());
     for (int i = 0; i < count; ++i) {
-        const PlanPoint p{chance.between(0, n * fineness) * step,
-                          chance.between(0, n * fineness) * step};
+        const PlanPoint p{random.between(0, n * fineness) * step,
+                          random.between(0, n * fineness) * step};
         if (known.insert(p).second) points.push_back(p);
     }
     PlanMesh mesh{points, triangulated(points)};
-    if (mesh.triangles.empty()) return lattice(chance, n);
-    flip_edges(chance, mesh, chance.one_of({0, 3, 12, 30}));
+    if (mesh.triangles.empty()) return lattice(random, n);
+    flip_edges(random, mesh, random.one_of({0, 3, 12, 30}));
     return mesh;
 }
 
-PlanMesh fan(Chance& chance, int n) {
+PlanMesh fan(RandomSource& random, int n) {
     std::vector<double> side;
     for (int i = 0; i < n; ++i) {
-        if (i == 0 || chance.with(0.6)) side.push_back(i);
+        if (i == 0 || random.with(0.6)) side.push_back(i);
     }
     PlanMesh mesh;
     const double size = n;
@@ -102,8 +102,8 @@ PlanMesh fan(Chance& chance, int n) {
         add(mesh, 0, size - i);
     const auto border = static_cast<std::int32_t>(mesh.vertices.size());
     PlanPoint tip{size / 2, size / 2};
-    if (chance.with(0.5)) tip = {chance.between(0, 4 * n) / 4.0, chance.between(0, 4 * n) / 4.0};
-    if (chance.with(0.2)) tip = mesh.vertices[0];
+    if (random.with(0.5)) tip = {random.between(0, 4 * n) / 4.0, random.between(0, 4 * n) / 4.0};
+    if (random.with(0.2)) tip = mesh.vertices[0];
     const std::int32_t last = add(mesh, tip[0], tip[1]);
     for (std::int32_t i = 0; i < border; ++i) {
         const Triangle t{i, (i + 1) % border, last};
@@ -112,23 +112,23 @@ PlanMesh fan(Chance& chance, int n) {
     return mesh;
 }
 
-std::vector<int> some_of(Chance& chance, int last, int least, int most) {
+std::vector<int> some_of(RandomSource& random, int last, int least, int most) {
     std::set<int> places{0, last};
-    for (int i = chance.between(least, most); i > 0 && last > 1; --i)
-        places.insert(chance.between(1, last - 1));
+    for (int i = random.between(least, most); i > 0 && last > 1; --i)
+        places.insert(random.between(1, last - 1));
     return {places.begin(), places.end()};
 }
 
-PlanMesh bricks(Chance& chance, int n) {
+PlanMesh bricks(RandomSource& random, int n) {
     PlanMesh mesh;
-    const std::vector<int> rows = some_of(chance, n, 1, 3);
+    const std::vector<int> rows = some_of(random, n, 1, 3);
     for (std::size_t r = 0; r + 1 < rows.size(); ++r) {
-        const std::vector<int> joints = some_of(chance, 2 * n, 0, 3);
+        const std::vector<int> joints = some_of(random, 2 * n, 0, 3);
         for (std::size_t j = 0; j + 1 < joints.size(); ++j) {
             const double left = joints[j] / 2.0, right = joints[j + 1] / 2.0;
             const std::int32_t a = add(mesh, left, rows[r]), b = add(mesh, right, rows[r]),
                                c = add(mesh, right, rows[r + 1]), d = add(mesh, left, rows[r + 1]);
-            if (chance.with(0.5)) {
+            if (random.with(0.5)) {
                 mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
             } else {
                 mesh.triangles.insert(mesh.triangles.end(), {{a, b, d}, {b, c, d}});
@@ -138,13 +138,13 @@ PlanMesh bricks(Chance& chance, int n) {
     return mesh;
 }
 
-PlanMesh needles(Chance& chance, int n) {
-    const double thin = chance.one_of({1e-6, 1e-7, 1e-8, 1e-9, 0x1p-30}), size = n;
+PlanMesh needles(RandomSource& random, int n) {
+    const double thin = random.one_of({1e-6, 1e-7, 1e-8, 1e-9, 0x1p-30}), size = n;
     std::set<PlanPoint> points{{0, 0}, {size, 0}, {size, size}, {0, size}};
     const auto beside = [&](double v) { return v < size ? v + thin : v - thin; };
-    for (int i = chance.between(1, 5); i > 0; --i) {
-        const double x = chance.between(0, 2 * n) / 2.0, y = chance.between(0, 2 * n) / 2.0;
-        const double kind = chance.uniform();
+    for (int i = random.between(1, 5); i > 0; --i) {
+        const double x = random.between(0, 2 * n) / 2.0, y = random.between(0, 2 * n) / 2.0;
+        const double kind = random.uniform();
         if (kind < 0.4) {
             points.insert({{x, y}, {x, beside(y)}});
         } else if (kind < 0.7) {
@@ -155,30 +155,30 @@ PlanMesh needles(Chance& chance, int n) {
     }
     PlanMesh mesh;
     mesh.vertices.assign(points.begin(), points.end());
-    chance.shuffle(mesh.vertices);
+    random.shuffle(mesh.vertices);
     mesh.triangles = triangulated(mesh.vertices);
-    flip_edges(chance, mesh, chance.one_of({0, 5, 20}));
+    flip_edges(random, mesh, random.one_of({0, 5, 20}));
     return mesh;
 }
 
 }  // namespace
 
-PlanMesh make_plan(Chance& chance, Plan plan, int n) {
+PlanMesh make_plan(RandomSource& random, Plan plan, int n) {
     switch (plan) {
         case Plan::kLattice:
-            return lattice(chance, n);
+            return lattice(random, n);
         case Plan::kGiant:
-            return giant(chance, n);
+            return giant(random, n);
         case Plan::kScattered:
-            return scattered(chance, n);
+            return scattered(random, n);
         case Plan::kFan:
-            return fan(chance, n);
+            return fan(random, n);
         case Plan::kBricks:
-            return bricks(chance, n);
+            return bricks(random, n);
         case Plan::kNeedles:
-            return needles(chance, n);
+            return needles(random, n);
         case Plan::kTiny:
-            return lattice_of_size(chance, std::min(6, 2 * n), n);
+            return lattice_of_size(random, std::min(6, 2 * n), n);
     }
     return {};
 }
@@ -190,13 +190,13 @@ std::vector<Triangle> triangulated(const std::vector<PlanPoint>& points) {
     std::sort(order.begin(), order.end(),
               [&](std::int32_t a, std::int32_t b) { return at(a) < at(b); });
     std::size_t start = 2;
-    while (start < order.size() && turn(at(order[0]), at(order[1]), at(order[start])) == 0)
+    while (start < order.size() && orient2d(at(order[0]), at(order[1]), at(order[start])) == 0)
         ++start;
     if (start >= order.size()) return {};
     std::vector<std::int32_t> hull(order.begin(),
                                    order.begin() + static_cast<std::ptrdiff_t>(start));
     const std::int32_t tip = order[start];
-    if (turn(at(hull[0]), at(hull[1]), at(tip)) < 0) std::reverse(hull.begin(), hull.end());
+    if (orient2d(at(hull[0]), at(hull[1]), at(tip)) < 0) std::reverse(hull.begin(), hull.end());
     std::vector<Triangle> triangles;
     for (std::size_t i = 0; i + 1 < hull.size(); ++i)
         triangles.push_back({hull[i], hull[i + 1], tip});
@@ -205,7 +205,7 @@ std::vector<Triangle> triangulated(const std::vector<PlanPoint>& points) {
         const std::int32_t p = order[o];
         const std::size_t size = hull.size();
         const auto seen = [&](std::size_t i) {
-            return turn(at(hull[i % size]), at(hull[(i + 1) % size]), at(p)) < 0;
+            return orient2d(at(hull[i % size]), at(hull[(i + 1) % size]), at(p)) < 0;
         };
         std::size_t first = 0;
         while (!seen(first) || seen(first + size - 1))
@@ -221,7 +221,7 @@ std::vector<Triangle> triangulated(const std::vector<PlanPoint>& points) {
     return triangles;
 }
 
-void flip_edges(Chance& chance, PlanMesh& mesh, int count) {
+void flip_edges(RandomSource& random, PlanMesh& mesh, int count) {
     const auto at = [&](std::int32_t i) { return mesh.vertices[static_cast<std::size_t>(i)]; };
     for (int flip = 0; flip < count; ++flip) {
         std::map<std::array<std::int32_t, 2>, std::pair<std::size_t, std::int32_t>> owner;
@@ -236,19 +236,19 @@ void flip_edges(Chance& chance, PlanMesh& mesh, int count) {
             if (edge[0] < edge[1] && owner.count({edge[1], edge[0]}) > 0) inner.push_back(edge);
         }
         if (inner.empty()) return;
-        const auto [a, b] = chance.one_of(inner);
+        const auto [a, b] = random.one_of(inner);
         const auto [i, c] = owner[{a, b}];
         const auto [j, d] = owner[{b, a}];
-        if (turn(at(c), at(a), at(d)) > 0 && turn(at(d), at(b), at(c)) > 0) {
+        if (orient2d(at(c), at(a), at(d)) > 0 && orient2d(at(d), at(b), at(c)) > 0) {
             mesh.triangles[i] = {c, a, d};
             mesh.triangles[j] = {d, b, c};
         }
     }
 }
 
-std::vector<Triangle> some_triangles(Chance& chance, const PlanMesh& mesh) {
+std::vector<Triangle> some_triangles(RandomSource& random, const PlanMesh& mesh) {
     enum { kRandom, kSparse, kIsland, kHalf, kHole, kAllButOne, kOne };
-    const int kind = chance.between(kRandom, kOne);
+    const int kind = random.between(kRandom, kOne);
     std::vector<PlanPoint> middle;
     for (const Triangle& t : mesh.triangles) {
         PlanPoint m{0, 0};
@@ -258,11 +258,11 @@ std::vector<Triangle> some_triangles(Chance& chance, const PlanMesh& mesh) {
         }
         middle.push_back(m);
     }
-    const std::size_t one = chance.below(middle.size());
+    const std::size_t one = random.below(middle.size());
     const PlanPoint at = middle[one];
-    const double reach = chance.one_of({0.5, 1.0, 1.5});
+    const double reach = random.one_of({0.5, 1.0, 1.5});
     constexpr PlanPoint kDirections[] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {-1, 0}};
-    const PlanPoint way = chance.one_of(kDirections);
+    const PlanPoint way = random.one_of(kDirections);
     std::vector<Triangle> part;
     for (std::size_t t = 0; t < middle.size(); ++t) {
         const double dx = middle[t][0] - at[0], dy = middle[t][1] - at[1];
@@ -270,10 +270,10 @@ std::vector<Triangle> some_triangles(Chance& chance, const PlanMesh& mesh) {
         bool kept = false;
         switch (kind) {
             case kRandom:
-                kept = chance.with(0.7);
+                kept = random.with(0.7);
                 break;
             case kSparse:
-                kept = chance.with(0.3);
+                kept = random.with(0.3);
                 break;
             case kIsland:
                 kept = near;

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "chance.hpp"
+#include "random_source.hpp"
 #include "stack_case.hpp"
 
 namespace realmodel::fuzz {
@@ -20,16 +20,16 @@ enum class Plan {
     kTiny        ///< a lattice of half steps
 };
 
-PlanMesh make_plan(Chance& chance, Plan plan, int n);
+PlanMesh make_plan(RandomSource& random, Plan plan, int n);
 
 /// A part of a triangulation: holes, an island, a half, all but one, one alone; never nothing.
-std::vector<Triangle> some_triangles(Chance& chance, const PlanMesh& mesh);
+std::vector<Triangle> some_triangles(RandomSource& random, const PlanMesh& mesh);
 
 /// The Delaunay-free sweep triangulation of distinct points, all of their hull; none where they lie
 /// in one line.
 std::vector<Triangle> triangulated(const std::vector<PlanPoint>& points);
 
 /// Flips up to `count` inner edges, taken at random, whose quadrilateral is strictly convex.
-void flip_edges(Chance& chance, PlanMesh& mesh, int count);
+void flip_edges(RandomSource& random, PlanMesh& mesh, int count);
 
 }  // namespace realmodel::fuzz

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "realmodel/exact/turn.hpp"
+#include "exact/orient2d.hpp"
 
 namespace realmodel::fuzz {
 
@@ -34,7 +34,7 @@ std::array<PlanPoint, 3> corners_of(const M& mesh, const Triangle& triangle) {
         const auto& vertex = mesh.vertices[static_cast<std::size_t>(triangle[i])];
         corners[i] = {vertex[0], vertex[1]};
     }
-    if (exact::turn(corners[0], corners[1], corners[2]) < 0) std::swap(corners[1], corners[2]);
+    if (exact::orient2d(corners[0], corners[1], corners[2]) < 0) std::swap(corners[1], corners[2]);
     return corners;
 }
 
@@ -42,7 +42,7 @@ std::array<PlanPoint, 3> corners_of(const M& mesh, const Triangle& triangle) {
 bool separated(const std::array<PlanPoint, 3>& a, const std::array<PlanPoint, 3>& b) {
     for (std::size_t i = 0; i < 3; ++i) {
         if (std::all_of(b.begin(), b.end(), [&](const PlanPoint& p) {
-                return exact::turn(a[i], a[(i + 1) % 3], p) <= 0;
+                return exact::orient2d(a[i], a[(i + 1) % 3], p) <= 0;
             }))
             return true;
     }
@@ -103,7 +103,7 @@ PlanMesh compacted(const PlanMesh& mesh) {
 }
 
 bool is_flat(const std::array<PlanPoint, 3>& corners) {
-    return exact::turn(corners[0], corners[1], corners[2]) == 0;
+    return exact::orient2d(corners[0], corners[1], corners[2]) == 0;
 }
 
 bool overlap(const std::array<PlanPoint, 3>& a, const std::array<PlanPoint, 3>& b) {

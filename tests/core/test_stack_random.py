@@ -24,7 +24,7 @@ usual = settings(
     deadline=None,
     database=None,
     suppress_health_check=list(HealthCheck),
-    phases=[Phase.generate],  # the hunt's own minimiser makes failures small, in far less time
+    phases=[Phase.generate],  # the hunt's own minimizer makes failures small, in far less time
 )
 # numbers that Hypothesis chooses, which like to repeat, and a seed that it chooses
 chance = st.randoms(use_true_random=False) | st.randoms(use_true_random=True)

@@ -46,20 +46,20 @@ void print_stacks() {
     const std::vector<std::string> families = fuzz::families();
     for (std::size_t family = 0; family < families.size(); ++family) {
         for (std::uint64_t seed = 0; seed < 4; ++seed) {
-            fuzz::Chance chance(seed);
+            fuzz::RandomSource random(seed);
             print_stack(families[family] + " " + std::to_string(seed),
-                        fuzz::make_stack(chance, family, 2, 4));
+                        fuzz::make_stack(random, family, 2, 4));
         }
     }
     for (std::uint64_t seed = 0; seed < 6; ++seed) {
-        fuzz::Chance chance(seed);
-        print_stack("rock masses " + std::to_string(seed), fuzz::make_rock_masses(chance, 3));
+        fuzz::RandomSource random(seed);
+        print_stack("rock masses " + std::to_string(seed), fuzz::make_rock_masses(random, 3));
     }
     for (std::uint64_t number = 0; number < 60; ++number)
         print_stack("case " + std::to_string(number), fuzz::case_number(11, number, {}));
     for (const std::size_t family : {0U, 1U, 7U, 8U, 16U, 18U}) {  // several chunks of work
-        fuzz::Chance chance(family);
-        print_stack("large " + families[family], fuzz::make_stack(chance, family, 20, 24));
+        fuzz::RandomSource random(family);
+        print_stack("large " + families[family], fuzz::make_stack(random, family, 20, 24));
     }
 }
 
@@ -69,11 +69,11 @@ void print_mesh_and_heights() {
     const meshing::PlanarMesh mesh = meshing::mesh_region(rings, 2.5);
     print("region mesh", Digest().add(mesh.vertices).add(mesh.triangles).value());
 
-    fuzz::Chance chance(5);
+    fuzz::RandomSource random(5);
     std::vector<std::array<double, 3>> points;
     for (int i = 0; i < 300; ++i) {
-        const double x = chance.uniform(0, 120), y = chance.uniform(0, 70);
-        points.push_back({x, y, 20 + 3 * std::sin(x / 20) + y / 30 + chance.uniform()});
+        const double x = random.uniform(0, 120), y = random.uniform(0, 70);
+        points.push_back({x, y, 20 + 3 * std::sin(x / 20) + y / 30 + random.uniform()});
     }
     const auto fitted = interpolation::fit_variogram(points, {}).variogram;
     print("fitted variogram",
@@ -84,7 +84,7 @@ void print_mesh_and_heights() {
     const interpolation::Variogram spherical{.range = 60, .sill = 4, .nugget = 0.1};
     for (const int neighbours : {0, 16, 32}) {
         interpolation::KrigingOptions options;
-        options.neighbours = neighbours;
+        options.neighbors = neighbours;
         options.threads = threads;
         const auto kriged = interpolation::krige(points, mesh.vertices, spherical, options);
         print("kriging, " + std::to_string(neighbours) + " neighbours",

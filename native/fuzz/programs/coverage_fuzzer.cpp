@@ -33,8 +33,8 @@ const std::vector<StackCase>& corpus() {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    Chance chance(std::span<const std::uint8_t>(data, size));
-    StackCase stack = make_case(chance, corpus());
+    RandomSource random(std::span<const std::uint8_t>(data, size));
+    StackCase stack = make_case(random, corpus());
     if (triangle_count(stack) > 400) return -1;  // slow, and no more telling
     const Examination found = examine(std::move(stack), {100, 300, {}});
     if (found.defects.empty()) return found.usable ? 0 : -1;

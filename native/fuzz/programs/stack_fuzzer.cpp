@@ -23,7 +23,7 @@
 
 #include "case_file.hpp"
 #include "examination.hpp"
-#include "minimise.hpp"
+#include "minimize.hpp"
 #include "mutate.hpp"
 
 namespace {
@@ -157,13 +157,13 @@ private:
     }
 
     void keep(StackCase stack, const std::string& kind, const std::string& name) {
-        constexpr double kSecondsToMinimise = 300;
+        constexpr double kSecondsToMinimize = 300;
         const auto start = Clock::now();
         const auto fails = [&](const StackCase& candidate) {
-            return interrupted == 0 && seconds_since(start) < kSecondsToMinimise &&
+            return interrupted == 0 && seconds_since(start) < kSecondsToMinimize &&
                    least_kind(examine_apart(candidate, options_.judge, options_.patience)) == kind;
         };
-        const StackCase small = minimised(std::move(stack), fails, 1500);
+        const StackCase small = minimized(std::move(stack), fails, 1500);
         std::string why;
         for (const Defect& defect : examine_apart(small, options_.judge, options_.patience))
             why += (why.empty() ? "" : "; ") + defect.kind + ": " + defect.sentence;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cell_cut.hpp"
+#include "cutting/cell_cut.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 
-#include "plane_cross.hpp"
+#include "cutting/plane_cross.hpp"
 
 namespace realmodel::cutting {
 
@@ -54,17 +54,14 @@ void CellCutter::collect_uses(std::span<const PieceRef> refs, bool in_plane_only
     for (std::size_t i = 0; i < refs.size(); ++i) {
         const auto piece = index(refs[i].piece);
         const auto nodes = pieces_.polygons[piece];
-        const std::int8_t side = pieces_.sides[piece][index(refs[i].which)];
-        const bool level = pieces_.level[piece] != 0;
+        const std::int8_t side = pieces_[piece].sides[index(refs[i].which)];
+        const bool level = pieces_[piece].is_level != 0;
         for (std::size_t k = 0; k < nodes.size(); ++k) {
             const NodeId a = nodes[k], b = nodes[k + 1 < nodes.size() ? k + 1 : 0];
             if (in_plane_only && !(in_plane(a) && in_plane(b))) continue;
             const bool ahead = (a < b) == (refs[i].which == 0);
-            uses_.push_back({{std::min(a, b), std::max(a, b)},
-                             static_cast<std::int32_t>(i),
-                             static_cast<std::int8_t>(ahead ? 1 : -1),
-                             side,
-                             level});
+            uses_.push_back({unordered(a, b), static_cast<std::int32_t>(i),
+                             static_cast<std::int8_t>(ahead ? 1 : -1), side, level});
         }
     }
     std::sort(uses_.begin(), uses_.end(), [](const Use& a, const Use& b) {
@@ -94,9 +91,9 @@ bool CellCutter::caps_on_both_sides(std::span<const Use> uses,
                 continue;
             }
             // seen along the edge, angles are counted from the right over the top to the left
-            const int turned = points_.tetrahedron(use.edge[0], use.edge[1],
-                                                   far_node(*flattest, refs), far_node(use, refs));
-            if (turned * side > 0) flattest = &use;
+            const int orientation = points_.tetrahedron(
+                use.edge[0], use.edge[1], far_node(*flattest, refs), far_node(use, refs));
+            if (orientation * side > 0) flattest = &use;
         }
         if (flattest == nullptr) continue;
         return flattest->direction == (side == kAbove ? -1 : 1);
@@ -159,8 +156,8 @@ void CellCutter::keep_slits_in_caps() {
     }
 }
 
-/// Of the edges that leave the node where one arrives, the first clockwise from the way back: the
-/// one that bounds the same piece of the region, which lies to the left.
+/// Of the edges that leave the node where one arrives, the first clockwise from the edge that
+/// arrives: the one that bounds the same piece of the region, which lies to the left.
 std::size_t CellCutter::next_edge(const DirectedEdge& arriving,
                                   const std::vector<bool>& taken) const {
     const auto begin = static_cast<std::size_t>(
@@ -170,8 +167,8 @@ std::size_t CellCutter::next_edge(const DirectedEdge& arriving,
     std::size_t best = open_.size();
     LoopCorner at{}, back{};
     const auto half = [&](const LoopCorner& p) {
-        const int turned = points_(at, back, p);
-        if (turned != 0) return turned < 0 ? 0 : 2;
+        const int orientation = points_(at, back, p);
+        if (orientation != 0) return orientation < 0 ? 0 : 2;
         const double along = (p.at[0] - at.at[0]) * (back.at[0] - at.at[0]) +
                              (p.at[1] - at.at[1]) * (back.at[1] - at.at[1]);
         return along < 0 ? 1 : 3;

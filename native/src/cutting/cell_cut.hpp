@@ -5,8 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "pieces.hpp"
-#include "plane_points.hpp"
+#include "base/disjoint_sets.hpp"
+#include "cutting/pieces.hpp"
+#include "cutting/plane_points.hpp"
 
 namespace realmodel::cutting {
 
@@ -24,16 +25,13 @@ struct CellCut {
 ///
 /// The edges in the plane that the pieces above it leave open bound the caps. Along an edge of the
 /// cell that only touches the plane nothing is open; whether the caps pass on both of its sides or
-/// on neither is told by which of the two faces there is steeper.
+/// on neither follows from which of the two faces there is steeper.
 class CellCutter {
 public:
     CellCutter(const ComplexView& model, const std::vector<std::int8_t>& sides,
-               const Crossings& crossings, const Pieces& pieces, const PlaneDistance& distance)
-        : model_(model),
-          sides_(sides),
-          crossings_(crossings),
-          pieces_(pieces),
-          points_(model, distance, crossings) {}
+               const EdgeIntersections& cuts, const Pieces& pieces,
+               const exact::OrientedPlane& plane)
+        : model_(model), sides_(sides), cuts_(cuts), pieces_(pieces), points_(model, plane, cuts) {}
 
     /// The caps alone.
     void cap(std::span<const PieceRef> refs, CellCut& result);
@@ -55,9 +53,7 @@ private:
 
     Position position(NodeId node) const { return points_.rounded(node); }
     LoopCorner corner(NodeId node) const { return {node, points_.view()(points_.rounded(node))}; }
-    bool in_plane(NodeId node) const {
-        return crossings_.is_crossing(node) || sides_[index(node)] == kOn;
-    }
+    bool in_plane(NodeId node) const { return cuts_.contains(node) || sides_[index(node)] == kOn; }
     void collect_uses(std::span<const PieceRef> refs, bool in_plane_only);
     void close(std::span<const PieceRef> refs, CellCut& result);
     void collect_open_edges(std::span<const PieceRef> refs);
@@ -70,12 +66,16 @@ private:
     std::size_t next_edge(const DirectedEdge& arriving, const std::vector<bool>& taken) const;
     bool find_parts(std::span<const PieceRef> refs, CellCut& result);
     bool use_edges_twice(const std::vector<std::int32_t>& root, std::int32_t pieces);
-    void attach_shells(std::span<const PieceRef> refs, CellCut& result,
-                       std::vector<std::int32_t>& root);
+    void attach_shells(std::span<const PieceRef> refs, const CellCut& result,
+                       std::vector<std::int32_t>& root) const;
+    std::int8_t side_of(std::size_t local, std::span<const PieceRef> refs) const;
+    void add_uses_of_caps(const Polygons& caps, std::int32_t pieces);
+    static void join_at_edge(std::span<const Use> uses, std::int8_t side, std::int32_t pieces,
+                             DisjointSets& sets);
 
     const ComplexView& model_;
     const std::vector<std::int8_t>& sides_;
-    const Crossings& crossings_;
+    const EdgeIntersections& cuts_;
     const Pieces& pieces_;
     PlanePoints points_;
 

@@ -4,15 +4,15 @@
 #include <cmath>
 #include <numeric>
 
-#include "plane_cross.hpp"
-#include "triangulate.hpp"
+#include "cutting/plane_cross.hpp"
+#include "cutting/triangulate.hpp"
 
 namespace realmodel::cutting {
 
 namespace {
 
 /// Whether a loop turns left or goes straight on, up to rounding, at one of its corners: from the
-/// last corner before that is not in the same place to the first after.
+/// last corner before that is not in the same position to the first after.
 bool left_or_straight(const Loop& loop, std::size_t corner, const PlanePosition& rounding) {
     const std::size_t n = loop.size();
     const PlanePosition& at = loop[corner].at;

@@ -1,53 +1,52 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A surface as a user gives it, made ready to cut: what is there twice, borders that run along one
-// another, which way is up, a seam beyond the border.
+// A surface as a user gives it, made ready to cut: repeated triangles, borders that run along one
+// another, orientation, a seam beyond the border.
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 
-#include "box_tree.hpp"
-#include "cutter_surface.hpp"
+#include "cutting/cutter_surface.hpp"
+#include "cutting/triangulate.hpp"
+#include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/exact/turn.hpp"
-#include "triangulate.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
+
+using spatial::Box;
+using spatial::BoxTree;
 
 namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
 using Edge = std::array<NodeId, 2>;
 
-Position minus(const Position& a, const Position& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-double dot(const Position& a, const Position& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 bool is_flat(const Position& a, const Position& b, const Position& c) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
-        if (exact::turn({a[k], a[l]}, {b[k], b[l]}, {c[k], c[l]}) != 0) return false;
+        if (exact::orient2d({a[k], a[l]}, {b[k], b[l]}, {c[k], c[l]}) != 0) return false;
     }
     return true;
 }
 
-/// A surface on its way: triangles, and the number that each had.
+/// Triangles of a surface, and the number that each had in the input.
 class SurfaceInput {
 public:
     explicit SurfaceInput(const TriangleView& given);
     CutterSurface ready() &&;
 
 private:
-    Position place(NodeId v) const { return surface_.vertices[index(v)]; }
+    Position at(NodeId v) const { return surface_.vertices[index(v)]; }
     std::map<Edge, std::vector<std::int32_t>> by_edge() const;
     bool drop_repeated();
     void divide_borders();
     void divide_triangle(std::size_t t, const std::map<Edge, std::vector<NodeId>>& on_edge);
-    void turn_upward();
+    bool runs(std::int32_t t, NodeId a, NodeId b) const;
+    void reverse(std::int32_t t);
+    bool orient_as_first(std::vector<std::int32_t>& part, std::vector<bool>& done,
+                         const std::map<Edge, std::vector<std::int32_t>>& users_of);
+    void orient_upward();
     void extend_border();
 
     CutterSurface surface_;
@@ -55,7 +54,9 @@ private:
 };
 
 SurfaceInput::SurfaceInput(const TriangleView& given) {
-    const auto count = static_cast<std::int32_t>(given.vertices.size() / 3);
+    const std::int32_t count =
+        checked_number(given.vertices.size() / 3, "vertices of the surface that is to cut");
+    checked_number(given.triangles.size(), "corners of the surface that is to cut");
     std::map<Position, NodeId> same;
     std::vector<NodeId> first;
     for (std::int32_t v = 0; v < count; ++v) {
@@ -77,7 +78,7 @@ SurfaceInput::SurfaceInput(const TriangleView& given) {
                                  {static_cast<std::int64_t>(t / 3)});
             corners[i] = first[index(v)];
         }
-        if (is_flat(place(corners[0]), place(corners[1]), place(corners[2]))) continue;
+        if (is_flat(at(corners[0]), at(corners[1]), at(corners[2]))) continue;
         surface_.triangles.push_back(corners);
         original_.push_back(static_cast<std::int64_t>(t / 3));
     }
@@ -92,7 +93,7 @@ std::map<Edge, std::vector<std::int32_t>> SurfaceInput::by_edge() const {
         const Triangle& c = surface_.triangles[t];
         for (std::size_t i = 0; i < 3; ++i) {
             const NodeId a = c[i], b = c[(i + 1) % 3];
-            users[{std::min(a, b), std::max(a, b)}].push_back(static_cast<std::int32_t>(t));
+            users[unordered(a, b)].push_back(static_cast<std::int32_t>(t));
         }
     }
     return users;
@@ -144,7 +145,7 @@ void SurfaceInput::divide_borders() {
         Box& box = boxes.emplace_back();
         for (const NodeId v : edge) {
             corners.push_back(v);
-            box.include(place(v));
+            box.include(at(v));
         }
     }
     std::sort(corners.begin(), corners.end());
@@ -152,28 +153,28 @@ void SurfaceInput::divide_borders() {
     const BoxTree tree(boxes);
     std::map<Edge, std::vector<std::pair<double, NodeId>>> found;
     for (const NodeId v : corners) {
-        const Position p = place(v);
-        const double reach = rounding_of(std::span(&p, 1));
+        const Position p = at(v);
+        const double tolerance = rounding_of(std::span(&p, 1));
         Box box;
         box.include(p);
-        box.widen(reach);
+        box.widen(tolerance);
         tree.find(box, [&](std::int32_t e) {
             const Edge& edge = edges[index(e)];
             if (v == edge[0] || v == edge[1]) return;
-            const Position a = place(edge[0]), way = minus(place(edge[1]), a), off = minus(p, a);
-            const double share = dot(off, way) / dot(way, way);
+            const Position a = at(edge[0]), line = minus(at(edge[1]), a), off = minus(p, a);
+            const double share = dot(off, line) / dot(line, line);
             if (!(share > 0 && share < 1)) return;
             for (std::size_t k = 0; k < 3; ++k) {
-                if (std::abs(off[k] - share * way[k]) > reach) return;
+                if (std::abs(off[k] - share * line[k]) > tolerance) return;
             }
             found[edge].push_back({share, v});
         });
     }
     if (found.empty()) return;
     std::map<Edge, std::vector<NodeId>> on_edge;
-    for (auto& [edge, places] : found) {
-        std::sort(places.begin(), places.end());
-        for (const auto& [share, v] : places)
+    for (auto& [edge, corners_on_it] : found) {
+        std::sort(corners_on_it.begin(), corners_on_it.end());
+        for (const auto& [share, v] : corners_on_it)
             on_edge[edge].push_back(v);
     }
     const std::size_t count = surface_.triangles.size();
@@ -184,22 +185,22 @@ void SurfaceInput::divide_borders() {
 void SurfaceInput::divide_triangle(std::size_t t,
                                    const std::map<Edge, std::vector<NodeId>>& on_edge) {
     const Triangle corners = surface_.triangles[t];
-    const std::array at{place(corners[0]), place(corners[1]), place(corners[2])};
-    const View view(polygon_normal(at));
+    const std::array positions{at(corners[0]), at(corners[1]), at(corners[2])};
+    const View view(polygon_normal(positions));
     Loop loop;
     for (std::size_t i = 0; i < 3; ++i) {
         const NodeId a = corners[i], b = corners[(i + 1) % 3];
-        loop.push_back({a, view(place(a))});
-        const auto found = on_edge.find({std::min(a, b), std::max(a, b)});
+        loop.push_back({a, view(at(a))});
+        const auto found = on_edge.find(unordered(a, b));
         if (found == on_edge.end()) continue;
         std::vector<NodeId> between = found->second;
         if (a > b) std::reverse(between.begin(), between.end());
         for (const NodeId v : between)
-            loop.push_back({v, view(place(v))});
+            loop.push_back({v, view(at(v))});
     }
     if (loop.size() == 3) return;
     std::vector<std::array<LoopCorner, 3>> triangles;
-    triangulate(std::span(&loop, 1), view.rounding(at), triangles);
+    triangulate(std::span(&loop, 1), view.rounding(positions), triangles);
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const auto& own = triangles[i];
         const Triangle part{own[0].node, own[1].node, own[2].node};
@@ -212,71 +213,78 @@ void SurfaceInput::divide_triangle(std::size_t t,
     }
 }
 
-/// Turns each connected part of an open surface one way: upward on the whole, outward if closed.
-void SurfaceInput::turn_upward() {
+/// Whether a triangle's outline runs from a to b.
+bool SurfaceInput::runs(std::int32_t t, NodeId a, NodeId b) const {
+    const Triangle& c = surface_.triangles[index(t)];
+    return (c[0] == a && c[1] == b) || (c[1] == a && c[2] == b) || (c[2] == a && c[0] == b);
+}
+
+void SurfaceInput::reverse(std::int32_t t) {
+    std::swap(surface_.triangles[index(t)][1], surface_.triangles[index(t)][2]);
+}
+
+/// Gives all triangles that are connected with the first of a part its orientation, and adds them.
+/// @return whether the part is closed
+bool SurfaceInput::orient_as_first(std::vector<std::int32_t>& part, std::vector<bool>& done,
+                                   const std::map<Edge, std::vector<std::int32_t>>& users_of) {
+    bool closed = true;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+        const Triangle corners = surface_.triangles[index(part[i])];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const NodeId a = corners[k], b = corners[(k + 1) % 3];
+            const auto& users = users_of.at(unordered(a, b));
+            closed = closed && users.size() == 2;
+            for (const std::int32_t other : users) {
+                if (other == part[i]) continue;
+                if (done[index(other)]) {
+                    if (!runs(other, a, b)) continue;
+                    throw InputError("one_sided", "the surface has no two sides", -1,
+                                     {original_[index(part[i])], original_[index(other)]}, at(a));
+                }
+                if (runs(other, a, b)) reverse(other);
+                done[index(other)] = true;
+                part.push_back(other);
+            }
+        }
+    }
+    return closed;
+}
+
+/// Orients each connected part of an open surface: upward on the whole, outward if closed.
+void SurfaceInput::orient_upward() {
     const auto users_of = by_edge();
     for (const auto& [edge, users] : users_of) {
         if (users.size() < 3) continue;
         throw InputError(
             "branching", "more than two triangles of the surface share an edge", -1,
             {original_[index(users[0])], original_[index(users[1])], original_[index(users[2])]},
-            place(edge[0]));
+            at(edge[0]));
     }
-    const auto runs = [&](std::int32_t t, NodeId a, NodeId b) {
-        const Triangle& c = surface_.triangles[index(t)];
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (c[i] == a && c[(i + 1) % 3] == b) return true;
-        }
-        return false;
-    };
     std::vector<bool> done(surface_.triangles.size(), false);
-    for (std::size_t start = 0; start < done.size(); ++start) {
-        if (done[start]) continue;
-        std::vector<std::int32_t> part{static_cast<std::int32_t>(start)};
-        done[start] = true;
-        bool closed = true;
-        for (std::size_t i = 0; i < part.size(); ++i) {
-            const Triangle corners = surface_.triangles[index(part[i])];
-            for (std::size_t k = 0; k < 3; ++k) {
-                const NodeId a = corners[k], b = corners[(k + 1) % 3];
-                const auto& users = users_of.at({std::min(a, b), std::max(a, b)});
-                closed = closed && users.size() == 2;
-                for (const std::int32_t other : users) {
-                    if (other == part[i]) continue;
-                    if (done[index(other)]) {
-                        if (!runs(other, a, b)) continue;
-                        throw InputError("one_sided", "the surface has no two sides", -1,
-                                         {original_[index(part[i])], original_[index(other)]},
-                                         place(a));
-                    }
-                    if (runs(other, a, b))
-                        std::swap(surface_.triangles[index(other)][1],
-                                  surface_.triangles[index(other)][2]);
-                    done[index(other)] = true;
-                    part.push_back(other);
-                }
-            }
-        }
+    for (std::int32_t start = 0; index(start) < done.size(); ++start) {
+        if (done[index(start)]) continue;
+        std::vector<std::int32_t> part{start};
+        done[index(start)] = true;
+        const bool closed = orient_as_first(part, done, users_of);
         double upward = 0, volume = 0;
-        const Position origin = place(surface_.triangles[start][0]);
+        const Position origin = at(surface_.triangles[index(start)][0]);
         for (const std::int32_t t : part) {
             const Triangle& c = surface_.triangles[index(t)];
-            const std::array corners{place(c[0]), place(c[1]), place(c[2])};
+            const std::array corners{at(c[0]), at(c[1]), at(c[2])};
             const Position normal = polygon_normal(corners);
             upward += normal[2];
             volume += dot(normal, minus(corners[0], origin));
         }
         if ((closed ? volume : upward) >= 0) continue;
         for (const std::int32_t t : part)
-            std::swap(surface_.triangles[index(t)][1], surface_.triangles[index(t)][2]);
+            reverse(t);
     }
 }
 
 /// Adds a seam around an open surface, as wide as rounding may move things a hundred times over: a
 /// surface that ends on the outside of a model then ends beyond it, whichever way that was rounded.
 void SurfaceInput::extend_border() {
-    std::vector<Triangle>
-        border;  // for each border edge, as its triangle turns: ends, third corner
+    std::vector<Triangle> border;  // for each border edge, as its triangle runs: ends, third corner
     for (const auto& [edge, users] : by_edge()) {
         if (users.size() != 1) continue;
         const Triangle& t = surface_.triangles[index(users[0])];
@@ -307,7 +315,7 @@ void SurfaceInput::extend_border() {
     std::map<NodeId, NodeId> beyond;
     for (const auto& [v, way] : outward) {
         const double size = std::sqrt(dot(way, way));
-        if (size < 0.1) continue;  // the border turns back: it is a slit there
+        if (size < 0.1) continue;  // the border runs back: it is a slit there
         Position p = surface_.vertices[index(v)];
         for (std::size_t k = 0; k < 3; ++k)
             p[k] += width * way[k] / size;
@@ -330,7 +338,7 @@ CutterSurface SurfaceInput::ready() && {
         surface_.is_closed = drop_repeated();
     }
     if (!surface_.is_closed) {
-        turn_upward();
+        orient_upward();
         extend_border();
     }
     return std::move(surface_);

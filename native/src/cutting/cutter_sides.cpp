@@ -1,61 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutter_sides.hpp"
+#include "cutting/cutter_sides.hpp"
 
 #include <algorithm>
-#include <numeric>
 
+#include "base/parallel_sort.hpp"
 #include "realmodel/base/errors.hpp"
-#include "strata/parallel_sort.hpp"
 
 namespace realmodel::cutting {
 
-CutterSides::Sets::Sets(std::size_t count) : parent_(count), opposite_(count, 0) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-}
-
-std::pair<std::int32_t, bool> CutterSides::Sets::find(std::int32_t i) {
-    std::int32_t root = i;
-    std::uint8_t turned = 0;
-    while (parent_[index(root)] != root) {
-        turned ^= opposite_[index(root)];
-        root = parent_[index(root)];
-    }
-    const bool result = turned != 0;
-    while (parent_[index(i)] != i) {  // the next time it is one step
-        const std::int32_t next = parent_[index(i)];
-        const std::uint8_t own = opposite_[index(i)];
-        parent_[index(i)] = root;
-        opposite_[index(i)] = turned;
-        turned ^= own;
-        i = next;
-    }
-    return {root, result};
-}
-
-bool CutterSides::Sets::join(std::int32_t a, std::int32_t b, bool opposite) {
-    const auto [root_a, turned_a] = find(a);
-    const auto [root_b, turned_b] = find(b);
-    const bool turned = (turned_a != turned_b) != opposite;
-    if (root_a == root_b) return !turned;
-    const auto [low, high] = std::minmax(root_a, root_b);
-    parent_[index(high)] = low;
-    opposite_[index(high)] = turned ? 1 : 0;
-    return true;
-}
+using arrangement::each_edge;
 
 CutterSides::CutterSides(SurfaceOverlay& overlay, const CutterWinding& winding, Progress* progress)
     : overlay_(overlay),
       winding_(winding),
-      sets_(overlay.size() + overlay.model().face_count()),
+      sides_(2 * (overlay.size() + overlay.model().face_count())),
       reaches_(overlay.model().cell_block.size(), 0) {
+    checked_number(2 * (overlay.size() + overlay.model().face_count()), "faces and their parts");
     find_reached_cells();
     refuse_borders();
-    hand_on(progress);
+    join_beside_surface(progress);
     for (std::size_t e = 0; e < winding.edge_count(); ++e) {
-        strata::poll(progress, e);
+        poll(progress, e);
         go_round(e);
     }
     settle();
+}
+
+bool CutterSides::join(std::int32_t a, std::int32_t b, bool opposite) {
+    for (const bool other : {false, true})
+        sides_.join(2 * a + (other ? 1 : 0), 2 * b + (other != opposite ? 1 : 0));
+    return sides_.find(2 * a) != sides_.find(2 * a + 1);
 }
 
 void CutterSides::refuse(const char* kind, const char* text,
@@ -87,15 +61,19 @@ void CutterSides::find_reached_cells() {
     }
 }
 
+/// How many of the uses of an edge are the surface's.
+std::ptrdiff_t CutterSides::own_uses(std::span<const EdgeUse> uses) const {
+    return std::ranges::count_if(
+        uses, [this](const EdgeUse& use) { return overlay_.of_cutter(index(use.item)); });
+}
+
 /// An edge in the model at which an odd number of regions meet: the surface ends there.
 void CutterSides::refuse_borders() const {
     for (std::size_t e = 0; e < winding_.edge_count(); ++e) {
         const auto uses = winding_.edge(e);
-        const auto own = std::count_if(uses.begin(), uses.end(), [this](const EdgeUse& use) {
-            return overlay_.of_cutter(index(use.item));
-        });
         const auto& windings = winding_.sectors(e).windings;
-        if (own % 2 == 0 || std::count(windings.begin(), windings.end(), 0) > 0) continue;
+        if (own_uses(uses) % 2 == 0 || std::count(windings.begin(), windings.end(), 0) > 0)
+            continue;
         refuse("ends_inside", "the surface does not part the model: it ends inside of it",
                uses[0].edge);
     }
@@ -103,11 +81,11 @@ void CutterSides::refuse_borders() const {
 
 /// Faces around a cell that is not reached are on one side of the surface; so are regions that meet
 /// at an edge that is none of the surface's.
-void CutterSides::hand_on(const Progress* progress) {
+void CutterSides::join_beside_surface(const Progress* progress) {
     const ComplexView& model = overlay_.model();
     std::vector<std::int32_t> first(reaches_.size(), -1);
     std::vector<EdgeUse> uses;
-    const auto take = [&](std::int32_t item, std::size_t face, const auto& loops) {
+    const auto join_around = [&](std::int32_t item, std::size_t face, const auto& loops) {
         bool reached = false;
         for (std::size_t k = 0; k < 2; ++k) {
             const std::int32_t cell = model.cell(face, k);
@@ -118,19 +96,20 @@ void CutterSides::hand_on(const Progress* progress) {
             }
             auto& known = first[index(cell)];
             if (known < 0) known = item;
-            sets_.join(known, item, false);
+            join(known, item, false);
         }
         if (reached) each_edge(loops, item, [&](const EdgeUse& use) { uses.push_back(use); });
     };
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
         if (!overlay_.of_cutter(r) && winding_.level(r) < 0)
-            take(static_cast<std::int32_t>(r), overlay_.face_of(r), overlay_.loops(r));
+            join_around(static_cast<std::int32_t>(r), overlay_.face_of(r), overlay_.loops(r));
     }
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         if (!overlay_.is_active(f))
-            take(static_cast<std::int32_t>(overlay_.size() + f), f, std::array{model.face(f)});
+            join_around(static_cast<std::int32_t>(overlay_.size() + f), f,
+                        std::array{model.face(f)});
     }
-    strata::parallel_sort(uses, std::less<>(), overlay_.threads(), progress);
+    parallel_sort(uses, std::less<>(), overlay_.threads(), progress);
     std::size_t edge = 0;
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         while (edge < winding_.edge_count() && winding_.edge(edge)[0].edge < uses[begin].edge)
@@ -138,7 +117,7 @@ void CutterSides::hand_on(const Progress* progress) {
         const bool own =
             edge < winding_.edge_count() && winding_.edge(edge)[0].edge == uses[begin].edge;
         for (; end < uses.size() && uses[end].edge == uses[begin].edge; ++end) {
-            if (!own) sets_.join(uses[begin].item, uses[end].item, false);
+            if (!own) join(uses[begin].item, uses[end].item, false);
         }
     }
 }
@@ -150,7 +129,7 @@ void CutterSides::go_round(std::size_t e) {
     const auto uses = winding_.edge(e);
     const EdgeFan& fan = winding_.sectors(e).fan;
     const auto& windings = winding_.sectors(e).windings;
-    /// Hands one of a blade's items on, with its side as seen from behind or from ahead.
+    /// Visits the items of a blade, each with whether it is seen from its side 1.
     const auto each = [&](std::size_t blade, bool ahead, const auto& visit) {
         for (const std::size_t i : fan.blade(blade)) {
             const EdgeUse& use = uses[i];
@@ -162,26 +141,22 @@ void CutterSides::go_round(std::size_t e) {
             }
         }
     };
-    const auto own = std::count_if(uses.begin(), uses.end(), [this](const EdgeUse& use) {
-        return overlay_.of_cutter(index(use.item));
-    });
+    const bool ends_here = own_uses(uses) % 2 == 1;
     for (std::size_t b = 0; b < fan.blades(); ++b) {
-        if (windings[b] == 0 && (own % 2 == 1 || overlay_.surface().is_closed)) continue;
-        std::int32_t known = -1;
-        bool known_turned = false;
-        const auto join = [&](std::int32_t item, bool turned) {
-            if (known >= 0) {
-                if (!sets_.join(known, item, known_turned != turned))
-                    refuse("ends_inside",
-                           "the surface does not part the model: a way leads round it",
-                           uses[0].edge);
-                return;
+        if (windings[b] == 0 && (ends_here || overlay_.surface().is_closed)) continue;
+        std::int32_t first = -1;
+        bool first_opposite = false;
+        const auto join_all = [&](std::int32_t item, bool opposite) {
+            if (first < 0) {
+                first = item;
+                first_opposite = opposite;
+            } else if (!join(first, item, first_opposite != opposite)) {
+                refuse("ends_inside", "the surface does not part the model: a way leads round it",
+                       uses[0].edge);
             }
-            known = item;
-            known_turned = turned;
         };
-        each(b, true, join);
-        each((b + 1) % fan.blades(), false, join);
+        each(b, true, join_all);
+        each((b + 1) % fan.blades(), false, join_all);
     }
 }
 
@@ -199,7 +174,7 @@ std::int8_t CutterSides::side_at(std::size_t item, bool of_cutter) {
         }
         return side_of_nearest(overlay_.surface(), middle);
     }
-    ExactPoints& points = overlay_.points();
+    exact::SpacePoints& points = overlay_.points();
     const std::pair<std::size_t, int> seen = is_region ? overlay_.view_of(item) : std::pair{2UL, 1};
     const NodeId p = is_region ? overlay_.inner_point(item)
                                : overlay_.exact(overlay_.model().face(item - overlay_.size())[0]);
@@ -208,46 +183,45 @@ std::int8_t CutterSides::side_at(std::size_t item, bool of_cutter) {
         std::array<NodeId, 3> corners;
         for (std::size_t i = 0; i < 3; ++i)
             corners[i] = points.add(overlay_.surface().vertices[index(t[i])]);
-        if (points.ray_passes(seen.first, p, corners, of_cutter && seen.second > 0) != 0)
+        if (exact::ray_crosses(points, seen.first, p, corners, of_cutter && seen.second > 0) != 0)
             inside = !inside;
     }
     return inside ? kBelow : kAbove;
 }
 
+/// The side of an item: what its set is known to have, or else `if_unknown()`.
+template <class Side>
+std::int8_t CutterSides::settled(std::int32_t item, const Side& if_unknown) {
+    std::int8_t& known = of_set_[index(sides_.find(2 * item))];
+    if (known == kOn) {
+        known = if_unknown();
+        of_set_[index(sides_.find(2 * item + 1))] = static_cast<std::int8_t>(-known);
+    }
+    return known;
+}
+
 void CutterSides::settle() {
     const std::size_t count = overlay_.size() + overlay_.model().face_count();
     side_.assign(count, kOn);
-    std::vector<std::int8_t> of_set(count, kOn);
-    const auto turned = [](std::int8_t side, bool opposite) {
-        return static_cast<std::int8_t>(opposite ? -side : side);
-    };
+    of_set_.assign(2 * count, kOn);
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
         if (!winding_.counts(r) || !winding_.touches_model(r)) continue;
-        const auto [root, opposite] = sets_.find(static_cast<std::int32_t>(r));
-        auto& known = of_set[index(root)];
-        if (known == kOn) known = turned(side_at(r, true), opposite);
-        if (!overlay_.surface().is_closed && known != turned(kBelow, opposite)) {
-            const auto& outline = overlay_.loops(r)[0];
-            refuse("two_sides",
-                   "a place in the model is above one part of the surface and below another",
-                   {outline[0], outline[1]});
-        }
+        const std::int8_t side =
+            settled(static_cast<std::int32_t>(r), [&] { return side_at(r, true); });
+        if (overlay_.surface().is_closed || side == kBelow) continue;
+        const auto& outline = overlay_.loops(r)[0];
+        refuse("two_sides",
+               "a place in the model is above one part of the surface and below another",
+               {outline[0], outline[1]});
     }
-    const auto take = [&](std::size_t item) {
-        const auto [root, opposite] = sets_.find(static_cast<std::int32_t>(item));
-        auto& known = of_set[index(root)];
-        if (known == kOn) known = turned(side_at(item, false), opposite);
-        side_[item] = turned(known, opposite);
-    };
-    for (std::size_t r = 0; r < overlay_.size(); ++r) {
-        if (!overlay_.of_cutter(r)) {
-            if (winding_.level(r) < 0) take(r);
-        } else if (winding_.counts(r) && winding_.touches_model(r)) {
-            take(r);
-        }
-    }
-    for (std::size_t f = 0; f < overlay_.model().face_count(); ++f) {
-        if (!overlay_.is_active(f)) take(overlay_.size() + f);
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool is_region = i < overlay_.size();
+        const bool has_side = !is_region ? !overlay_.is_active(i - overlay_.size())
+                              : overlay_.of_cutter(i)
+                                  ? winding_.counts(i) && winding_.touches_model(i)
+                                  : winding_.level(i) < 0;
+        if (has_side)
+            side_[i] = settled(static_cast<std::int32_t>(i), [&] { return side_at(i, false); });
     }
 }
 

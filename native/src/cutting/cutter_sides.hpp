@@ -3,15 +3,16 @@
 
 #include <vector>
 
-#include "cutter_winding.hpp"
-#include "plane_sides.hpp"
+#include "base/disjoint_sets.hpp"
+#include "cutting/cutter_winding.hpp"
+#include "cutting/plane_edges.hpp"
 
 namespace realmodel::cutting {
 
 /// On which side of a surface everything is. Going round its edges, the side changes with every
-/// region of it that is passed, and with nothing else; faces away from it hand their side on. Of a
-/// closed surface that is inside which a way out leaves through an odd number of times; of an open
-/// one that is below which its regions have below them, and all must agree.
+/// region of it that is crossed, and with nothing else; faces away from it have the side of those
+/// beside them. Inside of a closed surface is what a ray leaves through it an odd number of times;
+/// below an open one is what its regions have below them, and all must agree.
 class CutterSides {
 public:
     /// @throws InputError kinds ends_inside, two_sides
@@ -27,22 +28,14 @@ public:
     bool reaches(std::int32_t cell) const { return reaches_[index(cell)] != 0; }
 
 private:
-    /// Sets of items that are on the same side, or on opposite sides.
-    class Sets {
-    public:
-        explicit Sets(std::size_t count);
-        /// The representative of an item, and whether the item is on the other side of it.
-        std::pair<std::int32_t, bool> find(std::int32_t i);
-        /// False where they are known to be otherwise.
-        bool join(std::int32_t a, std::int32_t b, bool opposite);
-
-    private:
-        std::vector<std::int32_t> parent_;
-        std::vector<std::uint8_t> opposite_;
-    };
-
+    /// Notes that two items are on the same side or on opposite ones; false where they are known to
+    /// be otherwise.
+    bool join(std::int32_t a, std::int32_t b, bool opposite);
+    std::ptrdiff_t own_uses(std::span<const EdgeUse> uses) const;
+    template <class Side>
+    std::int8_t settled(std::int32_t item, const Side& if_unknown);
     void find_reached_cells();
-    void hand_on(const Progress* progress);
+    void join_beside_surface(const Progress* progress);
     void go_round(std::size_t edge);
     void refuse_borders() const;
     void settle();
@@ -52,7 +45,9 @@ private:
 
     SurfaceOverlay& overlay_;
     const CutterWinding& winding_;
-    Sets sets_;
+    /// Of each item i: 2 i its side, 2 i + 1 the other one; those that are the same are joined.
+    DisjointSets sides_;
+    std::vector<std::int8_t> of_set_;  ///< of the least member of each set, kOn not yet known
     std::vector<std::uint8_t> reaches_;
     std::vector<std::int8_t> side_;
 };

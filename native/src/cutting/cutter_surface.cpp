@@ -1,31 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutter_surface.hpp"
+#include "cutting/cutter_surface.hpp"
 
 #include <algorithm>
 
-#include "plane_sides.hpp"
+#include "cutting/plane_edges.hpp"
+#include "cutting/triangulate.hpp"
 #include "realmodel/base/errors.hpp"
-#include "triangulate.hpp"
 
 namespace realmodel::cutting {
 
 namespace {
 
-Position minus(const Position& a, const Position& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-double dot(const Position& a, const Position& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/// The place of a triangle that is nearest to p (C. Ericson, "Real-time collision detection", 2005,
+/// The point of a triangle that is nearest to p (C. Ericson, "Real-time collision detection", 2005,
 /// section 5.1.5).
 Position nearest_in_triangle(const Position& p, const Position& a, const Position& b,
                              const Position& c) {
-    const auto along = [](const Position& from, const Position& way, double share) {
-        return Position{from[0] + share * way[0], from[1] + share * way[1],
-                        from[2] + share * way[2]};
+    const auto along = [](const Position& from, const Position& line, double share) {
+        return Position{from[0] + share * line[0], from[1] + share * line[1],
+                        from[2] + share * line[2]};
     };
     const Position ab = minus(b, a), ac = minus(c, a), ap = minus(p, a);
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -58,7 +50,7 @@ std::int8_t side_of_nearest(const CutterSurface& surface, const Position& p) {
         const Position away = minus(p, nearest_in_triangle(p, corners[0], corners[1], corners[2]));
         const double distance = dot(away, away);
         if (distance > least * (1 + 1e-9)) continue;
-        // several triangles are equally near at their edge: the one seen most squarely tells
+        // several triangles are equally near at their edge: the one seen most squarely decides
         const Position normal = polygon_normal(corners);
         const double square = dot(normal, away) / std::sqrt(std::max(dot(normal, normal), 1e-300));
         if (distance < least * (1 - 1e-9) || std::abs(square) > steepest) {

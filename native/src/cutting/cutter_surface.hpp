@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "box_tree.hpp"
+#include "cutting/polygons.hpp"
 #include "realmodel/cutting/cut.hpp"
 
 namespace realmodel::cutting {
@@ -17,8 +17,8 @@ struct CutterSurface {
 };
 
 /// A surface as a user gives it: checked, triangles that are there twice left out of an open one,
-/// its parts turned upward on the whole. Where a border runs along another the edges are divided so
-/// that they are shared; other borders are extended by a seam, wider than rounding.
+/// its parts oriented upward on the whole. Where a border runs along another the edges are divided
+/// so that they are shared; other borders are extended by a seam, wider than rounding.
 /// @throws InputError kinds not_finite, bad_index, no_triangles, branching (an edge of three or
 ///         more triangles of an open surface; items: they), one_sided (items: two neighbours)
 CutterSurface oriented_surface(const TriangleView& surface);
@@ -27,7 +27,7 @@ CutterSurface oriented_surface(const TriangleView& surface);
 /// @throws InputError kind no_block where the model has no cell of it
 CutterSurface block_boundary(const ComplexView& model, std::int32_t block);
 
-/// On which side of a surface a place lies that is not on it: the side of its nearest triangle.
+/// On which side of a surface a position is that is not on it: the side of its nearest triangle.
 std::int8_t side_of_nearest(const CutterSurface& surface, const Position& p);
 
 /// A face divided into triangles, always the same ones for the same face: numbers of its corners.

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cutter_winding.hpp"
+#include "cutting/cutter_winding.hpp"
 
 #include <algorithm>
 
-#include "strata/parallel_counts.hpp"
-#include "strata/parallel_sort.hpp"
+#include "base/parallel.hpp"
+#include "base/parallel_sort.hpp"
 
 namespace realmodel::cutting {
+
+using arrangement::each_edge;
 
 namespace {
 
@@ -16,9 +18,10 @@ std::vector<NodeId> from_least(const std::vector<NodeId>& loop) {
     std::vector<NodeId> best;
     for (std::size_t i = 0; i < loop.size(); ++i) {
         if (loop[i] != least) continue;
-        std::vector<NodeId> turned(loop);
-        std::rotate(turned.begin(), turned.begin() + static_cast<std::ptrdiff_t>(i), turned.end());
-        if (best.empty() || turned < best) best = std::move(turned);
+        std::vector<NodeId> rotated(loop);
+        std::rotate(rotated.begin(), rotated.begin() + static_cast<std::ptrdiff_t>(i),
+                    rotated.end());
+        if (best.empty() || rotated < best) best = std::move(rotated);
     }
     return best;
 }
@@ -44,7 +47,7 @@ CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : over
     // regions that reach beyond the model first: there is nothing around them
     for (const bool beyond : {true, false}) {
         for (std::size_t r = 0; r < overlay.size(); ++r) {
-            strata::poll(progress, r);
+            poll(progress, r);
             if (!counts(r) || winding_[2 * r] >= 0) continue;
             if (beyond) {
                 const auto& outline = overlay.loops(r)[0];
@@ -57,7 +60,7 @@ CutterWinding::CutterWinding(SurfaceOverlay& overlay, Progress* progress) : over
                 winding_[2 * r] = number(cast(r));
                 Winding above = around(r, 0);
                 for (const std::int32_t face_region : lying_on_[r])
-                    pass(above, index(face_region), level_turn(index(face_region)) > 0 ? 1 : 0);
+                    cross(above, index(face_region), level_facing(index(face_region)) > 0 ? 1 : 0);
                 winding_[2 * r + 1] = number(std::move(above));
             }
             std::vector<std::int32_t> open(edges_of_[r]);
@@ -94,22 +97,22 @@ void CutterWinding::find_coinciding() {
     const std::size_t count = overlay_.size();
     counts_.assign(count, 0);
     level_.assign(count, -1);
-    level_turn_.assign(count, 0);
+    level_facing_.assign(count, 0);
     lying_on_.resize(count);
     std::map<std::vector<NodeId>, std::pair<std::int32_t, int>> outlines;  // first region, how many
-    const auto find = [&outlines](std::vector<NodeId> outline, std::int8_t& turn) {
+    const auto find = [&outlines](std::vector<NodeId> outline, std::int8_t& facing) {
         auto found = outlines.find(from_least(outline));
-        turn = 1;
+        facing = 1;
         if (found != outlines.end()) return found;
         std::reverse(outline.begin(), outline.end());
-        turn = -1;
+        facing = -1;
         return outlines.find(from_least(outline));
     };
-    std::int8_t turn = 1;
+    std::int8_t facing = 1;
     for (std::size_t r = 0; r < count; ++r) {
         if (!overlay_.of_cutter(r)) continue;
         const auto& outline = overlay_.loops(r)[0];
-        const auto found = find(outline, turn);
+        const auto found = find(outline, facing);
         if (found != outlines.end()) {
             ++found->second.second;
         } else {
@@ -121,10 +124,10 @@ void CutterWinding::find_coinciding() {
             overlay_.surface().is_closed ? static_cast<std::uint8_t>(first.second % 2) : 1;
     for (std::size_t r = 0; r < count; ++r) {
         if (overlay_.of_cutter(r)) continue;
-        const auto found = find(overlay_.loops(r)[0], turn);
+        const auto found = find(overlay_.loops(r)[0], facing);
         if (found == outlines.end() || counts_[index(found->second.first)] == 0) continue;
         level_[r] = found->second.first;
-        level_turn_[r] = turn;
+        level_facing_[r] = facing;
         lying_on_[index(level_[r])].push_back(static_cast<std::int32_t>(r));
     }
 }
@@ -136,7 +139,7 @@ void CutterWinding::collect_uses(const Progress* progress) {
         if (!counts(r)) continue;
         each_edge(overlay_.loops(r), 0, [&](const EdgeUse& use) { edges.push_back(use.edge); });
     }
-    strata::parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
+    parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     for (std::size_t r = 0; r < count; ++r) {
         if (overlay_.of_cutter(r) && !counts(r)) continue;
@@ -144,7 +147,7 @@ void CutterWinding::collect_uses(const Progress* progress) {
             if (std::binary_search(edges.begin(), edges.end(), use.edge)) uses_.push_back(use);
         });
     }
-    strata::parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
+    parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
     edges_of_.resize(count);
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
         for (; end < uses_.size() && uses_[end].edge == uses_[begin].edge; ++end) {
@@ -158,11 +161,11 @@ void CutterWinding::collect_uses(const Progress* progress) {
 
 void CutterWinding::find_fans(const Progress* progress) {
     sectors_.resize(edge_count());
-    strata::parallel_ranges(sectors_.size(), 1 << 8, overlay_.threads(), progress,
-                            [this](std::size_t begin, std::size_t end) {
-                                for (std::size_t e = begin; e < end; ++e)
-                                    sectors_[e].fan = fan_of(overlay_, edge(e));
-                            });
+    parallel_ranges(sectors_.size(), 1 << 8, overlay_.threads(), progress,
+                    [this](std::size_t begin, std::size_t end) {
+                        for (std::size_t e = begin; e < end; ++e)
+                            sectors_[e].fan = overlay_.fan_of(edge(e));
+                    });
 }
 
 std::int32_t CutterWinding::number(Winding&& winding) {
@@ -172,14 +175,14 @@ std::int32_t CutterWinding::number(Winding&& winding) {
     return found->second;
 }
 
-/// What changes where a face's region is passed to its side `entered`.
-void CutterWinding::pass(Winding& winding, std::size_t region, std::size_t entered) const {
+/// What changes where a face's region is crossed to its side `entered`.
+void CutterWinding::cross(Winding& winding, std::size_t region, std::size_t entered) const {
     const std::size_t face = overlay_.face_of(region);
     add(winding, overlay_.model().cell(face, 1 - entered), -1);
     add(winding, overlay_.model().cell(face, entered), 1);
 }
 
-/// Goes once around an edge, of which one region is known, and tells its sectors and regions.
+/// Finds the sectors and regions around an edge, of which one region is known.
 void CutterWinding::spread(std::size_t e, Progress* progress) {
     if (progress != nullptr && (e & 0xff) == 0) progress->check();
     const auto uses = edge(e);
@@ -208,7 +211,7 @@ void CutterWinding::spread(std::size_t e, Progress* progress) {
             Winding winding = known_[index(behind)];
             for (const std::size_t i : sectors.fan.blade(b)) {
                 if (!overlay_.of_cutter(index(uses[i].item)))
-                    pass(winding, index(uses[i].item), uses[i].ahead());
+                    cross(winding, index(uses[i].item), uses[i].ahead());
             }
             ahead = number(std::move(winding));
         }
@@ -222,16 +225,16 @@ void CutterWinding::spread(std::size_t e, Progress* progress) {
     }
 }
 
-/// What is just below a region: told by the triangles that a ray from there passes.
+/// What is just below a region, by the triangles that a ray from there crosses.
 Winding CutterWinding::cast(std::size_t region) {
     const NodeId p = overlay_.inner_point(region);
     const auto view = overlay_.view_of(region);
     const auto axis = view.first;
-    const bool is_turned = view.second > 0;
-    ExactPoints& points = overlay_.points();
+    const bool faces_ray = view.second > 0;
+    exact::SpacePoints& points = overlay_.points();
     Winding winding;
     overlay_.each_triangle(axis, p, [&](std::size_t face, const std::array<NodeId, 3>& corners) {
-        const int side = points.ray_passes(axis, p, corners, is_turned);
+        const int side = exact::ray_crosses(points, axis, p, corners, faces_ray);
         if (side == 0) return;
         add(winding, overlay_.model().cell(face, 0), side);
         add(winding, overlay_.model().cell(face, 1), -side);

@@ -4,11 +4,14 @@
 #include <map>
 #include <vector>
 
-#include "edge_fan.hpp"
+#include "cutting/surface_overlay.hpp"
 
 namespace realmodel::cutting {
 
-/// How often the boundary of each cell goes round a place: once around what is within the cell.
+using arrangement::EdgeFan;
+using arrangement::EdgeUse;
+
+/// How often the boundary of each cell goes round a point: once around what is within the cell.
 /// Where rounding has put faces through each other, cells may overlap (two are there), be inside
 /// out (-1 times), or leave gaps. Cells that do not go round it are left out.
 using Winding = std::vector<std::pair<std::int32_t, std::int32_t>>;
@@ -17,18 +20,18 @@ using Winding = std::vector<std::pair<std::int32_t, std::int32_t>>;
 /// goes round either side of them.
 ///
 /// That is decided exactly and without asking that the cells fit together: known on one side of one
-/// region, it changes around each edge by the faces that are passed.
+/// region, it changes around each edge by the faces that are crossed.
 class CutterWinding {
 public:
     CutterWinding(SurfaceOverlay& overlay, Progress* progress);
 
-    /// Regions of the surface that are boundaries: of several in one place one is, or none where a
+    /// Regions of the surface that are boundaries: of several that coincide one is, or none where a
     /// closed surface is there an even number of times.
     bool counts(std::size_t region) const { return counts_[region] != 0; }
-    /// The region of the surface that a face's region lies on, -1 none, and whether both turn the
+    /// The region of the surface that a face's region lies on, -1 none, and whether both face the
     /// same way (1) or not (-1).
     std::int32_t level(std::size_t region) const { return level_[region]; }
-    std::int8_t level_turn(std::size_t region) const { return level_turn_[region]; }
+    std::int8_t level_facing(std::size_t region) const { return level_facing_[region]; }
     /// What is just below (side 0, where it is seen clockwise from) or above a region that counts.
     const Winding& around(std::size_t region, std::size_t side) const {
         return known_[index(winding_[2 * region + side])];
@@ -58,13 +61,13 @@ private:
     void find_fans(const Progress* progress);
     void spread(std::size_t edge, Progress* progress);
     std::int32_t number(Winding&& winding);
-    void pass(Winding& winding, std::size_t region, std::size_t entered) const;
+    void cross(Winding& winding, std::size_t region, std::size_t entered) const;
     Winding cast(std::size_t region);
 
     SurfaceOverlay& overlay_;
     std::vector<std::uint8_t> counts_;
     std::vector<std::int32_t> level_;
-    std::vector<std::int8_t> level_turn_;
+    std::vector<std::int8_t> level_facing_;
     std::vector<EdgeUse> uses_;
     std::vector<std::size_t> edge_begins_{0};
     std::vector<Sectors> sectors_;

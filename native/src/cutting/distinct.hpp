@@ -3,14 +3,14 @@
 
 #include <set>
 
-#include "polygons.hpp"
+#include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {
 
-/// Where a place may move to: anywhere, on its height only, or rather up and down than aside.
+/// Where a point may move to: anywhere, on its height only, or rather up and down than aside.
 enum class Freedom { kAny, kLevel, kUpright };
 
-/// A place as near to p as doubles allow that is not taken yet; it is then.
+/// A position as near to p as doubles allow that is not taken yet; it is then.
 Position free_position_beside(const Position& p, Freedom freedom, std::set<Position>& taken);
 
 }  // namespace realmodel::cutting

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A vertical section between two places: the section of the whole plane, cut off at both ends.
+// A vertical section between two points: the section of the whole plane, cut off at both ends.
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "plane_sides.hpp"
-#include "polygons.hpp"
+#include "cutting/plane_edges.hpp"
+#include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {
 
 namespace {
 
 /// The part of a section above a plane. Convex polygons stay convex and in one piece (I. E.
-/// Sutherland and G. W. Hodgman 1974); neighbours are cut in the same places.
+/// Sutherland and G. W. Hodgman 1974); neighbors are cut in the same points.
 class SectionClip {
 public:
-    SectionClip(const Section& section, const PlaneDistance& distance)
-        : section_(section), distance_(distance), number_(section.vertices.size(), -1) {}
+    SectionClip(const Section& section, const exact::OrientedPlane& plane)
+        : section_(section), plane_(plane), number_(section.vertices.size(), -1) {}
 
     Section above() {
         for (const Position& p : section_.vertices)
-            sides_.push_back(distance_.side(p));
+            sides_.push_back(plane_.side(p));
         std::vector<NodeId> polygon;
         for (std::size_t k = 0; k < section_.cells.size(); ++k) {
             const auto begin = static_cast<std::size_t>(section_.offsets[k]);
@@ -32,7 +32,7 @@ public:
                 const NodeId b = section_.polygon_vertices[i + 1 < end ? i + 1 : begin];
                 any = any || side(a) == kAbove;
                 if (side(a) != kBelow) polygon.push_back(kept(a));
-                if (side(a) * side(b) < 0) polygon.push_back(crossing(a, b));
+                if (side(a) * side(b) < 0) polygon.push_back(intersection(a, b));
             }
             if (!any || polygon.size() < 3) continue;
             result_.polygon_vertices.insert(result_.polygon_vertices.end(), polygon.begin(),
@@ -56,12 +56,12 @@ private:
         if (number < 0) number = add(section_.vertices[index(v)]);
         return number;
     }
-    NodeId crossing(NodeId a, NodeId b) {
+    NodeId intersection(NodeId a, NodeId b) {
         const auto [found, is_new] =
-            crossings_.try_emplace(std::pair(std::min(a, b), std::max(a, b)), -1);
+            intersections_.try_emplace(std::pair(std::min(a, b), std::max(a, b)), -1);
         if (is_new) {
-            found->second = add(distance_.crossing(section_.vertices[index(found->first.first)],
-                                                   section_.vertices[index(found->first.second)]));
+            found->second = add(plane_.intersection(section_.vertices[index(found->first.first)],
+                                                    section_.vertices[index(found->first.second)]));
         }
         return found->second;
     }
@@ -81,10 +81,10 @@ private:
     }
 
     const Section& section_;
-    const PlaneDistance& distance_;
+    const exact::OrientedPlane& plane_;
     std::vector<std::int8_t> sides_;
     std::vector<NodeId> number_;
-    std::map<std::pair<NodeId, NodeId>, NodeId> crossings_;
+    std::map<std::pair<NodeId, NodeId>, NodeId> intersections_;
     Section result_;
 };
 
@@ -95,8 +95,8 @@ Section fence_panel(const ComplexView& model, const std::array<double, 2>& start
     const double dx = end[0] - start[0], dy = end[1] - start[1];
     const Position first{start[0], start[1], 0}, last{end[0], end[1], 0};
     const Section whole = section_by_plane(model, {first, {dy, -dx, 0}}, threads, progress);
-    const Section begun = SectionClip(whole, PlaneDistance({first, {dx, dy, 0}})).above();
-    return SectionClip(begun, PlaneDistance({last, {-dx, -dy, 0}})).above();
+    const Section begun = SectionClip(whole, checked_plane({first, {dx, dy, 0}})).above();
+    return SectionClip(begun, checked_plane({last, {-dx, -dy, 0}})).above();
 }
 
 }  // namespace realmodel::cutting

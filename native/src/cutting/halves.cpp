@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "halves.hpp"
+#include "cutting/halves.hpp"
 
 #include <algorithm>
 
-#include "strata/parallel_chunks.hpp"
-#include "strata/volumes.hpp"
+#include "base/parallel.hpp"
+#include "strata/cells/volumes.hpp"
 
 namespace realmodel::cutting {
 
@@ -39,8 +39,8 @@ private:
 };
 
 void assemble(const ComplexView& model, const std::vector<Position>& new_positions,
-              const Pieces& pieces, const PieceParts& parts, const std::vector<HalfCell>& cells,
-              std::int8_t half, strata::CellComplex& complex, std::vector<std::int32_t>& origin,
+              const Pieces& pieces, const std::vector<HalfCell>& cells, std::int8_t half,
+              strata::CellComplex& complex, std::vector<std::int32_t>& origin,
               const Progress* progress) {
     std::vector<std::int32_t> number(cells.size(), -1);
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -52,40 +52,40 @@ void assemble(const ComplexView& model, const std::vector<Position>& new_positio
     Renumbering renumbered(model, new_positions, complex.vertices);
     complex.face_offsets.push_back(0);
     for (std::size_t p = 0; p < pieces.size(); ++p) {
-        strata::poll(progress, p);
+        poll(progress, p);
         std::array<std::int32_t, 2> own{-1, -1};
         for (std::size_t k = 0; k < 2; ++k) {
-            if (parts[p][k] >= 0) own[k] = number[index(parts[p][k])];
+            if (pieces[p].parts[k] >= 0) own[k] = number[index(pieces[p].parts[k])];
         }
         if (own[0] < 0 && own[1] < 0) continue;
         const auto nodes = pieces.polygons[p];
-        const bool turned = own[0] < 0;
+        const bool reversed = own[0] < 0;
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             complex.face_vertices.push_back(
-                renumbered(turned ? nodes[nodes.size() - 1 - i] : nodes[i]));
+                renumbered(reversed ? nodes[nodes.size() - 1 - i] : nodes[i]));
         }
         complex.face_offsets.push_back(static_cast<std::int64_t>(complex.face_vertices.size()));
-        complex.face_cells.push_back(turned ? std::array{own[1], -1} : own);
-        const bool laid_bare = (own[0] < 0 || own[1] < 0) && pieces.cells[p][1] >= 0;
-        complex.face_surface.push_back(laid_bare || pieces.face[p] < 0
+        complex.face_cells.push_back(reversed ? std::array{own[1], -1} : own);
+        const bool is_exposed = (own[0] < 0 || own[1] < 0) && pieces[p].cells[1] >= 0;
+        complex.face_surface.push_back(is_exposed || pieces[p].face < 0
                                            ? strata::kCutFace
-                                           : model.face_surface[index(pieces.face[p])]);
+                                           : model.face_surface[index(pieces[p].face)]);
     }
 }
 
 }  // namespace
 
 Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_positions,
-                    const Pieces& pieces, const PieceParts& parts,
-                    const std::vector<HalfCell>& half_cells, int threads, Progress* progress) {
+                    const Pieces& pieces, const std::vector<HalfCell>& half_cells, int threads,
+                    Progress* progress) {
     Cut cut;
-    strata::parallel_chunks(3, threads, progress, [&](std::size_t which) {
+    parallel_chunks(3, threads, progress, [&](std::size_t which) {
         if (which == 0) {
-            assemble(model, new_positions, pieces, parts, half_cells, kBelow, cut.below,
-                     cut.below_cells, progress);
+            assemble(model, new_positions, pieces, half_cells, kBelow, cut.below, cut.below_cells,
+                     progress);
         } else if (which == 1) {
-            assemble(model, new_positions, pieces, parts, half_cells, kAbove, cut.above,
-                     cut.above_cells, progress);
+            assemble(model, new_positions, pieces, half_cells, kAbove, cut.above, cut.above_cells,
+                     progress);
         } else {
             cut.section = assemble_section(model, new_positions, pieces);
         }
@@ -100,17 +100,17 @@ Section assemble_section(const ComplexView& model, const std::vector<Position>& 
     Section section;
     Renumbering renumbered(model, new_positions, section.vertices);
     for (std::size_t p = 0; p < pieces.size(); ++p) {
-        if (!pieces.in_section(p)) continue;
-        const auto& sides = pieces.sides[p];
-        const bool turned = sides[0] == kAbove || sides[1] == kBelow;
+        if (!pieces[p].is_in_section()) continue;
+        const auto& sides = pieces[p].sides;
+        const bool reversed = sides[0] == kAbove || sides[1] == kBelow;
         const auto nodes = pieces.polygons[p];
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             section.polygon_vertices.push_back(
-                renumbered(turned ? nodes[nodes.size() - 1 - i] : nodes[i]));
+                renumbered(reversed ? nodes[nodes.size() - 1 - i] : nodes[i]));
         }
         section.offsets.push_back(static_cast<std::int64_t>(section.polygon_vertices.size()));
-        const auto& cells = pieces.cells[p];
-        section.cells.push_back(turned ? std::array{cells[1], cells[0]} : cells);
+        const auto& cells = pieces[p].cells;
+        section.cells.push_back(reversed ? std::array{cells[1], cells[0]} : cells);
     }
     return section;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model_check.hpp"
+#include "cutting/model_check.hpp"
 
 #include <algorithm>
 #include <cmath>

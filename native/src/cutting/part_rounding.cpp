@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "part_rounding.hpp"
+#include "cutting/part_rounding.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
-#include "box_tree.hpp"
-#include "distinct.hpp"
+#include "cutting/distinct.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
 
+using spatial::Box;
+
 PartRounding::PartRounding(const ComplexView& model, std::vector<Position>& new_positions,
-                           Pieces& pieces, PieceParts& parts, std::vector<HalfCell>& half_cells,
+                           Pieces& pieces, std::vector<HalfCell>& half_cells,
                            const std::array<bool, 2>& touches)
     : model_(model),
       new_positions_(new_positions),
       pieces_(pieces),
-      parts_(parts),
       half_cells_(half_cells),
       touches_(touches) {
+    checked_number(model.vertex_count() + new_positions.size(), "vertices and new nodes");
     vertices_.reserve(model.vertex_count());
     for (std::size_t v = 0; v < model.vertex_count(); ++v)
         vertices_.push_back(model.vertex(static_cast<NodeId>(v)));
@@ -40,7 +43,7 @@ bool PartRounding::is_changed(std::int32_t part) const {
 }
 
 bool PartRounding::is_wall(std::size_t piece) const {
-    const std::int32_t face = pieces_.face[piece];
+    const std::int32_t face = pieces_[piece].face;
     return face >= 0 && model_.face_surface[index(face)] == strata::kWall;
 }
 
@@ -62,19 +65,18 @@ void PartRounding::find_pieces_of_parts() {
     on_wall_.assign(nodes, 0);
     is_near_.assign(nodes, 0);
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        const bool changed =
-            std::any_of(parts_[p].begin(), parts_[p].end(),
-                        [this](std::int32_t part) { return part >= 0 && is_changed(part); });
+        const bool changed = std::ranges::any_of(
+            pieces_[p].parts, [this](std::int32_t part) { return part >= 0 && is_changed(part); });
         if (!changed) continue;
         for (const NodeId node : pieces_.polygons[p])
             is_near_[index(node)] = 1;
     }
     first_.assign(half_cells_.size() + 1, 0);
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        for (const std::int32_t part : parts_[p]) {
+        for (const std::int32_t part : pieces_[p].parts) {
             if (part >= 0) ++first_[index(part) + 1];
         }
-        const std::int32_t face = pieces_.face[p];
+        const std::int32_t face = pieces_[p].face;
         if (face < 0) continue;
         const std::int32_t surface = model_.face_surface[index(face)];
         if (surface != strata::kBase && surface != strata::kWall) continue;
@@ -86,7 +88,7 @@ void PartRounding::find_pieces_of_parts() {
     pieces_of_.resize(static_cast<std::size_t>(first_.back()));
     std::vector<std::int64_t> next(first_.begin(), first_.end() - 1);
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        for (const std::int32_t part : parts_[p]) {
+        for (const std::int32_t part : pieces_[p].parts) {
             if (part >= 0)
                 pieces_of_[static_cast<std::size_t>(next[index(part)]++)] =
                     static_cast<std::int32_t>(p);
@@ -97,7 +99,7 @@ void PartRounding::find_pieces_of_parts() {
 /// A cutter that runs along the base but for rounding is taken to run along it: so do its nodes.
 void PartRounding::level_base() {
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        const std::int32_t face = pieces_.face[p];
+        const std::int32_t face = pieces_[p].face;
         if (face < 0 || model_.face_surface[index(face)] != strata::kBase) continue;
         const double height = vertices_[index(model_.face(index(face))[0])][2];
         for (const NodeId node : pieces_.polygons[p]) {
@@ -130,14 +132,14 @@ bool PartRounding::stays_sound(std::int32_t part) const {
     std::vector<Use> uses;
     std::vector<std::vector<NodeId>> faces;
     Box box;
-    for (auto i = first_[index(part)]; i < first_[index(part) + 1]; ++i) {
-        const auto piece = index(pieces_of_[static_cast<std::size_t>(i)]);
+    for (const std::int32_t own : pieces_of(index(part))) {
+        const auto piece = index(own);
         std::vector<NodeId> loop = contracted(piece);
         if (loop.empty()) continue;
-        const int turned = parts_[piece][0] == part ? 1 : -1;
+        const int facing = pieces_[piece].parts[0] == part ? 1 : -1;
         for (std::size_t k = 0; k < loop.size(); ++k) {
             const NodeId a = loop[k], b = loop[(k + 1) % loop.size()];
-            uses.push_back({std::min(a, b), std::max(a, b), a < b ? turned : -turned});
+            uses.push_back({std::min(a, b), std::max(a, b), a < b ? facing : -facing});
             box.include(at(a));
         }
         std::sort(loop.begin(), loop.end());
@@ -159,19 +161,20 @@ bool PartRounding::stays_sound(std::int32_t part) const {
     return true;
 }
 
-void PartRounding::contract() {
-    std::map<Position, NodeId>
-        first_at;  // of the places of new nodes: the model's vertex, or the first
-    becomes_.resize(model_.vertex_count() + new_positions_.size());
-    for (std::size_t n = 0; n < becomes_.size(); ++n)
-        becomes_[n] = static_cast<NodeId>(n);
+/// Notes of new nodes that came to lie where a vertex of the model or an earlier new node is that
+/// they become it.
+/// @return these nodes
+std::vector<NodeId> PartRounding::find_contractions() {
+    std::map<Position, NodeId> first_at;  // the model's vertex, or the first new node; -1 neither
     for (const Position& p : new_positions_)
         first_at.try_emplace(p, -1);
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
         const auto found = first_at.find(vertices_[v]);
         if (found != first_at.end()) found->second = static_cast<NodeId>(v);
     }
-    std::vector<NodeId> gone;
+    becomes_.resize(vertices_.size() + new_positions_.size());
+    std::iota(becomes_.begin(), becomes_.end(), 0);
+    std::vector<NodeId> contracted;
     for (std::size_t i = 0; i < new_positions_.size(); ++i) {
         const auto node = static_cast<NodeId>(vertices_.size() + i);
         NodeId& first = first_at.find(new_positions_[i])->second;
@@ -179,69 +182,63 @@ void PartRounding::contract() {
             first = node;
         } else {
             becomes_[index(node)] = first;
-            gone.push_back(node);
+            contracted.push_back(node);
         }
     }
-    if (gone.empty()) return;
+    return contracted;
+}
+
+/// Takes contractions back until all parts around those that are left stay sound.
+void PartRounding::keep_sound(const std::vector<NodeId>& contracted) {
     std::vector<std::uint8_t> is_involved(becomes_.size(), 0);
-    for (const NodeId node : gone)
+    for (const NodeId node : contracted)
         is_involved[index(node)] = is_involved[index(becomes_[index(node)])] = 1;
     std::set<std::int32_t> open;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        const auto nodes = pieces_.polygons[p];
-        if (std::none_of(nodes.begin(), nodes.end(),
-                         [&](NodeId node) { return is_involved[index(node)] != 0; }))
+        if (std::ranges::none_of(pieces_.polygons[p],
+                                 [&](NodeId node) { return is_involved[index(node)] != 0; }))
             continue;
-        for (const std::int32_t part : parts_[p]) {
+        for (const std::int32_t part : pieces_[p].parts) {
             if (part >= 0) open.insert(part);
         }
     }
-    std::map<NodeId, std::set<std::int32_t>> parts_at;  // by nodes that go: the parts around them
-    for (const std::int32_t part : open) {
-        for (auto i = first_[index(part)]; i < first_[index(part) + 1]; ++i) {
-            for (const NodeId node :
-                 pieces_.polygons[index(pieces_of_[static_cast<std::size_t>(i)])]) {
-                if (becomes_[index(node)] != node) parts_at[node].insert(part);
+    const auto each_contracted = [this](std::int32_t part, const auto& visit) {
+        for (const std::int32_t piece : pieces_of(index(part))) {
+            for (const NodeId node : pieces_.polygons[index(piece)]) {
+                if (becomes_[index(node)] != node) visit(node);
             }
         }
-    }
+    };
+    std::map<NodeId, std::set<std::int32_t>> parts_at;
+    for (const std::int32_t part : open)
+        each_contracted(part, [&](NodeId node) { parts_at[node].insert(part); });
     while (!open.empty()) {
         const std::int32_t part = *open.begin();
         open.erase(open.begin());
         if (stays_sound(part)) continue;
         // its nodes stay apart; the parts around these are looked at again
-        for (auto i = first_[index(part)]; i < first_[index(part) + 1]; ++i) {
-            for (const NodeId node :
-                 pieces_.polygons[index(pieces_of_[static_cast<std::size_t>(i)])]) {
-                if (becomes_[index(node)] == node) continue;
-                becomes_[index(node)] = node;
-                open.insert(parts_at[node].begin(), parts_at[node].end());
-            }
-        }
+        each_contracted(part, [&](NodeId node) {
+            becomes_[index(node)] = node;
+            open.insert(parts_at[node].begin(), parts_at[node].end());
+        });
         open.erase(part);
     }
-    take_over_contractions();
 }
 
-void PartRounding::take_over_contractions() {
+void PartRounding::contract() {
+    const std::vector<NodeId> nodes = find_contractions();
+    if (nodes.empty()) return;
+    keep_sound(nodes);
     Pieces kept;
-    PieceParts parts;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const std::vector<NodeId> loop = contracted(p);
-        if (loop.empty()) continue;
-        kept.polygons.add(loop);
-        kept.face.push_back(pieces_.face[p]);
-        kept.cells.push_back(pieces_.cells[p]);
-        kept.sides.push_back(pieces_.sides[p]);
-        kept.level.push_back(pieces_.level[p]);
-        parts.push_back(parts_[p]);
+        if (!loop.empty()) kept.add(loop, pieces_[p]);
     }
     pieces_ = std::move(kept);
-    parts_ = std::move(parts);
     find_pieces_of_parts();
 }
 
-/// The nearest free place beside a node that its faces allow.
+/// Moves a node to the nearest free position beside it that its faces allow.
 void PartRounding::move_aside(NodeId node) {
     Position& p = moving(node);
     const bool fixed = on_base_[index(node)] != 0;
@@ -291,9 +288,8 @@ void PartRounding::give_extents() {
         if (!is_changed(static_cast<std::int32_t>(part))) continue;
         nodes.clear();
         Box box;
-        for (auto i = first_[part]; i < first_[part + 1]; ++i) {
-            for (const NodeId node :
-                 pieces_.polygons[index(pieces_of_[static_cast<std::size_t>(i)])]) {
+        for (const std::int32_t piece : pieces_of(part)) {
+            for (const NodeId node : pieces_.polygons[index(piece)]) {
                 nodes.push_back(node);
                 box.include(at(node));
             }
@@ -316,8 +312,8 @@ void PartRounding::give_extents() {
 /// Parts that lost all of their polygons to others are no more.
 void PartRounding::drop_empty() {
     std::vector<std::int32_t> number(half_cells_.size(), -1);
-    for (const auto& part : parts_) {
-        for (const std::int32_t own : part) {
+    for (const Piece& piece : pieces_.origins) {
+        for (const std::int32_t own : piece.parts) {
             if (own >= 0) number[index(own)] = 0;
         }
     }
@@ -328,8 +324,8 @@ void PartRounding::drop_empty() {
         kept.push_back(half_cells_[part]);
     }
     half_cells_ = std::move(kept);
-    for (auto& part : parts_) {
-        for (std::int32_t& own : part) {
+    for (Piece& piece : pieces_.origins) {
+        for (std::int32_t& own : piece.parts) {
             if (own >= 0) own = number[index(own)];
         }
     }

@@ -2,26 +2,26 @@
 #pragma once
 
 #include <set>
+#include <span>
 #include <vector>
 
-#include "halves.hpp"
+#include "cutting/halves.hpp"
 
 namespace realmodel::cutting {
 
 /// Makes sound parts of exact ones whose nodes were rounded to doubles.
 ///
-/// Nodes that came to lie in one place become one, and polygons between them vanish, wherever the
-/// parts around stay closed and keep an extent. Others get places beside it, parts and upright
-/// walls without extent are given one, all by single units in the last place; nodes on the flat
-/// base stay on it, and those on walls move up or down before they move aside. Last, polygons that
-/// are no longer convex are divided.
+/// Nodes that came to lie in one position become one, and polygons between them vanish, wherever
+/// the parts around stay closed and keep an extent. Others get positions beside it, parts and
+/// upright walls without extent are given one, all by single units in the last place; nodes on the
+/// flat base stay on it, and those on walls move up or down before they move aside. Last, polygons
+/// that are no longer convex are divided.
 class PartRounding {
 public:
     /// @param new_positions  of nodes after the model's vertices; they may move
     /// @param touches        whether parts below, above may use an edge more than twice
     PartRounding(const ComplexView& model, std::vector<Position>& new_positions, Pieces& pieces,
-                 PieceParts& parts, std::vector<HalfCell>& half_cells,
-                 const std::array<bool, 2>& touches);
+                 std::vector<HalfCell>& half_cells, const std::array<bool, 2>& touches);
     void run();
 
 private:
@@ -31,24 +31,33 @@ private:
     bool is_changed(std::int32_t part) const;
     bool is_wall(std::size_t piece) const;
 
+    std::span<const std::int32_t> pieces_of(std::size_t part) const {
+        return {pieces_of_.data() + first_[part],
+                static_cast<std::size_t>(first_[part + 1] - first_[part])};
+    }
     void find_pieces_of_parts();
     void level_base();
     void contract();
+    std::vector<NodeId> find_contractions();
+    void keep_sound(const std::vector<NodeId>& contracted);
     bool stays_sound(std::int32_t part) const;
     std::vector<NodeId> contracted(std::size_t piece) const;
-    void take_over_contractions();
     void set_apart();
     void move_aside(NodeId node);
     void give_extents();
+    struct Outer;
+    int winding(std::size_t piece) const;
+    bool glue(std::span<const std::size_t> equal, std::int8_t half, Pieces& glued);
     void glue_doubled();
     void drop_hollow();
+    bool is_bent(std::size_t piece) const;
+    NodeId add_middle(std::size_t piece);
     void divide_bent();
     void drop_empty();
 
     const ComplexView& model_;
     std::vector<Position>& new_positions_;
     Pieces& pieces_;
-    PieceParts& parts_;
     std::vector<HalfCell>& half_cells_;
     std::array<bool, 2> touches_;
 
@@ -57,10 +66,10 @@ private:
     std::vector<NodeId> becomes_;         ///< of nodes: the one that they are contracted to
     std::vector<std::uint8_t> on_base_, on_wall_;  ///< of nodes
     std::vector<std::uint8_t> is_near_;     ///< of nodes: of a part that is less than its cell
-    std::vector<std::uint8_t> is_doubled_;  ///< of pieces  ///< of nodes
+    std::vector<std::uint8_t> is_doubled_;  ///< of pieces: another of a half has its nodes
     std::vector<std::int64_t> first_;       ///< of parts, in pieces_of_
-    std::vector<std::int32_t> pieces_of_;
-    std::set<Position> taken_;
+    std::vector<std::int32_t> pieces_of_;   ///< the pieces around each part
+    std::set<Position> taken_;              ///< positions of nodes
 };
 
 }  // namespace realmodel::cutting

@@ -1,28 +1,50 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "plane_sides.hpp"
-#include "polygons.hpp"
+#include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {
 
-/// Faces of a model cut up by a cutter, and the caps: what halves are put together from. A piece
-/// turns counter-clockwise seen from outside of the first of its two cells. A cap has one cell
-/// twice: first the part below it, then the part above.
+/// Where a polygon of a cut model comes from, and what is on either side of it. It turns
+/// counter-clockwise seen from outside of the first of its two cells. A cap has one cell twice:
+/// first the part below it, then the part above.
+struct Piece {
+    std::int32_t face;                  ///< the model's face, -1 a cap
+    std::array<std::int32_t, 2> cells;  ///< the model's cells, -1 outside
+    std::array<std::int8_t, 2> sides;   ///< of either cell's part; kOn: no cell there
+    bool is_level;                      ///< whether it lies on the cutter
+    /// The cells of the halves (HalfCell), -1 none, once they are known.
+    std::array<std::int32_t, 2> parts{-1, -1};
+
+    /// Whether it belongs to the section: between the halves, or where one of them ends.
+    bool is_in_section() const { return is_level && sides[0] != sides[1]; }
+};
+
+/// Faces of a model cut up by a cutter, and the caps: what halves are put together from.
 struct Pieces {
     Polygons polygons;
-    std::vector<std::int32_t> face;                  ///< the model's face, -1 a cap
-    std::vector<std::array<std::int32_t, 2>> cells;  ///< the model's cells, -1 outside
-    std::vector<std::array<std::int8_t, 2>> sides;   ///< of either cell's part; kOn: no cell there
-    std::vector<std::uint8_t> level;                 ///< 1 where it lies on the cutter
+    std::vector<Piece> origins;
 
-    std::size_t size() const { return face.size(); }
-    /// Whether it belongs to the section: between the halves, or where one of them ends.
-    bool in_section(std::size_t p) const { return level[p] != 0 && sides[p][0] != sides[p][1]; }
+    std::size_t size() const { return origins.size(); }
+    Piece& operator[](std::size_t p) { return origins[p]; }
+    const Piece& operator[](std::size_t p) const { return origins[p]; }
+    /// @throws InputError kind too_large
+    void add(std::span<const NodeId> polygon, const Piece& origin) {
+        checked_number(origins.size(), "faces of cut cells");
+        polygons.add(polygon);
+        origins.push_back(origin);
+    }
+    void add_reversed(std::span<const NodeId> polygon, const Piece& origin) {
+        add(polygon, origin);
+        std::reverse(polygons.nodes.end() - static_cast<std::ptrdiff_t>(polygon.size()),
+                     polygons.nodes.end());
+    }
 };
 
 /// A piece as one of its cells sees it.
@@ -40,6 +62,12 @@ struct CellPieces {
     std::span<const PieceRef> operator[](std::size_t i) const {
         return {refs.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
     }
+};
+
+/// A cell of a half: the model's cell that it is or is part of, and the half.
+struct HalfCell {
+    std::int32_t cell;
+    std::int8_t side;
 };
 
 }  // namespace realmodel::cutting

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "polygons.hpp"
+#include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model cut by a plane: sides of vertices, places on edges, parts of faces, caps and parts of
+// A model cut by a plane: sides of vertices, cut edges, parts of faces, caps and parts of
 // cells, halves.
 #include <algorithm>
 #include <cmath>
@@ -7,21 +7,18 @@
 #include <set>
 #include <utility>
 
-#include "cell_cut.hpp"
-#include "cutter_surface.hpp"
-#include "face_splitting.hpp"
-#include "halves.hpp"
-#include "model_check.hpp"
-#include "part_rounding.hpp"
-#include "realmodel/exact/turn.hpp"
-#include "strata/parallel_chunks.hpp"
+#include "base/parallel.hpp"
+#include "cutting/cell_cut.hpp"
+#include "cutting/cutter_surface.hpp"
+#include "cutting/face_splitting.hpp"
+#include "cutting/halves.hpp"
+#include "cutting/model_check.hpp"
+#include "cutting/part_rounding.hpp"
+#include "exact/orient2d.hpp"
 
 namespace realmodel::cutting {
 
 namespace {
-
-using strata::parallel_chunks;
-using strata::poll;
 
 constexpr std::size_t kFaces = 1 << 14;
 constexpr std::size_t kCells = 1 << 10;
@@ -46,8 +43,8 @@ bool crosses_itself(std::span<const Position> corners) {
         const PlanePosition a = at(i), b = at(i + 1);
         for (std::size_t j = i + 2; j < n && j + 1 < n + i; ++j) {
             const PlanePosition p = at(j), q = at(j + 1);
-            if (exact::turn(a, b, p) * exact::turn(a, b, q) < 0 &&
-                exact::turn(p, q, a) * exact::turn(p, q, b) < 0)
+            if (exact::orient2d(a, b, p) * exact::orient2d(a, b, q) < 0 &&
+                exact::orient2d(p, q, a) * exact::orient2d(p, q, b) < 0)
                 return true;
         }
     }
@@ -61,8 +58,8 @@ std::size_t chunks(std::size_t count, std::size_t size) {
 class PlaneCutter {
 public:
     PlaneCutter(const ComplexView& model, const Plane& plane, int threads, Progress* progress)
-        : model_(model), distance_(plane), threads_(threads), progress_(progress) {
-        sides_ = vertex_sides(model, distance_, threads, progress);
+        : model_(model), plane_(checked_plane(plane)), threads_(threads), progress_(progress) {
+        sides_ = vertex_sides(model, plane_, threads, progress);
     }
 
     Section section() {
@@ -70,21 +67,17 @@ public:
         cut_cells(false);
         const bool clean = std::all_of(cell_cuts_.begin(), cell_cuts_.end(),
                                        [](const CellCut& cut) { return cut.is_clean; });
-        if (!clean)
-            divide();  // a cell as thin as rounding: its parts tell what it has in the plane
-        return assemble_section(model_, positions(), pieces_);
+        if (!clean) divide();  // a cell as thin as rounding: its parts say what it has in the plane
+        return assemble_section(model_, new_positions_, pieces_);
     }
 
     Cut cut() {
         divide();
         report(0.7, "putting the halves together");
-        PieceParts parts;
         std::vector<HalfCell> half_cells;
-        number_cells(parts, half_cells);
-        positions();
-        PartRounding(model_, new_positions_, pieces_, parts, half_cells, {false, false}).run();
-        return assemble_halves(model_, new_positions_, pieces_, parts, half_cells, threads_,
-                               progress_);
+        number_cells(half_cells);
+        PartRounding(model_, new_positions_, pieces_, half_cells, {false, false}).run();
+        return assemble_halves(model_, new_positions_, pieces_, half_cells, threads_, progress_);
     }
 
 private:
@@ -100,41 +93,35 @@ private:
         progress_->check();
         progress_->report(share, text);
     }
-    const std::vector<Position>& positions() {
-        new_positions_.clear();
-        for (std::size_t i = 0; i < crossings_->size(); ++i)
-            new_positions_.push_back(crossings_->position(i));
-        return new_positions_;
-    }
-
     void mark_sides();
-    void find_crossings();
+    void find_cuts();
+    Piece origin(std::size_t face, std::int8_t side, std::span<const NodeId> polygon) const;
     void divide_faces(bool all);
-    std::int8_t level_side(std::size_t face, std::size_t which, int turned) const;
+    std::int8_t level_side(std::size_t face, std::size_t which, int facing) const;
     void cut_cells(bool parts);
     bool settle();
     bool straighten_walls();
     bool settle_part(std::int32_t part, const CellCut& cut, std::span<const PieceRef> refs);
-    void number_cells(PieceParts& parts, std::vector<HalfCell>& half_cells) const;
+    void number_cells(std::vector<HalfCell>& half_cells);
     Position position(NodeId node) const {
-        return crossings_->is_crossing(node)
-                   ? crossings_->position(index(node - crossings_->first_node()))
-                   : model_.vertex(node);
+        return cuts_->contains(node) ? new_positions_[index(node - cuts_->first_node())]
+                                     : model_.vertex(node);
     }
 
     const ComplexView& model_;
-    PlaneDistance distance_;
+    exact::OrientedPlane plane_;
     int threads_;
     Progress* progress_;
     std::vector<std::int8_t> sides_;
     std::vector<std::uint8_t> face_sides_, cell_sides_;
-    std::unique_ptr<Crossings> crossings_;
-    std::vector<Position> new_positions_;
+    std::unique_ptr<EdgeIntersections> cuts_;
+    std::vector<Position> new_positions_;  ///< of cut edges, which settle_part may move
     Pieces pieces_;
     CellPieces cell_pieces_;
     std::vector<CellCut> cell_cuts_;
     std::size_t first_cap_ = 0;
-    std::set<std::pair<std::int32_t, std::size_t>> turned_;  ///< faces in the plane, and their cell
+    std::set<std::pair<std::int32_t, std::size_t>>
+        reversed_;  ///< faces in the plane, and their cell
 };
 
 /// On which sides of the plane faces and cells have corners.
@@ -159,7 +146,7 @@ void PlaneCutter::mark_sides() {
     }
 }
 
-void PlaneCutter::find_crossings() {
+void PlaneCutter::find_cuts() {
     for (;;) {
         mark_sides();
         std::vector<std::array<NodeId, 2>> edges;
@@ -169,23 +156,23 @@ void PlaneCutter::find_crossings() {
             const auto face = model_.face(f);
             for (std::size_t i = 0; i < face.size(); ++i) {
                 const NodeId a = face[i], b = face[i + 1 < face.size() ? i + 1 : 0];
-                if (sides_[index(a)] * sides_[index(b)] < 0)
-                    edges.push_back({std::min(a, b), std::max(a, b)});
+                if (sides_[index(a)] * sides_[index(b)] < 0) edges.push_back(unordered(a, b));
             }
         }
-        crossings_ = std::make_unique<Crossings>(model_, distance_, std::move(edges));
+        cuts_ = std::make_unique<EdgeIntersections>(model_, plane_, std::move(edges));
         // An edge that ends just beside the plane may be cut in the very doubles where it ends.
-        // Then it is contracted to its end, and with it all that is as near: what stands on one
+        // Then it is contracted to its end, and with it all that is as near: what is on one
         // vertical stays together.
         bool moved = false;
-        for (std::size_t i = 0; i < crossings_->size() && !moved; ++i) {
-            for (const NodeId v : crossings_->edge(i))
-                moved = moved || model_.vertex(v) == crossings_->position(i);
+        new_positions_ = cuts_->positions();
+        for (std::size_t i = 0; i < cuts_->size() && !moved; ++i) {
+            for (const NodeId v : cuts_->edge(cuts_->first_node() + static_cast<NodeId>(i)))
+                moved = moved || model_.vertex(v) == new_positions_[i];
         }
         if (moved) {
             moved = false;
             for (std::size_t v = 0; v < sides_.size(); ++v) {
-                if (sides_[v] == kOn || !distance_.is_beside(model_.vertex(static_cast<NodeId>(v))))
+                if (sides_[v] == kOn || !plane_.is_beside(model_.vertex(static_cast<NodeId>(v))))
                     continue;
                 sides_[v] = kOn;
                 moved = true;
@@ -196,32 +183,50 @@ void PlaneCutter::find_crossings() {
 }
 
 /// The side of the part of a cell that a face in the plane bounds: the cell's, or where it has
-/// parts on both the one that the face turns to.
-std::int8_t PlaneCutter::level_side(std::size_t face, std::size_t which, int turned) const {
+/// parts on both the one that the face looks to.
+std::int8_t PlaneCutter::level_side(std::size_t face, std::size_t which, int facing) const {
     const std::int32_t cell = model_.cell(face, which);
     if (cell < 0) return kOn;
     const std::uint8_t sides = cell_sides_[index(cell)];
     if (sides == kCut) {
-        const bool against = turned_.contains({static_cast<std::int32_t>(face), which});
-        return ((turned > 0) == (which == 0)) != against ? kBelow : kAbove;
+        const bool against = reversed_.contains({static_cast<std::int32_t>(face), which});
+        return ((facing > 0) == (which == 0)) != against ? kBelow : kAbove;
     }
     return sides == kHasAbove ? kAbove : kBelow;
+}
+
+/// A part of a face on one side of the plane, or in it.
+Piece PlaneCutter::origin(std::size_t face, std::int8_t side,
+                          std::span<const NodeId> polygon) const {
+    const std::array cells{model_.cell(face, 0), model_.cell(face, 1)};
+    Piece piece{static_cast<std::int32_t>(face), cells, {side, cells[1] < 0 ? kOn : side}, false};
+    if (side != kOn) return piece;
+    std::vector<Position> corners;
+    for (const NodeId node : polygon)
+        corners.push_back(position(node));
+    const Position normal = polygon_normal(corners);
+    double along = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        along += normal[k] * plane_.normal()[k];
+    piece.is_level = true;
+    for (std::size_t k = 0; k < 2; ++k)
+        piece.sides[k] = level_side(face, k, along > 0 ? 1 : -1);
+    return piece;
 }
 
 /// Divides the faces that the plane passes through. Where `all` is false, faces are left out that
 /// no section can need.
 void PlaneCutter::divide_faces(bool all) {
     report(0.1, "finding where edges are cut");
-    find_crossings();
+    find_cuts();
     const std::size_t count = chunks(model_.face_count(), kFaces);
     std::vector<Pieces> found(count);
     const auto is_cut = [&](std::int32_t cell) {
         return cell >= 0 && cell_sides_[index(cell)] == kCut;
     };
     parallel_chunks(count, threads_, progress_, [&](std::size_t c) {
-        FaceSplitter splitter(model_, sides_, *crossings_);
+        FaceSplitter splitter(model_, sides_, *cuts_);
         FaceParts parts;
-        std::vector<Position> corners;
         Pieces& own = found[c];
         for (std::size_t f = c * kFaces; f < std::min(model_.face_count(), (c + 1) * kFaces); ++f) {
             const std::array cells{model_.cell(f, 0), model_.cell(f, 1)};
@@ -244,35 +249,14 @@ void PlaneCutter::divide_faces(bool all) {
             }
             for (std::size_t p = 0; p < parts.sides.size(); ++p) {
                 if (parts.polygons[p].size() < 3) continue;
-                own.polygons.add(parts.polygons[p]);
-                own.face.push_back(static_cast<std::int32_t>(f));
-                own.cells.push_back(cells);
-                std::array<std::int8_t, 2> sides{parts.sides[p],
-                                                 cells[1] < 0 ? kOn : parts.sides[p]};
-                if (parts.sides[p] == kOn) {
-                    corners.clear();
-                    for (const NodeId node : parts.polygons[p])
-                        corners.push_back(position(node));
-                    const Position normal = polygon_normal(corners);
-                    double turned = 0;
-                    for (std::size_t k = 0; k < 3; ++k)
-                        turned += normal[k] * distance_.normal()[k];
-                    sides = {level_side(f, 0, turned > 0 ? 1 : -1),
-                             level_side(f, 1, turned > 0 ? 1 : -1)};
-                }
-                own.sides.push_back(sides);
-                own.level.push_back(parts.sides[p] == kOn ? 1 : 0);
+                own.add(parts.polygons[p], origin(f, parts.sides[p], parts.polygons[p]));
             }
         }
     });
     pieces_ = {};
     for (const Pieces& own : found) {
         for (std::size_t p = 0; p < own.size(); ++p)
-            pieces_.polygons.add(own.polygons[p]);
-        pieces_.face.insert(pieces_.face.end(), own.face.begin(), own.face.end());
-        pieces_.cells.insert(pieces_.cells.end(), own.cells.begin(), own.cells.end());
-        pieces_.sides.insert(pieces_.sides.end(), own.sides.begin(), own.sides.end());
-        pieces_.level.insert(pieces_.level.end(), own.level.begin(), own.level.end());
+            pieces_.add(own.polygons[p], own[p]);
     }
     first_cap_ = pieces_.size();
 }
@@ -289,7 +273,7 @@ void PlaneCutter::cut_cells(bool parts) {
     const auto each = [&](const auto& visit) {
         for (std::size_t p = 0; p < first_cap_; ++p) {
             for (std::int32_t k = 0; k < 2; ++k) {
-                const std::int32_t cell = pieces_.cells[p][index(k)];
+                const std::int32_t cell = pieces_[p].cells[index(k)];
                 if (cell >= 0 && number[index(cell)] >= 0)
                     visit(index(number[index(cell)]), PieceRef{static_cast<std::int32_t>(p), k});
             }
@@ -308,7 +292,7 @@ void PlaneCutter::cut_cells(bool parts) {
 
     cell_cuts_.assign(count, {});
     parallel_chunks(chunks(count, kCells), threads_, progress_, [&](std::size_t c) {
-        CellCutter cutter(model_, sides_, *crossings_, pieces_, distance_);
+        CellCutter cutter(model_, sides_, *cuts_, pieces_, plane_);
         for (std::size_t i = c * kCells; i < std::min(count, (c + 1) * kCells); ++i) {
             if (parts) {
                 cutter.cut(cell_pieces_[i], cell_cuts_[i]);
@@ -320,11 +304,8 @@ void PlaneCutter::cut_cells(bool parts) {
     for (std::size_t i = 0; i < count; ++i) {
         const Polygons& caps = cell_cuts_[i].caps;
         for (std::size_t c = 0; c < caps.size(); ++c) {
-            pieces_.polygons.add(caps[c]);
-            pieces_.face.push_back(-1);
-            pieces_.cells.push_back({cell_pieces_.cells[i], cell_pieces_.cells[i]});
-            pieces_.sides.push_back({kBelow, kAbove});
-            pieces_.level.push_back(1);
+            const std::int32_t cell = cell_pieces_.cells[i];
+            pieces_.add(caps[c], {-1, {cell, cell}, {kBelow, kAbove}, true});
         }
     }
 }
@@ -346,11 +327,11 @@ bool PlaneCutter::settle_part(std::int32_t part, const CellCut& cut,
                 low[k] = std::min(low[k], p[k]);
                 high[k] = std::max(high[k], p[k]);
             }
-            if (crossings_->is_crossing(node)) {
+            if (cuts_->contains(node)) {
                 last = std::max(last, node);
             } else if (sides_[index(node)] != kOn) {
                 vertices.push_back(node);
-                near = near && std::abs(distance_.at(p).high) <= kNear * distance_.rounding(p);
+                near = near && std::abs(plane_.distance(p).high) <= kNear * plane_.rounding(p);
             }
         }
     }
@@ -358,8 +339,8 @@ bool PlaneCutter::settle_part(std::int32_t part, const CellCut& cut,
         bool first_time = false;
         for (std::size_t i = 0; i < refs.size(); ++i) {
             if (cut.part[i] != part) continue;
-            const auto face = pieces_.face[index(refs[i].piece)];
-            first_time |= turned_.insert({face, index(refs[i].which)}).second;
+            const auto face = pieces_[index(refs[i].piece)].face;
+            first_time |= reversed_.insert({face, index(refs[i].which)}).second;
         }
         return first_time;
     }
@@ -374,7 +355,7 @@ bool PlaneCutter::settle_part(std::int32_t part, const CellCut& cut,
         return true;
     }
     if (last >= 0) {
-        Position& p = crossings_->position(index(last - crossings_->first_node()));
+        Position& p = new_positions_[index(last - cuts_->first_node())];
         for (const std::size_t k : flat)
             p[k] = std::nextafter(p[k], HUGE_VAL);
     }
@@ -390,14 +371,14 @@ bool PlaneCutter::straighten_walls() {
     std::vector<Position> corners;
     for (std::size_t p = 0; p < first_cap_; ++p) {
         poll(progress_, p);
-        const auto face = index(pieces_.face[p]);
+        const auto face = index(pieces_[p].face);
         if (face_sides_[face] != kCut || model_.face_surface[face] != strata::kWall) continue;
         near.clear();
         corners.clear();
         for (const NodeId node : pieces_.polygons[p]) {
             corners.push_back(position(node));
-            if (crossings_->is_crossing(node) || sides_[index(node)] == kOn) continue;
-            if (std::abs(distance_.at(corners.back()).high) <= distance_.rounding(corners.back()))
+            if (cuts_->contains(node) || sides_[index(node)] == kOn) continue;
+            if (std::abs(plane_.distance(corners.back()).high) <= plane_.rounding(corners.back()))
                 near.push_back(node);
         }
         if (near.empty() || !crosses_itself(corners)) continue;
@@ -418,7 +399,7 @@ bool PlaneCutter::settle() {
     return moved;
 }
 
-void PlaneCutter::number_cells(PieceParts& parts, std::vector<HalfCell>& half_cells) const {
+void PlaneCutter::number_cells(std::vector<HalfCell>& half_cells) {
     std::vector<std::int32_t> whole(cell_sides_.size(), -1);
     std::size_t next_cut = 0;
     std::vector<std::int32_t> first_part(cell_cuts_.size());
@@ -434,11 +415,10 @@ void PlaneCutter::number_cells(PieceParts& parts, std::vector<HalfCell>& half_ce
             half_cells.push_back({cell, side});
         ++next_cut;
     }
-    parts.resize(pieces_.size());
     for (std::size_t p = 0; p < first_cap_; ++p) {
         for (std::size_t k = 0; k < 2; ++k) {
-            const std::int32_t cell = pieces_.cells[p][k];
-            parts[p][k] = cell < 0 ? -1 : whole[index(cell)];
+            const std::int32_t cell = pieces_[p].cells[k];
+            pieces_[p].parts[k] = cell < 0 ? -1 : whole[index(cell)];
         }
     }
     std::size_t cap = first_cap_;
@@ -446,10 +426,10 @@ void PlaneCutter::number_cells(PieceParts& parts, std::vector<HalfCell>& half_ce
         const CellCut& cut = cell_cuts_[i];
         const auto refs = cell_pieces_[i];
         for (std::size_t r = 0; r < refs.size(); ++r)
-            parts[index(refs[r].piece)][index(refs[r].which)] = first_part[i] + cut.part[r];
+            pieces_[index(refs[r].piece)].parts[index(refs[r].which)] = first_part[i] + cut.part[r];
         for (std::size_t c = 0; c < cut.caps.size(); ++c, ++cap) {
             for (std::size_t k = 0; k < 2; ++k)
-                parts[cap][k] = first_part[i] + cut.part[refs.size() + 2 * c + k];
+                pieces_[cap].parts[k] = first_part[i] + cut.part[refs.size() + 2 * c + k];
         }
     }
 }

@@ -1,39 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <gmpxx.h>
-
-#include "plane_sides.hpp"
-#include "triangulate.hpp"
+#include "cutting/plane_edges.hpp"
+#include "cutting/triangulate.hpp"
 
 namespace realmodel::cutting {
 
-/// Turns and volumes of nodes of a plane cut where they are exactly: the model's vertices, and the
-/// places where the plane cuts its edges, which are fractions. Floating point first, with a bound
-/// of what rounding can do to it.
+/// Orientations of nodes of a plane cut where they are exactly: the model's vertices, and the
+/// points where the plane cuts its edges, whose coordinates are rational numbers.
 class PlanePoints : public CornerTurns {
 public:
-    PlanePoints(const ComplexView& model, const PlaneDistance& distance, const Crossings& crossings)
-        : model_(model), distance_(distance), crossings_(crossings), view_(distance.normal()) {}
+    PlanePoints(const ComplexView& model, const exact::OrientedPlane& plane,
+                const EdgeIntersections& cuts)
+        : model_(model), plane_(plane), cuts_(cuts), view_(plane.normal()) {}
 
     const View& view() const { return view_; }
     Position rounded(NodeId node) const {
-        return crossings_.is_crossing(node)
-                   ? crossings_.position(index(node - crossings_.first_node()))
-                   : model_.vertex(node);
+        return cuts_.contains(node) ? cuts_.position(node) : model_.vertex(node);
     }
+    /// Which way a, b, c turn in the view.
     int operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const override;
-    /// The sign of the volume of the tetrahedron a, b, c, d.
+    /// Which side of the plane of a, b, c has d: exact::orient3d.
     int tetrahedron(NodeId a, NodeId b, NodeId c, NodeId d) const;
 
 private:
-    using Fractions = std::array<mpq_class, 3>;
-    Fractions exact(NodeId node) const;
-    double slack(NodeId node) const;
+    exact::RationalPoint exact_point(NodeId node) const;
+    double inexactness(NodeId node) const;
 
     const ComplexView& model_;
-    const PlaneDistance& distance_;
-    const Crossings& crossings_;
+    const exact::OrientedPlane& plane_;
+    const EdgeIntersections& cuts_;
     View view_;
 };
 

@@ -3,11 +3,11 @@
 // halves.
 #include <algorithm>
 
-#include "model_check.hpp"
-#include "part_rounding.hpp"
+#include "base/parallel.hpp"
+#include "cutting/model_check.hpp"
+#include "cutting/part_rounding.hpp"
+#include "cutting/surface_parts.hpp"
 #include "realmodel/base/errors.hpp"
-#include "strata/parallel_chunks.hpp"
-#include "surface_parts.hpp"
 
 namespace realmodel::cutting {
 
@@ -21,12 +21,10 @@ Cut cut(const ComplexView& model, const CutterSurface& surface, int threads, Pro
     if (progress != nullptr) progress->begin(0.5, 0.68, "finding the parts of cells");
     SurfaceParts made(overlay, winding, sides, progress);
     if (progress != nullptr) progress->begin(0.85, 0.92, "rounding what was cut");
-    PartRounding(model, overlay.new_positions(), made.pieces, made.parts, made.half_cells,
-                 made.touches)
-        .run();
+    PartRounding(model, overlay.new_positions(), made.pieces, made.half_cells, made.touches).run();
     if (progress != nullptr) progress->begin(0.95, 1.0, "putting the halves together");
-    Cut halves = assemble_halves(model, overlay.new_positions(), made.pieces, made.parts,
-                                 made.half_cells, threads, progress);
+    Cut halves = assemble_halves(model, overlay.new_positions(), made.pieces, made.half_cells,
+                                 threads, progress);
     halves.below_touches = made.touches[0];
     halves.above_touches = made.touches[1];
     return halves;
@@ -47,7 +45,7 @@ Cut part_by_block(const ComplexView& model, std::int32_t block, int threads, Pro
         model.cell_block.end())
         throw InputError("no_block", "the block that is to cut has no cells", -1, {block});
     Pieces pieces;
-    PieceParts parts;
+    Polygons polygons;
     std::vector<HalfCell> cells;
     const auto side = [&](std::int32_t cell) {
         return cell < 0 ? kOn : model.block(cell) == block ? kBelow : kAbove;
@@ -57,25 +55,21 @@ Cut part_by_block(const ComplexView& model, std::int32_t block, int threads, Pro
         cells.push_back({cell, side(cell)});
     }
     for (std::size_t f = 0; f < model.face_count(); ++f) {
-        strata::poll(progress, f);
+        poll(progress, f);
         const std::array<std::int32_t, 2> own{model.cell(f, 0), model.cell(f, 1)};
         const std::array<std::int8_t, 2> sides{side(own[0]), side(own[1])};
         const bool bounds = (sides[0] == kBelow) != (sides[1] == kBelow);
-        const std::size_t before = pieces.polygons.size();
+        const Piece origin{static_cast<std::int32_t>(f), own, sides, bounds, own};
+        polygons.clear();
         if (bounds && own[1] >= 0) {
-            divide_face(model, f, pieces.polygons);
+            divide_face(model, f, polygons);
         } else {
-            pieces.polygons.add(model.face(f));
+            polygons.add(model.face(f));
         }
-        for (std::size_t p = before; p < pieces.polygons.size(); ++p) {
-            pieces.face.push_back(static_cast<std::int32_t>(f));
-            pieces.cells.push_back(own);
-            pieces.sides.push_back(sides);
-            pieces.level.push_back(bounds ? 1 : 0);
-            parts.push_back(own);
-        }
+        for (std::size_t p = 0; p < polygons.size(); ++p)
+            pieces.add(polygons[p], origin);
     }
-    return assemble_halves(model, {}, pieces, parts, cells, threads, progress);
+    return assemble_halves(model, {}, pieces, cells, threads, progress);
 }
 
 }  // namespace

@@ -1,158 +1,197 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The exact overlay of a model's faces with the triangles of a surface.
-#include "surface_overlay.hpp"
+#include "cutting/surface_overlay.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "realmodel/exact/turn.hpp"
-#include "strata/parallel_chunks.hpp"
+#include "base/parallel.hpp"
+#include "base/ulp.hpp"
+#include "exact/orient2d.hpp"
 
 namespace realmodel::cutting {
 
+using arrangement::EdgeUse;
+using arrangement::TriangleArrangement;
+using spatial::Box;
+using spatial::BoxTree;
+
 namespace {
 
-constexpr double kUnits = 4;  // as PlaneDistance::rounding
-
-double last_places(double x) {
-    const double size = std::abs(x);
-    return kUnits * (std::nextafter(size, HUGE_VAL) - size);
+double computed_ulps(double x) {
+    return kComputedUlps * ulp(x);
 }
 
 }  // namespace
 
 SurfaceOverlay::SurfaceOverlay(const ComplexView& model, const CutterSurface& surface, int threads,
                                Progress* progress)
-    : model_(model), surface_(surface), threads_(threads), progress_(progress), overlay_(points_) {
+    : model_(model),
+      surface_(surface),
+      threads_(threads),
+      progress_(progress),
+      arrangement_(points_) {
     find_active_faces();
     name_vertices();
     overlay_all();
     name_nodes();
 }
 
-/// The faces that come near the surface.
+/// The faces that come near the surface: near the box of one of its triangles, and not all to one
+/// side of the triangle's plane.
 void SurfaceOverlay::find_active_faces() {
-    std::vector<Box> boxes;
     margin_ = rounding_of(surface_.vertices);
-    for (const auto& t : surface_.triangles) {
-        Box box;
-        for (const NodeId v : t)
-            box.include(surface_.vertices[index(v)]);
-        boxes.push_back(box);
-    }
-    Box whole;
-    for (const Box& box : boxes)
-        whole.include(box);
     for (std::size_t v = 0; v < model_.vertex_count(); ++v) {
         for (const double x : model_.vertex(static_cast<NodeId>(v)))
-            margin_ = std::max(margin_, 4 * last_places(x));
+            margin_ = std::max(margin_, 4 * computed_ulps(x));
         model_box_.include(model_.vertex(static_cast<NodeId>(v)));
     }
     model_box_.widen(margin_);
-    for (Box& box : boxes)
+    std::vector<Box> boxes;
+    Box whole;
+    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t) {
+        Box& box = boxes.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i)
+            box.include(corner(t, i));
         box.widen(margin_);
-    whole.widen(margin_);
+        whole.include(box);
+    }
     tree_ = std::make_unique<BoxTree>(std::move(boxes));
     active_.assign(model_.face_count(), 0);
-    constexpr std::size_t kChunk = 1 << 12;
-    strata::parallel_chunks(
-        (model_.face_count() + kChunk - 1) / kChunk, threads_, progress_, [&](std::size_t c) {
-            for (std::size_t f = c * kChunk; f < std::min(active_.size(), (c + 1) * kChunk); ++f) {
-                Box box;
-                for (const NodeId v : model_.face(f))
-                    box.include(model_.vertex(v));
-                active_[f] = box.meets(whole) && tree_->any(box) ? 1 : 0;
-            }
-        });
+    parallel_ranges(active_.size(), 1 << 12, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f) {
+                            Box box;
+                            for (const NodeId v : model_.face(f))
+                                box.include(model_.vertex(v));
+                            if (!box.meets(whole)) continue;
+                            tree_->find(box, [&](std::int32_t t) {
+                                if (active_[f] == 0 && !is_beside(f, t)) active_[f] = 1;
+                            });
+                        }
+                    });
     for (std::size_t f = 0; f < active_.size(); ++f) {
         if (active_[f] != 0) active_faces_.push_back(static_cast<std::int32_t>(f));
     }
 }
 
-/// The place on the surface that a vertex is at but for its rounding; none where it is elsewhere.
-/// Corners of the surface come first, then its edges, then its triangles.
-std::optional<NodeId> SurfaceOverlay::place_on_surface(const Position& p) {
-    Position reach;
-    for (std::size_t k = 0; k < 3; ++k)
-        reach[k] = last_places(p[k]);
-    const auto is_within = [&](const Position& q, double times) {
+/// Whether all vertices of a face are on one side of the plane of a triangle, farther from it than
+/// rounding may put them.
+bool SurfaceOverlay::is_beside(std::size_t face, std::int32_t t) const {
+    constexpr double kRounding = 0x1p-46;  // of the normal, and of the distances
+    const Position a = corner(t, 0);
+    const Position normal = polygon_normal(std::array{a, corner(t, 1), corner(t, 2)});
+    int above = 0, below = 0;
+    for (const NodeId v : model_.face(face)) {
+        const Position p = model_.vertex(v);
+        double distance = 0, allowed = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-            if (std::abs(q[k] - p[k]) > times * reach[k]) return false;
+            distance += normal[k] * (p[k] - a[k]);
+            allowed += std::abs(normal[k]) * (margin_ + kRounding * std::abs(p[k] - a[k]));
         }
-        return true;
-    };
-    /// A place found in floating point, if it is indeed as near as that said.
-    const auto confirmed = [&](NodeId found) -> std::optional<NodeId> {
-        if (!is_within(points_.rounded(found), 3)) return std::nullopt;
-        return found;
-    };
+        above += distance > allowed;
+        below += distance < -allowed;
+        if (above > 0 && below > 0) return false;
+    }
+    const std::size_t all = model_.face(face).size();
+    return index(above) == all || index(below) == all;
+}
+
+namespace {
+
+/// How far a vertex may be from where it is meant to be, on each axis.
+Position tolerance_of(const Position& p) {
+    return {computed_ulps(p[0]), computed_ulps(p[1]), computed_ulps(p[2])};
+}
+
+bool is_within(const Position& p, const Position& q, const Position& tolerance, double times) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (std::abs(q[k] - p[k]) > times * tolerance[k]) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+/// A point that was found near p in floating point, if it is indeed as near.
+std::optional<NodeId> SurfaceOverlay::confirmed(NodeId found, const Position& p) const {
+    if (!is_within(p, points_.rounded(found), tolerance_of(p), 3)) return std::nullopt;
+    return found;
+}
+
+/// The point of an edge of the surface that a vertex is at but for its rounding.
+std::optional<NodeId> SurfaceOverlay::point_on_edge(const Position& p, const Position& a,
+                                                    const Position& b) {
+    // the part of the edge that is within the tolerance on every axis, and the axis that has it
+    // shortest: there the point keeps the vertex's coordinate
+    const Position tolerance = tolerance_of(p);
+    double from = 0, to = 1, shortest = HUGE_VAL;
+    std::size_t axis = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double change = b[k] - a[k], off = p[k] - a[k];
+        if (change == 0) {
+            if (std::abs(off) > tolerance[k]) return std::nullopt;
+            continue;
+        }
+        const double one = (off - tolerance[k]) / change, other = (off + tolerance[k]) / change;
+        from = std::max(from, std::min(one, other));
+        to = std::min(to, std::max(one, other));
+        if (tolerance[k] / std::abs(change) >= shortest) continue;
+        shortest = tolerance[k] / std::abs(change);
+        axis = k;
+    }
+    const double share = (p[axis] - a[axis]) / (b[axis] - a[axis]);
+    if (from > to || !(share > 0 && share < 1)) return std::nullopt;
+    const std::array of{points_.add(p), points_.add(a), points_.add(b)};  // in this order
+    return confirmed(points_.projected(axis, of[0], of[1], of[2]), p);
+}
+
+/// The point within a triangle of the surface that a vertex is at but for its rounding.
+std::optional<NodeId> SurfaceOverlay::point_in_triangle(const Position& p,
+                                                        const std::array<Position, 3>& corners) {
+    constexpr double kRounding = 0x1p-50;  // of the distance
+    const Position normal = polygon_normal(corners), tolerance = tolerance_of(p);
+    double off = 0, allowed = 0, size = 0;
+    std::size_t axis = 0;  // along which the point may be off most
+    for (std::size_t k = 0; k < 3; ++k) {
+        off += normal[k] * (p[k] - corners[0][k]);
+        size += std::abs(normal[k] * (p[k] - corners[0][k]));
+        allowed += std::abs(normal[k]) * tolerance[k];
+        if (std::abs(normal[k]) * tolerance[k] > std::abs(normal[axis]) * tolerance[axis]) axis = k;
+    }
+    if (!(std::abs(off) <= allowed + kRounding * size) || allowed == 0) return std::nullopt;
+    const View view(normal);
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (exact::orient2d(view(corners[i]), view(corners[(i + 1) % 3]), view(p)) <= 0)
+            return std::nullopt;
+    }
+    const std::array of{points_.add(p), points_.add(corners[0]), points_.add(corners[1]),
+                        points_.add(corners[2])};  // in this order
+    return confirmed(points_.projected(axis, of[0], of[1], of[2], of[3]), p);
+}
+
+/// The point of the surface that a vertex is at but for its rounding; none where it is elsewhere.
+/// Corners of the surface come first, then its edges, then its triangles.
+std::optional<NodeId> SurfaceOverlay::point_on_surface(const Position& p) {
     Box box;
     box.include(p);
     std::vector<std::int32_t> near;
     tree_->find(box, [&near](std::int32_t t) { near.push_back(t); });
     std::sort(near.begin(), near.end());
-    const auto corner = [this](std::int32_t t, std::size_t i) {
-        return surface_.vertices[index(surface_.triangles[index(t)][i % 3])];
-    };
     for (const std::int32_t t : near) {
         for (std::size_t i = 0; i < 3; ++i) {
-            if (is_within(corner(t, i), 1)) return points_.add(corner(t, i));
-        }
-    }
-    const auto coarsest = [&reach](const Position& d) {
-        std::size_t axis = 0;
-        for (std::size_t k = 1; k < 3; ++k) {
-            if (std::abs(d[k]) * reach[k] > std::abs(d[axis]) * reach[axis]) axis = k;
-        }
-        return axis;
-    };
-    for (const std::int32_t t : near) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            // the stretch of the edge that is within reach on every axis, and the axis that has it
-            // shortest: there the place keeps the vertex's coordinate
-            const Position a = corner(t, i), b = corner(t, i + 1);
-            double from = 0, to = 1, shortest = HUGE_VAL;
-            std::size_t axis = 0;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const double way = b[k] - a[k], off = p[k] - a[k];
-                if (way == 0) {
-                    if (std::abs(off) > reach[k]) to = -1;
-                    continue;
-                }
-                from = std::max(from, std::min((off - reach[k]) / way, (off + reach[k]) / way));
-                to = std::min(to, std::max((off - reach[k]) / way, (off + reach[k]) / way));
-                if (reach[k] / std::abs(way) >= shortest) continue;
-                shortest = reach[k] / std::abs(way);
-                axis = k;
-            }
-            const double share = (p[axis] - a[axis]) / (b[axis] - a[axis]);
-            if (from > to || !(share > 0 && share < 1)) continue;
-            const auto found =
-                confirmed(points_.dropped(axis, points_.add(p), points_.add(a), points_.add(b)));
-            if (found) return found;
+            if (is_within(p, corner(t, i), tolerance_of(p), 1)) return points_.add(corner(t, i));
         }
     }
     for (const std::int32_t t : near) {
-        const std::array corners{corner(t, 0), corner(t, 1), corner(t, 2)};
-        const Position normal = polygon_normal(corners);
-        double off = 0, allowed = 0, size = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            off += normal[k] * (p[k] - corners[0][k]);
-            size += std::abs(normal[k] * (p[k] - corners[0][k]));
-            allowed += std::abs(normal[k]) * reach[k];
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (const auto found = point_on_edge(p, corner(t, i), corner(t, i + 1))) return found;
         }
-        if (!(std::abs(off) <= allowed + 0x1p-50 * size) || allowed == 0) continue;
-        const View view(normal);
-        bool inside = true;
-        const PlanePosition at = view(p);
-        for (std::size_t i = 0; i < 3; ++i)
-            inside = inside && exact::turn(view(corner(t, i)), view(corner(t, i + 1)), at) > 0;
-        if (!inside) continue;
-        const auto found =
-            confirmed(points_.dropped(coarsest(normal), points_.add(p), points_.add(corners[0]),
-                                      points_.add(corners[1]), points_.add(corners[2])));
-        if (found) return found;
+    }
+    for (const std::int32_t t : near) {
+        if (const auto found = point_in_triangle(p, {corner(t, 0), corner(t, 1), corner(t, 2)}))
+            return found;
     }
     return std::nullopt;
 }
@@ -174,25 +213,25 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     }
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    const auto take = [this](NodeId p) -> std::uint8_t& {
+    const auto is_taken = [this](NodeId p) -> std::uint8_t& {
         if (is_taken_.size() <= index(p)) is_taken_.resize(points_.size());
         return is_taken_[index(p)];
     };
     for (const NodeId v : vertices)
-        take(vertex_node_[index(v)] = points_.add(model_.vertex(v))) = 1;
+        is_taken(vertex_node_[index(v)] = points_.add(model_.vertex(v))) = 1;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-        strata::poll(progress_, 16 * i);
+        poll(progress_, 16 * i);
         NodeId& node = vertex_node_[index(vertices[i])];
-        const auto place = place_on_surface(model_.vertex(vertices[i]));
-        if (!place || *place == node || take(*place) != 0) continue;
-        take(node) = 0;
-        take(*place) = 1;
-        node = *place;
+        const auto found = point_on_surface(model_.vertex(vertices[i]));
+        if (!found || *found == node || is_taken(*found) != 0) continue;
+        is_taken(node) = 0;
+        is_taken(*found) = 1;
+        node = *found;
     }
 }
 
-/// A triangle without area is gone in the overlay: the corner in its middle comes to lie on its
-/// long edge, and so on an edge of the face beyond, which must know it.
+/// A triangle without area has no region in the overlay: the corner in its middle comes to lie on
+/// its long edge, and so on an edge of the face beyond, which must know it.
 void SurfaceOverlay::activate_beside_flat_triangles() {
     std::vector<std::array<std::int32_t, 3>> triangles;
     std::vector<std::int32_t> fresh = active_faces_;
@@ -204,7 +243,7 @@ void SurfaceOverlay::activate_beside_flat_triangles() {
                 const NodeId a = exact(t[0]), b = exact(t[1]), c = exact(t[2]);
                 bool flat = true;
                 for (std::size_t axis = 0; axis < 3 && flat; ++axis)
-                    flat = points_.turn(axis, a, b, c) == 0;
+                    flat = exact::orient2d(points_, axis, a, b, c) == 0;
                 for (std::size_t i = 0; flat && i < 3; ++i)
                     edges.insert({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
             }
@@ -215,7 +254,7 @@ void SurfaceOverlay::activate_beside_flat_triangles() {
             const auto face = model_.face(f);
             for (std::size_t i = 0; i < face.size() && active_[f] == 0; ++i) {
                 const NodeId a = face[i], b = face[i + 1 < face.size() ? i + 1 : 0];
-                if (!edges.contains({std::min(a, b), std::max(a, b)})) continue;
+                if (!edges.contains(unordered(a, b))) continue;
                 active_[f] = 1;
                 fresh.push_back(static_cast<std::int32_t>(f));
             }
@@ -227,49 +266,52 @@ void SurfaceOverlay::activate_beside_flat_triangles() {
 }
 
 void SurfaceOverlay::overlay_all() {
-    std::vector<std::array<std::int32_t, 3>> triangles;
-    for (const std::int32_t f : active_faces_) {
-        triangulate_face(model_, index(f), triangles);
-        for (const auto& t : triangles) {
-            overlay_.add(
-                {vertex_node_[index(t[0])], vertex_node_[index(t[1])], vertex_node_[index(t[2])]});
-            face_of_.push_back(f);
-        }
-    }
-    first_cutter_ = static_cast<std::int32_t>(face_of_.size());
-    for (const auto& t : surface_.triangles) {
-        std::array<NodeId, 3> corners;
-        for (std::size_t i = 0; i < 3; ++i)
-            corners[i] = points_.add(surface_.vertices[index(t[i])]);
-        overlay_.add(corners);
-    }
-    // Which meet is found out on all threads; where they do is entered in order.
+    add_triangles();
+    // Which intersect is found out on all threads; where they do is entered in order.
     const auto count = index(first_cutter_) + surface_.triangles.size();
     constexpr std::size_t kChunk = 1 << 8;
-    std::vector<std::vector<Overlay::Meeting>> meetings((count + kChunk - 1) / kChunk);
+    std::vector<std::vector<TriangleArrangement::Intersection>> found((count + kChunk - 1) /
+                                                                      kChunk);
     if (progress_ != nullptr) progress_->begin(0.08, 0.15, "finding where surface and faces meet");
-    strata::parallel_chunks(meetings.size(), threads_, progress_, [&](std::size_t chunk) {
-        for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
+    parallel_ranges(count, kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
             const auto t = static_cast<std::int32_t>(i);
             Box box;
-            for (const NodeId p : overlay_.corners(t))
+            for (const NodeId p : arrangement_.corners(t))
                 box.include(points_.rounded(p));
             if (t >= first_cutter_ && !box.meets(model_box_)) continue;
             tree_->find(box, [&](std::int32_t c) {
                 const std::int32_t other = first_cutter_ + c;
                 if (other <= t) return;
-                if (const auto meeting = overlay_.meeting(t, other))
-                    meetings[chunk].push_back(*meeting);
+                if (const auto intersection = arrangement_.intersection(t, other))
+                    found[begin / kChunk].push_back(*intersection);
             });
         }
     });
     if (progress_ != nullptr) progress_->begin(0.15, 0.3, "dividing faces and surface");
-    for (const auto& found : meetings) {
+    for (const auto& intersections : found) {
         if (progress_ != nullptr) progress_->check();
-        for (const Overlay::Meeting& meeting : found)
-            overlay_.take(meeting);
+        for (const TriangleArrangement::Intersection& intersection : intersections)
+            arrangement_.insert(intersection);
     }
-    overlay_.divide(threads_, progress_);
+    arrangement_.divide(threads_, progress_);
+}
+
+/// The triangles of active faces, then those of the surface.
+void SurfaceOverlay::add_triangles() {
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    for (const std::int32_t f : active_faces_) {
+        triangulate_face(model_, index(f), triangles);
+        for (const auto& t : triangles) {
+            arrangement_.add(
+                {vertex_node_[index(t[0])], vertex_node_[index(t[1])], vertex_node_[index(t[2])]});
+            face_of_.push_back(f);
+        }
+    }
+    first_cutter_ = static_cast<std::int32_t>(face_of_.size());
+    for (std::int32_t t = 0; index(t) < surface_.triangles.size(); ++t)
+        arrangement_.add(
+            {points_.add(corner(t, 0)), points_.add(corner(t, 1)), points_.add(corner(t, 2))});
 }
 
 /// Numbers all nodes: the model's vertices keep theirs, the others follow.
@@ -278,15 +320,15 @@ void SurfaceOverlay::name_nodes() {
     for (std::size_t v = 0; v < vertex_node_.size(); ++v) {
         if (vertex_node_[v] >= 0) out[index(vertex_node_[v])] = static_cast<NodeId>(v);
     }
-    const auto vertices = static_cast<NodeId>(model_.vertex_count());
-    for (const Region& region : overlay_.regions()) {
+    // edges and sides number regions and then faces in one row
+    checked_number(size() + model_.face_count(), "faces and their parts");
+    for (const arrangement::Region& region : arrangement_.regions()) {
         auto& loops = loops_.emplace_back(region.loops);
         for (auto& loop : loops) {
             for (NodeId& p : loop) {
                 NodeId& node = out[index(p)];
                 if (node < 0) {
-                    node = vertices + static_cast<NodeId>(new_positions_.size());
-                    new_positions_.push_back(points_.rounded(p));
+                    node = add_node(points_.rounded(p));
                     exact_of_new_.push_back(p);
                 }
                 p = node;
@@ -302,10 +344,43 @@ NodeId SurfaceOverlay::exact(NodeId node) {
     return known >= 0 ? known : points_.add(model_.vertex(node));
 }
 
+/// The corner of a face that is farthest from the line of one of its edges, as an exact point.
+NodeId SurfaceOverlay::far_corner(std::size_t face, const std::array<NodeId, 2>& edge) {
+    const Position a = position(edge[0]), b = position(edge[1]);
+    NodeId found = edge[0];
+    double farthest = -1;
+    for (const NodeId v : model_.face(face)) {
+        const Position normal = polygon_normal(std::array{a, b, position(v)});
+        const double away = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+        if (away > farthest) {
+            farthest = away;
+            found = v;
+        }
+    }
+    return exact(found);
+}
+
+arrangement::EdgeFan SurfaceOverlay::fan_of(std::span<const EdgeUse> uses) {
+    const NodeId a = exact(uses[0].edge[0]), b = exact(uses[0].edge[1]);
+    std::vector<arrangement::HalfPlane> items;
+    for (const EdgeUse& use : uses) {
+        const auto item = index(use.item);
+        if (item >= size()) {
+            items.push_back({far_corner(item - size(), use.edge), -1, use.direction});
+        } else {
+            const std::int32_t t = triangle(item);
+            const bool ahead = use.direction > 0;
+            items.push_back(
+                {arrangement_.left_corner(t, ahead ? a : b, ahead ? b : a), t, use.direction});
+        }
+    }
+    return fan_around(points_, a, b, items);
+}
+
 /// Of a corner that turns left, the middle of the triangle that it cuts off; where the outline or a
 /// hole reaches into that, the middle between the corner and what reaches in farthest.
 NodeId SurfaceOverlay::inner_point(std::size_t region) {
-    const auto [axis, turned] = view_of(region);
+    const auto [axis, facing] = view_of(region);
     const auto& outline = loops_[region][0];
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
     std::vector<NodeId> own;
@@ -313,8 +388,8 @@ NodeId SurfaceOverlay::inner_point(std::size_t region) {
         own.push_back(exact(node));
     std::size_t lowest = 0;
     for (std::size_t i = 1; i < own.size(); ++i) {
-        const int x = points_.compare(k, own[i], own[lowest]);
-        if (x < 0 || (x == 0 && points_.compare(l, own[i], own[lowest]) < 0)) lowest = i;
+        const int x = exact::compare(points_, k, own[i], own[lowest]);
+        if (x < 0 || (x == 0 && exact::compare(points_, l, own[i], own[lowest]) < 0)) lowest = i;
     }
     // an outline may pass its lowest node twice: of the corners there, one that turns left
     NodeId a = -1, c = -1;
@@ -323,18 +398,18 @@ NodeId SurfaceOverlay::inner_point(std::size_t region) {
         if (own[i] != b) continue;
         a = own[(i + own.size() - 1) % own.size()];
         c = own[(i + 1) % own.size()];
-        if (turned * points_.turn(axis, a, b, c) > 0) break;
+        if (facing * exact::orient2d(points_, axis, a, b, c) > 0) break;
     }
     NodeId farthest = -1;
     for (const auto& loop : loops_[region]) {
         for (const NodeId node : loop) {
             const NodeId p = exact(node);
             if (p == a || p == b || p == c) continue;
-            if (turned * points_.turn(axis, a, b, p) < 0 ||
-                turned * points_.turn(axis, b, c, p) < 0 ||
-                turned * points_.turn(axis, c, a, p) < 0)
+            if (facing * exact::orient2d(points_, axis, a, b, p) < 0 ||
+                facing * exact::orient2d(points_, axis, b, c, p) < 0 ||
+                facing * exact::orient2d(points_, axis, c, a, p) < 0)
                 continue;
-            if (farthest < 0 || points_.is_farther(axis, c, a, p, farthest)) farthest = p;
+            if (farthest < 0 || exact::is_farther(points_, axis, c, a, p, farthest)) farthest = p;
         }
     }
     return farthest < 0 ? points_.middle({a, b, c}) : points_.middle({b, b, farthest});

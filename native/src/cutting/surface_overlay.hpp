@@ -3,16 +3,18 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "box_tree.hpp"
-#include "cutter_surface.hpp"
-#include "overlay.hpp"
+#include "arrangement/edge_fan.hpp"
+#include "arrangement/triangle_arrangement.hpp"
+#include "cutting/cutter_surface.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
 
 /// A model's faces near a surface, and the surface, divided along one another exactly. Nodes are
-/// the model's vertices, then the places where they meet.
+/// the model's vertices, then the points where they meet.
 ///
 /// Vertices of the model that are on the surface but for their own rounding are taken to lie on it:
 /// with that the model's cells may come to overlap by as much, which whoever uses this must bear.
@@ -24,7 +26,7 @@ public:
     const ComplexView& model() const { return model_; }
     const CutterSurface& surface() const { return surface_; }
     int threads() const { return threads_; }
-    std::size_t size() const { return overlay_.regions().size(); }
+    std::size_t size() const { return arrangement_.regions().size(); }
     bool of_cutter(std::size_t region) const { return triangle(region) >= first_cutter_; }
     /// The face that a region is part of.
     std::size_t face_of(std::size_t region) const {
@@ -43,49 +45,55 @@ public:
         return node < vertices ? model_.vertex(node) : new_positions_[index(node - vertices)];
     }
     std::vector<Position>& new_positions() { return new_positions_; }
-    /// A node somewhere, of which no exact point is known.
+    /// A new node, of which no exact point is known.
     NodeId add_node(const Position& p) {
         new_positions_.push_back(p);
-        return static_cast<NodeId>(model_.vertex_count() + new_positions_.size()) - 1;
+        return checked_number(model_.vertex_count() + new_positions_.size(), "nodes") - 1;
     }
     bool is_near(NodeId vertex) const { return vertex_node_[index(vertex)] >= 0; }
 
     /// The exact point of a node. Those of regions have one already: of them several threads may
     /// ask at once.
     NodeId exact(NodeId node);
-    ExactPoints& points() { return points_; }
+    exact::SpacePoints& points() { return points_; }
     /// The corners, as exact points, of the triangle that a region is part of.
     const std::array<NodeId, 3>& corners(std::size_t region) const {
-        return overlay_.corners(triangle(region));
+        return arrangement_.corners(triangle(region));
     }
-    /// Whether two regions are parts of one triangle.
-    bool are_of_one_triangle(std::size_t region, std::size_t other) const {
-        return triangle(region) == triangle(other);
-    }
-    /// A corner of that triangle to the left of a line in it; all as exact points.
-    NodeId left_corner(std::size_t region, NodeId from, NodeId to) const {
-        return overlay_.left_corner(triangle(region), from, to);
-    }
-    /// A place within a region, on none of its edges.
+    /// The fan of an edge's uses by regions and whole faces, in nodes.
+    arrangement::EdgeFan fan_of(std::span<const arrangement::EdgeUse> uses);
+    /// A point within a region, on none of its edges.
     NodeId inner_point(std::size_t region);
     /// The axis along which a region is seen best, and which way it turns seen along it.
     std::pair<std::size_t, int> view_of(std::size_t region) const {
-        return overlay_.view_of(triangle(region));
+        return arrangement_.view_of(triangle(region));
     }
     /// Calls visit(face, corners as exact points) for the triangles of all faces, those away from
     /// the surface only where the line along `axis` through `p` may meet them.
     template <class Visit>
     void each_triangle(std::size_t axis, NodeId p, const Visit& visit);
     /// Around the whole model, and a little wider.
-    const Box& model_box() const { return model_box_; }
+    const spatial::Box& model_box() const { return model_box_; }
 
 private:
-    std::int32_t triangle(std::size_t region) const { return overlay_.regions()[region].triangle; }
+    std::int32_t triangle(std::size_t region) const {
+        return arrangement_.regions()[region].triangle;
+    }
     void find_active_faces();
     void name_vertices();
     void name_vertices_of(std::span<const std::int32_t> faces);
     void activate_beside_flat_triangles();
-    std::optional<NodeId> place_on_surface(const Position& p);
+    NodeId far_corner(std::size_t face, const std::array<NodeId, 2>& edge);
+    Position corner(std::int32_t triangle, std::size_t i) const {
+        return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
+    }
+    bool is_beside(std::size_t face, std::int32_t triangle) const;
+    std::optional<NodeId> confirmed(NodeId found, const Position& p) const;
+    std::optional<NodeId> point_on_edge(const Position& p, const Position& a, const Position& b);
+    std::optional<NodeId> point_in_triangle(const Position& p,
+                                            const std::array<Position, 3>& corners);
+    std::optional<NodeId> point_on_surface(const Position& p);
+    void add_triangles();
     void overlay_all();
     void name_nodes();
 
@@ -94,15 +102,15 @@ private:
     int threads_;
     Progress* progress_;
 
-    ExactPoints points_;
-    Overlay overlay_;
-    std::unique_ptr<BoxTree> tree_;
+    exact::SpacePoints points_;
+    arrangement::TriangleArrangement arrangement_;
+    std::unique_ptr<spatial::BoxTree> tree_;
     double margin_ = 0;
-    Box model_box_;
+    spatial::Box model_box_;
     std::vector<std::uint8_t> active_;
     std::vector<std::int32_t> active_faces_;
     std::vector<NodeId> vertex_node_;     ///< of the model's vertices, -1 away from the surface
-    std::vector<std::uint8_t> is_taken_;  ///< of exact points: a vertex stands for it
+    std::vector<std::uint8_t> is_taken_;  ///< of exact points: a vertex is there
     std::vector<std::int32_t> face_of_;   ///< of the model's triangles in the overlay
     std::int32_t first_cutter_ = 0;       ///< the overlay's first triangle of the surface
     std::vector<NodeId> exact_of_new_;    ///< the exact point of each new node

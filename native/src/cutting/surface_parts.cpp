@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What bounds the parts of cells, and which of it belongs together.
-#include "surface_parts.hpp"
+#include "cutting/surface_parts.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cassert>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 
-#include "strata/disjoint_parts.hpp"
-#include "strata/parallel_sort.hpp"
+#include "arrangement/joined_polygons.hpp"
+#include "base/parallel_sort.hpp"
+#include "cutting/shell.hpp"
 
 namespace realmodel::cutting {
 
-namespace {
-
-/// A half edge of a face's regions.
-struct Half {
-    NodeId from, to;
-    std::int32_t region, next, twin;
-};
-
-}  // namespace
+using arrangement::each_edge;
 
 SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding,
                            const CutterSides& sides, Progress* progress)
@@ -29,8 +21,7 @@ SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding
     make_patches(progress);
     if (progress != nullptr) progress->begin(0.68, 0.75, "joining what bounds a part");
     make_caps();
-    owner_.resize(slots_.size());
-    std::iota(owner_.begin(), owner_.end(), 0);
+    joined_.emplace(slots_.size());
     join_parts(progress);
     attach_hollows();
     number_parts();
@@ -40,16 +31,18 @@ SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding
     find_touches(progress);
 }
 
-std::int32_t SurfaceParts::find(std::int32_t slot) {
-    while (owner_[index(slot)] != slot)
-        slot = owner_[index(slot)] = owner_[index(owner_[index(slot)])];
-    return slot;
-}
-
 std::int32_t SurfaceParts::add_slot(std::int32_t cell, std::int8_t half, std::int8_t sign) {
     if (cell < 0) return -1;
+    const std::int32_t number = checked_number(slots_.size(), "faces of parts of cells");
     slots_.push_back({cell, half, sign});
-    return static_cast<std::int32_t>(slots_.size()) - 1;
+    return number;
+}
+
+SurfaceParts::Patch& SurfaceParts::add_patch(std::size_t face, std::int8_t half) {
+    Patch& patch = patches_.emplace_back(Patch{static_cast<std::int32_t>(face), {}, {}, {}});
+    for (std::size_t k = 0; k < 2; ++k)
+        patch.slots[k] = add_slot(overlay_.model().cell(face, k), half, k == 0 ? 1 : -1);
+    return patch;
 }
 
 void SurfaceParts::use_edge(std::int32_t slot, const EdgeUse& use) {
@@ -68,82 +61,48 @@ void SurfaceParts::make_patches(Progress* progress) {
     constexpr std::size_t kCounted = 1 << 10;  // faces
     CountedLoop counted(progress, model.face_count() / kCounted, 1.0);
     for (std::size_t f = 0; f < model.face_count(); ++f) {
-        strata::poll(progress, f);
+        poll(progress, f);
         if (f % kCounted == kCounted - 1) counted.count();
         if (overlay_.is_active(f)) {
             divide_face(f, of_face[f]);
             continue;
         }
-        const std::int8_t half = sides_.of_face(f);
-        Patch& patch = patches_.emplace_back(Patch{static_cast<std::int32_t>(f), {}, half, {}});
-        for (std::size_t k = 0; k < 2; ++k) {
-            patch.slots[k] = add_slot(model.cell(f, k), half, k == 0 ? 1 : -1);
+        for (const std::int32_t slot : add_patch(f, sides_.of_face(f)).slots) {
             each_edge(std::array{model.face(f)}, static_cast<std::int32_t>(overlay_.size() + f),
-                      [&](const EdgeUse& use) { use_edge(patch.slots[k], use); });
+                      [&](const EdgeUse& use) { use_edge(slot, use); });
         }
     }
 }
 
 /// Joins the regions of a face along edges that are none of the surface's.
 void SurfaceParts::divide_face(std::size_t face, std::span<const std::int32_t> regions) {
-    std::vector<Half> halves;
-    std::map<std::array<NodeId, 2>, std::vector<std::int32_t>> by_ends;
+    arrangement::JoinedPolygons joined;
     for (std::size_t i = 0; i < regions.size(); ++i) {
-        for (const auto& loop : overlay_.loops(index(regions[i]))) {
-            const auto first = static_cast<std::int32_t>(halves.size());
-            const auto size = static_cast<std::int32_t>(loop.size());
-            for (std::int32_t k = 0; k < size; ++k) {
-                by_ends[{loop[index(k)], loop[index((k + 1) % size)]}].push_back(first + k);
-                halves.push_back({loop[index(k)], loop[index((k + 1) % size)],
-                                  static_cast<std::int32_t>(i), first + (k + 1) % size, -1});
-            }
-        }
+        for (const auto& loop : overlay_.loops(index(regions[i])))
+            joined.add(loop, static_cast<std::int32_t>(i));
     }
-    strata::DisjointParts joined(regions.size());
-    for (auto& [ends, users] : by_ends) {
-        if (ends[0] > ends[1] || winding_.is_edge(ends)) continue;
-        const auto against = by_ends.find({ends[1], ends[0]});
-        if (against == by_ends.end()) continue;
-        for (std::size_t i = 0; i < std::min(users.size(), against->second.size()); ++i) {
-            Half &h = halves[index(users[i])], &g = halves[index(against->second[i])];
-            h.twin = against->second[i];
-            g.twin = users[i];
-            joined.join(h.region, g.region);
-        }
-    }
+    joined.pair([this](const std::array<NodeId, 2>& edge, std::int32_t, std::int32_t) {
+        return !winding_.is_edge(edge);
+    });
+    DisjointSets together(regions.size());
+    joined.each_pair([&](std::int32_t i, std::int32_t j) { together.join(i, j); });
     std::map<std::int32_t, std::size_t> patch_of;  // by the first region of each
-    std::vector<bool> done(halves.size(), false);
-    for (std::size_t start = 0; start < halves.size(); ++start) {
-        if (done[start] || halves[start].twin >= 0) continue;
-        const std::int32_t first = joined.find(halves[start].region);
+    for (const auto& outline : joined.outlines()) {
+        const std::int32_t first = together.find(outline[0].polygon);
         const auto [at, is_new] = patch_of.try_emplace(first, patches_.size());
-        if (is_new) {
-            const std::int32_t region = regions[index(first)];
-            const std::int8_t half = sides_.of_region(index(region));
-            Patch& patch =
-                patches_.emplace_back(Patch{static_cast<std::int32_t>(face), {}, half, {}});
-            for (std::size_t k = 0; k < 2; ++k)
-                patch.slots[k] = add_slot(overlay_.model().cell(face, k), half, k == 0 ? 1 : -1);
-        }
+        if (is_new) add_patch(face, sides_.of_region(index(regions[index(first)])));
         Patch& patch = patches_[at->second];
         auto& loop = patch.loops.emplace_back();
-        std::size_t h = start;
-        do {
-            done[h] = true;
-            const Half& half = halves[h];
-            loop.push_back(half.from);
-            const EdgeUse use{{std::min(half.from, half.to), std::max(half.from, half.to)},
-                              regions[index(half.region)],
-                              static_cast<std::int8_t>(half.from < half.to ? 1 : -1)};
+        for (const auto& edge : outline) {
+            loop.push_back(edge.from);
+            const EdgeUse use{unordered(edge.from, edge.to), regions[index(edge.polygon)],
+                              static_cast<std::int8_t>(edge.from < edge.to ? 1 : -1)};
             for (const std::int32_t slot : patch.slots)
                 use_edge(slot, use);
-            h = index(half.next);
-            while (halves[h].twin >= 0)
-                h = index(halves[index(halves[h].twin)].next);
-        } while (h != start);
+        }
     }
     for (std::size_t i = 0; i < regions.size(); ++i) {
-        const auto at = patch_of.find(joined.find(static_cast<std::int32_t>(i)));
+        const auto at = patch_of.find(together.find(static_cast<std::int32_t>(i)));
         if (at != patch_of.end()) patches_[at->second].regions.push_back(regions[i]);
     }
 }
@@ -168,11 +127,6 @@ void SurfaceParts::make_caps() {
 }
 
 void SurfaceParts::join_parts(Progress* progress) {
-    const auto join = [this](std::int32_t a, std::int32_t b) {
-        a = find(a);
-        b = find(b);
-        owner_[index(std::max(a, b))] = std::min(a, b);
-    };
     // cells that are on one side stay whole
     const std::size_t cells = overlay_.model().cell_block.size();
     std::vector<std::uint8_t> halves(cells, 0);
@@ -184,17 +138,17 @@ void SurfaceParts::join_parts(Progress* progress) {
         const auto cell = index(slots_[s].cell);
         if (halves[cell] == 3) continue;
         if (first[cell] < 0) first[cell] = static_cast<std::int32_t>(s);
-        join(first[cell], static_cast<std::int32_t>(s));
+        joined_->join(first[cell], static_cast<std::int32_t>(s));
     }
-    strata::parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
+    parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
-        strata::poll(progress, begin);
+        poll(progress, begin);
         while (end < uses_.size() && uses_[end].cell == uses_[begin].cell &&
                uses_[end].half == uses_[begin].half && uses_[end].use.edge == uses_[begin].use.edge)
             ++end;
         if (halves[index(uses_[begin].cell)] != 3) continue;
         if (end - begin == 2) {
-            join(uses_[begin].slot, uses_[begin + 1].slot);
+            joined_->join(uses_[begin].slot, uses_[begin + 1].slot);
         } else {
             join_round_edge({uses_.data() + begin, end - begin});
         }
@@ -207,7 +161,7 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
     std::vector<EdgeUse> group;
     for (const SlotUse& use : uses)
         group.push_back(use.use);
-    const EdgeFan fan = fan_of(overlay_, group);
+    const EdgeFan fan = overlay_.fan_of(group);
     struct Step {
         std::int32_t slot;
         int change;  ///< 1 the cell begins, -1 it ends
@@ -239,8 +193,8 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
             begun.push_back(step.slot);
             continue;
         }
-        const std::int32_t a = find(begun.back()), b = find(step.slot);
-        owner_[index(std::max(a, b))] = std::min(a, b);
+        assert(!begun.empty());
+        joined_->join(begun.back(), step.slot);
         begun.pop_back();
     }
 }
@@ -248,63 +202,45 @@ void SurfaceParts::join_round_edge(std::span<const SlotUse> uses) {
 /// The wall of a hollow that the surface cuts out of a cell bounds the part around it; what
 /// rounding turned inside out goes with the part beside it.
 void SurfaceParts::attach_hollows() {
-    struct Shell {
-        double volume = 0;
-        Box box;
-    };
     std::map<std::pair<std::int32_t, std::int8_t>, std::map<std::int32_t, Shell>> shells;
-    std::vector<Position> origin(overlay_.model().cell_block.size());
-    std::vector<std::uint8_t> has_origin(origin.size(), 0);
-    const auto take = [&](std::int32_t slot, const auto& loops) {
+    std::vector<std::optional<Position>> origin(overlay_.model().cell_block.size());
+    const auto at = [this](NodeId node) { return overlay_.position(node); };
+    const auto add = [&](std::int32_t slot, const auto& loops) {
         if (slot < 0 || !sides_.reaches(slots_[index(slot)].cell)) return;
         const Slot& own = slots_[index(slot)];
-        Shell& shell = shells[{own.cell, own.half}][find(slot)];
-        if (has_origin[index(own.cell)] == 0) {
-            has_origin[index(own.cell)] = 1;
-            origin[index(own.cell)] = overlay_.position(loops[0][0]);
-        }
-        for (const auto& loop : loops) {
-            const Position first = overlay_.position(loop[0]);
-            for (std::size_t i = 0; i < loop.size(); ++i) {
-                shell.box.include(overlay_.position(loop[i]));
-                if (i < 2) continue;
-                shell.volume += own.sign * sixfold_volume(origin[index(own.cell)], first,
-                                                          overlay_.position(loop[i - 1]),
-                                                          overlay_.position(loop[i]));
-            }
-        }
+        auto& first = origin[index(own.cell)];
+        if (!first) first = at(loops[0][0]);
+        for (const auto& loop : loops)
+            shells[{own.cell, own.half}][joined_->find(slot)].add(loop, own.sign, *first, at);
     };
     for (const Patch& patch : patches_) {
         for (const std::int32_t slot : patch.slots) {
             if (patch.regions.empty()) {
-                take(slot, std::array{overlay_.model().face(index(patch.face))});
+                add(slot, std::array{overlay_.model().face(index(patch.face))});
             } else {
-                take(slot, patch.loops);
+                add(slot, patch.loops);
             }
         }
     }
     for (const Caps& caps : caps_) {
         for (const auto& own : caps.slots) {
             for (const std::int32_t slot : own)
-                take(slot, overlay_.loops(index(caps.region)));
+                add(slot, overlay_.loops(index(caps.region)));
         }
     }
     for (const auto& [cell, of_cell] : shells) {
         for (const auto& [root, hollow] : of_cell) {
-            if (hollow.volume > 0) continue;
+            if (hollow.sixfold_volume > 0) continue;
+            const auto rank = [&hollow](const Shell& shell) {  // a box around it, then the smallest
+                return std::pair(!shell.box.contains(hollow.box), shell.sixfold_volume);
+            };
             const std::pair<const std::int32_t, Shell>* around = nullptr;
             for (const auto& other : of_cell) {
-                const Shell& shell = other.second;
-                if (other.first == root || shell.volume <= -hollow.volume) continue;
-                const bool better =
-                    around == nullptr ||
-                    std::pair(!shell.box.contains(hollow.box), shell.volume) <
-                        std::pair(!around->second.box.contains(hollow.box), around->second.volume);
-                if (better) around = &other;
+                if (other.first == root || other.second.sixfold_volume <= -hollow.sixfold_volume)
+                    continue;
+                if (around == nullptr || rank(other.second) < rank(around->second)) around = &other;
             }
-            if (around == nullptr) continue;
-            const std::int32_t a = find(around->first), b = find(root);
-            owner_[index(std::max(a, b))] = std::min(a, b);
+            if (around != nullptr) joined_->join(around->first, root);
         }
     }
 }

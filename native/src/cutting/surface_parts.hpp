@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "cutter_sides.hpp"
-#include "halves.hpp"
+#include "base/disjoint_sets.hpp"
+#include "cutting/cutter_sides.hpp"
+#include "cutting/halves.hpp"
 
 namespace realmodel::cutting {
 
@@ -19,7 +21,6 @@ public:
                  Progress* progress);
 
     Pieces pieces;
-    PieceParts parts;
     std::vector<HalfCell> half_cells;
     /// Of cells below and above: whether some use an edge more than twice.
     std::array<bool, 2> touches{false, false};
@@ -36,7 +37,6 @@ private:
     struct Patch {
         std::int32_t face;
         std::vector<std::int32_t> regions;  ///< none: the whole face, which has none
-        std::int8_t half;
         std::vector<std::vector<NodeId>> loops;
         std::array<std::int32_t, 2> slots{-1, -1};
     };
@@ -57,6 +57,7 @@ private:
     void make_patches(Progress* progress);
     void divide_face(std::size_t face, std::span<const std::int32_t> regions);
     void make_caps();
+    Patch& add_patch(std::size_t face, std::int8_t half);
     std::int32_t add_slot(std::int32_t cell, std::int8_t half, std::int8_t sign);
     void use_edge(std::int32_t slot, const EdgeUse& use);
     void join_parts(Progress* progress);
@@ -69,7 +70,6 @@ private:
     void write(const Polygons& polygons, std::size_t first, std::size_t end, bool reversed,
                std::int32_t face, std::array<std::int32_t, 2> slots, bool level);
     void find_touches(const Progress* progress);
-    std::int32_t find(std::int32_t slot);
 
     SurfaceOverlay& overlay_;
     const CutterWinding& winding_;
@@ -78,8 +78,8 @@ private:
     std::vector<Patch> patches_;
     std::vector<Caps> caps_;
     std::vector<SlotUse> uses_;
-    std::vector<std::int32_t> owner_;  ///< of slots: another of the same part
-    std::vector<std::int32_t> part_;   ///< of slots
+    std::optional<DisjointSets> joined_;  ///< slots of the same part
+    std::vector<std::int32_t> part_;      ///< of slots
 };
 
 /// The region that some of the overlay's loops bound, in convex polygons (`is_wall`: one polygon if

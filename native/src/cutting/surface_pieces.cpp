@@ -2,23 +2,23 @@
 // The polygons around parts of cells.
 #include <algorithm>
 
-#include "strata/parallel_counts.hpp"
-#include "strata/parallel_sort.hpp"
-#include "surface_parts.hpp"
-#include "triangulate.hpp"
+#include "base/parallel.hpp"
+#include "base/parallel_sort.hpp"
+#include "cutting/surface_parts.hpp"
+#include "cutting/triangulate.hpp"
 
 namespace realmodel::cutting {
 
 namespace {
 
-/// Turns of nodes where they are exactly.
+/// Orientations of nodes where they are exactly.
 class ExactTurns : public CornerTurns {
 public:
     ExactTurns(SurfaceOverlay& overlay, const View& view) : overlay_(overlay), view_(view) {}
     int operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const override {
-        return view_.sign() * overlay_.points().turn(view_.axis(), overlay_.exact(a.node),
-                                                     overlay_.exact(b.node),
-                                                     overlay_.exact(c.node));
+        return view_.sign() * exact::orient2d(overlay_.points(), view_.axis(),
+                                              overlay_.exact(a.node), overlay_.exact(b.node),
+                                              overlay_.exact(c.node));
     }
 
 private:
@@ -36,9 +36,9 @@ Polygons from_middle(SurfaceOverlay& overlay, const Polygons& polygons) {
             for (std::size_t k = 0; k < 3; ++k)
                 middle[k] += overlay.position(node)[k] / static_cast<double>(nodes.size());
         }
-        const NodeId centre = overlay.add_node(middle);
+        const NodeId center = overlay.add_node(middle);
         for (std::size_t i = 0; i < nodes.size(); ++i)
-            divided.add(std::array{nodes[i], nodes[(i + 1) % nodes.size()], centre});
+            divided.add(std::array{nodes[i], nodes[(i + 1) % nodes.size()], center});
     }
     return divided;
 }
@@ -72,7 +72,7 @@ bool divide_loops(SurfaceOverlay& overlay, const Position& normal,
 void SurfaceParts::number_parts() {
     std::vector<std::int32_t> roots;
     for (std::size_t s = 0; s < slots_.size(); ++s) {
-        if (find(static_cast<std::int32_t>(s)) == static_cast<std::int32_t>(s))
+        if (joined_->find(static_cast<std::int32_t>(s)) == static_cast<std::int32_t>(s))
             roots.push_back(static_cast<std::int32_t>(s));
     }
     std::stable_sort(roots.begin(), roots.end(), [this](std::int32_t a, std::int32_t b) {
@@ -84,35 +84,28 @@ void SurfaceParts::number_parts() {
         half_cells.push_back({slots_[index(root)].cell, slots_[index(root)].half});
     }
     for (std::size_t s = 0; s < slots_.size(); ++s)
-        part_[s] = part_[index(find(static_cast<std::int32_t>(s)))];
+        part_[s] = part_[index(joined_->find(static_cast<std::int32_t>(s)))];
 }
 
-/// Adds some of the polygons between two slots: they turn counter-clockwise, turned over where
-/// `reversed`, seen from outside of the first, and clockwise from outside of the second.
+/// Adds some of the polygons between two slots: they turn counter-clockwise, the other
+/// way where `reversed`, seen from outside of the first, and clockwise from outside of the second.
 void SurfaceParts::write(const Polygons& polygons, std::size_t first, std::size_t end,
                          bool reversed, std::int32_t face, std::array<std::int32_t, 2> slots,
                          bool level) {
-    std::array<std::int32_t, 2> cells{-1, -1}, part{-1, -1};
-    std::array<std::int8_t, 2> sides{kOn, kOn};
+    Piece origin{face, {-1, -1}, {kOn, kOn}, level};
     for (std::size_t k = 0; k < 2; ++k) {
         if (slots[k] < 0) continue;
-        cells[k] = slots_[index(slots[k])].cell;
-        sides[k] = slots_[index(slots[k])].half;
-        part[k] = part_[index(slots[k])];
+        const Slot& slot = slots_[index(slots[k])];
+        origin.cells[k] = slot.cell;
+        origin.sides[k] = slot.half;
+        origin.parts[k] = part_[index(slots[k])];
     }
     for (std::size_t p = first; p < end; ++p) {
-        const auto nodes = polygons[p];
         if (reversed) {
-            pieces.polygons.nodes.insert(pieces.polygons.nodes.end(), nodes.rbegin(), nodes.rend());
-            pieces.polygons.close();
+            pieces.add_reversed(polygons[p], origin);
         } else {
-            pieces.polygons.add(nodes);
+            pieces.add(polygons[p], origin);
         }
-        pieces.face.push_back(face);
-        pieces.cells.push_back(cells);
-        pieces.sides.push_back(sides);
-        pieces.level.push_back(level ? 1 : 0);
-        parts.push_back(part);
     }
 }
 
@@ -132,10 +125,10 @@ void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
     if (!divide_loops(overlay_, polygon_normal(corners), patch.loops, is_wall, whole)) {
         whole.clear();
         for (const std::int32_t region : patch.regions) {
-            const auto [axis, turned] = overlay_.view_of(index(region));
-            Position way{0, 0, 0};
-            way[axis] = turned;
-            divide_loops(overlay_, way, overlay_.loops(index(region)), false, whole);
+            const auto [axis, facing] = overlay_.view_of(index(region));
+            Position normal{0, 0, 0};
+            normal[axis] = facing;
+            divide_loops(overlay_, normal, overlay_.loops(index(region)), false, whole);
         }
     }
     for (std::size_t p = 0; p < whole.size(); ++p)
@@ -150,14 +143,14 @@ void SurfaceParts::write_patches(const Progress* progress) {
         std::vector<std::size_t> ends;  ///< of each patch's polygons
     };
     std::vector<Divided> divided((patches_.size() + kChunk - 1) / kChunk);
-    strata::parallel_ranges(patches_.size(), kChunk, overlay_.threads(), progress,
-                            [&](std::size_t begin, std::size_t end) {
-                                Divided& own = divided[begin / kChunk];
-                                for (std::size_t i = begin; i < end; ++i) {
-                                    divide(patches_[i], own.polygons);
-                                    own.ends.push_back(own.polygons.size());
-                                }
-                            });
+    parallel_ranges(patches_.size(), kChunk, overlay_.threads(), progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        Divided& own = divided[begin / kChunk];
+                        for (std::size_t i = begin; i < end; ++i) {
+                            divide(patches_[i], own.polygons);
+                            own.ends.push_back(own.polygons.size());
+                        }
+                    });
     for (std::size_t i = 0; i < patches_.size(); ++i) {
         const Divided& own = divided[i / kChunk];
         const std::size_t first = i % kChunk == 0 ? 0 : own.ends[i % kChunk - 1];
@@ -209,7 +202,7 @@ void SurfaceParts::write_caps() {
         const auto sign = [this](std::int32_t slot) { return slots_[index(slot)].sign; };
         std::vector<std::array<std::int32_t, 2>> pairs;
         for (std::size_t k = 0; k < 2; ++k) {
-            std::vector<std::int32_t> ahead, back;  // turned as the surface, and against it
+            std::vector<std::int32_t> ahead, back;  // facing as the surface, and against it
             for (const std::int32_t slot : caps.slots[k])
                 (sign(slot) > 0 ? ahead : back).push_back(slot);
             const std::size_t count = std::min(ahead.size(), back.size());
@@ -238,7 +231,7 @@ void SurfaceParts::find_touches(const Progress* progress) {
     std::vector<std::array<std::int32_t, 3>> edges;  // part and ends
     for (const SlotUse& use : uses_)
         edges.push_back({part_[index(use.slot)], use.use.edge[0], use.use.edge[1]});
-    strata::parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
+    parallel_sort(edges, std::less<>(), overlay_.threads(), progress);
     for (std::size_t i = 2; i < edges.size(); ++i) {
         if (edges[i] == edges[i - 2])
             touches[half_cells[index(edges[i][0])].side == kAbove ? 1 : 0] = true;

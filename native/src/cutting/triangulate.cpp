@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "triangulate.hpp"
+#include "cutting/triangulate.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "plane_cross.hpp"
-#include "realmodel/exact/turn.hpp"
+#include "cutting/plane_cross.hpp"
+#include "exact/orient2d.hpp"
 
 namespace realmodel::cutting {
 
@@ -349,7 +349,7 @@ std::size_t outline_around(std::span<const Loop> loops, const std::vector<double
 }  // namespace
 
 int CornerTurns::operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const {
-    return exact::turn(a.at, b.at, c.at);
+    return exact::orient2d(a.at, b.at, c.at);
 }
 
 bool triangulate(std::span<const Loop> loops, const PlanePosition& rounding,

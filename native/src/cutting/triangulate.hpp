@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "polygons.hpp"
+#include "cutting/polygons.hpp"
 
 namespace realmodel::cutting {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arithmetic.hpp"
+#include "exact/arithmetic.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -3,9 +3,9 @@
 
 #include <gmpxx.h>
 
-#include "realmodel/exact/ball.hpp"
-#include "realmodel/exact/plan_geometry.hpp"
-#include "short_integer.hpp"
+#include "exact/double_double_interval.hpp"
+#include "exact/int126.hpp"
+#include "exact/plan_arrangement.hpp"
 
 namespace realmodel::exact {
 
@@ -20,7 +20,7 @@ int finest_exponent(double value, int exponent);
 
 /// Input differences as whole numbers: plan in units of 2^plan_exponent, heights likewise.
 struct IntegerArithmetic {
-    const PlanGeometry& g;
+    const PlanArrangement& g;
     mpz_class dx(VertexId v, VertexId o) const {
         return whole_number(g.point(v).x, g.plan_exponent()) -
                whole_number(g.point(o).x, g.plan_exponent());
@@ -43,7 +43,7 @@ inline bool is_known(const mpz_class&) {
 inline int sign_of(const mpz_class& number) {
     return sgn(number);
 }
-inline double nearest_double(const ShortInteger& num, const ShortInteger& den, int exponent) {
+inline double nearest_double(const Int126& num, const Int126& den, int exponent) {
     return nearest_double(num.to_mpz(), den.to_mpz(), exponent);
 }
 
@@ -51,17 +51,23 @@ inline double nearest_double(const ShortInteger& num, const ShortInteger& den, i
 /// @param ask  ask(in, number) gives the answer in the arithmetic `in` and the kind of number, or
 ///             nothing where the numbers it comes from are not known: they are short ones first
 template <class Ask>
-auto exactly(const PlanGeometry& geometry, const Ask& ask) {
-    if (const auto answer = ask(ShortArithmetic(geometry), ShortInteger())) return *answer;
+auto exactly(const PlanArrangement& geometry, const Ask& ask) {
+    if (const auto answer = ask(ShortArithmetic(geometry), Int126())) return *answer;
     return *ask(IntegerArithmetic{geometry}, mpz_class());
 }
 
 /// Input differences to twice the precision of doubles.
 struct BallArithmetic {
-    const PlanGeometry& g;
-    Ball dx(VertexId v, VertexId o) const { return Ball::difference(g.point(v).x, g.point(o).x); }
-    Ball dy(VertexId v, VertexId o) const { return Ball::difference(g.point(v).y, g.point(o).y); }
-    Ball dz(SpaceId s, SpaceId t) const { return Ball::difference(g.space(s).z, g.space(t).z); }
+    const PlanArrangement& g;
+    DoubleDoubleInterval dx(VertexId v, VertexId o) const {
+        return DoubleDoubleInterval::difference(g.point(v).x, g.point(o).x);
+    }
+    DoubleDoubleInterval dy(VertexId v, VertexId o) const {
+        return DoubleDoubleInterval::difference(g.point(v).y, g.point(o).y);
+    }
+    DoubleDoubleInterval dz(SpaceId s, SpaceId t) const {
+        return DoubleDoubleInterval::difference(g.space(s).z, g.space(t).z);
+    }
 };
 
 }  // namespace realmodel::exact

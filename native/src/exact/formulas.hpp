@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "realmodel/exact/plan_geometry.hpp"
+#include "exact/plan_arrangement.hpp"
 
 // The formulas of plan lines, crossings and heights, written once for every kind of number. An
 // `Arithmetic` gives differences of input coordinates in its number type: dx(v, o), dy(v, o) of
@@ -28,7 +28,7 @@ struct Normal {
 };
 
 template <class Number, class Arithmetic>
-Normal<Number> plane_normal(const Arithmetic& in, const PlanGeometry& g, PlaneId id) {
+Normal<Number> plane_normal(const Arithmetic& in, const PlanArrangement& g, PlaneId id) {
     const auto& corner = g.plane(id).corner;
     const VertexId p0 = g.space(corner[0]).plan, p1 = g.space(corner[1]).plan,
                    p2 = g.space(corner[2]).plan;
@@ -39,7 +39,7 @@ Normal<Number> plane_normal(const Arithmetic& in, const PlanGeometry& g, PlaneId
 
 /// a x + b y + c of a line relative to the plan vertex `origin`.
 template <class Number, class Arithmetic>
-LineCoefficients<Number> line_coefficients(const Arithmetic& in, const PlanGeometry& g,
+LineCoefficients<Number> line_coefficients(const Arithmetic& in, const PlanArrangement& g,
                                            const Line& line, VertexId origin) {
     if (line.kind == Line::Kind::kEdge) {
         const Number a = in.dy(line.first, line.second), b = in.dx(line.second, line.first);
@@ -68,7 +68,8 @@ Homogeneous<Number> cross(const LineCoefficients<Number>& l, const LineCoefficie
 
 /// A point of a scope relative to a plan vertex.
 template <class Number, class Arithmetic>
-Homogeneous<Number> place(const Arithmetic& in, const Scope& scope, PointId id, VertexId origin) {
+Homogeneous<Number> place(const Arithmetic& in, const LocalArrangement& scope, PointId id,
+                          VertexId origin) {
     if (scope.is_vertex(id)) return {in.dx(id, origin), in.dy(id, origin), Number(1)};
     const Point& p = scope.point(id);
     return cross(line_coefficients<Number>(in, scope.shared(), scope.line(p.first), origin),
@@ -76,7 +77,7 @@ Homogeneous<Number> place(const Arithmetic& in, const Scope& scope, PointId id, 
 }
 
 /// A plan vertex that a line starts from.
-inline VertexId anchor(const PlanGeometry& g, const Line& line) {
+inline VertexId anchor(const PlanArrangement& g, const Line& line) {
     return line.kind == Line::Kind::kEdge ? line.first
                                           : g.space(g.plane(line.first).corner[0]).plan;
 }

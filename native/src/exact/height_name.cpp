@@ -2,14 +2,14 @@
 #include <algorithm>
 #include <optional>
 
-#include "realmodel/exact/plan_geometry.hpp"
+#include "exact/plan_arrangement.hpp"
 
 namespace realmodel::exact {
 
 namespace {
 
 /// The side of a plane's triangle that stands on one of a crossing's two lines.
-std::optional<HeightName> standing_edge(const PlanGeometry& geometry, PlaneId plane,
+std::optional<HeightName> standing_edge(const PlanArrangement& geometry, PlaneId plane,
                                         const std::array<const Line*, 2>& lines) {
     const Plane& triangle = geometry.plane(plane);
     for (const Line* line : lines) {
@@ -27,7 +27,7 @@ bool is_trace_of(const Line& line, PlaneId plane) {
 
 }  // namespace
 
-HeightName Scope::height_name(PlaneId plane, PointId id) const {
+HeightName LocalArrangement::height_name(PlaneId plane, PointId id) const {
     if (is_vertex(id)) {
         const SpaceId s = shared_.corner_above(plane, id);
         return s >= 0 ? HeightName{s, s} : HeightName{-1, plane};

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "arithmetic.hpp"
-#include "formulas.hpp"
-#include "near.hpp"
-#include "realmodel/exact/plan_geometry.hpp"
+#include "exact/arithmetic.hpp"
+#include "exact/extended_interval.hpp"
+#include "exact/formulas.hpp"
+#include "exact/plan_arrangement.hpp"
 
 namespace realmodel::exact {
 
-void Scope::locate(Point& p) {
+void LocalArrangement::locate(Point& p) {
     const NearPoint close = near(p);
     const Point& from = shared_.point(close.origin);
     auto x = nearest_sum(from.x, close.x);
@@ -23,10 +23,10 @@ void Scope::locate(Point& p) {
         const VertexId origin = anchor(shared_, l);
         const Point& o = shared_.point(origin);
         const BallArithmetic in{shared_};
-        const auto h = cross(line_coefficients<Ball>(in, shared_, l, origin),
-                             line_coefficients<Ball>(in, shared_, m, origin));
-        x = (h.x / h.w + Ball(o.x)).rounded();
-        y = (h.y / h.w + Ball(o.y)).rounded();
+        const auto h = cross(line_coefficients<DoubleDoubleInterval>(in, shared_, l, origin),
+                             line_coefficients<DoubleDoubleInterval>(in, shared_, m, origin));
+        x = (h.x / h.w + DoubleDoubleInterval(o.x)).rounded();
+        y = (h.y / h.w + DoubleDoubleInterval(o.y)).rounded();
         if (!x || !y) {
             ++exact_;
             const auto whole = exactly(
@@ -50,22 +50,23 @@ void Scope::locate(Point& p) {
     p.y = *y;
 }
 
-std::array<double, 2> Scope::rounded(PointId id) {
+std::array<double, 2> LocalArrangement::rounded(PointId id) {
     return {point(id).x, point(id).y};
 }
 
-double Scope::rounded_height(PlaneId plane, PointId id) {
+double LocalArrangement::rounded_height(PlaneId plane, PointId id) {
     return rounded_height(plane, id, near(id));
 }
 
-std::optional<double> Scope::rounded_height_of_crossing(const HeightName& name, PointId id) const {
+std::optional<double> LocalArrangement::rounded_height_of_crossing(const HeightName& name,
+                                                                   PointId id) const {
     if (name.first < 0 || is_vertex(id)) return std::nullopt;
     const Point& p = point(id);
     return near_height_of_crossing(shared_, name.first, name.second, line(p.first), line(p.second));
 }
 
-double Scope::rounded_height(PlaneId plane, const HeightName& name, PointId id,
-                             const NearPoint& close) {
+double LocalArrangement::rounded_height(PlaneId plane, const HeightName& name, PointId id,
+                                        const NearPoint& close) {
     if (name.first >= 0) {
         if (name.first == name.second) return shared_.space(name.first).z;
         if (const auto z = near_edge_height(shared_, name.first, name.second, close)) return *z;
@@ -73,7 +74,7 @@ double Scope::rounded_height(PlaneId plane, const HeightName& name, PointId id,
     return rounded_height(plane, id, close);
 }
 
-double Scope::rounded_height(PlaneId plane_id, PointId id, const NearPoint& close) {
+double LocalArrangement::rounded_height(PlaneId plane_id, PointId id, const NearPoint& close) {
     const SpaceVertex& corner = shared_.space(shared_.plane(plane_id).corner[0]);
     if (is_vertex(id)) {
         const SpaceId s = shared_.corner_above(plane_id, id);
@@ -82,9 +83,10 @@ double Scope::rounded_height(PlaneId plane_id, PointId id, const NearPoint& clos
     if (const auto z = near_height(shared_, plane_id, close)) return *z;
     {
         const BallArithmetic in{shared_};
-        const auto n = plane_normal<Ball>(in, shared_, plane_id);
-        const auto h = place<Ball>(in, *this, id, corner.plan);
-        const auto z = (Ball(corner.z) - (n.a * h.x + n.b * h.y) / (n.c * h.w)).rounded();
+        const auto n = plane_normal<DoubleDoubleInterval>(in, shared_, plane_id);
+        const auto h = place<DoubleDoubleInterval>(in, *this, id, corner.plan);
+        const auto z =
+            (DoubleDoubleInterval(corner.z) - (n.a * h.x + n.b * h.y) / (n.c * h.w)).rounded();
         if (z) return *z;
     }
     ++exact_;
@@ -99,17 +101,18 @@ double Scope::rounded_height(PlaneId plane_id, PointId id, const NearPoint& clos
     });
 }
 
-std::array<double, 3> Scope::line_key(LineId id) {
+std::array<double, 3> LocalArrangement::line_key(LineId id) {
     const Line& l = line(id);
     constexpr VertexId kOrigin = 0;  // any vertex does, as long as it is the same for all lines
     if (const auto key = near_line_key(near_line(shared_, l, kOrigin))) return *key;
     {
-        const auto c = line_coefficients<Ball>(BallArithmetic{shared_}, shared_, l, kOrigin);
+        const auto c =
+            line_coefficients<DoubleDoubleInterval>(BallArithmetic{shared_}, shared_, l, kOrigin);
         const auto a = c.a.sign(), b = c.b.sign();
         if (a && b) {
             const auto steep = ((*a < 0 ? -c.a : c.a) - (*b < 0 ? -c.b : c.b)).sign();
             if (steep) {
-                const Ball& divisor = *steep > 0 ? c.a : c.b;
+                const DoubleDoubleInterval& divisor = *steep > 0 ? c.a : c.b;
                 const auto slope = ((*steep > 0 ? c.b : c.a) / divisor).rounded();
                 const auto offset = (c.c / divisor).rounded();
                 if (slope && offset) return {*steep > 0 ? 1.0 : 0.0, *slope, *offset};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "realmodel/exact/side_rows.hpp"
+#include "exact/side_rows.hpp"
 
 namespace realmodel::exact {
 
@@ -19,7 +19,7 @@ Sides completed(Sides known, std::size_t size, const Ask& ask) {
 
 }  // namespace
 
-RowFilter row_filter(const Scope& scope, DirectedLine line) {
+RowFilter row_filter(const LocalArrangement& scope, DirectedLine line) {
     const LineFilter f = scope.filter(line_of(line));
     const double sign = is_reversed(line) ? -1.0 : 1.0;
     const PlanReach& reach = scope.shared().reach();
@@ -28,12 +28,12 @@ RowFilter row_filter(const Scope& scope, DirectedLine line) {
             f.y0,       f.error_at(reach.width, reach.height, reach.point_error) * (1 + 0x1p-40)};
 }
 
-Sides complete(Scope& scope, Sides known, const PointRow& points, DirectedLine line) {
+Sides complete(LocalArrangement& scope, Sides known, const PointRow& points, DirectedLine line) {
     return completed(known, points.size,
                      [&](std::size_t i) { return scope.side(line, points.point[i]); });
 }
 
-Sides complete(Scope& scope, Sides known, const LineRow& lines, PointId point) {
+Sides complete(LocalArrangement& scope, Sides known, const LineRow& lines, PointId point) {
     return completed(known, lines.size,
                      [&](std::size_t i) { return scope.side(lines.line[i], point); });
 }

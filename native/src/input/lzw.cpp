@@ -11,15 +11,15 @@ namespace realmodel::input {
 
 namespace {
 
-constexpr int clear = 256, end_of_information = 257, first_free = 258, table_size = 4096;
-constexpr int least_width = 9, greatest_width = 12;
+constexpr int kClear = 256, kEndOfInformation = 257, kFirstFree = 258, kTableSize = 4096;
+constexpr int kLeastWidth = 9, kGreatestWidth = 12;
 
 [[noreturn]] void refuse(const char* what) {
     throw InputError("damaged", std::string("damaged LZW data: ") + what);
 }
 
-/// What the codes stand for: each its predecessor's bytes and one more, which lie in the output
-/// where it was made.
+/// The bytes of a code: those of the code before it and one more, which lie in the output where the
+/// code was made.
 struct Entry {
     std::size_t begin, length;
 };
@@ -29,8 +29,8 @@ struct Entry {
 std::vector<std::uint8_t> decode_lzw(std::span<const std::uint8_t> encoded, std::size_t most) {
     std::vector<std::uint8_t> out;
     out.reserve(most);
-    std::array<Entry, table_size> table{};
-    int next = first_free, width = least_width;
+    std::array<Entry, kTableSize> table{};
+    int next = kFirstFree, width = kLeastWidth;
     bool fresh = true;  // just cleared: the next code is a byte and makes no entry
     Entry previous{0, 0};
     std::uint32_t bits = 0;
@@ -41,19 +41,19 @@ std::vector<std::uint8_t> decode_lzw(std::span<const std::uint8_t> encoded, std:
         if (held < width) continue;
         held -= width;
         const int code = static_cast<int>(bits >> held & ((1u << width) - 1));
-        if (code == end_of_information) break;
-        if (code == clear) {
-            next = first_free;
-            width = least_width;
+        if (code == kEndOfInformation) break;
+        if (code == kClear) {
+            next = kFirstFree;
+            width = kLeastWidth;
             fresh = true;
             continue;
         }
-        const Entry here{out.size(), code < clear  ? 1
+        const Entry here{out.size(), code < kClear ? 1
                                      : code < next ? table[code].length
                                                    : previous.length + 1};
-        if (code > next || (fresh && code > clear)) refuse("a code that was not made yet");
+        if (code > next || (fresh && code > kClear)) refuse("a code that was not made yet");
         if (here.length > most - out.size()) refuse("it is longer than the image");
-        if (code < clear) {
+        if (code < kClear) {
             out.push_back(static_cast<std::uint8_t>(code));
         } else {
             // The code that is being made now is the previous one and its own first byte, which
@@ -62,9 +62,9 @@ std::vector<std::uint8_t> decode_lzw(std::span<const std::uint8_t> encoded, std:
             for (std::size_t i = 0; i < here.length; ++i)
                 out.push_back(out[from + i]);
         }
-        if (!fresh && next < table_size) {  // a full table stays as it is until it is cleared
+        if (!fresh && next < kTableSize) {  // a full table stays as it is until it is cleared
             table[next++] = {previous.begin, previous.length + 1};
-            if (next + 1 >= 1 << width) width = std::min(width + 1, greatest_width);
+            if (next + 1 >= 1 << width) width = std::min(width + 1, kGreatestWidth);
         }
         previous = here;
         fresh = false;

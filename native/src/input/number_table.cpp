@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "realmodel/input/number_table.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <optional>
 
+#include "base/parallel.hpp"
 #include "input/number_text.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -15,7 +13,7 @@ namespace realmodel::input {
 
 namespace {
 
-constexpr std::size_t bytes_at_once = 1 << 16;  // a thread's share of the text
+constexpr std::size_t kBytesAtOnce = 1 << 16;  // the least that a thread reads
 
 /// Bytes of the text, without blanks around them and without quotes.
 struct Field {
@@ -97,7 +95,8 @@ private:
         }
     }
 
-    /// A field in quotes; `at` goes behind its separator. Returns whether there may be another.
+    /// A field in quotes; moves `at` behind its separator.
+    /// @return whether there may be another
     bool quoted(std::size_t& at, std::size_t end) {
         std::size_t close = at + 1;
         while (close < end && (text_[close] != '"' || (close + 1 < end && text_[close + 1] == '"')))
@@ -143,18 +142,18 @@ private:
                 --end;
         }
         ParsedNumber number = parse_number(text_.substr(begin, end - begin), format_.decimal);
-        if (number.length != end - begin) number.spelling = Spelling::not_a_number;
+        if (number.length != end - begin) number.spelling = Spelling::kNotANumber;
         return number;
     }
 
     bool is_number(const Field& field) const {
-        return number_of(field).spelling != Spelling::not_a_number;
+        return number_of(field).spelling != Spelling::kNotANumber;
     }
 
     bool is_one_of(const Field& field, const Values& values) {
         if (!values.numbers.empty()) {
             const ParsedNumber number = number_of(field);
-            if (number.spelling == Spelling::number || number.spelling == Spelling::not_finite) {
+            if (number.spelling == Spelling::kNumber || number.spelling == Spelling::kNotFinite) {
                 for (const double value : values.numbers) {
                     if (value == number.value || (std::isnan(value) && std::isnan(number.value)))
                         return true;
@@ -174,7 +173,7 @@ private:
         return std::find(values.texts.begin(), values.texts.end(), entry) != values.texts.end();
     }
 
-    /// Takes up the present line.
+    /// Adds the present line.
     std::optional<Wrong> row(NumberTable& out) {
         if (fields_.size() < most_) {
             return Wrong{"too_few", {0, static_cast<std::int64_t>(fields_.size())}};
@@ -194,12 +193,12 @@ private:
         for (std::size_t i = 0; i < format_.columns.size(); ++i) {
             const Field& field = fields_[format_.columns[i]];
             const ParsedNumber number = number_of(field);
-            if (number.spelling == Spelling::number) {
+            if (number.spelling == Spelling::kNumber) {
                 out.values.push_back(number.value);
                 continue;
             }
-            const char* const kind = number.spelling == Spelling::not_finite  ? "not_finite"
-                                     : number.spelling == Spelling::too_large ? "too_large"
+            const char* const kind = number.spelling == Spelling::kNotFinite  ? "not_finite"
+                                     : number.spelling == Spelling::kTooLarge ? "too_large"
                                                                               : "not_a_number";
             return Wrong{kind,
                          {0, static_cast<std::int64_t>(i), static_cast<std::int64_t>(field.begin),
@@ -220,28 +219,17 @@ private:
 
 NumberTable read_numbers(std::string_view text, const TableFormat& format, int threads) {
     std::vector<std::size_t> begins{0};  // of the parts: lines are kept whole
-    while (begins.back() + bytes_at_once < text.size()) {
-        const std::size_t newline = text.find('\n', begins.back() + bytes_at_once);
+    while (begins.back() + kBytesAtOnce < text.size()) {
+        const std::size_t newline = text.find('\n', begins.back() + kBytesAtOnce);
         if (newline == std::string_view::npos) break;
         begins.push_back(newline + 1);
     }
-    const auto parts = static_cast<std::ptrdiff_t>(begins.size());
     begins.push_back(text.size());
     std::vector<NumberTable> tables(begins.size() - 1);
-    std::vector<std::optional<Wrong>> wrong(begins.size() - 1);
-    std::exception_ptr thrown;
-    const int team = threads > 0 ? threads : omp_get_max_threads();
-#pragma omp parallel for schedule(dynamic) num_threads(team) if (parts > 1)
-    for (std::ptrdiff_t part = 0; part < parts; ++part) {
-        try {
-            Lines lines(text, format);
-            wrong[part] = lines.read(begins[part], begins[part + 1], tables[part]);
-        } catch (...) {  // out of memory
-#pragma omp critical(realmodel_read_numbers)
-            thrown = std::current_exception();
-        }
-    }
-    if (thrown) std::rethrow_exception(thrown);
+    std::vector<std::optional<Wrong>> wrong(tables.size());
+    parallel_chunks(tables.size(), threads, nullptr, [&](std::size_t part) {
+        wrong[part] = Lines(text, format).read(begins[part], begins[part + 1], tables[part]);
+    });
     NumberTable all;
     std::size_t count = 0;
     for (const NumberTable& table : tables)

@@ -28,10 +28,10 @@ ParsedNumber not_finite(std::string_view text, std::size_t sign) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const double signed_infinity = sign > 0 && text[0] == '-' ? -infinity : infinity;
     const std::string_view word = text.substr(sign);
-    if (begins_with(word, "infinity")) return {Spelling::not_finite, signed_infinity, sign + 8};
-    if (begins_with(word, "inf")) return {Spelling::not_finite, signed_infinity, sign + 3};
+    if (begins_with(word, "infinity")) return {Spelling::kNotFinite, signed_infinity, sign + 8};
+    if (begins_with(word, "inf")) return {Spelling::kNotFinite, signed_infinity, sign + 3};
     if (begins_with(word, "nan")) {
-        return {Spelling::not_finite, std::numeric_limits<double>::quiet_NaN(), sign + 3};
+        return {Spelling::kNotFinite, std::numeric_limits<double>::quiet_NaN(), sign + 3};
     }
     return {};
 }
@@ -59,22 +59,22 @@ std::size_t extent_of(std::string_view text, std::size_t begin, char decimal) {
     return at;
 }
 
-/// A number that from_chars finds to lie beyond the range of doubles: zero, or too large. It does
-/// so by the place of the first digit that counts, as the exponent may be of any length.
+/// A number that from_chars finds to lie beyond the range of doubles: zero, or too large. The
+/// position of the first significant digit decides, as the exponent may be of any length.
 ParsedNumber beyond_range(std::string_view digits, bool negative, std::size_t length) {
     // Below the least double where the exponent says so or the zeros before the first digit do.
     const std::size_t e = std::min(digits.find_first_of("eE"), digits.size());
     const std::size_t first = digits.find_first_of("123456789");
     const std::size_t point = std::min(digits.find('.'), e);
-    const auto place =
+    const auto leading =
         first < point ? static_cast<double>(point - first) : -static_cast<double>(first - point);
     double exponent = 0;
     for (std::size_t i = e + 1; i < digits.size(); ++i) {
         if (is_digit(digits[i])) exponent = std::min(10 * exponent + (digits[i] - '0'), 1e15);
     }
     if (e + 1 < digits.size() && digits[e + 1] == '-') exponent = -exponent;
-    if (place + exponent > 0) return {Spelling::too_large, 0.0, length};
-    return {Spelling::number, negative ? -0.0 : 0.0, length};
+    if (leading + exponent > 0) return {Spelling::kTooLarge, 0.0, length};
+    return {Spelling::kNumber, negative ? -0.0 : 0.0, length};
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ ParsedNumber parse_number(std::string_view text, char decimal) {
     if (error == std::errc::invalid_argument) return {};  // a decimal mark alone
     if (error == std::errc::result_out_of_range) return beyond_range(digits, negative, end);
     if (stop != digits.data() + digits.size()) return {};
-    return {Spelling::number, negative ? -value : value, end};
+    return {Spelling::kNumber, negative ? -value : value, end};
 }
 
 }  // namespace realmodel::input

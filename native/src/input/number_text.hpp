@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One number written as text. Private.
 #pragma once
 
 #include <string_view>
 
 namespace realmodel::input {
 
-enum class Spelling { number, not_a_number, not_finite, too_large };
+enum class Spelling { kNumber, kNotANumber, kNotFinite, kTooLarge };
 
 struct ParsedNumber {
-    Spelling spelling = Spelling::not_a_number;
+    Spelling spelling = Spelling::kNotANumber;
     double value = 0.0;      ///< the nearest double; NaN or infinity where it is not finite
     std::size_t length = 0;  ///< of what was read, from the beginning of the text
 };

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <numeric>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "realmodel/base/errors.hpp"
 
@@ -32,8 +34,27 @@ bool usable(double number) {
 
 }  // namespace
 
+Bounds bounds_of(std::span<const Position> positions) {
+    Bounds bounds{positions[0], positions[0]};
+    for (const Position& p : positions) {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            bounds.low[axis] = std::min(bounds.low[axis], p[axis]);
+            bounds.high[axis] = std::max(bounds.high[axis], p[axis]);
+        }
+    }
+    return bounds;
+}
+
+std::vector<double> DataPoints::for_given(std::span<const double> found) const {
+    std::vector<double> out(number_of.size());
+    for (std::size_t i = 0; i < out.size(); ++i)
+        out[i] = found[number_of[i]];
+    return out;
+}
+
 DataPoints prepare_points(std::span<const std::array<double, 3>> points) {
     if (points.empty()) throw InputError("no_points", "there are no points to interpolate from");
+    require_countable(points.size(), "points");
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (std::all_of(points[i].begin(), points[i].end(), usable)) continue;
         throw InputError("not_finite",
@@ -42,47 +63,56 @@ DataPoints prepare_points(std::span<const std::array<double, 3>> points) {
     }
     std::vector<std::int32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-        for (int axis = 0; axis < 2; ++axis) {
-            if (points[a][axis] != points[b][axis]) return points[a][axis] < points[b][axis];
-        }
-        return a < b;
-    });
-    std::vector<std::int32_t> first_at(points.size());  // of each point, the first at its place
+    const auto key = [&](std::int32_t i) { return std::tuple(points[i][0], points[i][1], i); };
+    std::sort(order.begin(), order.end(),
+              [&](std::int32_t a, std::int32_t b) { return key(a) < key(b); });
+    std::vector<std::int32_t> first_at(points.size());  // of each point, the first at its position
     std::int32_t first = order[0];
-    first_at[first] = first;
-    for (std::size_t i = 1; i < order.size(); ++i) {
-        const auto &a = points[first], &b = points[order[i]];
+    for (const std::int32_t i : order) {
+        const auto &a = points[first], &b = points[i];
         if (a[0] != b[0] || a[1] != b[1]) {
-            first = order[i];
+            first = i;
         } else if (a[2] != b[2]) {
-            refuse_contradiction(points, first, order[i]);
+            refuse_contradiction(points, first, i);
         }
-        first_at[order[i]] = first;
+        first_at[i] = first;
     }
     DataPoints data;
     data.origin = {points[0][0], points[0][1]};
-    data.place_of.resize(points.size());
+    data.number_of.resize(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (first_at[i] != static_cast<std::int32_t>(i)) {
-            data.place_of[i] = data.place_of[first_at[i]];
+        if (std::cmp_not_equal(first_at[i], i)) {
+            data.number_of[i] = data.number_of[first_at[i]];
             continue;
         }
-        data.place_of[i] = static_cast<std::int32_t>(data.places.size());
-        data.places.push_back({points[i][0], points[i][1]});
-        data.local.push_back(data.to_local(data.places.back()));
+        data.number_of[i] = static_cast<std::int32_t>(data.local.size());
+        data.local.push_back(data.to_local({points[i][0], points[i][1]}));
         data.values.push_back(points[i][2]);
     }
     return data;
 }
 
-void require_finite_nodes(std::span<const Place> nodes) {
+std::vector<std::int32_t> even_part(std::size_t count, std::size_t most) {
+    std::vector<std::int32_t> part(std::min(count, most));
+    for (std::size_t k = 0; k < part.size(); ++k)
+        part[k] = static_cast<std::int32_t>(k * count / part.size());
+    return part;
+}
+
+void require_finite_nodes(std::span<const Position> nodes) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (usable(nodes[i][0]) && usable(nodes[i][1])) continue;
         throw InputError("not_finite",
                          "node " + std::to_string(i) + " is not a finite number below 1e150", -1,
                          {static_cast<std::int64_t>(i)});
     }
+}
+
+void require_countable(std::size_t count, const char* what) {
+    constexpr std::size_t kMost = INT32_MAX;
+    if (count <= kMost) return;
+    throw InputError("too_large", "there are " + std::to_string(count) + " " + what + "; at most " +
+                                      std::to_string(kMost) + " can be used");
 }
 
 }  // namespace realmodel::interpolation

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Data points checked and made ready for interpolation. Private.
 #pragma once
 
 #include <array>
@@ -9,28 +8,50 @@
 
 namespace realmodel::interpolation {
 
-using Place = std::array<double, 2>;
+/// x and y in plan.
+using Position = std::array<double, 2>;
 
-/// Points of which no two lie at one place. Coordinates are kept as they came (to find again a node
-/// on a point) and relative to an origin among them (to reckon with: at UTM coordinates differences
-/// keep all their digits).
+using Place = Position;  // in the spatial indexes
+
+/// The box around some positions.
+struct Bounds {
+    Position low, high;
+
+    double width() const { return high[0] - low[0]; }
+    double height() const { return high[1] - low[1]; }
+};
+/// @param positions  at least one
+Bounds bounds_of(std::span<const Position> positions);
+
+/// Points of which no two lie at one position. Their coordinates are relative to an origin among
+/// them: at UTM coordinates differences keep all their digits.
 struct DataPoints {
-    std::vector<Place> places;  ///< in order of appearance
-    std::vector<Place> local;   ///< places minus origin
+    std::vector<Position> local;  ///< in order of appearance
     std::vector<double> values;
-    std::vector<std::int32_t> place_of;  ///< for each point that was given, its place
-    Place origin{};
+    std::vector<std::int32_t> number_of;  ///< for each point that was given, its number here
+    Position origin{};
 
-    Place to_local(const Place& place) const {
-        return {place[0] - origin[0], place[1] - origin[1]};
+    Position to_local(const Position& position) const {
+        return {position[0] - origin[0], position[1] - origin[1]};
     }
+    /// What was found for each of these points, for each point that was given.
+    std::vector<double> for_given(std::span<const double> found) const;
 };
 
-/// Merges points that repeat another. Throws InputError of kind "no_points", "not_finite" (items:
-/// the point), "contradicting_points" (two values at one place; items: both points; place).
+/// Merges points that repeat another.
+/// @throws InputError kind "no_points", "not_finite" (items: the point), "contradicting_points"
+/// (two
+///         values at one position; items: both points; place), "too_large"
 DataPoints prepare_points(std::span<const std::array<double, 3>> points);
 
-/// Throws InputError "not_finite" (items: the node).
-void require_finite_nodes(std::span<const Place> nodes);
+/// A fixed, even part of the numbers below `count`: at most `most` of them, ascending.
+std::vector<std::int32_t> even_part(std::size_t count, std::size_t most);
+
+/// @throws InputError kind "not_finite" (items: the node)
+void require_finite_nodes(std::span<const Position> nodes);
+
+/// Points and nodes are numbered by 32 bits.
+/// @throws InputError kind "too_large"
+void require_countable(std::size_t count, const char* what);
 
 }  // namespace realmodel::interpolation

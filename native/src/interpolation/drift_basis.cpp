@@ -8,15 +8,16 @@ namespace realmodel::interpolation {
 
 namespace {
 
-// Of a term, where its values are of the order of 1: below this the data do not tell it from the
-// terms before it. Points off a line by a millionth of its length are on it.
-constexpr double told_apart = 1e-6;
-// Points within so little lie in one place and show no trend: far from them its terms, and the
-// variances that are their squares, would overflow.
-constexpr double least_spread = 1e-60;
+// The least part of a term, its values of the order of 1, that is orthogonal to the terms before
+// it: with less the data do not distinguish it from them. Points off a line by a millionth of its
+// length are on it.
+constexpr double kLeastPart = 1e-6;
+// Points closer together show no trend: far from them its terms, and the variances that are their
+// squares, would overflow.
+constexpr double kLeastSpread = 1e-60;
 
 /// Takes the part along the first `count` columns of an orthonormal basis out of v, twice for full
-/// accuracy (Giraud and others 2005); `along` gets what was taken out.
+/// accuracy (Giraud and others 2005); along(k, part) gets what was taken out.
 template <class Along>
 void make_orthogonal(const Eigen::MatrixXd& basis, Eigen::Index count, Eigen::VectorXd& v,
                      Along&& along) {
@@ -33,56 +34,61 @@ void make_orthogonal(const Eigen::MatrixXd& basis, Eigen::Index count, Eigen::Ve
 
 Eigen::Index drift_terms(Drift drift) {
     switch (drift) {
-        case Drift::constant:
+        case Drift::kConstant:
             return 1;
-        case Drift::linear:
+        case Drift::kLinear:
             return 3;
-        case Drift::quadratic:
+        case Drift::kQuadratic:
             return 6;
     }
     return 1;
 }
 
-DriftFrame::DriftFrame(std::span<const Place> places, Drift drift) : drift_(drift) {
-    if (drift == Drift::constant || places.empty()) return;
-    for (const Place& p : places) {
-        centre_[0] += p[0];
-        centre_[1] += p[1];
+DriftFrame::DriftFrame(std::span<const Position> positions, Drift drift) : drift_(drift) {
+    if (drift == Drift::kConstant || positions.empty()) return;
+    for (const Position& p : positions) {
+        center_[0] += p[0];
+        center_[1] += p[1];
     }
-    centre_[0] /= static_cast<double>(places.size());
-    centre_[1] /= static_cast<double>(places.size());
+    center_[0] /= static_cast<double>(positions.size());
+    center_[1] /= static_cast<double>(positions.size());
     double xx = 0, xy = 0, yy = 0, largest = 0;
-    for (const Place& p : places) {
-        const double x = p[0] - centre_[0], y = p[1] - centre_[1];
+    for (const Position& p : positions) {
+        const double x = p[0] - center_[0], y = p[1] - center_[1];
         xx += x * x;
         xy += x * y;
         yy += y * y;
         largest = std::max({largest, std::abs(x), std::abs(y)});
     }
-    if (largest > least_spread) scale_ = largest;
+    if (largest > kLeastSpread) scale_ = largest;
     // The axis of greatest spread of the covariance matrix [xx xy; xy yy].
     const double angle = 0.5 * std::atan2(2 * xy, xx - yy);
     along_x_ = std::cos(angle);
     along_y_ = std::sin(angle);
 }
 
-DriftFrame::Terms DriftFrame::terms(const Place& place) const {
-    const double x = (place[0] - centre_[0]) / scale_, y = (place[1] - centre_[1]) / scale_;
+DriftFrame::Terms DriftFrame::terms(const Position& position) const {
+    const double x = (position[0] - center_[0]) / scale_, y = (position[1] - center_[1]) / scale_;
     const double along = along_x_ * x + along_y_ * y, across = along_x_ * y - along_y_ * x;
     Terms terms(drift_terms(drift_));
     terms(0) = 1;
-    if (drift_ == Drift::linear) {
-        terms(1) = along;
-        terms(2) = across;
-    } else if (drift_ == Drift::quadratic) {
-        // What is along comes first: of few points in one line the quadratic along it is kept.
-        terms(1) = along;
-        terms(2) = across;
+    if (drift_ == Drift::kConstant) return terms;
+    // Terms along come first: of few points in one line the quadratic along it is kept.
+    terms(1) = along;
+    terms(2) = across;
+    if (drift_ == Drift::kQuadratic) {
         terms(3) = along * along;
         terms(4) = along * across;
         terms(5) = across * across;
     }
     return terms;
+}
+
+Eigen::MatrixXd DriftFrame::terms(std::span<const Position> positions) const {
+    Eigen::MatrixXd rows(std::ssize(positions), drift_terms(drift_));
+    for (Eigen::Index i = 0; i < rows.rows(); ++i)
+        rows.row(i) = terms(positions[i]);
+    return rows;
 }
 
 void DriftBasis::make(const Eigen::Ref<const Eigen::MatrixXd>& plain,
@@ -91,14 +97,14 @@ void DriftBasis::make(const Eigen::Ref<const Eigen::MatrixXd>& plain,
     basis_.resize(rows, terms);
     plain_basis_.resize(rows, terms);
     kept_ = 0;
-    const double least = told_apart * std::sqrt(static_cast<double>(rows));
+    const double least = kLeastPart * std::sqrt(static_cast<double>(rows));
     Eigen::VectorXd v;
     for (Eigen::Index term = 0; term < terms; ++term) {
         v = plain.col(term);
         make_orthogonal(plain_basis_, kept_, v, [](Eigen::Index, double) {});
-        const double told = v.norm();
-        if (!(told > least)) continue;
-        plain_basis_.col(kept_) = v / told;
+        const double left = v.norm();
+        if (!(left > least)) continue;
+        plain_basis_.col(kept_) = v / left;
 
         v = whitened.col(term);
         upper_.col(kept_).setZero();
@@ -108,7 +114,7 @@ void DriftBasis::make(const Eigen::Ref<const Eigen::MatrixXd>& plain,
         if (!(length > 1e-12 * whitened.col(term).norm())) continue;
         basis_.col(kept_) = v / length;
         upper_(kept_, kept_) = length;
-        term_[static_cast<std::size_t>(kept_)] = term;
+        term_[kept_] = term;
         ++kept_;
     }
 }
@@ -116,7 +122,7 @@ void DriftBasis::make(const Eigen::Ref<const Eigen::MatrixXd>& plain,
 DriftBasis::Coefficients DriftBasis::solve(const DriftFrame::Terms& terms) const {
     Coefficients out(kept_);
     for (Eigen::Index k = 0; k < kept_; ++k) {
-        double sum = terms(term_[static_cast<std::size_t>(k)]);
+        double sum = terms(term_[k]);
         for (Eigen::Index j = 0; j < k; ++j)
             sum -= upper_(j, k) * out(j);
         out(k) = sum / upper_(k, k);
@@ -125,19 +131,16 @@ DriftBasis::Coefficients DriftBasis::solve(const DriftFrame::Terms& terms) const
 }
 
 std::vector<double> without_drift(const DataPoints& data, Drift drift) {
-    const auto count = static_cast<Eigen::Index>(data.local.size());
-    const DriftFrame frame(data.local, drift);
-    Eigen::MatrixXd f(count, drift_terms(drift));
-    Eigen::VectorXd z(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-        f.row(i) = frame.terms(data.local[static_cast<std::size_t>(i)]);
-        z(i) = data.values[static_cast<std::size_t>(i)] - data.values[0];
-    }
+    const Eigen::MatrixXd terms =
+        DriftFrame(data.local, drift).terms(std::span<const Position>(data.local));
+    Eigen::VectorXd z(terms.rows());
+    for (Eigen::Index i = 0; i < z.size(); ++i)
+        z(i) = data.values[i] - data.values[0];
     DriftBasis basis;
-    basis.make(f, f);
+    basis.make(terms, terms);
     for (int pass = 0; pass < 2; ++pass)
         z -= basis.expand(basis.project(z));
-    return {z.data(), z.data() + count};
+    return {z.begin(), z.end()};
 }
 
 }  // namespace realmodel::interpolation

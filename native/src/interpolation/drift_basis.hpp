@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The polynomial drift of universal kriging. Private.
 #pragma once
 
 #ifndef EIGEN_DONT_PARALLELIZE
@@ -15,36 +14,38 @@
 
 namespace realmodel::interpolation {
 
-inline constexpr Eigen::Index most_drift_terms = 6;
+inline constexpr Eigen::Index kMostDriftTerms = 6;
 
 /// 1, 3 or 6.
 Eigen::Index drift_terms(Drift drift);
 
-/// Coordinates in which a polynomial is well-conditioned: from the mean of some places, along the
-/// axis of their greatest spread and across it, in units of that spread. Terms across come after
-/// those along, so that places in one line keep the terms along it.
+/// Coordinates in which a polynomial drift is well-conditioned: from the mean of some positions,
+/// along the axis of their greatest spread and across it, in units of that spread. Terms across
+/// come after those along, so that positions in one line keep the terms along it.
 class DriftFrame {
 public:
-    using Terms = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, most_drift_terms>;
+    using Terms = Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kMostDriftTerms>;
 
-    DriftFrame(std::span<const Place> places, Drift drift);
-    Terms terms(const Place& place) const;
+    DriftFrame(std::span<const Position> positions, Drift drift);
+    Terms terms(const Position& position) const;
+    /// A row for each position.
+    Eigen::MatrixXd terms(std::span<const Position> positions) const;
 
 private:
     Drift drift_;
-    Place centre_{};
+    Position center_{};
     double along_x_ = 1, along_y_ = 0, scale_ = 1;
 };
 
 /// An orthonormal basis of the whitened drift L^-1 F, where C = L L^T is the covariance of the data
-/// and F has the drift's terms at them; without the terms that the data do not tell from those
-/// before them.
+/// and F has the drift's terms at them; without the terms that the data do not distinguish from
+/// those before them.
 class DriftBasis {
 public:
-    using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_drift_terms, 1>;
+    using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostDriftTerms, 1>;
 
-    /// @param plain     F, rows that elimination left out set to 0: what can be told is decided on
-    /// it
+    /// @param plain     F; on it is decided which terms are kept. Rows that elimination left out
+    /// are 0
     /// @param whitened  L^-1 F, the same rows 0
     void make(const Eigen::Ref<const Eigen::MatrixXd>& plain,
               const Eigen::Ref<const Eigen::MatrixXd>& whitened);
@@ -61,18 +62,18 @@ public:
     /// Q a.
     Eigen::VectorXd expand(const Coefficients& a) const { return basis_.leftCols(kept_) * a; }
 
-    /// R^-T f, for the terms f at a place.
+    /// R^-T f, for the terms f at a position.
     Coefficients solve(const DriftFrame::Terms& terms) const;
 
 private:
     Eigen::MatrixXd basis_;  // Q, its first kept_ columns
-    std::array<Eigen::Index, most_drift_terms> term_{};
-    Eigen::Matrix<double, most_drift_terms, most_drift_terms> upper_;  // R, of the kept terms
+    std::array<Eigen::Index, kMostDriftTerms> term_{};
+    Eigen::Matrix<double, kMostDriftTerms, kMostDriftTerms> upper_;  // R, of the kept terms
     Eigen::Index kept_ = 0;
     Eigen::MatrixXd plain_basis_;
 };
 
-/// Values less the polynomial that fits them best (least squares).
+/// The residuals of the polynomial that fits values best (least squares).
 std::vector<double> without_drift(const DataPoints& data, Drift drift);
 
 }  // namespace realmodel::interpolation

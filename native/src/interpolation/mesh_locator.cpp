@@ -6,10 +6,10 @@
 #include <limits>
 #include <string>
 
+#include "exact/orient2d.hpp"
 #include "interpolation/data_points.hpp"
-#include "interpolation/node_chunks.hpp"
+#include "interpolation/node_loop.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/exact/turn.hpp"
 
 namespace realmodel::interpolation {
 
@@ -108,10 +108,10 @@ std::optional<MeshLocator::Found> MeshLocator::find(const Place& place) const {
         std::array<Place, 3> corner;
         for (std::size_t i = 0; i < 3; ++i)
             corner[i] = vertices_[static_cast<std::size_t>(triangle[i])];
-        const int way = exact::turn(corner[0], corner[1], corner[2]);
-        if (way == 0 || exact::turn(corner[0], corner[1], place) == -way ||
-            exact::turn(corner[1], corner[2], place) == -way ||
-            exact::turn(corner[2], corner[0], place) == -way) {
+        const int way = exact::orient2d(corner[0], corner[1], corner[2]);
+        if (way == 0 || exact::orient2d(corner[0], corner[1], place) == -way ||
+            exact::orient2d(corner[1], corner[2], place) == -way ||
+            exact::orient2d(corner[2], corner[0], place) == -way) {
             continue;
         }
         Found found{held_[k], {}};
@@ -145,27 +145,23 @@ std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> ve
         places.push_back({x, y});
     const MeshLocator locator(places, triangles);
     std::vector<double> z(nodes.size());
-    const auto make = [&](const StopSign&) {
-        return [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const auto found = locator.find(nodes[i]);
-                if (!found) {
-                    z[i] = std::numeric_limits<double>::quiet_NaN();
-                    continue;
-                }
-                const auto& corners = triangles[static_cast<std::size_t>(found->triangle)];
-                // From the first corner: heights far from 0 lose no digits, a flat triangle is
-                // flat.
-                const double base = vertices[static_cast<std::size_t>(corners[0])][2];
-                z[i] = base;
-                for (std::size_t k = 1; k < 3; ++k) {
-                    z[i] += found->weights[k] *
-                            (vertices[static_cast<std::size_t>(corners[k])][2] - base);
-                }
-            }
-        };
-    };
-    for_chunks(nodes.size(), 1024, threads, progress, 0, nullptr, make);
+    const NodeLoop loop{nodes.size(), 1024, threads, progress};
+    loop.over_nodes([] { return 0; },
+                    [&](int, std::size_t i) {
+                        const auto found = locator.find(nodes[i]);
+                        if (!found) {
+                            z[i] = std::numeric_limits<double>::quiet_NaN();
+                            return;
+                        }
+                        const auto& corners = triangles[static_cast<std::size_t>(found->triangle)];
+                        // From the first corner: heights far from 0 lose no digits, a flat triangle
+                        // is flat.
+                        const double base = vertices[static_cast<std::size_t>(corners[0])][2];
+                        z[i] = base;
+                        for (std::size_t k = 1; k < 3; ++k)
+                            z[i] += found->weights[k] *
+                                    (vertices[static_cast<std::size_t>(corners[k])][2] - base);
+                    });
     return z;
 }
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
-#include "strata/parallel_chunks.hpp"
 
 namespace realmodel::shells {
 
@@ -38,7 +38,7 @@ void require_in_range(const Complex& complex, std::size_t blocks, const Progress
     const std::size_t faces = complex.face_cells.size();
     if (complex.face_offsets.size() != faces + 1) refuse(faces, "has no offset, or one too many");
     for (std::size_t f = 0; f < faces; ++f) {
-        strata::poll(progress, f);
+        poll(progress, f);
         const auto begin = complex.face_offsets[f], end = complex.face_offsets[f + 1];
         if (begin < 0 || begin > end || std::cmp_greater(end, complex.face_vertices.size()))
             refuse(f, "has corners that are not there");
@@ -67,7 +67,7 @@ std::vector<std::vector<Side>> sides_by_block(const Complex& complex, std::size_
         return cell < 0 ? -1 : complex.cell_block[static_cast<std::size_t>(cell)];
     };
     for (std::size_t f = 0; f < complex.face_cells.size(); ++f) {
-        strata::poll(progress, f);
+        poll(progress, f);
         const auto& cells = complex.face_cells[f];
         if (between_blocks && block_of(cells[0]) == block_of(cells[1])) continue;
         for (const bool turned : {false, true}) {
@@ -198,7 +198,7 @@ Shell shell_of_cells(const Complex& complex, std::vector<Side>& sides, double sh
         const std::size_t begin = shell.corners.size();
         const std::int32_t cell = sides[at].cell;
         for (; at < sides.size() && sides[at].cell == cell; ++at) {
-            strata::poll(progress, at);
+            poll(progress, at);
             add_polygon(complex, sides[at], shell);
         }
         separate(complex, begin, shrink, origin, used, shell);
@@ -214,7 +214,7 @@ std::vector<Shell> block_shells(const Complex& complex, std::size_t blocks, cons
     require_in_range(complex, blocks, progress);
     const auto sides = sides_by_block(complex, blocks, true, progress);
     std::vector<Shell> shells(blocks);
-    strata::parallel_chunks(blocks, threads, progress, [&](std::size_t block) {
+    parallel_chunks(blocks, threads, progress, [&](std::size_t block) {
         shells[block] = block_shell(complex, sides[block], origin);
     });
     return shells;
@@ -225,7 +225,7 @@ std::vector<Shell> cell_shells(const Complex& complex, std::size_t blocks, doubl
     require_in_range(complex, blocks, progress);
     auto sides = sides_by_block(complex, blocks, false, progress);
     std::vector<Shell> shells(blocks);
-    strata::parallel_chunks(blocks, threads, progress, [&](std::size_t block) {
+    parallel_chunks(blocks, threads, progress, [&](std::size_t block) {
         shells[block] = shell_of_cells(complex, sides[block], shrink, origin, progress);
         sides[block] = {};
     });

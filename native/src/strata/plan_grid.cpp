@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "plan_grid.hpp"
+#include "strata/plan_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "parallel_counts.hpp"
-#include "sort_few.hpp"
+#include "base/parallel_counts.hpp"
+#include "base/sort_few.hpp"
 
 namespace realmodel::strata {
 
@@ -16,7 +16,7 @@ constexpr std::size_t kBoxes = 4096, kPolygons = 128;
 
 }  // namespace
 
-PlanBox box_of(const Scope& scope, PolygonView polygon) {
+PlanBox box_of(const LocalArrangement& scope, PolygonView polygon) {
     PlanBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     for (const Corner& corner : polygon) {
         const auto& p = scope.point(corner.point);
@@ -38,7 +38,7 @@ std::int64_t PolygonCells::row(double y) const {
     return static_cast<std::int64_t>(std::clamp(r, 0.0, static_cast<double>(grid_.rows - 1)));
 }
 
-void PolygonCells::fill(const exact::PlanGeometry& geometry, const PolygonPool& polygons,
+void PolygonCells::fill(const exact::PlanArrangement& geometry, const PolygonPool& polygons,
                         const std::vector<PlanBox>& boxes, const std::vector<std::int32_t>& chosen,
                         std::size_t cells, int threads, const Progress* progress) {
     if (chosen.empty()) return;
@@ -49,7 +49,7 @@ void PolygonCells::fill(const exact::PlanGeometry& geometry, const PolygonPool& 
     const auto for_all = [&](const auto& visit) {
         parallel_ranges(chosen.size(), kPolygons, threads, progress,
                         [&](std::size_t begin, std::size_t end) {
-                            const Scope scope(geometry);
+                            const LocalArrangement scope(geometry);
                             for (std::size_t c = begin; c < end; ++c) {
                                 const auto i = static_cast<std::size_t>(chosen[c]);
                                 for_each_cell(scope, polygons[i], boxes[i], [&](std::int64_t cell) {
@@ -83,8 +83,8 @@ bool PolygonCells::is_inside(const PlanBox& box) const {
 }
 
 template <class Visit>
-void PolygonCells::for_each_cell(const Scope& scope, PolygonView polygon, const PlanBox& box,
-                                 const Visit& visit) const {
+void PolygonCells::for_each_cell(const LocalArrangement& scope, PolygonView polygon,
+                                 const PlanBox& box, const Visit& visit) const {
     const CellSpan span = span_of(box);
     const auto [c0, c1, r0, r1] = span;
     if (is_inside(box) && span.is_narrow()) {
@@ -137,7 +137,7 @@ void PolygonCells::for_each_cell(const Scope& scope, PolygonView polygon, const 
     }
 }
 
-bool PolygonCells::append(const Scope& scope, PolygonView polygon, const PlanBox& box,
+bool PolygonCells::append(const LocalArrangement& scope, PolygonView polygon, const PlanBox& box,
                           const std::vector<PlanBox>& boxes,
                           GrowingArray<std::int32_t>& found) const {
     if (items_.size() == 0 || !box.meets(grid_.frame)) return true;
@@ -170,7 +170,7 @@ bool PolygonCells::append(const Scope& scope, PolygonView polygon, const PlanBox
     return false;
 }
 
-PlanGrid::PlanGrid(const exact::PlanGeometry& geometry, const PolygonPool& polygons,
+PlanGrid::PlanGrid(const exact::PlanArrangement& geometry, const PolygonPool& polygons,
                    const std::vector<std::uint8_t>& is_inner, std::size_t cells, int threads,
                    const Progress* progress) {
     std::vector<std::int32_t> inner, outer;
@@ -179,7 +179,7 @@ PlanGrid::PlanGrid(const exact::PlanGeometry& geometry, const PolygonPool& polyg
     boxes_.resize(polygons.size());
     parallel_ranges(polygons.size(), kBoxes, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
-                        const Scope scope(geometry);
+                        const LocalArrangement scope(geometry);
                         for (std::size_t i = begin; i < end; ++i)
                             boxes_[i] = box_of(scope, polygons[i]);
                     });
@@ -193,7 +193,7 @@ PlanGrid::PlanGrid(const exact::PlanGeometry& geometry, const PolygonPool& polyg
     outer_.fill(geometry, polygons, boxes_, outer, 8 * outer.size(), threads, progress);
 }
 
-void PlanGrid::candidates(const Scope& scope, PolygonView polygon,
+void PlanGrid::candidates(const LocalArrangement& scope, PolygonView polygon,
                           GrowingArray<std::int32_t>& found) const {
     found.clear();
     const PlanBox box = box_of(scope, polygon);

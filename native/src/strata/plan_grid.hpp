@@ -4,26 +4,26 @@
 #include <cstdint>
 #include <vector>
 
-#include "flat_array.hpp"
-#include "polygon.hpp"
+#include "base/flat_array.hpp"
 #include "realmodel/base/progress.hpp"
-#include "small_boxes.hpp"
+#include "strata/overlay/polygon.hpp"
+#include "strata/small_boxes.hpp"
 
 namespace realmodel::strata {
 
-PlanBox box_of(const Scope& scope, PolygonView polygon);
+PlanBox box_of(const LocalArrangement& scope, PolygonView polygon);
 
 /// Some polygons of a set by the cells of a uniform grid, each entered in the cells that it crosses
 /// row by row, so that needles and giants stay cheap.
 class PolygonCells {
 public:
     /// chosen: the polygons to enter; boxes: of all polygons; cells: about so many.
-    void fill(const exact::PlanGeometry& geometry, const PolygonPool& polygons,
+    void fill(const exact::PlanArrangement& geometry, const PolygonPool& polygons,
               const std::vector<PlanBox>& boxes, const std::vector<std::int32_t>& chosen,
               std::size_t cells, int threads, const Progress* progress);
     /// Appends the polygons whose cells and boxes meet those of `polygon`; whether none of them
     /// comes repeatedly.
-    bool append(const Scope& scope, PolygonView polygon, const PlanBox& box,
+    bool append(const LocalArrangement& scope, PolygonView polygon, const PlanBox& box,
                 const std::vector<PlanBox>& boxes, GrowingArray<std::int32_t>& found) const;
 
 private:
@@ -45,7 +45,7 @@ private:
     std::int64_t row(double y) const;
     /// Calls visit(cell) for each cell that the polygon crosses.
     template <class Visit>
-    void for_each_cell(const Scope& scope, PolygonView polygon, const PlanBox& box,
+    void for_each_cell(const LocalArrangement& scope, PolygonView polygon, const PlanBox& box,
                        const Visit& visit) const;
 
     CellGrid grid_;
@@ -60,12 +60,12 @@ public:
     PlanGrid() = default;
     /// is_inner: of each polygon, whether it is the surface's; cells: at
     /// least so many of either kind.
-    PlanGrid(const exact::PlanGeometry& geometry, const PolygonPool& polygons,
+    PlanGrid(const exact::PlanArrangement& geometry, const PolygonPool& polygons,
              const std::vector<std::uint8_t>& is_inner, std::size_t cells, int threads,
              const Progress* progress);
 
     /// Numbers of all polygons whose cells and boxes meet those of `polygon`, ascending.
-    void candidates(const Scope& scope, PolygonView polygon,
+    void candidates(const LocalArrangement& scope, PolygonView polygon,
                     GrowingArray<std::int32_t>& found) const;
 
 private:

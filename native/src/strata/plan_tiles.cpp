@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "plan_tiles.hpp"
+#include "strata/plan_tiles.hpp"
 
 #include <algorithm>
 #include <cmath>

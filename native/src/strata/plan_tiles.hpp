@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "plan_grid.hpp"
+#include "strata/plan_grid.hpp"
 
 namespace realmodel::strata {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "small_boxes.hpp"
+#include "strata/small_boxes.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "parallel_counts.hpp"
+#include "base/parallel_counts.hpp"
 
 #if defined(__SSE__)
 #include <xmmintrin.h>

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "flat_array.hpp"
-#include "polygon.hpp"
+#include "base/flat_array.hpp"
 #include "realmodel/base/progress.hpp"
+#include "strata/overlay/polygon.hpp"
 
 namespace realmodel::strata {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "parallel_counts.hpp"
-#include "plan_tiles.hpp"
+#include "base/parallel_counts.hpp"
+#include "strata/plan_tiles.hpp"
 
 namespace realmodel::strata {
 

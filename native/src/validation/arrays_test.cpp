@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrays_test.hpp"
+#include "validation/arrays_test.hpp"
 
 #include <atomic>
 #include <cmath>
 #include <limits>
 
-#include "chunked.hpp"
 #include "realmodel/strata/stack.hpp"
+#include "validation/chunked.hpp"
 
 namespace realmodel::validation {
 

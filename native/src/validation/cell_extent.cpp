@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cell_extent.hpp"
+#include "validation/cell_extent.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "face_shape.hpp"
+#include "validation/face_shape.hpp"
 
 namespace realmodel::validation {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <span>
 
-#include "cell_sides.hpp"
 #include "realmodel/validation/complex_view.hpp"
+#include "validation/cell_sides.hpp"
 
 namespace realmodel::validation {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cell_sides.hpp"
+#include "validation/cell_sides.hpp"
 
-#include "strata/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 
 namespace realmodel::validation {
 
@@ -24,11 +24,11 @@ void for_each_side(const ComplexView& model, std::int32_t first, std::int32_t en
 // reading is quick, and nothing is written by two.
 CellSides::CellSides(const ComplexView& model, int threads, const Progress* progress)
     : begin_(model.cell_count() + 1, 0) {
-    const auto ranges = static_cast<std::size_t>(strata::thread_count(threads));
+    const auto ranges = static_cast<std::size_t>(thread_count(threads));
     const auto bound = [&](std::size_t range) {
         return static_cast<std::int32_t>(model.cell_count() * range / ranges);
     };
-    strata::parallel_chunks(ranges, threads, progress, [&](std::size_t range) {
+    parallel_chunks(ranges, threads, progress, [&](std::size_t range) {
         for_each_side(model, bound(range), bound(range + 1), progress,
                       [&](std::size_t cell, std::size_t) { ++begin_[cell + 1]; });
     });
@@ -36,7 +36,7 @@ CellSides::CellSides(const ComplexView& model, int threads, const Progress* prog
         begin_[c] += begin_[c - 1];
     sides_.resize(static_cast<std::size_t>(begin_.back()));
     std::vector<std::int64_t> next(begin_.begin(), begin_.end() - 1);
-    strata::parallel_chunks(ranges, threads, progress, [&](std::size_t range) {
+    parallel_chunks(ranges, threads, progress, [&](std::size_t range) {
         for_each_side(model, bound(range), bound(range + 1), progress,
                       [&](std::size_t cell, std::size_t side) {
                           sides_[static_cast<std::size_t>(next[cell]++)] = static_cast<Side>(side);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/parallel.hpp"
 #include "realmodel/validation/findings.hpp"
-#include "strata/parallel_chunks.hpp"
 
 namespace realmodel::validation {
 
@@ -18,7 +18,7 @@ template <class Work>
 Findings in_chunks(std::size_t count, int threads, const Progress* progress, const Work& work) {
     const std::size_t chunks = (count + kItemsOfChunk - 1) / kItemsOfChunk;
     std::vector<Findings> found(chunks);
-    strata::parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
         work(chunk * kItemsOfChunk, std::min(count, (chunk + 1) * kItemsOfChunk), found[chunk]);
     });
     Findings all;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "closed_cells.hpp"
+#include "validation/closed_cells.hpp"
 
 #include <algorithm>
 #include <array>
 #include <vector>
 
-#include "chunked.hpp"
+#include "validation/chunked.hpp"
 
 namespace realmodel::validation {
 
@@ -52,7 +52,7 @@ public:
             for (std::size_t i = chunk * kItemsOfChunk; i < end; ++i)
                 along_loop(model, sides[i], visit);
         };
-        strata::parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+        parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
             std::size_t* const count = &next[chunk << bits_];
             in_chunk(chunk, [&](std::int32_t from, std::int32_t to) { ++count[bucket(from, to)]; });
         });
@@ -65,7 +65,7 @@ public:
             end_.push_back(total);
         }
         edges_.resize(total);
-        strata::parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+        parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
             std::size_t* const at = &next[chunk << bits_];
             in_chunk(chunk, [&](std::int32_t from, std::int32_t to) {
                 edges_[at[bucket(from, to)]++] = {from, to};
@@ -113,7 +113,7 @@ std::optional<EdgeUse> open_edge_of_large_cell(const ComplexView& model,
                                                const Progress* progress) {
     const EdgeBuckets buckets(model, sides, threads, progress);
     std::vector<std::optional<EdgeUse>> open(buckets.size());
-    strata::parallel_chunks(buckets.size(), threads, progress, [&](std::size_t b) {
+    parallel_chunks(buckets.size(), threads, progress, [&](std::size_t b) {
         EdgeTable table;
         table.reset(buckets[b].size(), model.cells_are_blocks);
         for (const auto& [from, to] : buckets[b])

@@ -4,10 +4,10 @@
 #include <optional>
 #include <span>
 
-#include "cell_sides.hpp"
-#include "edge_table.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/validation/complex_view.hpp"
+#include "validation/cell_sides.hpp"
+#include "validation/edge_table.hpp"
 
 namespace realmodel::validation {
 

@@ -1,29 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "closed_form.hpp"
+#include "validation/closed_form.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "realmodel/exact/plan_geometry.hpp"
-#include "realmodel/exact/turn.hpp"
+#include "exact/orient2d.hpp"
+#include "exact/plan_arrangement.hpp"
 
 namespace realmodel::validation {
 
+using exact::LocalArrangement;
+using exact::PlanArrangement;
 using exact::PlaneId;
-using exact::PlanGeometry;
-using exact::Scope;
 using strata::Rule;
 
 namespace {
 
 constexpr PlaneId kNone = -1;
-
-bool cuts(Rule rule) {
-    return rule == Rule::kErosional || rule == Rule::kDiscontinuous;
-}
-bool protects(Rule rule) {
-    return rule == Rule::kBase || rule == Rule::kDiscontinuous;
-}
 
 /// The planes of a rock mass's surfaces above one place.
 class PlaneColumn {
@@ -40,7 +33,7 @@ public:
     /// e_k and the rest, as the rules say it, going forward in time and back.
     void replay(const strata::StackInput& rock, std::span<const std::int32_t> block,
                 ClosedColumn& column) {
-        Scope scope(geometry_);
+        LocalArrangement scope(geometry_);
         const auto higher = [&](PlaneId a, PlaneId b) {
             return scope.compare_heights(a, b, point_) >= 0 ? a : b;
         };
@@ -54,10 +47,10 @@ public:
             column.surface_height.back() = scope.rounded_height(e, point_);
             const Rule rule = rock.rules.empty() ? Rule::kErosional : rock.rules[k];
             before[k] = top;
-            if (!cuts(rule) && top != kNone) e = higher(e, top);
+            if (!meaning(rule).cuts && top != kNone) e = higher(e, top);
             if (floor != kNone) e = higher(e, floor);
             level[k] = top = e;
-            if (protects(rule)) floor = e;
+            if (meaning(rule).protects) floor = e;
         }
         std::vector<PlaneId> upper(count, kNone);
         PlaneId lowest = kNone;
@@ -87,7 +80,8 @@ private:
             row[i] = &surface.vertices[3 * static_cast<std::size_t>(v)];
             column.highest = std::max(column.highest, std::abs(row[i][2]));
         }
-        if (exact::turn({row[0][0], row[0][1]}, {row[1][0], row[1][1]}, {row[2][0], row[2][1]}) < 0)
+        if (exact::orient2d({row[0][0], row[0][1]}, {row[1][0], row[1][1]},
+                            {row[2][0], row[2][1]}) < 0)
             std::swap(row[1], row[2]);
         std::array<exact::SpaceId, 3> corner;
         for (std::size_t i = 0; i < 3; ++i)
@@ -99,7 +93,7 @@ private:
         return plane;
     }
 
-    PlanGeometry geometry_;
+    PlanArrangement geometry_;
     exact::VertexId point_ = 0;
     std::vector<PlaneId> plane_;
 };

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "probes.hpp"
+#include "validation/probes.hpp"
 
 namespace realmodel::validation {
 

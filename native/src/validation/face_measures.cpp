@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "face_measures.hpp"
+#include "validation/face_measures.hpp"
 
 #include <cmath>
 
-#include "chunked.hpp"
-#include "face_shape.hpp"
+#include "validation/chunked.hpp"
+#include "validation/face_shape.hpp"
 
 namespace realmodel::validation {
 

@@ -4,10 +4,10 @@
 #include <array>
 #include <vector>
 
-#include "cell_sides.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/validation/complex_view.hpp"
 #include "realmodel/validation/findings.hpp"
+#include "validation/cell_sides.hpp"
 
 namespace realmodel::validation {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "face_shape.hpp"
+#include "validation/face_shape.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "realmodel/exact/ball.hpp"
+#include "exact/double_double_interval.hpp"
 #include "realmodel/strata/stack.hpp"
 
 namespace realmodel::validation {
 
-using exact::Ball;
+using exact::DoubleDoubleInterval;
 
 namespace {
 
@@ -120,10 +120,11 @@ bool FaceShape::is_flat() const {
 bool FaceShape::is_flat_precisely() const {
     const Position& o = corners_.front();
     const auto from_first = [&](const Position& p) {
-        return std::array<Ball, 3>{Ball::difference(p[0], o[0]), Ball::difference(p[1], o[1]),
-                                   Ball::difference(p[2], o[2])};
+        return std::array<DoubleDoubleInterval, 3>{DoubleDoubleInterval::difference(p[0], o[0]),
+                                                   DoubleDoubleInterval::difference(p[1], o[1]),
+                                                   DoubleDoubleInterval::difference(p[2], o[2])};
     };
-    std::array<Ball, 3> area{};
+    std::array<DoubleDoubleInterval, 3> area{};
     for (std::size_t i = 2; i < corners_.size(); ++i) {
         const auto u = from_first(corners_[i - 1]), v = from_first(corners_[i]);
         area[0] = area[0] + (u[1] * v[2] - u[2] * v[1]);
@@ -135,7 +136,7 @@ bool FaceShape::is_flat_precisely() const {
         allowed += area[axis].magnitude() * allowance_[axis];
     return std::all_of(corners_.begin(), corners_.end(), [&](const Position& p) {
         const auto d = from_first(p);
-        const Ball off = area[0] * d[0] + area[1] * d[1] + area[2] * d[2];
+        const DoubleDoubleInterval off = area[0] * d[0] + area[1] * d[1] + area[2] * d[2];
         return std::abs(off.high) - off.error <= allowed;
     });
 }

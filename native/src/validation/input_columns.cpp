@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "input_columns.hpp"
+#include "validation/input_columns.hpp"
 
 #include <algorithm>
 #include <atomic>
 
-#include "chunked.hpp"
-#include "plan_tests.hpp"
-#include "probe_bins.hpp"
-#include "realmodel/exact/turn.hpp"
+#include "exact/orient2d.hpp"
+#include "validation/chunked.hpp"
+#include "validation/plan_tests.hpp"
+#include "validation/probe_bins.hpp"
 
 namespace realmodel::validation {
 
 namespace {
 
 bool contains(const std::array<PlanPosition, 3>& p, const PlanPosition& place) {
-    const int turn = exact::turn(p[0], p[1], p[2]);
+    const int turn = exact::orient2d(p[0], p[1], p[2]);
     if (turn == 0) return false;
     for (std::size_t i = 0; i < 3; ++i) {
-        if (exact::turn(p[i], p[(i + 1) % 3], place) == -turn) return false;
+        if (exact::orient2d(p[i], p[(i + 1) % 3], place) == -turn) return false;
     }
     return true;
 }

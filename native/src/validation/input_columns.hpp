@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "probes.hpp"
+#include "validation/probes.hpp"
 
 namespace realmodel::validation {
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model_columns.hpp"
+#include "validation/model_columns.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
-#include "chunked.hpp"
-#include "plan_tests.hpp"
-#include "probe_bins.hpp"
-#include "realmodel/exact/ball.hpp"
-#include "realmodel/exact/turn.hpp"
+#include "exact/double_double_interval.hpp"
+#include "exact/orient2d.hpp"
+#include "validation/chunked.hpp"
+#include "validation/plan_tests.hpp"
+#include "validation/probe_bins.hpp"
 
 namespace realmodel::validation {
 
-using exact::Ball;
+using exact::DoubleDoubleInterval;
 
 namespace {
 
@@ -46,10 +46,10 @@ public:
     /// The height of the face at a place within it: of the triangle of its fan there.
     double height(const PlanPosition& place) const {
         for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-            const int a = exact::turn(plan[0], plan[i], place);
-            const int b = exact::turn(plan[i], plan[i + 1], place);
-            const int c = exact::turn(plan[i + 1], plan[0], place);
-            if (exact::turn(plan[0], plan[i], plan[i + 1]) == 0) continue;
+            const int a = exact::orient2d(plan[0], plan[i], place);
+            const int b = exact::orient2d(plan[i], plan[i + 1], place);
+            const int c = exact::orient2d(plan[i + 1], plan[0], place);
+            if (exact::orient2d(plan[0], plan[i], plan[i + 1]) == 0) continue;
             if ((a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0))
                 return triangle_height(i, place);
         }
@@ -64,12 +64,13 @@ private:
     // to twice the precision of doubles, for needles
     double triangle_height(std::size_t i, const PlanPosition& place) const {
         const auto &o = corners[0], &p = corners[i], &q = corners[i + 1];
-        const auto d = [&](double a, double b) { return Ball::difference(a, b); };
-        const Ball ux = d(p[0], o[0]), uy = d(p[1], o[1]), vx = d(q[0], o[0]), vy = d(q[1], o[1]);
-        const Ball wx = d(place[0], o[0]), wy = d(place[1], o[1]);
-        const Ball area = ux * vy - uy * vx;
-        const Ball s = (wx * vy - wy * vx) / area, t = (ux * wy - uy * wx) / area;
-        return (Ball(o[2]) + s * d(p[2], o[2]) + t * d(q[2], o[2])).high;
+        const auto d = [&](double a, double b) { return DoubleDoubleInterval::difference(a, b); };
+        const DoubleDoubleInterval ux = d(p[0], o[0]), uy = d(p[1], o[1]), vx = d(q[0], o[0]),
+                                   vy = d(q[1], o[1]);
+        const DoubleDoubleInterval wx = d(place[0], o[0]), wy = d(place[1], o[1]);
+        const DoubleDoubleInterval area = ux * vy - uy * vx;
+        const DoubleDoubleInterval s = (wx * vy - wy * vx) / area, t = (ux * wy - uy * wx) / area;
+        return (DoubleDoubleInterval(o[2]) + s * d(p[2], o[2]) + t * d(q[2], o[2])).high;
     }
 
     const ComplexView& model_;

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "probes.hpp"
+#include "validation/probes.hpp"
 
 namespace realmodel::validation {
 
@@ -29,7 +29,7 @@ public:
     /// Whether an edge of the model passes too close to a probe to be sure on which side it lies.
     bool near_edge(std::size_t probe) const { return near_edge_[probe] != 0; }
     /// Whether another edge passes so close to a wall that the probes beside it may lie beyond.
-    bool crowded(std::size_t wall) const { return crowded_[wall] != 0; }
+    bool coincident(std::size_t wall) const { return crowded_[wall] != 0; }
 
 private:
     std::vector<Crossing> crossings_;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "outside_test.hpp"
+#include "validation/outside_test.hpp"
 
 #include <algorithm>
 #include <vector>
 
-#include "chunked.hpp"
-#include "strata/parallel_sort.hpp"
+#include "base/parallel_sort.hpp"
+#include "validation/chunked.hpp"
 
 namespace realmodel::validation {
 
@@ -41,11 +41,11 @@ bool same_corners(std::span<const std::int32_t> a, std::span<const std::int32_t>
 Findings check_outside(const ComplexView& model, int threads, const Progress* progress) {
     std::vector<OuterFace> outer;
     for (std::size_t f = 0; f < model.face_count(); ++f) {
-        strata::poll(progress, f);
+        poll(progress, f);
         if (model.cell(f, 1) < 0)
             outer.push_back({corners_in_any_order(model.corners(f)), static_cast<std::int32_t>(f)});
     }
-    strata::parallel_sort(outer, std::less<>(), threads, progress);
+    parallel_sort(outer, std::less<>(), threads, progress);
     Findings found;
     found.examined = static_cast<std::int64_t>(outer.size());
     for (std::size_t i = 1; i < outer.size(); ++i) {

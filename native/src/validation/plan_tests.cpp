@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "plan_tests.hpp"
+#include "validation/plan_tests.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "realmodel/exact/turn.hpp"
+#include "exact/orient2d.hpp"
 
 namespace realmodel::validation {
 
@@ -14,8 +14,8 @@ int winding(std::span<const PlanPosition> loop, const PlanPosition& place) {
         const PlanPosition& p = loop[i];
         const PlanPosition& q = loop[i + 1 < loop.size() ? i + 1 : 0];
         if (p[1] <= place[1]) {
-            if (q[1] > place[1] && exact::turn(p, q, place) > 0) ++turns;
-        } else if (q[1] <= place[1] && exact::turn(p, q, place) < 0) {
+            if (q[1] > place[1] && exact::orient2d(p, q, place) > 0) ++turns;
+        } else if (q[1] <= place[1] && exact::orient2d(p, q, place) < 0) {
             --turns;
         }
     }

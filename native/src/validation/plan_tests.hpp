@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "probes.hpp"
+#include "validation/probes.hpp"
 
 namespace realmodel::validation {
 

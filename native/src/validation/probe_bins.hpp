@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "probes.hpp"
+#include "validation/probes.hpp"
 
 namespace realmodel::validation {
 

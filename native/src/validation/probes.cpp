@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "probes.hpp"
+#include "validation/probes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "strata/parallel_chunks.hpp"
+#include "base/parallel.hpp"
 
 namespace realmodel::validation {
 
@@ -279,7 +279,7 @@ Probes choose_probes(const ComplexView& model, const ModelInput& input, std::int
                      std::uint64_t seed, const PlanRounding& rounding, const Progress* progress) {
     std::vector<std::int32_t> walls, others;
     for (std::size_t f = 0; f < model.face_count(); ++f) {
-        strata::poll(progress, f);
+        poll(progress, f);
         (model.face_surface[f] == strata::kWall ? walls : others)
             .push_back(static_cast<std::int32_t>(f));
     }

@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <limits>
 
-#include "chunked.hpp"
-#include "closed_form.hpp"
-#include "input_columns.hpp"
-#include "model_columns.hpp"
 #include "realmodel/base/errors.hpp"
+#include "validation/chunked.hpp"
+#include "validation/closed_form.hpp"
+#include "validation/input_columns.hpp"
+#include "validation/model_columns.hpp"
 
 namespace realmodel::validation {
 
@@ -221,7 +221,7 @@ private:
             model_.cell(static_cast<std::size_t>(wall.face), static_cast<std::size_t>(p.side));
         const std::int32_t named = model_.block(cell);
         if (have == named) return;
-        if (at_border || model_columns_.crowded(w) || near_edge(probe)) {
+        if (at_border || model_columns_.coincident(w) || near_edge(probe)) {
             ++found.undecided;
             return;
         }
@@ -287,7 +287,7 @@ std::vector<TestResult> check_samples(const ComplexView& model, const ModelInput
     constexpr std::size_t kProbesOfChunk = 64;
     const std::size_t count = probes.probes.size();
     std::vector<SampleFindings> found((count + kProbesOfChunk - 1) / kProbesOfChunk);
-    strata::parallel_chunks(found.size(), threads, progress, [&](std::size_t chunk) {
+    parallel_chunks(found.size(), threads, progress, [&](std::size_t chunk) {
         for (std::size_t i = chunk * kProbesOfChunk;
              i < std::min(count, (chunk + 1) * kProbesOfChunk); ++i)
             comparison.look(i, found[chunk]);

@@ -5,15 +5,15 @@
 #include <chrono>
 #include <cstdio>
 
-#include "arrays_test.hpp"
-#include "cell_extent.hpp"
-#include "cell_sides.hpp"
-#include "chunked.hpp"
-#include "closed_cells.hpp"
-#include "face_measures.hpp"
-#include "face_shape.hpp"
-#include "outside_test.hpp"
-#include "vertex_test.hpp"
+#include "validation/arrays_test.hpp"
+#include "validation/cell_extent.hpp"
+#include "validation/cell_sides.hpp"
+#include "validation/chunked.hpp"
+#include "validation/closed_cells.hpp"
+#include "validation/face_measures.hpp"
+#include "validation/face_shape.hpp"
+#include "validation/outside_test.hpp"
+#include "validation/vertex_test.hpp"
 
 namespace realmodel::validation {
 
@@ -65,7 +65,7 @@ public:
         const std::size_t chunks = (model_.cell_count() + kCellsOfChunk - 1) / kCellsOfChunk;
         std::vector<CellFindings> found(chunks);
         std::vector<std::vector<std::size_t>> large(chunks);
-        strata::parallel_chunks(chunks, threads_, progress_, [&](std::size_t chunk) {
+        parallel_chunks(chunks, threads_, progress_, [&](std::size_t chunk) {
             EdgeTable table;
             const std::size_t end = std::min(model_.cell_count(), (chunk + 1) * kCellsOfChunk);
             for (std::size_t c = chunk * kCellsOfChunk; c < end; ++c) {

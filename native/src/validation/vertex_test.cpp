@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "vertex_test.hpp"
+#include "validation/vertex_test.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "chunked.hpp"
+#include "validation/chunked.hpp"
 
 namespace realmodel::validation {
 
@@ -62,7 +62,7 @@ public:
                       static_cast<std::uint32_t>(hash >> 32));
             }
         };
-        strata::parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+        parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
             in_chunk(chunk, [&](std::int32_t, std::size_t at, std::uint32_t) { ++next[at]; });
         });
         std::size_t total = 0;
@@ -73,7 +73,7 @@ public:
             end_.push_back(total);
         }
         entries_.resize(total);
-        strata::parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+        parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
             in_chunk(chunk, [&](std::int32_t v, std::size_t at, std::uint32_t hash) {
                 entries_[next[at]++] = {hash, v};
             });
@@ -114,8 +114,8 @@ Findings check_distinct(const ComplexView& model, int threads, const Progress* p
     if (ascends(model, threads, progress)) return {};
     PlaceBuckets buckets(model, threads, progress);
     std::vector<std::vector<EqualPair>> pairs(buckets.size());
-    strata::parallel_chunks(buckets.size(), threads, progress,
-                            [&](std::size_t b) { pairs[b] = buckets.equal_pairs(model, b); });
+    parallel_chunks(buckets.size(), threads, progress,
+                    [&](std::size_t b) { pairs[b] = buckets.equal_pairs(model, b); });
     std::vector<EqualPair> all;
     for (const auto& part : pairs)
         all.insert(all.end(), part.begin(), part.end());

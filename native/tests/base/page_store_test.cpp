@@ -9,14 +9,13 @@
 #include <thread>
 #include <vector>
 
+#include "base/flat_array.hpp"
 #include "realmodel/base/growing_array.hpp"
-#include "strata/flat_array.hpp"
 
 namespace realmodel {
 namespace {
 
 using page_store::kBlock;
-using strata::FlatArray;
 
 constexpr std::size_t kLarge = 5 * kBlock / sizeof(std::uint64_t);  // elements
 

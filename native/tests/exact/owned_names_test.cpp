@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "realmodel/exact/owned_names.hpp"
+#include "exact/owned_names.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "realmodel/exact/key_table.hpp"
-#include "realmodel/exact/plan_geometry.hpp"
+#include "base/key_table.hpp"
+#include "exact/plan_arrangement.hpp"
 
 namespace realmodel::exact {
 namespace {
@@ -47,7 +47,7 @@ TEST(OwnedNames, FindsWhatAnOwnerHasAndSendsTheRestElsewhere) {
 }
 
 TEST(OwnedNames, LinesAndCrossingsAreFoundAgainHoweverManyMeetAndAfterNamesWereForgotten) {
-    PlanGeometry geometry;
+    PlanArrangement geometry;
     constexpr int kLines = 40;
     const VertexId from = geometry.add_vertex(0, 0), to = geometry.add_vertex(100, 1);
     std::vector<std::array<VertexId, 2>> across;

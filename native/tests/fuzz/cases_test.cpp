@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Making, writing, repairing and minimising stacks.
+// Making, writing, repairing and minimizing stacks.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -13,7 +13,7 @@
 #include "generate.hpp"
 #include "heights.hpp"
 #include "judge.hpp"
-#include "minimise.hpp"
+#include "minimize.hpp"
 #include "mutate.hpp"
 #include "repair.hpp"
 
@@ -38,8 +38,8 @@ TEST(Cases, OfEveryFamilyCanBeBuilt) {
     for (std::size_t family = 0; family < families().size(); ++family) {
         int usable = 0;
         for (std::uint64_t seed = 0; seed < 5; ++seed) {
-            Chance chance(seed);
-            StackCase stack = make_stack(chance, family, 1, 3);
+            RandomSource random(seed);
+            StackCase stack = make_stack(random, family, 1, 3);
             bool built = false;
             EXPECT_TRUE(make_valid(stack, built).empty());
             usable += built ? 1 : 0;
@@ -51,8 +51,8 @@ TEST(Cases, OfEveryFamilyCanBeBuilt) {
 TEST(Cases, OfBytesNeedNone) {
     const std::vector<std::uint8_t> bytes{17, 200, 3, 99, 255, 1, 2, 3, 4};
     for (std::size_t count = 0; count <= bytes.size(); ++count) {
-        Chance chance(std::span<const std::uint8_t>(bytes).first(count));
-        EXPECT_FALSE(make_case(chance, {}).rocks.empty());
+        RandomSource random(std::span<const std::uint8_t>(bytes).first(count));
+        EXPECT_FALSE(make_case(random, {}).rocks.empty());
     }
 }
 
@@ -102,9 +102,9 @@ TEST(Repair, AsksWhetherARefusalIsJust) {
     EXPECT_FALSE(unjust(stack, InputError("rocks_overlap", "", -1, {0, 1})));
 }
 
-TEST(Minimise, FindsTheOneTriangleThatMatters) {
-    Chance chance(9);
-    StackCase stack = make_stack(chance, 0, 3, 3);
+TEST(Minimize, FindsTheOneTriangleThatMatters) {
+    RandomSource random(9);
+    StackCase stack = make_stack(random, 0, 3, 3);
     stack.rocks[0].base_elevation = -9;
     stack.rocks[0].surfaces[1].vertices[5] = {0.3, 0.7, 123.456};
     stack.rocks[0].surfaces[1].triangles[3] = {5, 6, 7};
@@ -120,7 +120,7 @@ TEST(Minimise, FindsTheOneTriangleThatMatters) {
         }
         return false;
     };
-    const StackCase small = minimised(stack, fails, 2000);
+    const StackCase small = minimized(stack, fails, 2000);
     EXPECT_LE(asked, 2000);
     ASSERT_EQ(surface_count(small), 1u);
     EXPECT_EQ(triangle_count(small), 1u);

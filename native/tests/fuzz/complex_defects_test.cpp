@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "../strata/merged_columns.hpp"
 #include "judge.hpp"
 
 namespace realmodel::fuzz {

@@ -23,7 +23,7 @@ namespace realmodel::interpolation {
 using Points = std::vector<std::array<double, 3>>;
 using Nodes = std::vector<std::array<double, 2>>;
 
-/// gamma between two places, written out anew.
+/// gamma between two positions, written out anew.
 inline double dense_gamma(const Variogram& v, double dx, double dy) {
     if (dx == 0 && dy == 0) return 0;
     const double azimuth = v.anisotropy.azimuth * std::numbers::pi / 180;
@@ -33,26 +33,26 @@ inline double dense_gamma(const Variogram& v, double dx, double dy) {
     const double t = std::hypot(along / v.range, across / minor);
     double f = 0;
     switch (v.model) {
-        case VariogramModel::spherical:
+        case VariogramModel::kSpherical:
             f = t < 1 ? 1.5 * t - 0.5 * t * t * t : 1;
             break;
-        case VariogramModel::exponential:
+        case VariogramModel::kExponential:
             f = 1 - std::exp(-3 * t);
             break;
-        case VariogramModel::gaussian:
+        case VariogramModel::kGaussian:
             f = 1 - std::exp(-3 * t * t);
             break;
-        case VariogramModel::cubic:
+        case VariogramModel::kCubic:
             f = t < 1 ? 7 * std::pow(t, 2) - 8.75 * std::pow(t, 3) + 3.5 * std::pow(t, 5) -
                             0.75 * std::pow(t, 7)
                       : 1;
             break;
-        case VariogramModel::matern32: {
+        case VariogramModel::kMatern32: {
             const double a = 4.743864518390579;
             f = 1 - (1 + a * t) * std::exp(-a * t);
             break;
         }
-        case VariogramModel::matern52: {
+        case VariogramModel::kMatern52: {
             const double b = 5.918649346310188;
             f = 1 - (1 + b * t + b * b * t * t / 3) * std::exp(-b * t);
             break;

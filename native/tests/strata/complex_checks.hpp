@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "merged_columns.hpp"
 #include "realmodel/strata/stack.hpp"
 
 namespace realmodel::strata {

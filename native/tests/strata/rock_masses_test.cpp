@@ -15,7 +15,7 @@ struct OwnedRock {
     std::optional<double> base;
 };
 
-CellComplex build_rocks(const std::vector<OwnedRock>& rocks) {
+CellComplex build_rocks(const std::vector<OwnedRock>& rocks, CellKind cells = CellKind::kColumns) {
     std::vector<StackInput> input;
     for (const OwnedRock& rock : rocks) {
         StackInput one;
@@ -24,7 +24,7 @@ CellComplex build_rocks(const std::vector<OwnedRock>& rocks) {
         one.base_elevation = rock.base;
         input.push_back(one);
     }
-    return build_rock_masses(input, 2, nullptr);
+    return build_rock_masses(input, 2, nullptr, cells);
 }
 
 /// Area of the vertical faces between cells of two rock masses, the second from surface `second`
@@ -54,44 +54,54 @@ double shared_area(const CellComplex& c, std::int32_t second) {
     return area;
 }
 
-TEST(RockMasses, ShareTheWallBetweenThem) {
-    const auto c = build_rocks({{{level(0, 1, 0, 1, 0), level(0, 1, 0, 1, 2)}, {}},
-                                {{level(1, 2, 0, 1, 1, 3), level(1, 2, 0, 1, 3, 2)}, {}}});
-    expect_valid(c);
+class RockMassesOf : public testing::TestWithParam<CellKind> {
+protected:
+    CellComplex built(const std::vector<OwnedRock>& rocks) const {
+        const CellComplex c = build_rocks(rocks, GetParam());
+        expect_valid(c, GetParam() == CellKind::kBlocks);
+        return c;
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Cells, RockMassesOf,
+                         testing::Values(CellKind::kColumns, CellKind::kBlocks));
+
+TEST_P(RockMassesOf, ShareTheWallBetweenThem) {
+    const auto c = built({{{level(0, 1, 0, 1, 0), level(0, 1, 0, 1, 2)}, {}},
+                          {{level(1, 2, 0, 1, 1, 3), level(1, 2, 0, 1, 3, 2)}, {}}});
     EXPECT_DOUBLE_EQ(c.volumes[1], 2);
     EXPECT_DOUBLE_EQ(c.volumes[3], 2);
     EXPECT_DOUBLE_EQ(shared_area(c, 2), 1.0);
+    if (GetParam() == CellKind::kBlocks) {
+        EXPECT_EQ(cells_of_blocks(c), (std::vector<int>{0, 1, 0, 1}));
+    }
 }
 
-TEST(RockMasses, WithBordersThatMeetOverAStretchOnly) {
-    const auto c = build_rocks({{{level(0, 1, 0, 2, 0, 2), level(0, 1, 0, 2, 1, 3)}, -1.0},
-                                {{level(1, 2, 1, 3, 0.5), level(1, 2, 1, 3, 2, 2)}, -0.5}});
-    expect_valid(c);
+TEST_P(RockMassesOf, WithBordersThatMeetOverAStretchOnly) {
+    const auto c = built({{{level(0, 1, 0, 2, 0, 2), level(0, 1, 0, 2, 1, 3)}, -1.0},
+                          {{level(1, 2, 1, 3, 0.5), level(1, 2, 1, 3, 2, 2)}, -0.5}});
     EXPECT_DOUBLE_EQ(c.volumes[0] + c.volumes[1] + c.volumes[2] + c.volumes[3], 4 + 5);
     EXPECT_DOUBLE_EQ(shared_area(c, 2), 1.5);
 }
 
-TEST(RockMasses, ABaseThatCrossesASurfaceInTheWallGetsAPointThere) {
+TEST_P(RockMassesOf, ABaseThatCrossesASurfaceInTheWallGetsAPointThere) {
     const auto slope = grid(1, 1, 0, 0, 1, 1, [](double, double y) { return 2 * y - 1; });
-    const auto c = build_rocks(
+    const auto c = built(
         {{{slope, level(0, 1, 0, 1, 3)}, {}}, {{level(1, 2, 0, 1, 1), level(1, 2, 0, 1, 2)}, 0.0}});
-    expect_valid(c);
     EXPECT_EQ(std::count(c.vertices.begin(), c.vertices.end(), std::array<double, 3>{1, 0.5, 0}),
               1);
     EXPECT_DOUBLE_EQ(shared_area(c, 2), 1.0 + 0.75);
 }
 
-TEST(RockMasses, ThatTouchInACornerShareAVertex) {
-    const auto c = build_rocks({{{level(0, 1, 0, 1, 0), level(0, 1, 0, 1, 1)}, {}},
-                                {{level(1, 2, 1, 2, 0), level(1, 2, 1, 2, 1)}, {}}});
-    expect_valid(c);
+TEST_P(RockMassesOf, ThatTouchInACornerShareAVertex) {
+    const auto c = built({{{level(0, 1, 0, 1, 0), level(0, 1, 0, 1, 1)}, {}},
+                          {{level(1, 2, 1, 2, 0), level(1, 2, 1, 2, 1)}, {}}});
     EXPECT_EQ(c.vertices.size(), 8u + 8u - 2u);
 }
 
-TEST(RockMasses, ThatOverlapAreRefusedWithBoth) {
+TEST_P(RockMassesOf, ThatOverlapAreRefusedWithBoth) {
     try {
-        build_rocks({{{level(0, 1, 0, 1, 0), level(0, 1, 0, 1, 1)}, {}},
-                     {{level(0.5, 2, 0, 1, 5), level(0.5, 2, 0, 1, 6)}, {}}});
+        built({{{level(0, 1, 0, 1, 0), level(0, 1, 0, 1, 1)}, {}},
+               {{level(0.5, 2, 0, 1, 5), level(0.5, 2, 0, 1, 6)}, {}}});
         FAIL();
     } catch (const InputError& e) {
         EXPECT_EQ(e.kind, "rocks_overlap");

@@ -402,7 +402,7 @@ TEST(Stack, TrianglesBesideABorderStayWholeInBlocks) {
     EXPECT_GT(faces(holed), 2 * 36 + 2 * 16 - 1);
 }
 
-TEST(Stack, MergedColumnsHaveTheSameVolumes) {
+TEST(Stack, BlocksAreMergedColumns) {
     std::vector<OwnedSurface> surfaces;
     for (int k = 0; k < 4; ++k) {
         surfaces.push_back(grid(
@@ -412,10 +412,40 @@ TEST(Stack, MergedColumnsHaveTheSameVolumes) {
     }
     const auto columns = build(surfaces, -1.0);
     expect_valid(columns);
-    const auto blocks = merge_columns(columns);
+    const auto merged = merge_columns(columns);
+    expect_valid(merged, true);
+    StackInput input;
+    for (const OwnedSurface& s : surfaces)
+        input.surfaces.push_back(s.view());
+    input.base_elevation = -1.0;
+    const auto blocks = build_stack(input, 1, nullptr, CellKind::kBlocks);
     expect_valid(blocks, true);
+    EXPECT_EQ(cells_of_blocks(blocks), cells_of_blocks(merged));
     for (std::size_t k = 0; k < 4; ++k)
         EXPECT_NEAR(blocks.volumes[k], columns.volumes[k], 1e-12);
+}
+
+TEST(Stack, LimitsHoldForTheRegionAndTheBaseToo) {
+    const OwnedSurface floor = flat(0), top = flat(1);
+    const std::vector<double> corners{0, 0, 1e60, 0, 0, 1};
+    const std::vector<std::int32_t> triangle{0, 1, 2};
+    const auto refusal = [](const StackInput& input) -> std::string {
+        try {
+            build_stack(input, 1, nullptr);
+        } catch (const InputError& e) {
+            EXPECT_EQ(e.kind, "not_finite");
+            return e.what();
+        }
+        return {};
+    };
+    StackInput input{{floor.view(), top.view()}, {}, {}, {}};
+    input.region = RegionView{corners, triangle};
+    EXPECT_NE(refusal(input).find("corner 1 of the region"), std::string::npos);
+    input.region.reset();
+    for (const double base : {-1e60, std::nan("")}) {
+        input.base_elevation = base;
+        EXPECT_NE(refusal(input).find("base elevation"), std::string::npos);
+    }
 }
 
 }  // namespace

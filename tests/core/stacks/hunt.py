@@ -2,7 +2,7 @@
 """Hunts for stacks that the builder gets wrong: python -m tests.core.stacks.hunt SECONDS [SEED] [FAMILY]
 
 Random stacks are built and judged in a process of their own, so that a crash or a hang is a finding
-too. Each finding is minimised and written to tests/data/stacks/ (or --into FOLDER), one for every
+too. Each finding is minimized and written to tests/data/stacks/ (or --into FOLDER), one for every
 set of kinds of failure and family; the run ends with a table.
 """
 
@@ -18,7 +18,7 @@ from . import places
 from .case import Stack, load_stack, save_stack
 from .generate import FAMILIES, random_stack, single_valued
 from .judge import failures_of, kinds_of
-from .minimise import minimise
+from .minimize import minimize
 
 PATIENCE = 60.0  # seconds for one stack, all checks included
 
@@ -77,7 +77,7 @@ class Worker:
 def report(worker, stack, failures, folder, number):
     """Minimises a failing stack, writes its file, and says what it is."""
     wanted = min(kinds_of(failures))
-    small = minimise(stack, lambda s: wanted in kinds_of(worker.judge(s)), acceptable, steps=600)
+    small = minimize(stack, lambda s: wanted in kinds_of(worker.judge(s)), acceptable, steps=600)
     left = worker.judge(small)
     name = f"{wanted}_{stack.label}_{number}".replace(" ", "_").replace("/", "_")
     path = Path(folder) / f"{name}.json"
@@ -118,7 +118,7 @@ def hunt(seconds, seed, families, folder, most, largest=3):
 
 
 def judge_one(path, folder):
-    """Judges one file and minimises it where it fails; the exit status."""
+    """Judges one file and minimizes it where it fails; the exit status."""
     worker, stack = Worker(), load_stack(path)
     failures = worker.judge(stack)
     for failure in failures:
@@ -140,7 +140,7 @@ def main():
     parser.add_argument("--into", default=str(places.CORPUS))
     parser.add_argument("--largest", type=int, default=3, help="squares along a side of the lattice, at most")
     parser.add_argument("--most", type=int, default=40, help="findings to stop at")
-    parser.add_argument("--stack", type=Path, help="judge and minimise this file instead of random stacks")
+    parser.add_argument("--stack", type=Path, help="judge and minimize this file instead of random stacks")
     given = parser.parse_args()
     Path(given.into).mkdir(parents=True, exist_ok=True)
     if given.stack:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is wrong with the model that is built of a case: every oracle in one place.
 
-A failure is "kind: sentence"; the kinds are what the minimiser holds on to.
+A failure is "kind: sentence"; the kinds are what the minimizer holds on to.
 """
 
 import numpy as np

@@ -31,8 +31,8 @@ public:
     void cancel() noexcept;
     bool cancelled() const noexcept;
 
-    /// @throws Cancelled once cancel() was called. Not to be called inside an OpenMP region, which
-    ///         no exception may leave: there ask cancelled() and check() after it.
+    /// @throws Cancelled once cancel() was called. In an OpenMP region only within the chunks of
+    ///         the loops of base/parallel.hpp, which no exception leaves.
     void check() const;
 
     double fraction() const noexcept;

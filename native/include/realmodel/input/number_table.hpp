@@ -9,25 +9,25 @@
 
 namespace realmodel::input {
 
-/// What a text may stand for: one of these numbers, or one of these spellings.
+/// One of these numbers, or one of these texts.
 struct Values {
     std::vector<double> numbers;  ///< compared as numbers; NaN stands for any NaN
     std::vector<std::string> texts;
 };
 
-/// A row counts only where this column holds one of the values.
+/// Rows are used only where this column holds one of the values.
 struct RowFilter {
     std::size_t column;  ///< from 0
     Values values;
 };
 
-/// How a table of text is written, and what is wanted of it.
+/// The format of a table of text, and the columns wanted of it.
 struct TableFormat {
     char separator = ' ';              ///< ' ': any number of blanks and tabs
     char decimal = '.';                ///< or ','
     std::vector<std::size_t> columns;  ///< those wanted, from 0
     std::vector<RowFilter> filters;    ///< a row must pass all of them
-    Values missing;                    ///< what stands for no value: such a row is left out
+    Values missing;                    ///< no-data values: rows with one of them are left out
 };
 
 struct NumberTable {
@@ -40,15 +40,16 @@ struct NumberTable {
 /// The numbers of whole lines of text (any 8-bit superset of ASCII), the same doubles as Python's
 /// float() makes of them, whatever the locale.
 ///
-/// Blank lines do not count, nor do lines that begin with #, !, %, > or //; # ends a line where a
-/// field begins with it or after a number. Fields may stand in double quotes, "" in them is a
-/// quote. Columns beyond those wanted may hold anything, or be absent.
+/// Blank lines are skipped, and so are lines that begin with #, !, %, > or //; # ends a line where
+/// a field begins with it or after a number. Fields may be in double quotes, "" in them is a quote.
+/// Columns beyond those wanted may hold anything, or be absent.
 ///
-/// Throws InputError, items[0] the line from 0, and in items[1] to items[3] the column wanted (its
-/// place in `columns`) and the bytes of the text where its entry begins and ends, of kind
-/// - "too_few" (items: line, number of fields; the row ends too early),
-/// - "not_a_number", "not_finite" (written as nan or inf), "too_large" (for a double).
-/// The first such line counts, for any number of threads (0: all that there are).
+/// @param threads  0: as many as there are
+/// @throws InputError, always for the first wrong line, of kind
+///         - "too_few", where a row ends too early (items: line from 0, number of fields),
+///         - "not_a_number", "not_finite" (written as nan or inf) or "too_large" for a double
+///         (items:
+///           line from 0, index in `columns`, begin and end of the entry in bytes of the text)
 NumberTable read_numbers(std::string_view text, const TableFormat& format, int threads = 0);
 
 }  // namespace realmodel::input

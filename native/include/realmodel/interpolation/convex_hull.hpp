@@ -16,22 +16,23 @@ namespace realmodel::interpolation {
 /// the greatest (Andrew 1979). Exact.
 class ConvexHull {
 public:
-    using Place = std::array<double, 2>;
+    using Position = std::array<double, 2>;
 
-    explicit ConvexHull(std::vector<Place> places);
+    explicit ConvexHull(std::vector<Position> positions);
 
-    /// On the border is inside. Of no places: never.
-    bool contains(const Place& place) const;
+    /// On the border is inside. A hull of no positions contains none.
+    bool contains(const Position& position) const;
 
-    /// Corners counter-clockwise, without those that lie in a straight border.
-    std::vector<Place> corners() const;
+    /// Corners counter-clockwise, without those in the middle of a straight border.
+    std::vector<Position> corners() const;
 
 private:
-    std::vector<Place> lower_, upper_;
+    std::vector<Position> lower_, upper_;
 };
 
 /// 1 for each node outside the convex hull of the points, else 0.
-/// Throws InputError of kind "not_finite"; Cancelled.
+/// @throws InputError kind "not_finite"
+/// @throws Cancelled
 std::vector<std::uint8_t> outside_hull(std::span<const std::array<double, 3>> points,
                                        std::span<const std::array<double, 2>> nodes, int threads,
                                        Progress* progress = nullptr);

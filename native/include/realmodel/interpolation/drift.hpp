@@ -5,9 +5,9 @@ namespace realmodel::interpolation {
 
 /// The trend about which heights vary: a polynomial in x and y whose coefficients are not known.
 enum class Drift {
-    constant,   ///< 1
-    linear,     ///< 1, x, y
-    quadratic,  ///< 1, x, y, x^2, x y, y^2
+    kConstant,   ///< 1
+    kLinear,     ///< 1, x, y
+    kQuadratic,  ///< 1, x, y, x^2, x y, y^2
 };
 
 }  // namespace realmodel::interpolation

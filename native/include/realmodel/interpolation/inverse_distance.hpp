@@ -12,11 +12,11 @@ class Progress;
 namespace realmodel::interpolation {
 
 struct InverseDistanceOptions {
-    double power = 2;     ///< positive
-    int neighbours = 16;  ///< nearest in plan that count; 0: all points
-    int threads = 0;      ///< 0: as many as there are
-    int octants = 0;      ///< at most so many points from each eighth of the directions; 0: any
-    double radius = 0;    ///< points farther away do not count, but the nearest; 0: all do
+    double power = 2;    ///< positive
+    int neighbors = 16;  ///< nearest points in plan that are used; 0: all points
+    int threads = 0;     ///< 0: as many as there are
+    int octants = 0;     ///< at most so many points from each eighth of the directions; 0: any
+    double radius = 0;   ///< points farther away are left out, but for the nearest; 0: none is
 };
 
 /// Means of the values of the nearest points weighted by distance^-power (Shepard 1968). A node on
@@ -25,8 +25,8 @@ struct InverseDistanceOptions {
 /// @param points  x, y, z
 /// @param nodes   x, y
 /// @return        z of each node; the same for any number of threads
-/// Throws InputError of kind "no_points", "not_finite", "contradicting_points", "option";
-/// Cancelled.
+/// @throws InputError kind "no_points", "not_finite", "contradicting_points", "too_large", "option"
+/// @throws Cancelled
 std::vector<double> inverse_distance(std::span<const std::array<double, 3>> points,
                                      std::span<const std::array<double, 2>> nodes,
                                      const InverseDistanceOptions& options,

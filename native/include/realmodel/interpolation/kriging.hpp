@@ -16,42 +16,44 @@ class Progress;
 namespace realmodel::interpolation {
 
 struct KrigingOptions {
-    int neighbours =
-        16;           ///< nearest in plan that make a node's system; 0: all points, factored once
+    /// Nearest in plan that make a node's system; 0: all points, factored once.
+    int neighbors = 16;
     int threads = 0;  ///< 0: as many as there are
-    Drift drift = Drift::constant;
+    Drift drift = Drift::kConstant;
     int octants = 0;    ///< at most so many points from each eighth of the directions; 0: any
-    double radius = 0;  ///< points farther away do not count; 0: all do
+    double radius = 0;  ///< points farther away are left out; 0: none is
 };
 
 struct Kriged {
     std::vector<double> z;         ///< of each node
     std::vector<double> variance;  ///< of its error, squared units of z, not negative
-    std::int64_t alone = 0;  ///< nodes with no point within the radius: the nearest alone counted
+    std::int64_t alone =
+        0;  ///< nodes with no point within the radius: there the nearest alone is used
 };
 
 /// Ordinary kriging (Matheron 1963; Chiles and Delfiner 2012, section 3.4), or with a drift
 /// universal kriging (section 3.4 there; Matheron 1969).
 ///
-/// A node on a point gets that point's value, with variance 0. Points that the nearer ones already
-/// tell (variance below 1e-10 of the sill) are left out of a system, so none is singular. So is a
-/// term of the drift that the points do not tell from the terms before it: points in one line have
-/// no slope across it, two points have a line, one point a constant.
-/// With octants the points are looked for among the nearest 64 times as many.
+/// A node on a point gets that point's value, with variance 0. Points whose value the nearer
+/// ones determine (variance below 1e-10 of the sill) are left out of a system, so none is singular.
+/// So is a term of the drift that the points do not distinguish from the terms before it: points in
+/// one line have no slope across it, two points have a line, one point a constant.
+/// With octants the points are chosen among the nearest 64 times as many.
 /// @param points  x, y, z; repeated points count once
 /// @param nodes   x, y
 /// @return        the same bytes for any number of threads
-/// Throws InputError of kind "no_points", "not_finite", "contradicting_points" (items: both points;
-/// place), "variogram", "anisotropy", "option", "too_large" (says how much memory the systems would
-/// take); Cancelled within 0.2 s of Progress::cancel.
+/// @throws InputError kind "no_points", "not_finite", "contradicting_points" (items: both points;
+///         place), "variogram", "anisotropy", "option", "too_large" (says how much memory the
+///         systems would take)
+/// @throws Cancelled  within 0.2 s of Progress::cancel
 Kriged krige(std::span<const std::array<double, 3>> points,
              std::span<const std::array<double, 2>> nodes, const Variogram& variogram,
              const KrigingOptions& options, Progress* progress = nullptr);
 
 /// The same at each of the points, from all the others: what cross-validation compares with the
-/// points' values. With all points as neighbours by the identities of Dubrule (1983,
-/// "Cross validation of kriging in a unique neighborhood"), from one factor. A single point is told
-/// by nothing: its variance is infinite.
+/// points' values. With all points as neighbors by the identities of Dubrule (1983,
+/// "Cross validation of kriging in a unique neighborhood"), from one factor. Of a single point the
+/// variance is infinite.
 Kriged krige_left_out(std::span<const std::array<double, 3>> points, const Variogram& variogram,
                       const KrigingOptions& options, Progress* progress = nullptr);
 

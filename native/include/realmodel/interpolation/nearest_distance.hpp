@@ -15,7 +15,8 @@ namespace realmodel::interpolation {
 /// @param points  x, y, z; at least one
 /// @param nodes   x, y
 /// @return        the same bytes for any number of threads
-/// Throws InputError of kind "no_points", "not_finite"; Cancelled.
+/// @throws InputError kind "no_points", "not_finite", "too_large"
+/// @throws Cancelled
 std::vector<double> nearest_distances(std::span<const std::array<double, 3>> points,
                                       std::span<const std::array<double, 2>> nodes, int threads = 0,
                                       Progress* progress = nullptr);

@@ -13,12 +13,12 @@ namespace realmodel::interpolation {
 
 struct ThinPlateOptions {
     /// Added to the diagonal where distances are measured in the points' mean spacing; 0: points
-    /// hold.
+    /// are met exactly.
     double smoothing = 0;
-    int neighbours = 16;  ///< nearest in plan that make a node's spline; 0: all points, solved once
-    int threads = 0;      ///< 0: as many as there are
-    int octants = 0;      ///< at most so many points from each eighth of the directions; 0: any
-    double radius = 0;    ///< points farther away do not count, but the nearest; 0: all do
+    int neighbors = 16;  ///< nearest in plan that make a node's spline; 0: all points, solved once
+    int threads = 0;     ///< 0: as many as there are
+    int octants = 0;     ///< at most so many points from each eighth of the directions; 0: any
+    double radius = 0;   ///< points farther away are left out, but for the nearest; 0: none is
 };
 
 /// Thin plate splines (Duchon 1977; Wahba 1990, "Spline models for observational data",
@@ -29,8 +29,8 @@ struct ThinPlateOptions {
 /// @param points  x, y, z; repeated points count once
 /// @param nodes   x, y
 /// @return        z of each node; the same for any number of threads
-/// Throws InputError of kind "no_points", "not_finite", "contradicting_points", "option",
-/// "too_large"; Cancelled.
+/// @throws InputError kind "no_points", "not_finite", "contradicting_points", "option", "too_large"
+/// @throws Cancelled
 std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
                                std::span<const std::array<double, 2>> nodes,
                                const ThinPlateOptions& options, Progress* progress = nullptr);

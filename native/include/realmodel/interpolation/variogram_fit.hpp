@@ -31,8 +31,8 @@ ExperimentalVariogram experimental_variogram(std::span<const std::array<double, 
                                              const Anisotropy& anisotropy);
 
 struct FitOptions {
-    Drift drift = Drift::constant;
-    int neighbours = 32;            ///< with which points that are left out are told, 1 .. 64
+    Drift drift = Drift::kConstant;
+    int neighbors = 32;             ///< from which points that are left out are predicted, 1 .. 64
     int threads = 0;                ///< 0: as many as there are
     bool finds_anisotropy = false;  ///< instead of taking the one that is given
 };
@@ -42,28 +42,29 @@ struct FittedVariogram {
     ExperimentalVariogram experimental;
 };
 
-/// Fits a variogram to points. Each model kind, with and without a nugget, is fitted to the
-/// experimental values by weighted least squares (weights pairs / lag^2: Chiles and Delfiner 2012,
-/// section 2.6.2, as gstat does); about these fits further nuggets, ranges and a second, rougher
+/// Fits a variogram to points. Each model, with and without a nugget, is fitted to the experimental
+/// values by weighted least squares (weights pairs / lag^2: Chiles and Delfiner 2012,
+/// section 2.6.2, as gstat does). Around these fits further nuggets, ranges and a second, rougher
 /// structure (an exponential one, or one of a quarter of the range) are tried, each with the sill
-/// that fits best. Of all the one is taken with which points that are left out one by one are told
-/// best by kriging from their nearest others (root mean square error, errors beyond twenty
-/// deviations counted as twenty): 4000 points from 16 others search, and of the best eight up to
-/// 10,000 points from all the neighbours choose. Where several tell them equally well, within 0.2
-/// percent, the one without a second structure, then the one that fits the experimental values
-/// best. Then ranges and sill are moved so that 95 % of those errors lie within two kriging
-/// deviations: variances are honest. Constant values, or fewer than three points, give a spherical
-/// model whose sill is tiny or what the points show.
+/// that fits best. Of all candidates the one is chosen with which kriging predicts points that are
+/// left out one by one best from their nearest others (root mean square error, errors beyond twenty
+/// deviations counted as twenty): 4000 points from 16 others search, and up to 10,000 points from
+/// all the neighbors choose among the best eight. Among equally good ones, within 0.2 percent, the
+/// one without a second structure, then the one that fits the experimental values best. Then ranges
+/// and sill are scaled until 95 % of those errors lie within two kriging deviations: variances are
+/// honest. Constant values, or fewer than three points, give a spherical model whose sill is tiny
+/// or that of the points.
 ///
 /// With finds_anisotropy ratio and azimuth are searched in the same way, from 30 points on that
-/// spread in two directions; one is taken where it makes the mean square of the errors less by 3 %
+/// spread in two directions; one is accepted where it lowers the mean square of the errors by 3 %
 /// and by two standard errors, and the rest is fitted again under it.
 ///
-/// With a drift all this is done with what is left of the values by the polynomial that fits them
-/// best.
+/// With a drift all this is done with the residuals of the polynomial that fits best.
 ///
-/// The same bytes for any number of threads. Throws InputError of kind "no_points", "not_finite",
-/// "contradicting_points", "anisotropy", "option"; Cancelled.
+/// The same bytes for any number of threads.
+/// @throws InputError kind "no_points", "not_finite", "contradicting_points", "too_large",
+///         "anisotropy", "option"
+/// @throws Cancelled
 FittedVariogram fit_variogram(std::span<const std::array<double, 3>> points,
                               const Anisotropy& anisotropy, Progress* progress = nullptr,
                               const FitOptions& options = {});

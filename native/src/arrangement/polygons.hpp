@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/index.hpp"
+
+namespace realmodel::arrangement {
+
+using Position = std::array<double, 3>;
+using PlanePosition = std::array<double, 2>;
+using NodeId = std::int32_t;
+
+/// An edge as (lesser, greater) node.
+inline std::array<NodeId, 2> unordered(NodeId a, NodeId b) {
+    return {std::min(a, b), std::max(a, b)};
+}
+
+inline Position minus(const Position& a, const Position& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+inline double dot(const Position& a, const Position& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Many polygons in one array.
+struct Polygons {
+    std::vector<std::int64_t> offsets{0};
+    std::vector<NodeId> nodes;
+
+    std::size_t size() const { return offsets.size() - 1; }
+    std::span<const NodeId> operator[](std::size_t i) const {
+        return {nodes.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};
+    }
+    void add(std::span<const NodeId> polygon) {
+        nodes.insert(nodes.end(), polygon.begin(), polygon.end());
+        close();
+    }
+    /// Ends a polygon whose nodes were appended one by one.
+    void close() { offsets.push_back(static_cast<std::int64_t>(nodes.size())); }
+    void clear() {
+        offsets.resize(1);
+        nodes.clear();
+    }
+};
+
+/// A view of space along its coordinate axis that is nearest to a normal: polygons that turn
+/// counter-clockwise about the normal do so in the view.
+class View {
+public:
+    explicit View(const Position& normal);
+    PlanePosition operator()(const Position& p) const { return {p[u_], p[v_]}; }
+    /// How far apart on either axis rounding may put things that coincide: a few units in
+    /// the last place of the largest coordinates.
+    PlanePosition rounding(std::span<const Position> positions) const;
+    /// The axis, and 1 where the view is from its positive end, -1 from its negative.
+    std::size_t axis() const { return 3 - u_ - v_; }
+    int sign() const { return v_ == (axis() + 2) % 3 ? 1 : -1; }
+
+private:
+    std::size_t u_, v_;
+};
+
+/// The sum of the normals of a polygon's triangles, twice its area long (Newell's formula, about
+/// the first corner so that coordinates far from the origin cost no digits).
+Position polygon_normal(std::span<const Position> corners);
+
+/// Six times the volume of a tetrahedron; positive where a, b, c turn counter-clockwise seen from
+/// outside.
+double sixfold_volume(const Position& o, const Position& a, const Position& b, const Position& c);
+
+/// How far apart rounding may put things that coincide: a few units in the last place of
+/// the largest coordinate.
+double rounding_of(std::span<const Position> positions);
+
+}  // namespace realmodel::arrangement

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "arrangement/polygons.hpp"
+#include "exact/space_predicates.hpp"
+#include "realmodel/base/progress.hpp"
+
+namespace realmodel::arrangement {
+
+/// A part of a triangle that nothing crosses. The outline turns as the triangle does, holes follow
+/// the other way round.
+struct Region {
+    std::int32_t triangle;
+    std::vector<std::vector<NodeId>> loops;
+};
+
+/// Triangles in any position, divided exactly where they cross each other: every region's edges are
+/// edges of all regions that meet there, and every point of one triangle on another is a node of
+/// both. Pairs that are not asked for are taken not to cross, but on triangles that both intersect.
+class TriangleArrangement {
+public:
+    explicit TriangleArrangement(exact::SpacePoints& points) : points_(points) {}
+
+    /// The number of the triangle. One without area stays an edge that others share.
+    /// @throws InputError kind too_large
+    std::int32_t add(const std::array<NodeId, 3>& corners);
+
+    /// An end of a segment on the line of two planes: a corner, or where an edge of one triangle
+    /// passes through the plane of the other.
+    struct End {
+        NodeId from;             ///< the corner, or the end of the edge below the plane
+        NodeId to = -1;          ///< the other end, -1: a corner
+        std::int32_t plane = 0;  ///< of which triangle
+    };
+    /// Where two triangles intersect: along a segment, in a point (two equal ends), or in one
+    /// plane.
+    struct Intersection {
+        std::int32_t one, other;
+        bool in_one_plane;
+        std::array<End, 2> ends;
+    };
+    /// Where two triangles intersect beside the corners and edges that they share. May be asked by
+    /// several threads at once.
+    std::optional<Intersection> intersection(std::int32_t one, std::int32_t other) const;
+    /// Adds its points and its segment to both triangles.
+    void insert(const Intersection& intersection);
+    /// Divides all triangles. With it no more can be added.
+    void divide(int threads, const Progress* progress);
+
+    const std::vector<Region>& regions() const { return regions_; }
+    const std::array<NodeId, 3>& corners(std::int32_t triangle) const {
+        return triangles_[index(triangle)].corners;
+    }
+    /// The axis along which a triangle is seen best, and which way it turns: 0 it has no area.
+    std::pair<std::size_t, int> view_of(std::int32_t triangle) const {
+        return {triangles_[index(triangle)].axis, triangles_[index(triangle)].facing};
+    }
+    /// A corner of a triangle to the left of a line in it.
+    NodeId left_corner(std::int32_t triangle, NodeId from, NodeId to) const;
+
+private:
+    struct Segment {
+        std::array<NodeId, 2> ends;  ///< in order
+        std::int32_t other;          ///< the triangle that it is shared with
+        auto operator<=>(const Segment&) const = default;
+    };
+    struct Triangle {
+        std::array<NodeId, 3> corners;
+        std::size_t axis = 0;
+        int facing = 0;                 ///< which way it turns seen along its axis, 0: no area
+        std::vector<NodeId> points;     ///< in order, once all are there
+        std::vector<Segment> segments;  ///< likewise
+    };
+    /// On which sides of the plane of another triangle corners lie.
+    struct Sides {
+        std::array<int, 3> of;
+        int above = 0, below = 0;
+    };
+    /// What a triangle has of the line of its plane and another's. It passes that other plane from
+    /// below at `up`, and back at `down`; both are one where only a corner touches it.
+    struct Interval {
+        End up, down;
+    };
+    /// A point of one triangle that is also on another.
+    struct Message {
+        std::int32_t to;
+        NodeId point;
+    };
+    /// The ends of one segment, then those of another.
+    using SegmentPair = std::array<NodeId, 4>;
+    class NodesOnLines;
+
+    int orientation(const Triangle& t, NodeId a, NodeId b, NodeId c) const {
+        return t.facing * exact::orient2d(points_, t.axis, a, b, c);
+    }
+    Sides sides_of(const Triangle& own, const Triangle& plane) const;
+    bool are_folded_apart(const Triangle& a, const Triangle& b) const;
+    static Interval interval_of(const Triangle& own, const Sides& sides, std::int32_t plane);
+    int order(const Triangle& a, const Sides& sides, const End& on_a, const Triangle& b,
+              const End& on_b) const;
+    void add_segment(std::int32_t one, std::int32_t other, NodeId p, NodeId q);
+    void clip_edges(std::int32_t edges_of, std::int32_t into);
+    void clip_segment(NodeId p, NodeId q, std::int32_t of, std::int32_t into);
+    void exchange_segments();
+    template <class Visit>
+    void each_triangle(int threads, const Progress* progress, const Visit& visit) const;
+    void sort_all(int threads, const Progress* progress);
+    std::vector<SegmentPair> crossing_segments(const Triangle& t) const;
+    void intersect_segments(int threads, const Progress* progress);
+    void exchange_points(int threads, const Progress* progress);
+    void messages_of(std::int32_t triangle, std::vector<Message>& messages) const;
+    void find_regions(std::int32_t triangle, std::vector<Region>& regions) const;
+
+    exact::SpacePoints& points_;
+    std::vector<Triangle> triangles_;
+    /// The edges of all triangles, in order, with the triangle of each.
+    std::vector<std::pair<std::array<NodeId, 2>, std::int32_t>> of_edge_;
+    std::vector<Region> regions_;
+    std::vector<std::array<std::int32_t, 2>> in_one_plane_;
+};
+
+}  // namespace realmodel::arrangement

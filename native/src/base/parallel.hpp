@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// The parallel loops of the whole core. No exception leaves an OpenMP region: where chunks of a
+/// loop throw, the exception of the lowest of them leaves the loop, so that the same input always
+/// gives the same error. Chunks above a failed one are skipped, those below it still run. Between
+/// chunks a loop asks whether it was cancelled; longer work may call Progress::check() itself.
+#pragma once
+
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <mutex>
+#include <optional>
+
+#include "realmodel/base/progress.hpp"
+
+namespace realmodel {
+
+inline int thread_count(int threads) {
+    return threads > 0 ? threads : omp_get_max_threads();
+}
+
+/// For loops of one thread: asks every 16384 rounds whether the caller wants to stop.
+/// @throws Cancelled
+inline void poll(const Progress* progress, std::size_t round) {
+    if (progress != nullptr && (round & 0x3fff) == 0) progress->check();
+}
+
+/// What the threads of one loop share: how far it is, and the error of its lowest failed chunk.
+class LoopGuard {
+public:
+    LoopGuard(const Progress* progress, std::size_t count, double share)
+        : progress_(progress), counted_(progress, count, share) {}
+
+    /// Runs a chunk, unless the loop was cancelled or a chunk before this one has failed.
+    /// @return whether later chunks may still be wanted
+    template <class Work>
+    bool run(std::size_t chunk, Work&& work) noexcept {
+        if (chunk > failed_chunk_.load(std::memory_order_relaxed)) return false;
+        if (progress_ != nullptr && progress_->cancelled()) return false;
+        try {
+            work();
+            counted_.count();
+        } catch (...) {
+            const std::lock_guard lock(failing_);
+            if (chunk < failed_chunk_.load(std::memory_order_relaxed)) {
+                failed_chunk_.store(chunk, std::memory_order_relaxed);
+                failure_ = std::current_exception();
+            }
+        }
+        return true;
+    }
+
+    /// To be called after the region.
+    /// @throws Cancelled, or the exception of the lowest failed chunk
+    void finish() const {
+        if (progress_ != nullptr) progress_->check();
+        if (failure_) std::rethrow_exception(failure_);
+    }
+
+private:
+    const Progress* progress_;
+    CountedLoop counted_;
+    std::atomic<std::size_t> failed_chunk_{SIZE_MAX};
+    std::mutex failing_;
+    std::exception_ptr failure_;
+};
+
+/// Calls worker(chunk) for every chunk from 0 to count - 1, on several threads, the next chunk to
+/// whichever thread is free. Each thread has a worker of its own (with its scratch memory), which
+/// make() gives when the thread gets its first chunk.
+/// @param share  of what is left of the present part of the progress: how much this loop takes
+/// @throws Cancelled, or what make() or a worker threw
+template <class Make>
+void parallel_workers(std::size_t count, int threads, const Progress* progress, const Make& make,
+                      double share = 0.2) {
+    LoopGuard guard(progress, count, share);
+    std::atomic<std::size_t> next{0};
+#pragma omp parallel num_threads(thread_count(threads)) if (count > 1)
+    {
+        std::optional<decltype(make())> worker;
+        for (;;) {
+            const std::size_t chunk = next.fetch_add(1, std::memory_order_relaxed);
+            const bool goes_on = chunk < count && guard.run(chunk, [&] {
+                if (!worker) worker.emplace(make());
+                (*worker)(chunk);
+            });
+            if (!goes_on) break;
+        }
+    }
+    guard.finish();
+}
+
+/// Calls work(chunk) for every chunk, as parallel_workers() without anything of a thread's own.
+template <class Work>
+void parallel_chunks(std::size_t count, int threads, const Progress* progress, const Work& work,
+                     double share = 0.2) {
+    const auto make = [&work] { return [&work](std::size_t chunk) { work(chunk); }; };
+    parallel_workers(count, threads, progress, make, share);
+}
+
+/// Calls work(begin, end) for ranges of `size` items that cover 0 to count - 1.
+template <class Work>
+void parallel_ranges(std::size_t count, std::size_t size, int threads, const Progress* progress,
+                     const Work& work, double share = 0.2) {
+    const auto range = [&](std::size_t chunk) {
+        work(chunk * size, std::min(count, (chunk + 1) * size));
+    };
+    parallel_chunks((count + size - 1) / size, threads, progress, range, share);
+}
+
+/// Calls work(chunk) for every chunk, each thread an equal run of them: in loops over the same
+/// arrays a thread meets again what its caches still hold. For chunks of equal work, too short for
+/// anyone to wait for one.
+template <class Work>
+void parallel_even(std::size_t count, int threads, const Work& work) {
+    LoopGuard guard(nullptr, count, 0.0);
+#pragma omp parallel num_threads(thread_count(threads)) if (count > 1)
+    {
+        const auto team = static_cast<std::size_t>(omp_get_num_threads());
+        const auto own = static_cast<std::size_t>(omp_get_thread_num());
+        for (std::size_t chunk = count * own / team; chunk < count * (own + 1) / team; ++chunk) {
+            if (!guard.run(chunk, [&] { work(chunk); })) break;
+        }
+    }
+    guard.finish();
+}
+
+}  // namespace realmodel

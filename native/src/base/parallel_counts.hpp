@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+#include "base/flat_array.hpp"
+#include "base/parallel.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel {
+
+/// How many items there are before each of several chunks, from how many each has.
+/// @return how many there are in all
+inline std::size_t count_before(std::vector<std::size_t>& counts) {
+    std::size_t total = 0;
+    for (std::size_t& count : counts) {
+        const std::size_t own = count;
+        count = total;
+        total += own;
+    }
+    return total;
+}
+
+/// @throws InputError kind too_large, where there are more vertices than so many
+inline void check_total(std::size_t vertices, std::uint64_t largest) {
+    if (vertices > largest) {
+        throw InputError("too_large", "the model needs more than " +
+                                          std::to_string(largest / 1000000) +
+                                          " million vertices; use coarser surfaces");
+    }
+}
+
+/// The same for many numbers; the last element becomes the sum of all.
+/// @throws InputError kind too_large, where the sum is more than `largest`
+template <class Number>
+void running_totals(FlatArray<Number>& counts, std::uint64_t largest, int threads,
+                    const Progress* progress) {
+    constexpr std::size_t kChunk = 1 << 16;
+    const std::size_t count = counts.size() - 1;
+    std::vector<std::size_t> before((count + kChunk - 1) / kChunk);
+    parallel_ranges(count, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+        std::size_t sum = 0;
+        for (std::size_t i = begin; i < end; ++i)
+            sum += static_cast<std::size_t>(counts[i]);
+        before[begin / kChunk] = sum;
+    });
+    const std::size_t total = count_before(before);
+    check_total(total, largest);
+    parallel_ranges(count, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+        std::size_t sum = before[begin / kChunk];
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto own = static_cast<std::size_t>(counts[i]);
+            counts[i] = static_cast<Number>(sum);
+            sum += own;
+        }
+    });
+    counts[count] = static_cast<Number>(total);
+}
+
+/// An array of zeros.
+template <class Number>
+FlatArray<Number> zeros(std::size_t size, int threads, const Progress* progress) {
+    FlatArray<Number> array(size);
+    parallel_ranges(size, 1 << 18, threads, progress, [&](std::size_t begin, std::size_t end) {
+        std::fill(array.begin() + begin, array.begin() + end, Number{});
+    });
+    return array;
+}
+
+/// Counts one more item, from any thread; the number of those before it. Which thread comes first
+/// is left to chance, so nothing that is kept may depend on the answer.
+inline std::uint32_t count_one(std::uint32_t& counter) {
+    return std::atomic_ref(counter).fetch_add(1, std::memory_order_relaxed);
+}
+
+/// Asks for memory that will be read some rounds later. (Calls that do nothing else are left out by
+/// g++, so this and what calls it for that alone must be inlined.)
+[[gnu::always_inline]] inline void prefetch(const void* address) {
+    __builtin_prefetch(address);
+}
+
+/// Says so of an item, from any thread: all write the same.
+inline void mark(std::uint8_t& flag) {
+    std::atomic_ref(flag).store(1, std::memory_order_relaxed);
+}
+
+}  // namespace realmodel

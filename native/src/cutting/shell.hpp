@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "cutting/polygons.hpp"
+#include "spatial/box_tree.hpp"
+
+namespace realmodel::cutting {
+
+/// One connected boundary of a part of a cell. Around a hollow it has a negative volume.
+struct Shell {
+    double sixfold_volume = 0;
+    spatial::Box box;
+
+    /// Adds a polygon that turns counter-clockwise seen from outside (sign 1), or clockwise (-1).
+    /// @param origin  of volumes: the same for all polygons, and near them
+    /// @param at      gives the position of a node
+    template <class Polygon, class At>
+    void add(const Polygon& polygon, int sign, const Position& origin, const At& at) {
+        const Position first = at(polygon[0]);
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            box.include(at(polygon[i]));
+            if (i < 2) continue;
+            sixfold_volume +=
+                sign * cutting::sixfold_volume(origin, first, at(polygon[i - 1]), at(polygon[i]));
+        }
+    }
+};
+
+}  // namespace realmodel::cutting

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exact/extended_interval.hpp"
+
+#include <cfloat>
+#include <cmath>
+#include <utility>
+
+namespace realmodel::exact {
+
+namespace {
+
+using Extended = long double;
+
+// What is small is always inlined: to pass extended numbers through memory costs more than to
+// calculate with them.
+
+/// Bound on the relative error of one operation: 2^-64, and a little for what bounds lose to their
+/// own rounding. The exponents of extended numbers are so wide that nothing made of a few doubles
+/// leaves them; where a bound itself overflows nothing is known.
+constexpr double kUnit = 0x1.01p-64;
+/// Covers what the bounds lose where doubles underflow.
+constexpr double kTiny = 0x1p-1000;
+
+/// Whether operations round to 64 bits here, as they may not under an emulator or where another
+/// library changed the precision.
+bool is_extended() {
+    if constexpr (LDBL_MANT_DIG != 64) return false;
+    volatile Extended one = 1.0L, small = 0x1p-63L;
+    volatile Extended sum = one + small;
+    return sum != one;
+}
+const bool kExtended = is_extended();
+
+/// The size of a number as far as bounds need it.
+[[gnu::always_inline]] inline double size(Extended value) {
+    return std::abs(static_cast<double>(value));
+}
+
+[[gnu::always_inline]] inline ExtendedInterval sum(const ExtendedInterval& a,
+                                                   const ExtendedInterval& b) {
+    const Extended value = a.value + b.value;
+    return {value, a.error + b.error + kUnit * size(value)};
+}
+
+[[gnu::always_inline]] inline ExtendedInterval operator-(const ExtendedInterval& a) {
+    return {-a.value, a.error};
+}
+
+/// s * t - u * v of numbers with errors.
+[[gnu::always_inline]] inline ExtendedInterval determinant(const ExtendedInterval& s,
+                                                           const ExtendedInterval& t,
+                                                           const ExtendedInterval& u,
+                                                           const ExtendedInterval& v) {
+    const Extended st = s.value * t.value, uv = u.value * v.value;
+    const double error = size(s.value) * t.error + (size(t.value) + t.error) * s.error +
+                         size(u.value) * v.error + (size(v.value) + v.error) * u.error +
+                         3 * kUnit * (size(st) + size(uv));
+    return {st - uv, error == 0 && st == 0 && uv == 0 ? 0 : error + kTiny};
+}
+
+/// The same of differences of doubles, each of which errs by one unit: three for a product.
+[[gnu::always_inline]] inline ExtendedInterval determinant(Extended s, Extended t, Extended u,
+                                                           Extended v) {
+    const Extended st = s * t, uv = u * v;
+    return {st - uv, st == 0 && uv == 0 ? 0 : 5 * kUnit * (size(st) + size(uv)) + kTiny};
+}
+
+[[gnu::always_inline]] inline ExtendedInterval quotient(const ExtendedInterval& numerator,
+                                                        const ExtendedInterval& denominator) {
+    const double least = size(denominator.value) * (1 - 0x1p-50) - denominator.error;
+    if (!(least > 0)) return {0, HUGE_VAL};
+    const Extended value = numerator.value / denominator.value;
+    const double error =
+        (numerator.error + size(value) * denominator.error) / least + kUnit * size(value);
+    return {value, error == 0 && value == 0 ? 0 : error + kTiny};
+}
+
+/// The double nearest to the true value, or nothing where the bound leaves two to choose from.
+std::optional<double> nearest(Extended value, double error) {
+    const double slack =
+        error == 0 ? 0 : error * (1 + 0x1p-40) + 2 * kUnit * size(value) + 8 * kTiny;
+    const auto up = static_cast<double>(value + slack);
+    const auto down = static_cast<double>(value - slack);
+    if (up == down && std::isfinite(up)) return up + 0.0;  // 0 is not negative
+    return std::nullopt;
+}
+
+/// The normal of a plane.
+struct NearNormal {
+    ExtendedInterval a, b, c;
+};
+[[gnu::always_inline]] inline NearNormal near_normal(const PlanArrangement& g, PlaneId plane) {
+    const auto& [corner, plan] = g.plane(plane);
+    const SpaceVertex &s0 = g.space(corner[0]), &s1 = g.space(corner[1]), &s2 = g.space(corner[2]);
+    const Point &p0 = g.point(plan[0]), &p1 = g.point(plan[1]), &p2 = g.point(plan[2]);
+    const Extended ux = Extended(p1.x) - p0.x, uy = Extended(p1.y) - p0.y;
+    const Extended vx = Extended(p2.x) - p0.x, vy = Extended(p2.y) - p0.y;
+    const Extended uz = Extended(s1.z) - s0.z, vz = Extended(s2.z) - s0.z;
+    return {determinant(uy, vz, uz, vy), determinant(uz, vx, ux, vz), determinant(ux, vy, uy, vx)};
+}
+
+/// What is added to a height along x and along y.
+struct NearGradient {
+    ExtendedInterval x, y;
+};
+NearGradient near_gradient(const PlanArrangement& g, PlaneId plane) {
+    const NearNormal n = near_normal(g, plane);
+    return {quotient(-n.a, n.c), quotient(-n.b, n.c)};
+}
+
+/// b - a of doubles.
+[[gnu::always_inline]] inline ExtendedInterval difference(double a, double b) {
+    const Extended value = Extended(b) - a;
+    return {value, kUnit * size(value)};
+}
+
+/// Which share of the way along the first of two edges lies before their crossing.
+[[gnu::always_inline]] inline ExtendedInterval share_of_way(const PlanArrangement& g, const Line& l,
+                                                            const Line& m) {
+    const Point &o = g.point(l.first), &p = g.point(l.second);
+    const Point &s = g.point(m.first), &t = g.point(m.second);
+    const Extended along_x = Extended(p.x) - o.x, along_y = Extended(p.y) - o.y;
+    const Extended other_x = Extended(t.x) - s.x, other_y = Extended(t.y) - s.y;
+    const Extended way_x = Extended(s.x) - o.x, way_y = Extended(s.y) - o.y;
+    return quotient(determinant(way_x, other_y, way_y, other_x),
+                    determinant(along_x, other_y, along_y, other_x));
+}
+
+/// That share of a difference of two doubles.
+[[gnu::always_inline]] inline ExtendedInterval part_of(const ExtendedInterval& share,
+                                                       Extended along) {
+    const Extended value = share.value * along;
+    const bool exact = along == 0 || (share.error == 0 && value == 0);
+    return ExtendedInterval{
+        value,
+        exact ? 0 : size(along) * share.error * (1 + 0x1p-40) + 3 * kUnit * size(value) + kTiny};
+}
+
+/// Where two edges cross, relative to the first one's first vertex.
+NearPoint near_crossing(const PlanArrangement& g, const Line& l, const Line& m) {
+    const Point &o = g.point(l.first), &p = g.point(l.second);
+    const ExtendedInterval share = share_of_way(g, l, m);
+    return {l.first, part_of(share, Extended(p.x) - o.x), part_of(share, Extended(p.y) - o.y)};
+}
+
+}  // namespace
+
+NearLine near_line(const PlanArrangement& g, const Line& line, VertexId origin) {
+    const Point& o = g.point(origin);
+    if (line.kind == Line::Kind::kEdge) {
+        const Point &p = g.point(line.first), &q = g.point(line.second);
+        const ExtendedInterval a = difference(q.y, p.y), b = difference(p.x, q.x);
+        if (line.first == origin) return {a, b, {0, 0}};
+        // a (x - px) + b (y - py) at the origin
+        return {a, b, determinant(a, difference(p.x, o.x), -b, difference(p.y, o.y))};
+    }
+    const NearGradient p = near_gradient(g, line.first), q = near_gradient(g, line.second);
+    const SpaceVertex& sp = g.space(g.plane(line.first).corner[0]);
+    const SpaceVertex& sq = g.space(g.plane(line.second).corner[0]);
+    const Point &vp = g.point(sp.plan), &vq = g.point(sq.plan);
+    const ExtendedInterval p_rise =
+        determinant(p.x, difference(vp.x, o.x), -p.y, difference(vp.y, o.y));
+    const ExtendedInterval q_rise =
+        determinant(q.x, difference(vq.x, o.x), -q.y, difference(vq.y, o.y));
+    const ExtendedInterval p_height = sum({sp.z, 0}, p_rise), q_height = sum({sq.z, 0}, q_rise);
+    return {sum(p.x, -q.x), sum(p.y, -q.y), sum(p_height, -q_height)};
+}
+
+std::optional<double> nearest_sum(double from, const ExtendedInterval& value) {
+    if (!kExtended) return std::nullopt;
+    const Extended whole = from + value.value;
+    const bool exact = value.error == 0 && value.value == 0;
+    return nearest(whole, exact ? 0 : value.error + kUnit * size(whole));
+}
+
+std::optional<double> near_height(const PlanArrangement& g, PlaneId plane, const NearPoint& p) {
+    const SpaceVertex& corner = g.space(g.plane(plane).corner[0]);
+    const Point &c = g.point(corner.plan), &o = g.point(p.origin);
+    const NearNormal n = near_normal(g, plane);
+    const ExtendedInterval dx = sum(difference(c.x, o.x), p.x), dy = sum(difference(c.y, o.y), p.y);
+    return nearest_sum(corner.z, -quotient(determinant(n.a, dx, -n.b, dy), n.c));
+}
+
+std::optional<double> near_edge_height(const PlanArrangement& g, SpaceId from, SpaceId to,
+                                       const NearPoint& point) {
+    const SpaceVertex &s = g.space(from), &t = g.space(to);
+    const Point &p = g.point(s.plan), &q = g.point(t.plan), &o = g.point(point.origin);
+    const ExtendedInterval along_x = difference(p.x, q.x), along_y = difference(p.y, q.y);
+    const bool is_x = size(along_x.value) >= size(along_y.value);
+    const ExtendedInterval way =
+        is_x ? sum(difference(p.x, o.x), point.x) : sum(difference(p.y, o.y), point.y);
+    const ExtendedInterval rise = difference(s.z, t.z);
+    const Extended product = way.value * rise.value;
+    const double error = size(way.value) * rise.error +
+                         (size(rise.value) + rise.error) * way.error + kUnit * size(product);
+    const bool exact = error == 0 && product == 0;
+    return nearest_sum(s.z,
+                       quotient({product, exact ? 0 : error + kTiny}, is_x ? along_x : along_y));
+}
+
+std::optional<double> near_height_of_crossing(const PlanArrangement& g, SpaceId from, SpaceId to,
+                                              const Line& l, const Line& m) {
+    const SpaceVertex &s = g.space(from), &t = g.space(to);
+    const bool is_first = s.plan == l.first || s.plan == l.second;
+    const Line &edge = is_first ? l : m, &other = is_first ? m : l;
+    const bool is_forward = s.plan == edge.first;
+    if (edge.kind != Line::Kind::kEdge || other.kind != Line::Kind::kEdge ||
+        s.plan != (is_forward ? edge.first : edge.second) ||
+        t.plan != (is_forward ? edge.second : edge.first))
+        return std::nullopt;
+    const double low = is_forward ? s.z : t.z, high = is_forward ? t.z : s.z;
+    return nearest_sum(low, part_of(share_of_way(g, edge, other), Extended(high) - low));
+}
+
+std::optional<std::array<double, 3>> near_line_key(const NearLine& l) {
+    if (!kExtended) return std::nullopt;
+    const double a = size(l.a.value), b = size(l.b.value);
+    const double either = l.a.error + l.b.error + 0x1p-50 * (a + b);
+    const bool steep = a - b > either;
+    if (!steep && !(b - a > either)) return std::nullopt;
+    const ExtendedInterval& divisor = steep ? l.a : l.b;
+    const ExtendedInterval slope = quotient(steep ? l.b : l.a, divisor),
+                           offset = quotient(l.c, divisor);
+    const auto s = nearest(slope.value, slope.error), t = nearest(offset.value, offset.error);
+    if (!s || !t) return std::nullopt;
+    return std::array<double, 3>{steep ? 1.0 : 0.0, *s, *t};
+}
+
+NearPoint LocalArrangement::near(PointId id) const {
+    if (is_vertex(id)) return {id, {0, 0}, {0, 0}};
+    return near(point(id));
+}
+
+NearPoint LocalArrangement::near(const Point& p) const {
+    const Line* l = &line(p.first);
+    const Line* m = &line(p.second);
+    if (l->kind == Line::Kind::kTrace) std::swap(l, m);
+    const VertexId origin = l->kind == Line::Kind::kEdge
+                                ? l->first
+                                : shared_.space(shared_.plane(l->first).corner[0]).plan;
+    if (m->kind == Line::Kind::kEdge) return near_crossing(shared_, *l, *m);
+    const NearLine a = near_line(shared_, *l, origin), b = near_line(shared_, *m, origin);
+    const ExtendedInterval w = determinant(a.a, b.b, b.a, a.b);
+    return {origin, quotient(determinant(a.b, b.c, b.b, a.c), w),
+            quotient(determinant(a.c, b.a, b.c, a.a), w)};
+}
+
+}  // namespace realmodel::exact

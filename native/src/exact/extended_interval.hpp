@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "exact/plan_arrangement.hpp"
+
+// Lines, planes and points in extended precision (64 bits of mantissa, as on x86), each with bounds
+// on its errors. Enough to round nearly all coordinates at a fraction of what twice the precision
+// of doubles costs. Where `long double` is no such type every bound is infinite, and the slower
+// ways (ball.hpp, GMP) give the same doubles.
+namespace realmodel::exact {
+
+/// a x + b y + c relative to a plan vertex.
+struct NearLine {
+    ExtendedInterval a, b, c;
+};
+NearLine near_line(const PlanArrangement& geometry, const Line& line, VertexId origin);
+
+/// The double nearest to `from` and a number close to `value`, or nothing where the bound on its
+/// error leaves two to choose from.
+std::optional<double> nearest_sum(double from, const ExtendedInterval& value);
+
+/// The height of a plane above a point, likewise.
+std::optional<double> near_height(const PlanArrangement& geometry, PlaneId plane,
+                                  const NearPoint& point);
+
+/// The height of an input edge above a point of it, likewise: the same as that of every plane that
+/// stands on the edge, in a third of the time.
+std::optional<double> near_edge_height(const PlanArrangement& geometry, SpaceId from, SpaceId to,
+                                       const NearPoint& point);
+
+/// The same at the crossing of two lines, where both are input edges and one of them is that edge:
+/// no more than the share of the way along it is asked for.
+std::optional<double> near_height_of_crossing(const PlanArrangement& geometry, SpaceId from,
+                                              SpaceId to, const Line& first, const Line& second);
+
+/// LocalArrangement::line_key of a line relative to the origin of the keys, likewise.
+std::optional<std::array<double, 3>> near_line_key(const NearLine& line);
+
+}  // namespace realmodel::exact

@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include "exact/arithmetic.hpp"
+#include "exact/formulas.hpp"
+#include "exact/plan_arrangement.hpp"
+
+namespace realmodel::exact {
+
+namespace {
+
+int sign_of(double value) {
+    return value > 0.0 ? 1 : (value < 0.0 ? -1 : 0);
+}
+
+VertexId origin_of(const LocalArrangement& scope, PointId id) {
+    return scope.is_vertex(id) ? id : anchor(scope.shared(), scope.line(scope.point(id).first));
+}
+
+}  // namespace
+
+// Not decided by floating point: returns 2.
+int LocalArrangement::filtered_side(const LineFilter& line, const Point& point) const {
+    const double dx = point.x - line.x0, dy = point.y - line.y0;
+    const double value = line.a * dx + line.b * dy + line.c;
+    const double error = line.error_at(dx, dy, point.error());
+    if (value > error) return 1;
+    if (value < -error) return -1;
+    return 2;
+}
+
+bool LocalArrangement::is_right_by(const LineFilter& trace, PointId id, double difference) const {
+    const Point& p = point(id);
+    const double dx = p.x - trace.x0, dy = p.y - trace.y0;
+    const double value = trace.a * dx + trace.b * dy + trace.c;
+    return value + difference < -64 * trace.error_at(dx, dy, p.error());
+}
+
+// Whether an input vertex lies on an input edge because both products of the determinant vanish, as
+// they do along borders parallel to an axis: a difference of doubles is 0 only where they are
+// equal.
+bool LocalArrangement::vanishes(const LineFilter& edge, const Point& vertex) const {
+    return (vertex.x == edge.x0 || edge.a == 0.0) && (vertex.y == edge.y0 || edge.b == 0.0);
+}
+
+// The same of a crossing: whether it lies on an input edge parallel to an axis that runs where this
+// one does, as the edges of such a border do.
+bool LocalArrangement::runs_along(const LineFilter& edge, const Point& crossing) const {
+    const auto runs_on = [&](LineId id) {
+        if (line(id).kind != Line::Kind::kEdge) return false;
+        const LineFilter other = filter(id);
+        return (edge.a == 0.0 && other.a == 0.0 && edge.y0 == other.y0) ||
+               (edge.b == 0.0 && other.b == 0.0 && edge.x0 == other.x0);
+    };
+    return (edge.a == 0.0 || edge.b == 0.0) &&
+           (runs_on(crossing.first) || runs_on(crossing.second));
+}
+
+int LocalArrangement::exact_side(const Line& line, PointId point) {
+    ++exact_;
+    return exactly(shared_, [&](const auto& in, auto number) -> std::optional<int> {
+        using Number = decltype(number);
+        if (is_vertex(point)) {
+            const auto c = line_coefficients<Number>(in, shared_, line, point).c;
+            return is_known(c) ? std::optional(sign_of(c)) : std::nullopt;
+        }
+        const VertexId origin = anchor(shared_, line);
+        const auto l = line_coefficients<Number>(in, shared_, line, origin);
+        const auto h = place<Number>(in, *this, point, origin);
+        const Number value = l.a * h.x + l.b * h.y + l.c * h.w;
+        return is_known(value) ? std::optional(sign_of(value) * sign_of(h.w)) : std::nullopt;
+    });
+}
+
+int LocalArrangement::side(DirectedLine directed_line, PointId id) {
+    const LineId line_id = line_of(directed_line);
+    const Line& l = line(line_id);
+    const Point& p = point(id);
+    int result = 2;
+    if (is_vertex(id)) {
+        if (l.kind == Line::Kind::kEdge) {
+            if (id == l.first || id == l.second) return 0;
+        } else {
+            const SpaceId s = shared_.corner_above(l.first, id);
+            const SpaceId t = s < 0 ? -1 : shared_.corner_above(l.second, id);
+            if (t >= 0) result = sign_of(shared_.space(s).z - shared_.space(t).z);
+        }
+    } else {
+        if (p.first == line_id || p.second == line_id) return 0;
+        if (l.kind == Line::Kind::kTrace && on_trace_by_name(l.first, l.second, p)) return 0;
+    }
+    ++decisions_;
+    if (result == 2) {
+        const LineFilter f = filter(line_id);
+        result = filtered_side(f, p);
+        if (result == 2 && l.kind == Line::Kind::kEdge) {
+            if (is_vertex(id) ? vanishes(f, p) : runs_along(f, p)) return 0;
+        }
+    }
+    if (result == 2) result = exact_side(l, id);
+    return is_reversed(directed_line) ? -result : result;
+}
+
+// Both triangles stand on an input edge that meets the point, or one on the edge and the other
+// pierced by it.
+bool LocalArrangement::on_trace_by_name(PlaneId a, PlaneId b, const Point& p) const {
+    const auto has_edge = [&](PlaneId plane, SpaceId from, SpaceId to) {
+        const auto& c = shared_.plane(plane).corner;
+        return (c[0] == from || c[1] == from || c[2] == from) &&
+               (c[0] == to || c[1] == to || c[2] == to);
+    };
+    if (p.edge_from >= 0) {
+        const auto meets = [&](PlaneId plane) {
+            return has_edge(plane, p.edge_from, p.edge_to) ||
+                   (p.pierced_to < 0 ? plane == p.pierced
+                                     : has_edge(plane, p.pierced, p.pierced_to));
+        };
+        if (meets(a) && meets(b)) return true;
+    }
+    for (const LineId id : {p.first, p.second}) {
+        const Line& l = line(id);
+        if (l.kind == Line::Kind::kTrace) {
+            if (l.first == std::min(a, b) && l.second == std::max(a, b)) return true;
+            continue;
+        }
+        const SpaceId from_a = shared_.corner_above(a, l.first);
+        if (from_a < 0 || from_a != shared_.corner_above(b, l.first)) continue;
+        const SpaceId to_a = shared_.corner_above(a, l.second);
+        if (to_a >= 0 && to_a == shared_.corner_above(b, l.second)) return true;
+    }
+    return false;
+}
+
+int LocalArrangement::compare_heights(PlaneId upper, PlaneId lower, PointId id) {
+    if (upper == lower) return 0;
+    return compare_heights(upper, lower, shared_.trace_filter(upper, lower), id);
+}
+
+int LocalArrangement::compare_heights(PlaneId upper, PlaneId lower, const LineFilter& trace,
+                                      PointId id) {
+    if (upper == lower) return 0;
+    const Point& p = point(id);
+    ++decisions_;
+    if (is_vertex(id)) {
+        const SpaceId s = shared_.corner_above(upper, id);
+        const SpaceId t = s < 0 ? -1 : shared_.corner_above(lower, id);
+        if (t >= 0) return sign_of(shared_.space(s).z - shared_.space(t).z);
+    } else if (on_trace_by_name(upper, lower, p)) {
+        return 0;
+    }
+    const int result = filtered_side(trace, p);
+    return result != 2 ? result : exact_side({Line::Kind::kTrace, upper, lower}, id);
+}
+
+bool LocalArrangement::same_place(PointId a, PointId b) {
+    if (a == b) return true;
+    if (point(a).x != point(b).x || point(a).y != point(b).y) return false;
+    if (is_vertex(a) && is_vertex(b)) return false;
+    if (is_vertex(a)) std::swap(a, b);
+    const Point p = point(a);
+    return side(directed(p.first, false), b) == 0 && side(directed(p.second, false), b) == 0;
+}
+
+bool LocalArrangement::same_line(LineId a, LineId b) {
+    if (a == b) return true;
+    if (line(a).kind == Line::Kind::kTrace) std::swap(a, b);
+    const Line l = line(a), m = line(b);
+    if (l.kind == Line::Kind::kEdge) {
+        return side(directed(b, false), l.first) == 0 && side(directed(b, false), l.second) == 0;
+    }
+    ++exact_;
+    return exactly(shared_, [&](const auto& in, auto number) -> std::optional<bool> {
+        using Number = decltype(number);
+        const VertexId origin = anchor(shared_, l);
+        const auto p = line_coefficients<Number>(in, shared_, l, origin);
+        const auto q = line_coefficients<Number>(in, shared_, m, origin);
+        const Number ab = p.a * q.b - p.b * q.a, ac = p.a * q.c - p.c * q.a,
+                     bc = p.b * q.c - p.c * q.b;
+        if (!is_known(ab) || !is_known(ac) || !is_known(bc)) return std::nullopt;
+        return sign_of(ab) == 0 && sign_of(ac) == 0 && sign_of(bc) == 0;
+    });
+}
+
+std::array<int, 2> LocalArrangement::direction_signs(LineId id) {
+    const Line& l = line(id);
+    if (l.kind == Line::Kind::kEdge) {
+        const Point& p = shared_.point(l.first);
+        const Point& q = shared_.point(l.second);
+        return {sign_of(q.x - p.x), sign_of(q.y - p.y)};
+    }
+    const VertexId origin = anchor(shared_, l);
+    const auto c =
+        line_coefficients<DoubleDoubleInterval>(BallArithmetic{shared_}, shared_, l, origin);
+    const auto a = c.a.sign(), b = c.b.sign();
+    if (a && b) return {*b, -*a};
+    ++exact_;
+    return exactly(shared_, [&](const auto& in, auto number) -> std::optional<std::array<int, 2>> {
+        const auto e = line_coefficients<decltype(number)>(in, shared_, l, origin);
+        if (!is_known(e.a) || !is_known(e.b)) return std::nullopt;
+        return std::array{sign_of(e.b), -sign_of(e.a)};
+    });
+}
+
+int LocalArrangement::compare(int axis, PointId a, PointId b) {
+    const auto rounded_one = [&](PointId id) { return axis == 0 ? point(id).x : point(id).y; };
+    if (rounded_one(a) != rounded_one(b)) return rounded_one(a) < rounded_one(b) ? 1 : -1;
+    if (a == b || (is_vertex(a) && is_vertex(b))) return 0;
+    ++exact_;
+    return exactly(shared_, [&](const auto& in, auto number) -> std::optional<int> {
+        using Number = decltype(number);
+        const VertexId origin = origin_of(*this, a);
+        const auto p = place<Number>(in, *this, a, origin);
+        const auto q = place<Number>(in, *this, b, origin);
+        const Number &from = axis == 0 ? p.x : p.y, &to = axis == 0 ? q.x : q.y;
+        const Number difference = to * p.w - from * q.w;
+        if (!is_known(difference)) return std::nullopt;
+        return sign_of(difference) * sign_of(p.w) * sign_of(q.w);
+    });
+}
+
+DirectedLine LocalArrangement::trace(PlaneId upper, PlaneId lower) {
+    const Line l{Line::Kind::kTrace, std::min(upper, lower), std::max(upper, lower)};
+    const auto found = line_table_.insert(line_key_of(l), [&](std::int32_t number) {
+        return line_key_of(lines_[static_cast<std::size_t>(number)]);
+    });
+    if (found.is_new) {
+        lines_.push_back(l);
+        filters_.push_back(shared_.trace_filter(l.first, l.second));
+    }
+    return directed(kLocal + found.number, upper > lower);
+}
+
+PointId LocalArrangement::crossing(LineId a, LineId b) {
+    const Line la = line(a), lb = line(b);
+    // Where an end of one edge lies on the other line, the crossing is that input vertex.
+    if (la.kind == Line::Kind::kEdge) {
+        for (const VertexId v : {la.first, la.second}) {
+            if (side(directed(b, false), v) == 0) return v;
+        }
+    }
+    if (lb.kind == Line::Kind::kEdge) {
+        for (const VertexId v : {lb.first, lb.second}) {
+            if (side(directed(a, false), v) == 0) return v;
+        }
+    }
+    return crossing_between_ends(a, b);
+}
+
+PointId LocalArrangement::crossing_between_ends(LineId a, LineId b) {
+    const Line la = line(a), lb = line(b);
+    Point p;
+    p.first = a;
+    p.second = b;
+    if ((la.kind == Line::Kind::kEdge) != (lb.kind == Line::Kind::kEdge)) {
+        const Line& edge = la.kind == Line::Kind::kEdge ? la : lb;
+        const Line& trace_line = la.kind == Line::Kind::kEdge ? lb : la;
+        const auto standing = [&](PlaneId plane) {
+            const SpaceId s = shared_.corner_above(plane, edge.first);
+            const SpaceId t = s < 0 ? -1 : shared_.corner_above(plane, edge.second);
+            return std::array{t < 0 ? -1 : std::min(s, t), std::max(s, t)};
+        };
+        auto one = standing(trace_line.first), other = standing(trace_line.second);
+        if (one[0] >= 0 && other[0] >= 0) {
+            if (other < one) std::swap(one, other);
+            std::tie(p.edge_from, p.edge_to) = std::tie(one[0], one[1]);
+            std::tie(p.pierced, p.pierced_to) = std::tie(other[0], other[1]);
+        } else if (one[0] >= 0 || other[0] >= 0) {
+            const auto& there = one[0] >= 0 ? one : other;
+            std::tie(p.edge_from, p.edge_to) = std::tie(there[0], there[1]);
+            p.pierced = one[0] >= 0 ? trace_line.second : trace_line.first;
+        }
+    }
+    const auto found = point_table_.insert(point_key_of(p), [&](std::int32_t number) {
+        return point_key_of(points_[static_cast<std::size_t>(number)]);
+    });
+    if (found.is_new) {
+        locate(p);
+        points_.push_back(p);
+    }
+    return kLocal + found.number;
+}
+
+void LocalArrangement::ask_for_local_line(LineId id) {
+    const auto local = static_cast<std::size_t>(id - kLocal);
+    if (line_ids_.size() < lines_.size()) line_ids_.resize(lines_.size(), kKept);
+    line_ids_[local] = kAsked;
+    asked_lines_.push_back(static_cast<std::int32_t>(local));
+}
+
+void LocalArrangement::ask_for_local_point(PointId id) {
+    const auto local = static_cast<std::size_t>(id - kLocal);
+    if (point_ids_.size() < points_.size()) point_ids_.resize(points_.size(), kKept);
+    point_ids_[local] = kAsked;
+    asked_points_.push_back(static_cast<std::int32_t>(local));
+    mark_line_used(points_[local].first);
+    mark_line_used(points_[local].second);
+}
+
+void LocalArrangement::commit(PlanArrangement& geometry) {
+    constexpr std::size_t kAhead = 12;
+    receiver_ = &geometry;
+    line_ids_.resize(lines_.size(), kKept);
+    point_ids_.resize(points_.size(), kKept);
+    const auto line_asked = [&](std::size_t i) {
+        return static_cast<std::size_t>(asked_lines_[i]);
+    };
+    for (std::size_t i = 0; i < asked_lines_.size(); ++i) {
+        if (i + kAhead < asked_lines_.size()) geometry.prefetch(lines_[line_asked(i + kAhead)]);
+        shared_line(kLocal + asked_lines_[i]);
+    }
+    // Of some points at a time, all places in the table are fetched before the first is needed:
+    // what takes time is to find their pages of memory, and the machine looks for several at once.
+    std::array<const void*, 64> place;
+    for (std::size_t begin = 0; begin < asked_points_.size(); begin += place.size()) {
+        const std::size_t count = std::min(place.size(), asked_points_.size() - begin);
+        for (std::size_t i = 0; i < count; ++i) {
+            Point& point = points_[static_cast<std::size_t>(asked_points_[begin + i])];
+            point.first = shared_line(point.first);
+            point.second = shared_line(point.second);
+            place[i] = geometry.place_of_name(point);
+        }
+        for (std::size_t i = 0; i < count; ++i)
+            __builtin_prefetch(place[i]);
+        for (std::size_t i = 0; i < count; ++i)
+            shared_point(kLocal + asked_points_[begin + i]);
+    }
+}
+
+LineId LocalArrangement::shared_local_line(LineId id) {
+    const auto local = static_cast<std::size_t>(id - kLocal);
+    LineId& shared = line_ids_[local];
+    if (shared < 0) shared = receiver_->add_line(lines_[local]);
+    return shared;
+}
+
+PointId LocalArrangement::shared_local_point(PointId id) {
+    const auto local = static_cast<std::size_t>(id - kLocal);
+    PointId& shared = point_ids_[local];
+    if (shared < 0) {
+        Point p = points_[local];
+        p.first = shared_line(p.first);
+        p.second = shared_line(p.second);
+        shared = receiver_->add_point(p);
+    }
+    return shared;
+}
+
+}  // namespace realmodel::exact

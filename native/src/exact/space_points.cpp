@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exact/space_points.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+
+#include "base/index.hpp"
+#include "exact/arithmetic.hpp"
+#include "exact/homogeneous_points.hpp"
+#include "exact/space_predicates.hpp"
+
+namespace realmodel::exact {
+
+namespace {
+
+std::uint64_t hash_of(const SpacePosition& p) {
+    std::array<std::uint64_t, 3> words;
+    for (std::size_t k = 0; k < 3; ++k)
+        words[k] = std::bit_cast<std::uint64_t>(p[k] + 0.0);  // both zeros alike
+    return HashIndex::hash(words);
+}
+
+}  // namespace
+
+/// The number of a point that is the same as the last one, or -1.
+SpacePointId SpacePoints::find_equal(SpacePointId p) const {
+    return by_doubles_.find(hash_of(rounded(p)), [this, p](SpacePointId other) {
+        return rounded(other) == rounded(p) && compare(*this, p, other) == 0;
+    });
+}
+
+/// The number of a point: a new one where none is the same. Only new points keep their source.
+SpacePointId SpacePoints::enter(const SpacePosition& rounded, Source source) {
+    const SpacePointId number = checked_number(rounded_.size(), "points where surfaces meet");
+    rounded_.push_back(rounded);
+    source_.push_back(source);
+    const SpacePointId known = find_equal(number);
+    if (known < 0) {
+        by_doubles_.insert(hash_of(rounded), number);
+        return number;
+    }
+    rounded_.pop_back();
+    source_.pop_back();
+    if (source.kind == Source::Kind::kConstruction) constructions_.pop_back();
+    if (source.kind == Source::Kind::kRational) rationals_.pop_back();
+    return known;
+}
+
+SpacePointId SpacePoints::add(const SpacePosition& p) {
+    assert(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]));
+    return enter({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0}, {});
+}
+
+SpacePointId SpacePoints::add(RationalPoint&& p) {
+    SpacePosition rounded;
+    bool doubles = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        p[k].canonicalize();
+        rounded[k] = nearest_double(p[k].get_num(), p[k].get_den(), 0);
+        doubles = doubles && mpq_class(rounded[k]) == p[k];
+    }
+    if (doubles) return enter(rounded, {});
+    rationals_.push_back(std::move(p));
+    return enter(rounded,
+                 {Source::Kind::kRational, static_cast<std::int32_t>(rationals_.size()) - 1});
+}
+
+RationalPoint SpacePoints::exact(SpacePointId p) const {
+    const Source& of = source(p);
+    if (of.kind == Source::Kind::kRational) return rationals_[index(of.number)];
+    if (const Construction* own = construction(p)) return rational(own->of);
+    const SpacePosition& r = rounded(p);
+    return {mpq_class(r[0]), mpq_class(r[1]), mpq_class(r[2])};
+}
+
+bool SpacePoints::was_constructed_on(SpacePointId p, SpacePointId a, SpacePointId b) const {
+    const Construction* own = construction(p);
+    return own != nullptr && own->of.is_on_line(std::min(a, b), std::max(a, b));
+}
+
+SpacePointId SpacePoints::intersection(SpacePointId p, SpacePointId q, SpacePointId a,
+                                       SpacePointId b, SpacePointId c) {
+    assert(orient3d(*this, a, b, c, p) * orient3d(*this, a, b, c, q) <= 0);
+    // triangles that share an edge ask for the same point
+    std::array<SpacePointId, 3> plane{a, b, c};
+    std::sort(plane.begin(), plane.end());
+    const Intersection of{{std::min(p, q), std::max(p, q), plane[0], plane[1], plane[2]}};
+    const std::uint64_t hash = HashIndex::hash(of.of);
+    const std::int32_t known = by_intersection_.find(
+        hash, [&](std::int32_t i) { return intersections_[index(i)].first == of; });
+    if (known >= 0) return intersections_[index(known)].second;
+    const SpacePointId number = construct(of);
+    by_intersection_.insert(hash, static_cast<std::int32_t>(intersections_.size()));
+    intersections_.push_back({of, number});
+    return number;
+}
+
+SpacePointId SpacePoints::construct(const Intersection& of) {
+    const bool of_doubles =
+        std::all_of(of.of.begin(), of.of.end(), [this](SpacePointId p) { return is_double(p); });
+    if (!of_doubles) return add(rational(of));
+    const auto at = coordinates(of);
+    SpacePosition rounded;
+    bool may_be_doubles = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto x = at[k].rounded();
+        if (!x) return add(rational(of));
+        rounded[k] = *x + 0.0;
+        may_be_doubles = may_be_doubles && at[k].low == 0;
+    }
+    if (may_be_doubles) {
+        const auto are_doubles = HomogeneousPoints(*this, of.of).is_at(of, rounded);
+        if (!are_doubles) return add(rational(of));
+        if (*are_doubles) return enter(rounded, {});
+    }
+    constructions_.push_back({of, at});
+    return enter(rounded, {Source::Kind::kConstruction,
+                           static_cast<std::int32_t>(constructions_.size()) - 1});
+}
+
+/// The coordinates of an intersection of points given by doubles. A line or plane across an axis
+/// gives its coordinate exactly.
+std::array<DoubleDoubleInterval, 3> SpacePoints::coordinates(const Intersection& of) const {
+    const auto minus = [this](SpacePointId p, SpacePointId q) {
+        std::array<DoubleDoubleInterval, 3> difference;
+        for (std::size_t k = 0; k < 3; ++k)
+            difference[k] = DoubleDoubleInterval::difference(rounded(p)[k], rounded(q)[k]);
+        return difference;
+    };
+    const auto [p, q, a, b, c] = of.of;
+    const auto u = minus(b, a), v = minus(c, a), line = minus(q, p), start = minus(p, a);
+    DoubleDoubleInterval from, change;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+        const DoubleDoubleInterval normal = u[l] * v[m] - u[m] * v[l];
+        from = from + normal * start[k];
+        change = change + normal * line[k];
+    }
+    const DoubleDoubleInterval ratio = -from / change;
+    std::array<DoubleDoubleInterval, 3> result;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (line[k].is_exact_zero()) {
+            result[k] = DoubleDoubleInterval(rounded(p)[k]);
+        } else if (u[k].is_exact_zero() && v[k].is_exact_zero()) {
+            result[k] = DoubleDoubleInterval(rounded(a)[k]);
+        } else {
+            result[k] = DoubleDoubleInterval(rounded(p)[k]) + ratio * line[k];
+        }
+    }
+    return result;
+}
+
+RationalPoint SpacePoints::rational(const Intersection& of) const {
+    const auto [p, q, a, b, c] = of.of;
+    const RationalPoint o = exact(a), u = minus(exact(b), o), v = minus(exact(c), o);
+    const RationalPoint from = exact(p), to = exact(q);
+    const mpq_class change = determinant(u, v, minus(to, from));
+    assert(change != 0);
+    return interpolated(from, to, mpq_class(-determinant(u, v, minus(from, o)) / change));
+}
+
+SpacePointId SpacePoints::intersection(std::size_t axis, SpacePointId p, SpacePointId q,
+                                       SpacePointId a, SpacePointId b) {
+    const RationalPoint o = exact(a), u = minus(exact(b), o), from = exact(p), to = exact(q);
+    const mpq_class change = cross(u, minus(to, from), axis);
+    assert(change != 0);
+    return add(interpolated(from, to, mpq_class(-cross(u, minus(from, o), axis) / change)));
+}
+
+SpacePointId SpacePoints::projected(std::size_t axis, SpacePointId p, SpacePointId a,
+                                    SpacePointId b, SpacePointId c) {
+    const RationalPoint o = exact(a), u = minus(exact(b), o), v = minus(exact(c), o);
+    RationalPoint at = exact(p);
+    const mpq_class normal = cross(u, v, axis);
+    assert(normal != 0);
+    at[axis] -= determinant(u, v, minus(at, o)) / normal;
+    return add(std::move(at));
+}
+
+SpacePointId SpacePoints::projected(std::size_t axis, SpacePointId p, SpacePointId a,
+                                    SpacePointId b) {
+    const RationalPoint from = exact(a), to = exact(b);
+    assert(from[axis] != to[axis]);
+    return add(
+        interpolated(from, to, mpq_class((exact(p)[axis] - from[axis]) / (to[axis] - from[axis]))));
+}
+
+SpacePointId SpacePoints::middle(const std::array<SpacePointId, 3>& corners) {
+    const RationalPoint a = exact(corners[0]), b = exact(corners[1]), c = exact(corners[2]);
+    RationalPoint sum;
+    for (std::size_t k = 0; k < 3; ++k)
+        sum[k] = (a[k] + b[k] + c[k]) / 3;
+    return add(std::move(sum));
+}
+
+}  // namespace realmodel::exact

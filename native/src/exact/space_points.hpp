@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/hash_index.hpp"
+#include "base/index.hpp"
+#include "exact/double_double_interval.hpp"
+#include "exact/rational_point.hpp"
+
+namespace realmodel::exact {
+
+using SpacePosition = std::array<double, 3>;
+/// The number of a point of SpacePoints.
+using SpacePointId = std::int32_t;
+
+/// Points of space, each known exactly, equal ones once: inputs, intersections of lines and planes
+/// through them, and constructions of any depth in rational numbers. What is asked of them is in
+/// space_predicates.hpp. Any number of threads may ask at once; one adds.
+class SpacePoints {
+public:
+    /// Where a line passes through a plane: ends of the line, corners of the plane, both ascending.
+    struct Intersection {
+        std::array<SpacePointId, 5> of;
+        bool operator==(const Intersection&) const = default;
+        bool is_on_line(SpacePointId a, SpacePointId b) const { return of[0] == a && of[1] == b; }
+        bool is_on_plane_of(const Intersection& i) const {
+            return of[2] == i.of[2] && of[3] == i.of[3] && of[4] == i.of[4];
+        }
+    };
+    /// An intersection of points given by doubles, and its coordinates to twice their precision.
+    struct Construction {
+        Intersection of;
+        std::array<DoubleDoubleInterval, 3> at;
+    };
+
+    /// The number of a point given by finite doubles.
+    /// @throws InputError kind too_large, as everything that adds points
+    SpacePointId add(const SpacePosition& p);
+    /// The number of a point given in rational coordinates.
+    SpacePointId add(RationalPoint&& p);
+
+    /// Where the line through p and q passes through the plane of a, b and c, which it does.
+    SpacePointId intersection(SpacePointId p, SpacePointId q, SpacePointId a, SpacePointId b,
+                              SpacePointId c);
+    /// Where the line through p and q passes through the one through a and b, in the view along
+    /// `axis`; all four lie in one plane.
+    SpacePointId intersection(std::size_t axis, SpacePointId p, SpacePointId q, SpacePointId a,
+                              SpacePointId b);
+    /// p moved along `axis` into the plane of a, b, c.
+    SpacePointId projected(std::size_t axis, SpacePointId p, SpacePointId a, SpacePointId b,
+                           SpacePointId c);
+    /// The point of the line through a and b that has p's coordinate `axis`.
+    SpacePointId projected(std::size_t axis, SpacePointId p, SpacePointId a, SpacePointId b);
+    /// The middle of three points.
+    SpacePointId middle(const std::array<SpacePointId, 3>& corners);
+
+    std::size_t size() const { return rounded_.size(); }
+    /// The doubles nearest to the point.
+    const SpacePosition& rounded(SpacePointId p) const { return rounded_[index(p)]; }
+    RationalPoint exact(SpacePointId p) const;
+    /// Whether the doubles are the point.
+    bool is_double(SpacePointId p) const { return source(p).kind == Source::Kind::kDoubles; }
+    /// How the point was constructed; nullptr where it is given by doubles or rational numbers.
+    const Construction* construction(SpacePointId p) const {
+        const Source& of = source(p);
+        return of.kind == Source::Kind::kConstruction ? &constructions_[index(of.number)] : nullptr;
+    }
+    /// Whether a point is known to lie on the line through a and b, as it was constructed there.
+    bool was_constructed_on(SpacePointId p, SpacePointId a, SpacePointId b) const;
+
+private:
+    /// What a point is known by: its doubles, one of `constructions_`, or one of `rationals_`.
+    struct Source {
+        enum class Kind : std::uint8_t { kDoubles, kConstruction, kRational } kind = Kind::kDoubles;
+        std::int32_t number = 0;
+    };
+
+    const Source& source(SpacePointId p) const { return source_[index(p)]; }
+    SpacePointId enter(const SpacePosition& rounded, Source source);
+    SpacePointId construct(const Intersection& of);
+    SpacePointId find_equal(SpacePointId p) const;
+    std::array<DoubleDoubleInterval, 3> coordinates(const Intersection& of) const;
+    RationalPoint rational(const Intersection& of) const;
+
+    std::vector<SpacePosition> rounded_;
+    std::vector<Source> source_;
+    std::vector<Construction> constructions_;
+    std::vector<RationalPoint> rationals_;
+    HashIndex by_doubles_;       ///< points by their doubles
+    HashIndex by_intersection_;  ///< positions in `intersections_`
+    std::vector<std::pair<Intersection, SpacePointId>> intersections_;
+};
+
+}  // namespace realmodel::exact

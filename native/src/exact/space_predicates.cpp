@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "exact/space_predicates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "exact/homogeneous_points.hpp"
+#include "exact/sign_filters.hpp"
+
+namespace realmodel::exact {
+
+namespace {
+
+using Construction = SpacePoints::Construction;
+using Homogeneous = HomogeneousPoints;
+using Integer = HomogeneousPoints::Integer;
+
+/// The difference of two coordinates: without error where both are doubles.
+DoubleDoubleInterval difference(const DoubleDoubleInterval& to, const DoubleDoubleInterval& from) {
+    const auto is_double = [](const DoubleDoubleInterval& x) { return x.low == 0 && x.error == 0; };
+    if (is_double(from) && is_double(to))
+        return DoubleDoubleInterval::difference(to.high, from.high);
+    return to - from;
+}
+
+/// How far the differences of these points' rounded coordinates may be from the true ones.
+template <std::size_t kCount>
+double inexactness(const SpacePoints& points, const std::array<SpacePointId, kCount>& of) {
+    double largest = -1;
+    for (const SpacePointId p : of) {
+        if (points.is_double(p)) continue;
+        for (const double x : points.rounded(p))
+            largest = std::max(largest, std::abs(x));
+    }
+    return largest < 0 ? 0 : inexactness_of_rounding(largest);
+}
+
+/// Whether points were constructed on one line, or are its ends.
+bool lie_on_one_line_by_construction(const SpacePoints& points,
+                                     const std::array<SpacePointId, 3>& of) {
+    for (const SpacePointId candidate : of) {
+        const Construction* own = points.construction(candidate);
+        if (own == nullptr) continue;
+        const SpacePointId from = own->of.of[0], to = own->of.of[1];
+        const bool all = std::all_of(of.begin(), of.end(), [&](SpacePointId p) {
+            const Construction* other = points.construction(p);
+            return other == nullptr ? p == from || p == to : other->of.is_on_line(from, to);
+        });
+        if (all) return true;
+    }
+    return false;
+}
+
+/// Whether points were constructed in one plane, or are its corners.
+bool lie_on_one_plane_by_construction(const SpacePoints& points,
+                                      const std::array<SpacePointId, 4>& of) {
+    for (const SpacePointId candidate : of) {
+        const Construction* own = points.construction(candidate);
+        if (own == nullptr) continue;
+        const auto corners = std::span(own->of.of).subspan<2>();
+        const auto is_corner = [&](SpacePointId p) {
+            return std::find(corners.begin(), corners.end(), p) != corners.end();
+        };
+        const bool all = std::all_of(of.begin(), of.end(), [&](SpacePointId p) {
+            const Construction* other = points.construction(p);
+            if (other == nullptr) return is_corner(p);
+            return other->of.is_on_plane_of(own->of) ||
+                   (is_corner(other->of.of[0]) && is_corner(other->of.of[1]));
+        });
+        if (all) return true;
+    }
+    for (std::size_t without = 0; without < 4; ++without) {
+        if (lie_on_one_line_by_construction(
+                points, {of[(without + 1) % 4], of[(without + 2) % 4], of[(without + 3) % 4]}))
+            return true;
+    }
+    return false;
+}
+
+/// A coordinate to twice the precision of doubles; nothing of points given by rational numbers.
+std::optional<DoubleDoubleInterval> interval(const SpacePoints& points, SpacePointId p,
+                                             std::size_t axis) {
+    if (const Construction* own = points.construction(p)) return own->at[axis];
+    if (points.is_double(p)) return DoubleDoubleInterval(points.rounded(p)[axis]);
+    return std::nullopt;
+}
+
+std::optional<int> orient3d_by_intervals(const SpacePoints& points,
+                                         const std::array<SpacePointId, 4>& of) {
+    std::array<std::array<DoubleDoubleInterval, 3>, 3> from_first;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto first = interval(points, of[0], k);
+        if (!first) return std::nullopt;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto to = interval(points, of[i + 1], k);
+            if (!to) return std::nullopt;
+            from_first[i][k] = difference(*to, *first);
+        }
+    }
+    const auto& [u, v, w] = from_first;
+    return (w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
+            w[2] * (u[0] * v[1] - u[1] * v[0]))
+        .sign();
+}
+
+std::optional<int> orient2d_by_intervals(const SpacePoints& points, std::size_t axis,
+                                         const std::array<SpacePointId, 3>& of) {
+    std::array<std::array<DoubleDoubleInterval, 2>, 2> from_first;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const auto first = interval(points, of[0], (axis + 1 + k) % 3);
+        if (!first) return std::nullopt;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const auto to = interval(points, of[i + 1], (axis + 1 + k) % 3);
+            if (!to) return std::nullopt;
+            from_first[i][k] = difference(*to, *first);
+        }
+    }
+    const auto& [u, v] = from_first;
+    return (u[0] * v[1] - u[1] * v[0]).sign();
+}
+
+std::optional<int> orient3d_by_integers(const SpacePoints& points,
+                                        const std::array<SpacePointId, 4>& of) {
+    const Homogeneous in(points, of);
+    std::array<Homogeneous::Point, 4> at{in.point(of[0]), in.point(of[1]), in.point(of[2]),
+                                         in.point(of[3])};
+    // each exchange of two points reverses the sign
+    const std::size_t origin = Homogeneous::simplest(at);
+    int sign = 1;
+    if (origin != 0) {
+        std::swap(at[0], at[origin]);
+        sign = -1;
+    }
+    std::array<std::array<Integer, 3>, 3> from_first;
+    for (std::size_t i = 0; i < 3; ++i) {
+        from_first[i] = Homogeneous::minus(at[i + 1], at[0]);
+        sign *= Homogeneous::sign_of_weight(at[i + 1]) * Homogeneous::sign_of_weight(at[0]);
+    }
+    const auto& [u, v, w] = from_first;
+    const Integer found = w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
+                          w[2] * (u[0] * v[1] - u[1] * v[0]);
+    if (!is_known(found)) return std::nullopt;
+    return sign * sign_of(found);
+}
+
+std::optional<int> orient2d_by_integers(const SpacePoints& points, std::size_t axis,
+                                        const std::array<SpacePointId, 3>& of) {
+    const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
+    const Homogeneous in(points, of);
+    std::array<Homogeneous::Point, 3> at{in.point(of[0]), in.point(of[1]), in.point(of[2])};
+    const auto origin = static_cast<std::ptrdiff_t>(Homogeneous::simplest(at));
+    std::rotate(at.begin(), at.begin() + origin, at.end());
+    const auto u = Homogeneous::minus(at[1], at[0]), v = Homogeneous::minus(at[2], at[0]);
+    const Integer found = u[k] * v[l] - u[l] * v[k];
+    if (!is_known(found)) return std::nullopt;
+    return sign_of(found) * Homogeneous::sign_of_weight(at[1]) * Homogeneous::sign_of_weight(at[2]);
+}
+
+std::optional<int> compare_by_integers(const SpacePoints& points, std::size_t axis, SpacePointId a,
+                                       SpacePointId b) {
+    const Homogeneous in(points, std::array{a, b});
+    const Homogeneous::Point p = in.point(a), q = in.point(b);
+    const Integer found = Homogeneous::times(p.at[axis], q) - Homogeneous::times(q.at[axis], p);
+    if (!is_known(found)) return std::nullopt;
+    return sign_of(found) * Homogeneous::sign_of_weight(p) * Homogeneous::sign_of_weight(q);
+}
+
+}  // namespace
+
+int orient3d(const SpacePoints& points, SpacePointId a, SpacePointId b, SpacePointId c,
+             SpacePointId d) {
+    if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;
+    const std::array of{a, b, c, d};
+    if (const auto sign = orient3d_filter(points.rounded(a), points.rounded(b), points.rounded(c),
+                                          points.rounded(d), inexactness(points, of)))
+        return *sign;
+    if (lie_on_one_plane_by_construction(points, of)) return 0;
+    if (const auto sign = orient3d_by_intervals(points, of)) return *sign;
+    if (const auto sign = orient3d_by_integers(points, of)) return *sign;
+    const RationalPoint o = points.exact(a);
+    const auto from_a = [&](SpacePointId p) { return minus(points.exact(p), o); };
+    return sgn(determinant(from_a(b), from_a(c), from_a(d)));
+}
+
+int orient2d(const SpacePoints& points, std::size_t axis, SpacePointId a, SpacePointId b,
+             SpacePointId c) {
+    if (a == b || a == c || b == c) return 0;
+    const auto seen = [&](SpacePointId p) {
+        return std::array{points.rounded(p)[(axis + 1) % 3], points.rounded(p)[(axis + 2) % 3]};
+    };
+    const std::array of{a, b, c};
+    if (const auto sign = orient2d_filter(seen(a), seen(b), seen(c), inexactness(points, of)))
+        return *sign;
+    if (lie_on_one_line_by_construction(points, of)) return 0;
+    if (const auto sign = orient2d_by_intervals(points, axis, of)) return *sign;
+    if (const auto sign = orient2d_by_integers(points, axis, of)) return *sign;
+    const RationalPoint o = points.exact(a);
+    return sgn(cross(minus(points.exact(b), o), minus(points.exact(c), o), axis));
+}
+
+int compare(const SpacePoints& points, std::size_t axis, SpacePointId a, SpacePointId b) {
+    if (a == b) return 0;
+    const double x = points.rounded(a)[axis], y = points.rounded(b)[axis];
+    if (x != y) return x < y ? -1 : 1;  // rounding keeps the order
+    if (points.is_double(a) && points.is_double(b)) return 0;
+    const auto p = interval(points, a, axis), q = interval(points, b, axis);
+    if (p && q) {
+        if (const auto sign = difference(*p, *q).sign()) return *sign;
+    }
+    if (const auto sign = compare_by_integers(points, axis, a, b)) return *sign;
+    return sgn(mpq_class(points.exact(a)[axis] - points.exact(b)[axis]));
+}
+
+int compare(const SpacePoints& points, SpacePointId a, SpacePointId b) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (const int order = compare(points, axis, a, b)) return order;
+    }
+    return 0;
+}
+
+int ray_crosses(const SpacePoints& points, std::size_t axis, SpacePointId p,
+                const std::array<SpacePointId, 3>& corners, bool from_below) {
+    const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
+    for (const std::size_t across : {k, l}) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (const SpacePointId c : corners) {
+            low = std::min(low, points.rounded(c)[across]);
+            high = std::max(high, points.rounded(c)[across]);
+        }
+        if (points.rounded(p)[across] < low || points.rounded(p)[across] > high) return 0;
+    }
+    const int facing = orient2d(points, axis, corners[0], corners[1], corners[2]);
+    if (facing == 0) return 0;
+    // edges to the right of p, which is taken to be a little to the right and less upward from here
+    bool inside = false;
+    for (std::size_t i = 0; i < 3; ++i) {
+        SpacePointId a = corners[i], b = corners[(i + 1) % 3];
+        const bool above_a = compare(points, l, a, p) > 0, above_b = compare(points, l, b, p) > 0;
+        if (above_a == above_b) continue;
+        if (above_a) std::swap(a, b);
+        if (orient2d(points, axis, a, b, p) > 0) inside = !inside;
+    }
+    if (!inside) return 0;
+    const int side = facing * orient3d(points, corners[0], corners[1], corners[2], p);
+    return side < 0 || (side == 0 && from_below) ? facing : 0;
+}
+
+bool is_farther(const SpacePoints& points, std::size_t axis, SpacePointId a, SpacePointId b,
+                SpacePointId p, SpacePointId q) {
+    const RationalPoint o = points.exact(a), line = minus(points.exact(b), o);
+    return abs(cross(line, minus(points.exact(p), o), axis)) >
+           abs(cross(line, minus(points.exact(q), o), axis));
+}
+
+}  // namespace realmodel::exact

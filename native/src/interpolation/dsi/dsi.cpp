@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/interpolation/dsi.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "interpolation/drift_basis.hpp"
+#include "interpolation/dsi/ordered_mesh.hpp"
+#include "interpolation/dsi/smooth_system.hpp"
+#include "realmodel/base/errors.hpp"
+#include "realmodel/interpolation/mesh_locator.hpp"
+
+namespace realmodel::interpolation {
+
+namespace {
+
+using Triangle = OrderedMesh::Triangle;
+using Kind = Constraint::Kind;
+
+// Strength of constraints that are met exactly, in units of the mesh's stiffness: a larger one
+// needs fewer rounds of multipliers, and makes each round slower.
+constexpr double kExactStrength = 8;
+constexpr double kMet = 1e-8;  // of the range of heights
+constexpr int kMostRounds = 30;
+constexpr double kFirstTolerance = 1e-4, kLastTolerance = 1e-9, kWeightedTolerance = 1e-9;
+// Of the mesh's stiffness against a tilt: what holds a tilt that the points leave open.
+constexpr double kTiltStrength = 1e-6;
+
+void check_node_heights(std::span<const double> heights, std::size_t nodes, const char* what) {
+    if (!heights.empty() && heights.size() != nodes) {
+        throw InputError("option", std::string(what) + " has " + std::to_string(heights.size()) +
+                                       " heights for " + std::to_string(nodes) + " nodes");
+    }
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+        if (!std::isinf(heights[i])) continue;
+        throw InputError(
+            "not_finite",
+            std::string(what) + " of node " + std::to_string(i) + " is infinite; NaN means none",
+            -1, {static_cast<std::int64_t>(i)});
+    }
+}
+
+void check_constraints(const NodeConstraints& c, std::size_t nodes) {
+    check_node_heights(c.equal, nodes, "the fixed height");
+    check_node_heights(c.least, nodes, "the lower bound");
+    check_node_heights(c.most, nodes, "the upper bound");
+    const auto refuse = [](std::size_t i, double low, double high) {
+        throw InputError("option",
+                         "node " + std::to_string(i) + " should be at or above " +
+                             std::to_string(low) + " and at or below " + std::to_string(high),
+                         -1, {static_cast<std::int64_t>(i)});
+    };
+    for (std::size_t i = 0; i < nodes; ++i) {
+        const auto at = [&](std::span<const double> of) {
+            return of.empty() ? std::nan("") : of[i];
+        };
+        if (at(c.least) > at(c.most)) refuse(i, at(c.least), at(c.most));
+        if (at(c.least) > at(c.equal)) refuse(i, at(c.least), at(c.equal));
+        if (at(c.equal) > at(c.most)) refuse(i, at(c.equal), at(c.most));
+    }
+}
+
+/// Everything between input and heights.
+class Interpolation {
+public:
+    Interpolation(std::span<const std::array<double, 3>> points, std::span<const Position> nodes,
+                  std::span<const Triangle> triangles, const MeshLocator& locator,
+                  const NodeConstraints& constraints, const DsiOptions& options, Progress* progress)
+        : weight_(options.weight), progress_(progress), mesh_(ordered_mesh(nodes, triangles)) {
+        report(0.01, "triangles and their neighbors");
+        check();
+        const std::vector<Hinge> of_mesh = hinges(mesh_.nodes, mesh_.triangles);
+        check();
+        system_.emplace(mesh_.nodes, mesh_.first_in_cell, of_mesh, mesh_.grid,
+                        thread_count(options.threads), [this] { check(); });
+        report(0.1, "points on the mesh");
+        add_points(points, locator, triangles);
+        add_nodes(constraints.equal, Kind::kEqual);
+        subtract_plane();
+        add_nodes(constraints.least, Kind::kLeast);
+        add_nodes(constraints.most, Kind::kMost);
+        hold_tilt();
+    }
+
+    DsiHeights heights() {
+        Vector z(mesh_.nodes.size(), 0.0);
+        solve(z);
+        settle(z);
+        DsiHeights out;
+        out.z.resize(z.size());
+        for (std::size_t i = 0; i < z.size(); ++i)
+            out.z[mesh_.old_number[i]] = z[i] + plane_at(mesh_.nodes[i]);
+        out.outside = outside_;
+        out.iterations = iterations_;
+        out.converged = system_->converged();
+        for (const Constraint& c : constraints_) {
+            const bool exact_point = c.kind == Kind::kEqual && !c.of_node;
+            if (!exact_point || c.violation(z) <= 1e3 * kMet * range_) continue;
+            ++out.missed;
+            out.misfit = std::max(out.misfit, c.violation(z));
+        }
+        return out;
+    }
+
+private:
+    void check() const {
+        if (progress_ != nullptr) progress_->check();
+    }
+    void report(double share, const char* text) const {
+        if (progress_ != nullptr) progress_->report(share, text);
+    }
+
+    void add_points(std::span<const std::array<double, 3>> points, const MeshLocator& locator,
+                    std::span<const Triangle> triangles) {
+        const bool weighted = weight_ > 0;
+        for (const auto& [x, y, height] : points) {
+            const auto found = locator.find({x, y});
+            if (!found) {
+                ++outside_;
+                continue;
+            }
+            Constraint c{{}, found->weights, 0, weighted ? Kind::kWeighted : Kind::kEqual, height};
+            for (std::size_t k = 0; k < 3; ++k)
+                c.nodes[k] = mesh_.new_number[triangles[found->triangle][k]];
+            const auto most = std::max_element(c.weights.begin(), c.weights.end());
+            if (*most > 1 - 1e-12) {
+                c.nodes.fill(c.nodes[most - c.weights.begin()]);
+                c.weights = {1, 0, 0};
+            }
+            c.strength = (weighted ? weight_ : kExactStrength) * system_->stiffness(c.nodes);
+            constraints_.push_back(c);
+        }
+    }
+
+    double stiffness(std::size_t node) const {
+        const auto number = static_cast<std::int32_t>(node);
+        return system_->stiffness({number, number, number});
+    }
+
+    void add_nodes(std::span<const double> heights, Kind kind) {
+        if (heights.empty()) return;
+        for (std::size_t i = 0; i < mesh_.nodes.size(); ++i) {
+            const double height = heights[mesh_.old_number[i]];
+            if (std::isnan(height)) continue;
+            constraints_.push_back(Constraint::at_node(
+                i, kExactStrength * stiffness(i), kind,
+                kind == Kind::kEqual ? height : height - plane_at(mesh_.nodes[i])));
+        }
+    }
+
+    /// The solution is heights above the plane that fits best: a plane comes out exactly.
+    void subtract_plane() {
+        if (constraints_.empty()) {
+            throw InputError("no_points",
+                             "no point lies on the mesh and no node has a given height");
+        }
+        std::vector<Position> positions;
+        for (const Constraint& c : constraints_)
+            positions.push_back(c.position(mesh_.nodes));
+        frame_.emplace(positions, Drift::kLinear);
+        const Eigen::MatrixXd terms = frame_->terms(std::span<const Position>(positions));
+        Eigen::VectorXd heights(terms.rows());
+        base_ = constraints_[0].height;
+        for (Eigen::Index k = 0; k < heights.size(); ++k)
+            heights(k) = constraints_[k].height - base_;
+        plane_.make(terms, terms);
+        fitted_ = plane_.project(heights);
+        const auto [low, high] = subtract_from_heights(positions);
+        range_ = std::max(high - low, 1e-9 * std::max(std::abs(low), std::abs(high)));
+        if (!(range_ > 0)) range_ = 1;
+    }
+
+    /// @return the least and the greatest height before
+    std::pair<double, double> subtract_from_heights(std::span<const Position> positions) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (std::size_t k = 0; k < positions.size(); ++k) {
+            double& height = constraints_[k].height;
+            low = std::min(low, height);
+            high = std::max(high, height);
+            height -= plane_at(positions[k]);
+            // Rounding is no roughness: a plane stays one to the last digit but one.
+            if (std::abs(height) <= 1e-15 * (std::abs(base_) + std::abs(low) + std::abs(high)))
+                height = 0;
+        }
+        return {low, high};
+    }
+
+    double plane_at(const Position& position) const {
+        return base_ + plane_.solve(frame_->terms(position)).dot(fitted_);
+    }
+
+    /// Points in one line leave a tilt about it open: that of the plane is kept, at the far
+    /// corners.
+    void hold_tilt() {
+        if (plane_.size() == drift_terms(Drift::kLinear)) return;
+        const auto reach = static_cast<double>(std::max(mesh_.grid.columns(), mesh_.grid.rows()));
+        for (const auto& [x, y] :
+             {Position{-1, -1}, Position{1, -1}, Position{1, 1}, Position{-1, 1}}) {
+            std::size_t far = 0;
+            for (std::size_t i = 0; i < mesh_.nodes.size(); ++i) {
+                const Position &p = mesh_.nodes[i], &q = mesh_.nodes[far];
+                if (x * p[0] + y * p[1] > x * q[0] + y * q[1]) far = i;
+            }
+            const double strength = kTiltStrength * stiffness(far) / (reach * reach);
+            constraints_.push_back(Constraint::at_node(far, strength, Kind::kWeighted, 0));
+        }
+    }
+
+    /// Rounds of multipliers: each adds to the force on a constraint what the round before missed.
+    void solve(Vector& z) {
+        bool exact = false, bounded = false;
+        double largest = 0;
+        for (Constraint& c : constraints_) {
+            exact = exact || c.kind != Kind::kWeighted;
+            bounded = bounded || c.kind == Kind::kLeast || c.kind == Kind::kMost;
+            c.active =
+                c.kind == Kind::kWeighted || c.kind == Kind::kEqual || c.next_multiplier(z) != 0;
+            largest = std::max(largest, c.active ? std::abs(c.height) : 0.0);
+        }
+        if (largest == 0) return;  // the plane meets all constraints
+        double before = std::numeric_limits<double>::infinity();
+        double tolerance = exact ? kFirstTolerance : kWeightedTolerance;
+        bool changed = true;
+        for (int round = 0; round < kMostRounds; ++round) {
+            if (changed) system_->set_constraints(constraints_);
+            iterations_ += system_->solve(z, right_side(), tolerance, [&](double share) {
+                const double rounds = exact ? 4 : 1;
+                report(
+                    0.15 + 0.85 * std::min(0.99, (round + share) / std::max(rounds, round + 1.0)),
+                    "smoothing");
+            });
+            if (!exact) return;
+            double missing = 0;
+            std::tie(missing, changed) = update_multipliers(z);
+            if (missing <= kMet * range_ && !changed) return;
+            // Points that contradict each other on this mesh are met as well as possible.
+            if (!changed && !bounded && round > 2 && missing > 0.5 * before) return;
+            before = missing;
+            tolerance = std::max(kLastTolerance, std::min(0.1 * tolerance, missing / range_));
+        }
+    }
+
+    Vector right_side() const {
+        Vector right(mesh_.nodes.size(), 0.0);
+        for (const Constraint& c : constraints_) {
+            if (!c.active) continue;
+            const double force = c.strength * c.height + c.multiplier;
+            for (std::size_t k = 0; k < c.corners(); ++k)
+                right[c.nodes[k]] += force * c.weights[k];
+        }
+        return right;
+    }
+
+    /// @return the largest violation, and whether other bounds are active now
+    std::pair<double, bool> update_multipliers(const Vector& z) {
+        double missing = 0;
+        bool changed = false;
+        for (Constraint& c : constraints_) {
+            if (c.kind == Kind::kWeighted) continue;
+            missing = std::max(missing, c.violation(z));
+            c.multiplier = c.next_multiplier(z);
+            const bool active = c.kind == Kind::kEqual || c.multiplier != 0;
+            changed = changed || active != c.active;
+            c.active = active;
+        }
+        return {missing, changed};
+    }
+
+    /// Meets the constraints of nodes to the last digit: after the rounds only little is missing.
+    void settle(Vector& z) const {
+        for (const Kind kind : {Kind::kLeast, Kind::kMost, Kind::kEqual}) {
+            for (const Constraint& c : constraints_) {
+                if (c.kind == kind && c.of_node && c.violation(z) > 0) z[c.nodes[0]] = c.height;
+            }
+        }
+    }
+
+    double weight_;
+    Progress* progress_;
+    OrderedMesh mesh_;
+    std::optional<SmoothSystem> system_;
+    std::vector<Constraint> constraints_;
+    // The plane.
+    std::optional<DriftFrame> frame_;
+    DriftBasis plane_;
+    DriftBasis::Coefficients fitted_;
+    double base_ = 0;
+    double range_ = 1;  // of the given heights
+    std::int64_t outside_ = 0;
+    int iterations_ = 0;
+};
+
+}  // namespace
+
+DsiHeights dsi(std::span<const std::array<double, 3>> points, std::span<const Position> nodes,
+               std::span<const Triangle> triangles, const NodeConstraints& constraints,
+               const DsiOptions& options, Progress* progress) {
+    if (!(options.weight >= 0) || !std::isfinite(options.weight)) {
+        throw InputError("option",
+                         "the weight of points is negative or infinite; 0 makes them hold");
+    }
+    require_finite_nodes(nodes);
+    check_constraints(constraints, nodes.size());
+    if (nodes.empty() || triangles.empty()) {
+        throw InputError("option",
+                         "there is no mesh: discrete smooth interpolation needs triangles");
+    }
+    require_countable(nodes.size(), "nodes");
+    require_countable(3 * triangles.size(), "sides of triangles");
+    std::vector<std::array<double, 3>> distinct;
+    if (!points.empty()) {
+        const DataPoints data = prepare_points(points);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (std::cmp_equal(data.number_of[i], distinct.size())) distinct.push_back(points[i]);
+        }
+    }
+    const MeshLocator locator(nodes, triangles);
+    Interpolation interpolation(distinct, nodes, triangles, locator, constraints, options,
+                                progress);
+    DsiHeights out = interpolation.heights();
+    // To the last digit: the plane was subtracted and added again.
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (!constraints.least.empty() && out.z[i] < constraints.least[i])
+            out.z[i] = constraints.least[i];
+        if (!constraints.most.empty() && out.z[i] > constraints.most[i])
+            out.z[i] = constraints.most[i];
+        if (!constraints.equal.empty() && !std::isnan(constraints.equal[i]))
+            out.z[i] = constraints.equal[i];
+    }
+    return out;
+}
+
+}  // namespace realmodel::interpolation

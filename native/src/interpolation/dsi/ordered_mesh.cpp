@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "interpolation/dsi/ordered_mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/grouped_items.hpp"
+
+namespace realmodel::interpolation {
+
+namespace {
+
+constexpr double kCellInEdges = 2;
+
+double mean_edge(std::span<const Position> nodes,
+                 std::span<const OrderedMesh::Triangle> triangles) {
+    double sum = 0;
+    for (const auto& t : triangles) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Position &a = nodes[t[k]], &b = nodes[t[(k + 1) % 3]];
+            sum += std::hypot(a[0] - b[0], a[1] - b[1]);
+        }
+    }
+    const double mean = sum / (3 * static_cast<double>(triangles.size()));
+    return mean > 0 ? mean : 1;
+}
+
+}  // namespace
+
+OrderedMesh ordered_mesh(std::span<const Position> nodes,
+                         std::span<const OrderedMesh::Triangle> triangles) {
+    const Bounds box = bounds_of(nodes);
+    const double unit = mean_edge(nodes, triangles);
+    const double width = box.width() / unit, height = box.height() / unit;
+    const auto count = static_cast<double>(nodes.size());
+    // No more cells than nodes, where the region fills little of its box.
+    const double cell = std::max(
+        {kCellInEdges, std::sqrt(width * height / count), std::max(width, height) / count});
+    const auto cells = [&](double length) {
+        return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(length / cell)));
+    };
+    const SplineGrid grid({0, 0}, cell, cells(width), cells(height));
+    const auto to_mesh = [&](const Position& p) {
+        return Position{(p[0] - box.low[0]) / unit, (p[1] - box.low[1]) / unit};
+    };
+    auto by_cell = grouped<std::int32_t>(grid.cells(), [&](const auto& visit) {
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            visit(grid.cell_of(to_mesh(nodes[i])), static_cast<std::int32_t>(i));
+    });
+    OrderedMesh mesh{grid, std::move(by_cell.first), std::move(by_cell.items), {}, {}, {}};
+    mesh.new_number.resize(nodes.size());
+    for (const std::int32_t old : mesh.old_number) {
+        mesh.new_number[old] = static_cast<std::int32_t>(mesh.nodes.size());
+        mesh.nodes.push_back(to_mesh(nodes[old]));
+    }
+    for (const auto& t : triangles) {
+        mesh.triangles.push_back(
+            {mesh.new_number[t[0]], mesh.new_number[t[1]], mesh.new_number[t[2]]});
+    }
+    return mesh;
+}
+
+}  // namespace realmodel::interpolation

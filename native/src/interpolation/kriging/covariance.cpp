@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "interpolation/kriging/covariance.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace realmodel::interpolation {
+
+Covariance::Covariance(const Variogram& variogram) {
+    const auto add = [&](VariogramModel model, double range, double sill,
+                         const Anisotropy& anisotropy) {
+        // Distances across the azimuth count `ratio` times.
+        const double azimuth = anisotropy.azimuth * std::numbers::pi / 180;
+        const double ratio = std::max(anisotropy.ratio, 1 / anisotropy.ratio);
+        const double x = std::sin(azimuth), y = std::cos(azimuth);
+        parts_.push_back({model, x / range, y / range, ratio * y / range, -ratio * x / range,
+                          sill / variogram.sill});
+    };
+    add(variogram.model, variogram.range, variogram.first_sill(), variogram.anisotropy);
+    for (const NestedStructure& nested : variogram.further)
+        add(nested.model, nested.range, nested.sill, nested.anisotropy);
+}
+
+}  // namespace realmodel::interpolation

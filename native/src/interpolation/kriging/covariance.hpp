@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "interpolation/data_points.hpp"
+#include "interpolation/kriging/decay.hpp"
+#include "realmodel/interpolation/variogram.hpp"
+
+namespace realmodel::interpolation {
+
+/// One structure of a variogram: positions that differ by (dx, dy) are
+/// t = |(xx dx + xy dy, yx dx + yy dy)| ranges apart.
+struct CovariancePart {
+    VariogramModel model;
+    double xx, xy, yx, yy;
+    double share;  ///< of the sill
+};
+
+/// share (1 - f(t)), of doubles or of vectors of them: the same bytes.
+/// @tparam Bits  as of decay()
+/// @param root   the square root of a Number
+template <class Bits = std::uint64_t, class Number, class Root>
+inline Number covariance_of(const CovariancePart& part, Number dx, Number dy, const Root& root) {
+    const Number along = part.xx * dx + part.xy * dy;
+    const Number across = part.yx * dx + part.yy * dy;
+    const Number square = along * along + across * across;
+    if (part.model == VariogramModel::kGaussian) return part.share * decay<Bits>(3 * square);
+    const Number t = root(square);
+    switch (part.model) {
+        case VariogramModel::kSpherical:
+            return part.share * (t < 1.0 ? 1 - t * (1.5 - 0.5 * square) : Number{});
+        case VariogramModel::kExponential:
+            return part.share * decay<Bits>(3 * t);
+        case VariogramModel::kCubic:
+            return part.share *
+                   (t < 1.0 ? 1 - square * (7 - t * (8.75 - square * (3.5 - 0.75 * square)))
+                            : Number{});
+        case VariogramModel::kMatern32: {
+            const Number s = kMatern32Scale * t;
+            return part.share * ((1 + s) * decay<Bits>(s));
+        }
+        default: {
+            const Number s = kMatern52Scale * t;
+            return part.share * ((1 + s * (1 + s * kThird)) * decay<Bits>(s));
+        }
+    }
+}
+
+/// 1 - gamma(h) / sill: kriging with it gives the same weights as with gamma, and the matrix of the
+/// data is positive definite (Chiles and Delfiner 2012, section 3.4).
+class Covariance {
+public:
+    explicit Covariance(const Variogram& variogram);
+
+    /// Between two different positions. (At one position it is 1, whatever the nugget.)
+    double operator()(const Position& a, const Position& b) const {
+        const auto root = [](double v) { return std::sqrt(v); };
+        const double dx = a[0] - b[0], dy = a[1] - b[1];
+        double sum = covariance_of(parts_[0], dx, dy, root);
+        for (std::size_t part = 1; part < parts_.size(); ++part)
+            sum += covariance_of(parts_[part], dx, dy, root);
+        return sum;
+    }
+
+    /// At least one.
+    const std::vector<CovariancePart>& parts() const { return parts_; }
+
+private:
+    std::vector<CovariancePart> parts_;
+};
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/interpolation/kriging.hpp"
+
+#include <algorithm>
+#include <atomic>
+
+#include "interpolation/kriging/kriging_task.hpp"
+#include "interpolation/kriging/lane_kriging.hpp"
+#include "interpolation/kriging/neighbor_kriging.hpp"
+#include "interpolation/kriging/unique_neighborhood.hpp"
+#include "interpolation/node_loop.hpp"
+#include "interpolation/node_order.hpp"
+
+namespace realmodel::interpolation {
+
+namespace {
+
+constexpr std::size_t kNodesAtOnce = 64;  // right sides solved together: matrix products are fast
+constexpr std::size_t kNodesInOrder = 1U << 22;  // put in order at a time: some tens of ms
+
+/// One system after another: neighbors in octants or within a radius, or more than the lanes take.
+void krige_one_by_one(const KrigingTask& task) {
+    const std::size_t points = task.data.local.size();
+    const auto wanted = static_cast<std::size_t>(task.options.neighbors);
+    const auto n = static_cast<double>(wanted > 0 ? std::min(wanted, points) : points);
+    require_memory(thread_count(task.options.threads) * n * (n + 8) * sizeof(double), n,
+                   "kriging each node from its nearest", 16);
+    struct Scratch {
+        NeighborKriging kriging;
+        NeighborSearch search;
+        std::vector<spatial::Neighbour> near;
+    };
+    std::atomic<std::int64_t> alone{0};
+    NodeLoop{task.count(), 256, task.options.threads, task.progress, "kriging"}.over_nodes(
+        [&] {
+            return Scratch{NeighborKriging(task.data, task.covariance, task.options.drift),
+                           NeighborSearch(task.data, task.tree, task.neighborhood()),
+                           {}};
+        },
+        [&](Scratch& own, std::size_t i) {
+            const Position node = task.node(i);
+            if (!own.search.find(node, own.near, task.left_out(i))) ++alone;
+            if (own.near.empty()) {
+                task.set(i, unknown(task.data.values[i]));
+            } else if (own.near[0].squared_distance == 0) {
+                task.set(i, {task.data.values[own.near[0].point], 0});
+            } else {
+                task.set(i, own.kriging.at(node, own.near, task.progress));
+            }
+        });
+    task.out.alone = alone;
+}
+
+/// Nodes between two looks at whether to stop: some hundredths of a second, however large the
+/// systems.
+std::size_t nodes_in_chunk(std::size_t neighbors) {
+    return neighbors <= 64 ? 512 : neighbors <= 128 ? 128 : 64;
+}
+
+/// The nearest of all directions and distances, few enough: several systems at once. Those that are
+/// not well posed - points in one line and a drift across it - one by one.
+void krige_in_lanes(const KrigingTask& task) {
+    const auto neighbors = static_cast<std::size_t>(task.options.neighbors);
+    const std::size_t count = task.count();
+    struct Scratch {
+        std::vector<LaneKriging::Node> nodes;
+        LaneKriging lanes;
+        NeighborKriging single;
+        NeighborSearch search;
+        std::vector<spatial::Neighbour> near;
+    };
+    const auto make = [&] {
+        return Scratch{{},
+                       LaneKriging(task.data, task.tree, task.covariance, neighbors,
+                                   task.leaves_out, lane_kernels().front(), task.options.drift),
+                       NeighborKriging(task.data, task.covariance, task.options.drift),
+                       NeighborSearch(task.data, task.tree, task.neighborhood()),
+                       {}};
+    };
+    std::vector<Position> positions;
+    for (std::size_t first = 0; first < count; first += kNodesInOrder) {
+        const std::size_t here = std::min(kNodesInOrder, count - first);
+        positions.resize(here);
+        for (std::size_t i = 0; i < here; ++i)
+            positions[i] = task.node(first + i);
+        const std::vector<std::uint32_t> order = along_curve(positions);
+        const auto share = [&](std::size_t done) {
+            return static_cast<double>(done) / static_cast<double>(count);
+        };
+        NodeLoop{
+            here,         nodes_in_chunk(neighbors), task.options.threads, task.progress, "kriging",
+            share(first), share(first + here)}
+            .over_chunks(make, [&](Scratch& own, std::size_t begin, std::size_t end) {
+                own.nodes.clear();
+                for (std::size_t k = begin; k < end; ++k) {
+                    own.nodes.push_back(
+                        {positions[order[k]], order[k], task.left_out(first + order[k])});
+                }
+                own.lanes.krige(
+                    own.nodes,
+                    [&](std::uint32_t i, const Estimate& found) { task.set(first + i, found); },
+                    [&](std::uint32_t i) {
+                        own.search.find(positions[i], own.near, task.left_out(first + i));
+                        task.set(first + i, own.single.at(positions[i], own.near, task.progress));
+                    });
+            });
+    }
+}
+
+void krige_from_all(const KrigingTask& task) {
+    const auto n = static_cast<double>(task.data.local.size());
+    const double solved_at_once = thread_count(task.options.threads) * kNodesAtOnce;
+    require_memory(TiledCholesky::bytes(n) + solved_at_once * n * sizeof(double), n,
+                   "kriging from all of", 16);
+    const double factor_work = n * n * n / 3;
+    const double solve_work = n * n * static_cast<double>(task.count());
+    const double factor_share = factor_work / (factor_work + solve_work);
+    const UniqueNeighborhood all(task, factor_share);
+    NodeLoop{
+        task.count(), kNodesAtOnce, task.options.threads, task.progress, "kriging from all points",
+        factor_share}
+        .over_chunks([&] { return all.scratch(); },
+                     [&](UniqueNeighborhood::Scratch& own, std::size_t begin, std::size_t end) {
+                         if (task.leaves_out) {
+                             all.leave_out(begin, end, own);
+                         } else {
+                             all.krige(begin, end, own);
+                         }
+                     });
+}
+
+/// @param leaves_out  the points instead of nodes
+Kriged krige_nodes(const DataPoints& data, std::span<const Position> nodes, bool leaves_out,
+                   const Variogram& variogram, const KrigingOptions& options, Progress* progress) {
+    const spatial::NearestPoints tree(data.local);
+    const Covariance covariance(variogram);
+    Kriged out;
+    const KrigingTask task{data,       tree,           covariance, options, nodes,
+                           leaves_out, variogram.sill, progress,   out};
+    out.z.resize(task.count());
+    out.variance.resize(task.count());
+    const auto neighbors = static_cast<std::size_t>(options.neighbors);
+    if (task.neighborhood().plain() && (neighbors == 0 || neighbors >= data.local.size())) {
+        krige_from_all(task);
+    } else if (task.neighborhood().plain() && neighbors <= LaneKriging::kMostNeighbors) {
+        krige_in_lanes(task);
+    } else {
+        krige_one_by_one(task);
+    }
+    return out;
+}
+
+void check_options(const Variogram& variogram, const KrigingOptions& options) {
+    check_variogram(variogram);
+    check_neighborhood({options.neighbors, options.octants, options.radius});
+}
+
+}  // namespace
+
+Kriged krige(std::span<const std::array<double, 3>> points,
+             std::span<const std::array<double, 2>> nodes, const Variogram& variogram,
+             const KrigingOptions& options, Progress* progress) {
+    check_options(variogram, options);
+    require_finite_nodes(nodes);
+    const DataPoints data = prepare_points(points);
+    if (nodes.empty()) return {};
+    return krige_nodes(data, nodes, false, variogram, options, progress);
+}
+
+Kriged krige_left_out(std::span<const std::array<double, 3>> points, const Variogram& variogram,
+                      const KrigingOptions& options, Progress* progress) {
+    check_options(variogram, options);
+    const DataPoints data = prepare_points(points);
+    const Kriged found = krige_nodes(data, {}, true, variogram, options, progress);
+    return {data.for_given(found.z), data.for_given(found.variance), found.alone};
+}
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <limits>
+#include <span>
+
+#include "interpolation/kriging/covariance.hpp"
+#include "interpolation/kriging/estimate.hpp"
+#include "interpolation/neighbors/neighbor_search.hpp"
+#include "realmodel/interpolation/kriging.hpp"
+
+namespace realmodel::interpolation {
+
+/// What all ways of kriging need: the data, the nodes and room for the estimates.
+struct KrigingTask {
+    const DataPoints& data;
+    const spatial::NearestPoints& tree;
+    const Covariance& covariance;
+    const KrigingOptions& options;
+    std::span<const Position> nodes;  ///< without any each point is left out and estimated instead
+    bool leaves_out;
+    double sill;
+    Progress* progress;
+    Kriged& out;
+
+    std::size_t count() const { return leaves_out ? data.local.size() : nodes.size(); }
+    /// In local coordinates.
+    Position node(std::size_t i) const {
+        return leaves_out ? data.local[i] : data.to_local(nodes[i]);
+    }
+    std::int32_t left_out(std::size_t i) const {
+        return leaves_out ? static_cast<std::int32_t>(i) : NeighborSearch::kNobody;
+    }
+    Neighborhood neighborhood() const {
+        return {options.neighbors, options.octants, options.radius};
+    }
+    void set(std::size_t node, const Estimate& estimate) const {
+        out.z[node] = estimate.value;
+        out.variance[node] = estimate.variance * sill;
+    }
+};
+
+/// A single point that is left out: nothing is known of its value.
+inline Estimate unknown(double value) {
+    return {value, std::numeric_limits<double>::infinity()};
+}
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "interpolation/kriging/unique_neighborhood.hpp"
+
+#include "interpolation/node_loop.hpp"
+
+namespace realmodel::interpolation {
+
+namespace {
+
+constexpr int kMostOthers = 200;  // from which a point is estimated that the factor cannot estimate
+
+}  // namespace
+
+UniqueNeighborhood::UniqueNeighborhood(const KrigingTask& task, double factor_share)
+    : task_(task),
+      count_(static_cast<Eigen::Index>(task.data.local.size())),
+      base_(task.data.values[0]),
+      frame_(task.data.local, task.options.drift),
+      factor_(
+          count_,
+          [&](Eigen::Index i, Eigen::Index j) {
+              return i == j ? 1.0 : task.covariance(position(i), position(j));
+          },
+          kRedundantVariance, task.options.threads, task.progress, factor_share) {
+    const Eigen::Index terms = drift_terms(task.options.drift);
+    Eigen::MatrixXd plain = frame_.terms(std::span<const Position>(task.data.local));
+    Eigen::MatrixXd given(count_, terms + 1);
+    given.leftCols(terms) = plain;
+    for (Eigen::Index p = 0; p < count_; ++p) {
+        given(p, terms) = task.data.values[p] - base_;
+        if (factor_.left_out(p)) plain.row(p).setZero();
+    }
+    factor_.solve(given, task.progress);
+    basis_.make(plain, given.leftCols(terms));
+    t_ = given.col(terms);
+    qt_ = basis_.project(t_);
+}
+
+void UniqueNeighborhood::krige(std::size_t begin, std::size_t end, Scratch& scratch) const {
+    Eigen::MatrixXd& u = scratch.u;
+    u.resize(count_, static_cast<Eigen::Index>(end - begin));
+    for (std::size_t i = begin; i < end; ++i) {
+        const Position node = task_.node(i);
+        const auto column = static_cast<Eigen::Index>(i - begin);
+        for (Eigen::Index p = 0; p < count_; ++p)
+            u(p, column) = task_.covariance(node, position(p));
+        if (cancelled(task_.progress)) return;
+    }
+    factor_.solve(u, task_.progress);
+    for (std::size_t i = begin; i < end && !cancelled(task_.progress); ++i) {
+        const Position node = task_.node(i);
+        task_.tree.find(node, 1, scratch.near);
+        const spatial::Neighbour& nearest = scratch.near[0];
+        if (nearest.squared_distance == 0) {
+            task_.set(i, {task_.data.values[nearest.point], 0});
+            continue;
+        }
+        const auto column = u.col(static_cast<Eigen::Index>(i - begin));
+        task_.set(i, universal_kriging(base_, column.squaredNorm(), column.dot(t_), basis_,
+                                       frame_.terms(node), basis_.project(column), qt_));
+    }
+}
+
+/// With B = C^-1 - C^-1 F (F^T C^-1 F)^-1 F^T C^-1 the error is (B z)_i / B_ii and its variance
+/// 1 / B_ii (Dubrule 1983); column i of L^-1 gives both.
+void UniqueNeighborhood::leave_out(std::size_t begin, std::size_t end, Scratch& scratch) const {
+    Eigen::MatrixXd& u = scratch.u;
+    u.setZero(count_, static_cast<Eigen::Index>(end - begin));
+    for (std::size_t i = begin; i < end; ++i)
+        u(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i - begin)) = 1;
+    factor_.solve(u, task_.progress);
+    for (std::size_t i = begin; i < end && !cancelled(task_.progress); ++i) {
+        const auto column = u.col(static_cast<Eigen::Index>(i - begin));
+        const DriftBasis::Coefficients qu = basis_.project(column);
+        const double whole = column.squaredNorm(), b = whole - qu.squaredNorm();
+        const double value = task_.data.values[i];
+        if (b > 1e-9 * whole) {
+            task_.set(i, {value - (column.dot(t_) - qu.dot(qt_)) / b, 1 / b});
+            continue;
+        }
+        // The point alone determines a term of the drift, or others determine the point.
+        NeighborSearch search(task_.data, task_.tree, {kMostOthers, 0, 0});
+        search.find(task_.node(i), scratch.near, task_.left_out(i));
+        task_.set(i, scratch.near.empty()
+                         ? unknown(value)
+                         : scratch.others.at(task_.node(i), scratch.near, task_.progress));
+    }
+}
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "interpolation/data_points.hpp"
+#include "interpolation/octant_search.hpp"
+#include "realmodel/spatial/nearest_points.hpp"
+
+namespace realmodel::interpolation {
+
+/// Which points make a node's system.
+struct Neighborhood {
+    int neighbors = 16;  ///< at most so many; 0: no limit
+    int octants = 0;     ///< at most so many from each eighth of the directions; 0: no limit
+    double radius = 0;   ///< none farther than this, in plan; 0: no limit
+
+    bool plain() const { return octants == 0 && radius == 0; }
+};
+
+/// Refuses negative and infinite numbers.
+/// @throws InputError kind "option"
+void check_neighborhood(const Neighborhood& neighborhood);
+
+/// @param what   takes so much memory, e.g. "a spline through all of", followed by the points
+/// @param fewer  the number of neighbors to suggest instead
+/// @throws InputError kind "too_large" where there is less memory
+void require_memory(double bytes, double points, const char* what, int fewer);
+
+/// Finds the points of a neighborhood. One for each thread.
+class NeighborSearch {
+public:
+    NeighborSearch(const DataPoints& data, const spatial::NearestPoints& tree,
+                   const Neighborhood& neighborhood);
+
+    static constexpr std::int32_t kNobody = -1;
+
+    /// Finds the points around a position (local coordinates), nearest first, without `left_out`:
+    /// at least one, unless the one left out is the only point.
+    /// @return false where none lies within the radius; the nearest alone is found then
+    bool find(const Position& position, std::vector<spatial::Neighbour>& found,
+              std::int32_t left_out = kNobody);
+
+private:
+    const spatial::NearestPoints& tree_;
+    bool plain_;
+    std::size_t limit_, octant_limit_;
+    double squared_radius_;
+    std::vector<spatial::Neighbour> candidates_;
+    std::optional<OctantSearch> rings_;  // where the tree would be slow
+};
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+
+#include "base/parallel.hpp"
+
+namespace realmodel::interpolation {
+
+/// Whether long work should end early; from any thread.
+inline bool cancelled(const Progress* progress) {
+    return progress != nullptr && progress->cancelled();
+}
+
+/// A loop over many nodes by several threads.
+struct NodeLoop {
+    std::size_t count;
+    std::size_t chunk;  ///< nodes that one thread does in a row
+    int threads;
+    Progress* progress;
+    const char* text = nullptr;  ///< what is being done; null keeps the text that was there
+    double begin = 0, end = 1;   ///< the fractions of the progress; equal: it is not moved
+
+    /// Calls work(own, begin, end) for chunks of nodes; `own` is the thread's object, as make()
+    /// gives it: which thread does a chunk must not matter to the result. Long work asks
+    /// cancelled() and returns then.
+    /// @throws Cancelled, and what work or make throws for the lowest chunk
+    template <class Make, class Work>
+    void over_chunks(const Make& make, const Work& work) const {
+        assert(chunk > 0);
+        if (progress != nullptr && begin < end) progress->begin(begin, end, text);
+        const auto worker = [&] {
+            return [&, own = make()](std::size_t number) mutable {
+                work(own, number * chunk, std::min(count, (number + 1) * chunk));
+            };
+        };
+        parallel_workers((count + chunk - 1) / chunk, threads, progress, worker,
+                         begin < end ? 1.0 : 0.0);
+    }
+
+    /// Calls work(own, node) for each node, until the caller cancels.
+    template <class Make, class Work>
+    void over_nodes(const Make& make, const Work& work) const {
+        over_chunks(make, [&](auto& own, std::size_t from, std::size_t to) {
+            for (std::size_t node = from; node < to && !cancelled(progress); ++node)
+                work(own, node);
+        });
+    }
+};
+
+}  // namespace realmodel::interpolation

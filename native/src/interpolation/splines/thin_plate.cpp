@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/interpolation/thin_plate.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "interpolation/drift_basis.hpp"
+#include "interpolation/neighbors/neighbor_search.hpp"
+#include "interpolation/node_loop.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::interpolation {
+
+namespace {
+
+/// r^2 log r from r^2.
+double kernel(double squared) {
+    return squared > 0 ? 0.5 * squared * std::log(squared) : 0;
+}
+
+double squared_distance(const Position& a, const Position& b) {
+    const double dx = a[0] - b[0], dy = a[1] - b[1];
+    return dx * dx + dy * dy;
+}
+
+/// The side of a square as large as each point's share of their box.
+double mean_spacing(std::span<const Position> positions) {
+    const Bounds box = bounds_of(positions);
+    const double width = box.width(), height = box.height();
+    const auto count = static_cast<double>(positions.size());
+    const double spacing =
+        std::max(std::sqrt(width * height / count), std::max(width, height) / count);
+    return spacing > 0 ? spacing : 1;
+}
+
+/// A spline through some points. Keeps its memory; one for each thread.
+class Spline {
+public:
+    Spline(double spacing, double smoothing) : unit_(spacing), smoothing_(smoothing) {}
+
+    /// Of these positions (local coordinates) and values.
+    void make(std::span<const Position> positions, std::span<const double> values) {
+        positions_.assign(positions.begin(), positions.end());
+        frame_.emplace(positions_, Drift::kLinear);
+        const auto n = static_cast<Eigen::Index>(positions_.size());
+        terms_ = frame_->terms(std::span<const Position>(positions_));
+        basis_.make(terms_, terms_);
+        const Eigen::Index terms = basis_.size();
+        base_ = values[0];
+        matrix_.setZero(n + terms, n + terms);
+        right_.setZero(n + terms);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const Position& a = positions_[i];
+            for (Eigen::Index j = 0; j < i; ++j) {
+                matrix_(i, j) = kernel(squared_distance(a, positions_[j]) / (unit_ * unit_));
+                matrix_(j, i) = matrix_(i, j);
+            }
+            matrix_(i, i) = smoothing_;
+            for (Eigen::Index k = 0; k < terms; ++k) {
+                matrix_(i, n + k) = basis_.orthonormal(i, k);
+                matrix_(n + k, i) = matrix_(i, n + k);
+            }
+            right_(i) = values[i] - base_;
+        }
+        weights_ = matrix_.partialPivLu().solve(right_);
+    }
+
+    double at(const Position& position) const {
+        const auto n = static_cast<Eigen::Index>(positions_.size());
+        const DriftBasis::Coefficients terms = basis_.solve(frame_->terms(position));
+        double sum = 0;
+        for (Eigen::Index k = 0; k < terms.size(); ++k)
+            sum += weights_(n + k) * terms(k);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            sum +=
+                weights_(i) * kernel(squared_distance(position, positions_[i]) / (unit_ * unit_));
+        }
+        return base_ + sum;
+    }
+
+private:
+    double unit_, smoothing_;
+    double base_ = 0;
+    std::vector<Position> positions_;
+    std::optional<DriftFrame> frame_;
+    DriftBasis basis_;
+    Eigen::MatrixXd terms_, matrix_;
+    Eigen::VectorXd right_, weights_;
+};
+
+void check_options(const ThinPlateOptions& options) {
+    if (!(options.smoothing >= 0) || !std::isfinite(options.smoothing)) {
+        throw InputError("option", "the smoothing is negative or infinite; 0 makes points hold");
+    }
+    check_neighborhood({options.neighbors, options.octants, options.radius});
+}
+
+}  // namespace
+
+std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
+                               std::span<const std::array<double, 2>> nodes,
+                               const ThinPlateOptions& options, Progress* progress) {
+    check_options(options);
+    require_finite_nodes(nodes);
+    const DataPoints data = prepare_points(points);
+    const spatial::NearestPoints tree(data.local);
+    const Neighborhood neighborhood{options.neighbors, options.octants, options.radius};
+    const double spacing = mean_spacing(data.local);
+    const std::size_t points_used = static_cast<std::size_t>(options.neighbors);
+    const bool all = neighborhood.plain() && (points_used == 0 || points_used >= data.local.size());
+    Spline whole(spacing, options.smoothing);
+    if (all) {
+        const auto order = static_cast<double>(data.local.size() + 3);
+        require_memory(3 * order * order * sizeof(double), order - 3, "a spline through all of",
+                       32);
+        if (progress != nullptr) progress->check();
+        whole.make(data.local, data.values);
+    }
+    std::vector<double> z(nodes.size());
+    struct Scratch {
+        Spline spline;
+        NeighborSearch search;
+        std::vector<spatial::Neighbour> near;
+        std::vector<Position> positions;
+        std::vector<double> values;
+    };
+    const NodeLoop loop{nodes.size(), 256, options.threads, progress, "thin plate spline"};
+    loop.over_nodes(
+        [&] {
+            return Scratch{whole, NeighborSearch(data, tree, neighborhood), {}, {}, {}};
+        },
+        [&](Scratch& own, std::size_t i) {
+            const Position node = data.to_local(nodes[i]);
+            tree.find(node, 1, own.near);
+            const double nearest = data.values[own.near[0].point];
+            if (own.near[0].squared_distance == 0 && options.smoothing == 0) {
+                z[i] = nearest;
+                return;
+            }
+            if (!all) {
+                own.search.find(node, own.near);
+                own.positions.clear();
+                own.values.clear();
+                for (const spatial::Neighbour& n : own.near) {
+                    own.positions.push_back(data.local[n.point]);
+                    own.values.push_back(data.values[n.point]);
+                }
+                own.spline.make(own.positions, own.values);
+            }
+            z[i] = own.spline.at(node);
+            // Points so near each other that their system is singular to the last digit.
+            if (!std::isfinite(z[i])) z[i] = nearest;
+        });
+    return z;
+}
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/interpolation/convex_hull.hpp"
+
+#include <algorithm>
+
+#include "exact/orient2d.hpp"
+#include "interpolation/data_points.hpp"
+#include "interpolation/node_loop.hpp"
+
+namespace realmodel::interpolation {
+
+ConvexHull::ConvexHull(std::vector<Position> positions) {
+    std::sort(positions.begin(), positions.end());
+    positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+    const auto add = [](std::vector<Position>& chain, const Position& position, int outward) {
+        while (chain.size() > 1 &&
+               exact::orient2d(chain[chain.size() - 2], chain.back(), position) != -outward) {
+            chain.pop_back();
+        }
+        chain.push_back(position);
+    };
+    for (const Position& position : positions) {
+        add(lower_, position, -1);
+        add(upper_, position, 1);
+    }
+}
+
+bool ConvexHull::contains(const Position& position) const {
+    if (lower_.empty() || position[0] < lower_.front()[0] || position[0] > lower_.back()[0])
+        return false;
+    const auto left_of = [](const Position& a, double x) { return a[0] < x; };
+    const auto right_of = [](double x, const Position& a) { return x < a[0]; };
+    const auto low = std::lower_bound(lower_.begin(), lower_.end(), position[0], left_of);
+    if ((*low)[0] == position[0] ? position[1] < (*low)[1]
+                                 : exact::orient2d(*(low - 1), *low, position) < 0) {
+        return false;
+    }
+    const auto beyond = std::upper_bound(upper_.begin(), upper_.end(), position[0], right_of);
+    const Position& before = *(beyond - 1);
+    return before[0] == position[0] ? position[1] <= before[1]
+                                    : exact::orient2d(before, *beyond, position) <= 0;
+}
+
+std::vector<ConvexHull::Position> ConvexHull::corners() const {
+    std::vector<Position> corners = lower_;
+    for (std::size_t i = upper_.size(); i > 2; --i)
+        corners.push_back(upper_[i - 2]);
+    return corners;
+}
+
+std::vector<std::uint8_t> outside_hull(std::span<const std::array<double, 3>> points,
+                                       std::span<const std::array<double, 2>> nodes, int threads,
+                                       Progress* progress) {
+    require_finite_nodes(nodes);
+    std::vector<Position> positions;
+    positions.reserve(points.size());
+    for (const auto& [x, y, z] : points)
+        positions.push_back({x, y});
+    require_finite_nodes(positions);
+    const ConvexHull hull(std::move(positions));
+    std::vector<std::uint8_t> outside(nodes.size());
+    const NodeLoop loop{nodes.size(), 4096, threads, progress};
+    loop.over_nodes([] { return 0; },
+                    [&](int, std::size_t i) { outside[i] = hull.contains(nodes[i]) ? 0 : 1; });
+    return outside;
+}
+
+}  // namespace realmodel::interpolation

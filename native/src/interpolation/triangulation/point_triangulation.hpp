@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "interpolation/data_points.hpp"
+#include "realmodel/base/progress.hpp"
+#include "realmodel/spatial/nearest_points.hpp"
+
+namespace realmodel::interpolation {
+
+/// The Delaunay triangulation of data points, in local coordinates; its vertices have the numbers
+/// of their points. Several threads may ask at once.
+class PointTriangulation {
+public:
+    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+    using Vertex = CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kernel>;
+    using Delaunay =
+        CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex>>;
+    using Face = Delaunay::Face_handle;
+
+    PointTriangulation(const DataPoints& data, const Progress* progress);
+
+    const Delaunay& delaunay() const { return delaunay_; }
+
+    /// A triangle at the point nearest to a position: where the search for it begins, so that what
+    /// is found on ties depends on the position alone. No triangle where the points lie in one
+    /// line.
+    Face near(const Position& position, std::vector<spatial::Neighbour>& found) const;
+
+    /// Value at a position inside `face`, linear between its corners.
+    double linear(const Position& position, Face face) const;
+
+    /// Value at the nearest position of the hull's border.
+    double at_border(const Position& position) const;
+
+private:
+    void add_border(std::int32_t a, std::int32_t b) { border_.push_back({a, b}); }
+
+    const DataPoints& data_;
+    spatial::NearestPoints tree_;
+    Delaunay delaunay_;
+    std::vector<Delaunay::Vertex_handle> vertices_;  // by point
+    std::vector<std::array<std::int32_t, 2>>
+        border_;  // edges of the hull; of points in one line all
+};
+
+}  // namespace realmodel::interpolation

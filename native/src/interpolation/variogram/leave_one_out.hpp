@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "interpolation/data_points.hpp"
+#include "interpolation/kriging/covariance.hpp"
+#include "realmodel/interpolation/drift.hpp"
+
+namespace realmodel {
+class Progress;
+}
+
+namespace realmodel::interpolation {
+
+/// Predicted less true values, and the variances of these errors in units of the sill.
+struct PredictionErrors {
+    std::vector<double> errors, variances;
+};
+
+/// Points that are left out one by one and predicted by kriging from their nearest others: a fixed,
+/// even part of the data. One search for any number of variograms.
+class LeaveOneOut {
+public:
+    /// @param neighbors  1 .. 64; fewer where there are not so many others
+    /// @param most        points that are left out, where there are so many
+    LeaveOneOut(const DataPoints& data, std::size_t neighbors, std::size_t most, int threads,
+                Progress* progress);
+
+    std::size_t size() const { return left_out_.size(); }
+    std::size_t neighbors() const { return neighbors_; }
+
+    /// By ordinary kriging, or with a drift, which is slower. The same bytes for any number of
+    /// threads.
+    /// @throws Cancelled
+    PredictionErrors errors(const Covariance& covariance, Drift drift = Drift::kConstant) const;
+
+private:
+    void predict_in_lanes(const Covariance& covariance, PredictionErrors& out) const;
+
+    const DataPoints& data_;
+    std::size_t neighbors_;
+    int threads_;
+    Progress* progress_;
+    std::vector<std::int32_t> left_out_;  // numbers of points, in the order of a curve
+    std::vector<std::int32_t> others_;    // neighbors_ of each, nearest first
+};
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/interpolation/variogram.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "interpolation/kriging/decay.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::interpolation {
+
+namespace {
+
+struct NamedModel {
+    VariogramModel model;
+    std::string_view name;
+};
+constexpr NamedModel kNamedModels[] = {
+    {VariogramModel::kSpherical, "spherical"}, {VariogramModel::kExponential, "exponential"},
+    {VariogramModel::kGaussian, "gaussian"},   {VariogramModel::kCubic, "cubic"},
+    {VariogramModel::kMatern32, "matern32"},   {VariogramModel::kMatern52, "matern52"}};
+
+std::string number_text(double number) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.6g", number);
+    return text;
+}
+
+bool is_positive(double number) {
+    return number > 0 && std::isfinite(number);
+}
+
+}  // namespace
+
+std::string_view name_of(VariogramModel model) {
+    for (const NamedModel& named : kNamedModels) {
+        if (named.model == model) return named.name;
+    }
+    return {};
+}
+
+VariogramModel variogram_model(std::string_view name) {
+    std::string known;
+    for (const NamedModel& named : kNamedModels) {
+        if (named.name == name) return named.model;
+        known += (known.empty() ? "" : ", ") + std::string(named.name);
+    }
+    throw InputError("variogram", "variogram model \"" + std::string(name) +
+                                      "\" is not known; there are " + known);
+}
+
+double structure(VariogramModel model, double t) {
+    constexpr double a = kMatern32Scale, b = kMatern52Scale;
+    switch (model) {
+        case VariogramModel::kSpherical:
+            return t < 1 ? t * (1.5 - 0.5 * t * t) : 1;
+        case VariogramModel::kExponential:
+            return -std::expm1(-3 * t);
+        case VariogramModel::kGaussian:
+            return -std::expm1(-3 * t * t);
+        case VariogramModel::kCubic:
+            return t < 1 ? t * t * (7 + t * (-8.75 + t * t * (3.5 - 0.75 * t * t))) : 1;
+        case VariogramModel::kMatern32:
+            return 1 - (1 + a * t) * std::exp(-a * t);
+        case VariogramModel::kMatern52:
+            return 1 - (1 + b * t + b * b * t * t / 3) * std::exp(-b * t);
+    }
+    return 1;
+}
+
+double Variogram::first_sill() const {
+    double left = sill - nugget;
+    for (const NestedStructure& nested : further)
+        left -= nested.sill;
+    return left;
+}
+
+double Variogram::gamma(double distance) const {
+    if (distance == 0) return 0;
+    double sum = nugget + first_sill() * structure(model, distance / range);
+    for (const NestedStructure& nested : further)
+        sum += nested.sill * structure(nested.model, distance / nested.range);
+    return sum;
+}
+
+void check_variogram(const Variogram& variogram) {
+    const auto require = [](bool right, const std::string& what) {
+        if (!right) throw InputError("variogram", what);
+    };
+    const std::string sill = number_text(variogram.sill);
+    require(is_positive(variogram.range),
+            "the variogram's range is " + number_text(variogram.range) + "; it must be positive");
+    require(is_positive(variogram.sill),
+            "the variogram's sill is " + sill + "; it must be positive");
+    require(variogram.nugget >= 0 && variogram.nugget <= variogram.sill,
+            "the variogram's nugget is " + number_text(variogram.nugget) +
+                "; it must lie between 0 and the sill, " + sill + ", which includes it");
+    check_anisotropy(variogram.anisotropy);
+    for (const NestedStructure& nested : variogram.further) {
+        require(is_positive(nested.range) && is_positive(nested.sill),
+                "a structure of the variogram has range " + number_text(nested.range) +
+                    " and sill " + number_text(nested.sill) + "; both must be positive");
+        check_anisotropy(nested.anisotropy);
+    }
+    require(
+        variogram.first_sill() >= -1e-12 * variogram.sill,
+        "nugget and structures of the variogram have more than its sill, " + sill + ", together");
+}
+
+void check_anisotropy(const Anisotropy& anisotropy) {
+    if (!is_positive(anisotropy.ratio)) {
+        throw InputError("anisotropy", "the anisotropy's ratio is " +
+                                           number_text(anisotropy.ratio) + "; it must be positive");
+    }
+    if (!std::isfinite(anisotropy.azimuth)) {
+        throw InputError("anisotropy", "the anisotropy's azimuth is not a finite number");
+    }
+}
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "interpolation/variogram/variogram_search.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace realmodel::interpolation {
+
+namespace {
+
+constexpr double kContradicting =
+    8;                            // times: the sills that errors and experimental values ask for
+constexpr double kHopeless = 2;   // times the best mean square: such a model is not varied
+constexpr double kHopeful = 1.3;  // times the best mean square: such a one is made rougher
+// A mean square that is lower by no more than this share, or by the share of so many points, may be
+// so by chance.
+constexpr double kChanceShare = 0.001;
+constexpr double kChancePoints = 10;
+// Of the experimental value at the shortest lag.
+constexpr double kNuggetsTried[] = {0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1};
+constexpr double kRangesTried[] = {0.25, 0.5, 2, 4};  // times the range that fits the curve best
+
+/// A part that makes surfaces of a model rougher. A small share of a rough model is much at short
+/// distances; of the same model at a shorter range less so.
+struct RougherPart {
+    VariogramModel model;
+    double range;  // of the model's
+    std::array<double, 4> shares;
+};
+
+std::vector<RougherPart> parts_for(VariogramModel model) {
+    const RougherPart exponential{VariogramModel::kExponential, 1, {0.003, 0.015, 0.07, 0.3}};
+    const RougherPart matern32{VariogramModel::kMatern32, 1, {0.01, 0.03, 0.1, 0.3}};
+    const RougherPart shorter{model, 0.25, {0.01, 0.03, 0.08, 0.2}};
+    switch (model) {
+        case VariogramModel::kMatern32:
+        case VariogramModel::kCubic:
+            return {exponential, shorter};
+        case VariogramModel::kMatern52:
+        case VariogramModel::kGaussian:
+            return {exponential, matern32};
+        default:
+            return {};
+    }
+}
+
+bool usable(const CurveFit& fit) {
+    return fit.sill() > 0 && std::isfinite(fit.sill()) && std::isfinite(fit.misfit);
+}
+
+/// The numbers of a variogram that are changed to refine it, and by how much.
+struct Step {
+    double CurveFit::*nugget;
+    double Curve::*curve;
+    double times;
+
+    bool applies_to(const CurveFit& fit) const {
+        return nugget != nullptr ? fit.nugget > 0
+                                 : curve == &Curve::range || fit.curve.rough_share > 0;
+    }
+    void change(CurveFit& fit, bool up) const {
+        (nugget != nullptr ? fit.*nugget : fit.curve.*curve) *= up ? times : 1 / times;
+    }
+};
+
+constexpr Step kSteps[] = {{nullptr, &Curve::rough_share, 1.8},
+                           {nullptr, &Curve::range, 1.4},
+                           {nullptr, &Curve::rough_range, 1.6},
+                           {&CurveFit::nugget, nullptr, 2}};
+constexpr double kMostRough = 0.6;  // share of the rougher part
+
+}  // namespace
+
+bool Candidate::contradicts() const {
+    return !(std::abs(std::log(sill / fit.sill())) < std::log(kContradicting));
+}
+
+void keep_agreeing(std::vector<Candidate>& candidates) {
+    const auto last =
+        std::stable_partition(candidates.begin(), candidates.end(),
+                              [](const Candidate& candidate) { return !candidate.contradicts(); });
+    if (last != candidates.begin()) candidates.erase(last, candidates.end());
+}
+
+const Candidate& best_of(const std::vector<Candidate>& candidates) {
+    return *std::min_element(
+        candidates.begin(), candidates.end(),
+        [](const Candidate& a, const Candidate& b) { return a.square < b.square; });
+}
+
+std::vector<VariogramModel> hopeful_models(const std::vector<Candidate>& candidates) {
+    const double enough = kHopeful * best_of(candidates).square;
+    std::vector<VariogramModel> out;
+    for (const VariogramModel model : kAllVariogramModels) {
+        const auto is_good = [&](const Candidate& candidate) {
+            return candidate.fit.curve.model == model && candidate.square <= enough;
+        };
+        if (std::any_of(candidates.begin(), candidates.end(), is_good)) out.push_back(model);
+    }
+    return out;
+}
+
+/// With the sill that fits the experimental values best, where there is one.
+std::optional<Candidate> VariogramSearch::candidate(const Curve& curve, double nugget) const {
+    const CurveFit fit = fit_sill(e_, curve, nugget);
+    if (!usable(fit) || fit.partial_sill <= 0) return std::nullopt;
+    const PredictionErrors found = points_.errors(Covariance(variogram_of(fit, anisotropy_)));
+    return Candidate{fit, honest_sill(found), (*square_of_)(found.errors)};
+}
+
+Candidate VariogramSearch::refined(const Candidate& start) const {
+    Candidate best = start;
+    const double longest = std::max(longest_, start.fit.curve.range);
+    const double by_chance =
+        std::max(kChanceShare, kChancePoints / static_cast<double>(points_.size()));
+    const auto better_by = [&](const Step& step, bool up) {
+        CurveFit changed = best.fit;
+        step.change(changed, up);
+        const Curve& curve = changed.curve;
+        if (curve.range > longest || curve.rough_share > kMostRough) return false;
+        const std::optional<Candidate> found = candidate(curve, changed.nugget);
+        if (!found || found->contradicts()) return false;
+        if (!(found->square < (1 - by_chance) * best.square)) return false;
+        best = *found;
+        return true;
+    };
+    for (const Step& step : kSteps) {
+        if (!step.applies_to(best.fit)) continue;
+        for (const bool up : {true, false}) {
+            if (!better_by(step, up)) continue;
+            better_by(step, up);
+            break;
+        }
+    }
+    return best;
+}
+
+/// What fits the experimental values best, of each model with and without a nugget.
+void VariogramSearch::start(std::span<const VariogramModel> models) {
+    std::vector<std::vector<double>> errors;
+    for (const VariogramModel model : models) {
+        for (const bool with_nugget : {true, false}) {
+            const CurveFit fit = fit_curve(e_, model, with_nugget);
+            if (!usable(fit)) continue;
+            PredictionErrors found = points_.errors(Covariance(variogram_of(fit, anisotropy_)));
+            all_.push_back({fit, honest_sill(found), 0});
+            errors.push_back(std::move(found.errors));
+        }
+    }
+    if (errors.empty()) return;
+    if (!square_of_) {
+        const auto median = [](const std::vector<double>& of) {
+            std::vector<double> sizes;
+            for (const double error : of)
+                sizes.push_back(std::abs(error));
+            return quantile(std::move(sizes), 0.5);
+        };
+        std::vector<double> medians;
+        for (const std::vector<double>& of : errors)
+            medians.push_back(median(of));
+        const auto best = std::min_element(medians.begin(), medians.end());
+        square_of_.emplace(errors[static_cast<std::size_t>(best - medians.begin())]);
+    }
+    for (std::size_t i = 0; i < errors.size(); ++i)
+        all_[i].square = (*square_of_)(errors[i]);
+}
+
+std::vector<Candidate> VariogramSearch::run(std::span<const VariogramModel> models,
+                                            const std::function<void(double)>& report) {
+    start(models);
+    report(0.2);
+    if (all_.empty()) return {};
+    const auto count = static_cast<double>(models.size());
+    const double enough = kHopeless * best_of(all_).square;
+    double done = 0;
+    for (const VariogramModel model : models) {
+        const Candidate* const start = best_with(model);
+        if (start != nullptr && start->square <= enough) vary(Candidate(*start));
+        report(0.2 + 0.5 * ++done / count);
+    }
+    done = 0;
+    for (const VariogramModel model : models) {
+        roughen(model);
+        report(0.7 + 0.3 * ++done / count);
+    }
+    return std::move(all_);
+}
+
+/// The best of a model so far.
+const Candidate* VariogramSearch::best_with(VariogramModel model) const {
+    const Candidate* best = nullptr;
+    for (const Candidate& candidate : all_) {
+        if (candidate.fit.curve.model != model) continue;
+        if (best == nullptr || candidate.square < best->square) best = &candidate;
+    }
+    return best;
+}
+
+void VariogramSearch::attempt(const Curve& curve, double nugget, double longest) {
+    if (curve.range > longest) return;
+    if (const auto found = candidate(curve, nugget)) all_.push_back(*found);
+}
+
+/// Nuggets, then ranges, then nuggets again.
+void VariogramSearch::vary(const Candidate& start) {
+    const VariogramModel model = start.fit.curve.model;
+    const double longest = std::max(start.fit.curve.range, longest_);
+    for (const double share : kNuggetsTried)
+        attempt(start.fit.curve, share * e_.gamma.front(), longest);
+    const CurveFit with_nugget = best_with(model)->fit;
+    for (const double times : kRangesTried) {
+        Curve curve = with_nugget.curve;
+        curve.range *= times;
+        attempt(curve, with_nugget.nugget, longest);
+    }
+    const CurveFit with_range = best_with(model)->fit;
+    for (const double times : {0.3, 3.0}) {
+        const double nugget = with_range.nugget > 0 ? with_range.nugget : 1e-3 * e_.gamma.front();
+        attempt(with_range.curve, nugget * times, longest);
+    }
+}
+
+/// A rougher part instead of the nugget, then beside it, and other ranges with it.
+void VariogramSearch::roughen(VariogramModel model) {
+    const std::vector<RougherPart> parts = parts_for(model);
+    const Candidate* const plain = best_with(model);
+    if (parts.empty() || plain == nullptr || plain->square > kHopeful * best_of(all_).square)
+        return;
+    const CurveFit start = plain->fit;
+    const double longest = std::max(start.curve.range, longest_);
+    for (const RougherPart& part : parts) {
+        for (const double share : part.shares) {
+            Curve curve = start.curve;
+            curve.rougher = part.model;
+            curve.rough_range = part.range;
+            curve.rough_share = share;
+            attempt(curve, 0, longest);
+        }
+    }
+    for (int round = 0; round < 2; ++round) {
+        const CurveFit best = best_with(model)->fit;
+        if (best.curve.rough_share == 0) return;
+        if (round == 0) {
+            for (const double times : {0.5, 2.0}) {
+                Curve curve = best.curve;
+                curve.range *= times;
+                attempt(curve, best.nugget, longest);
+            }
+            if (start.nugget > 0) attempt(best.curve, start.nugget, longest);
+            continue;
+        }
+        for (const double times : {0.55, 1.8}) {
+            Curve curve = best.curve;
+            curve.rough_share *= times;
+            attempt(curve, best.nugget, longest);
+        }
+    }
+}
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "interpolation/variogram/capped_square.hpp"
+#include "interpolation/variogram/leave_one_out.hpp"
+#include "interpolation/variogram/weighted_fit.hpp"
+
+namespace realmodel::interpolation {
+
+/// A variogram, and how well kriging with it predicts points that are left out.
+struct Candidate {
+    CurveFit fit;
+    double sill = 0;    ///< with which the variances are honest
+    double square = 0;  ///< mean square of the errors
+
+    /// Whether errors and experimental values ask for sills that have nothing to do with each
+    /// other.
+    bool contradicts() const;
+};
+
+/// Removes those that contradict, unless all do.
+void keep_agreeing(std::vector<Candidate>& candidates);
+
+/// The one of the least mean square.
+/// @param candidates  at least one
+const Candidate& best_of(const std::vector<Candidate>& candidates);
+
+/// Models that predict points nearly as well as the best.
+std::vector<VariogramModel> hopeful_models(const std::vector<Candidate>& candidates);
+
+/// The search for the variogram with which points that are left out are predicted best: curves
+/// fitted to experimental values, and others around them.
+class VariogramSearch {
+public:
+    /// @param longest    no range is tried beyond it, unless the experimental values ask for it
+    /// @param square_of  measures the errors; made from the best fit where there is none yet
+    VariogramSearch(const LeaveOneOut& points, const ExperimentalVariogram& e,
+                    const Anisotropy& anisotropy, double longest,
+                    std::optional<CappedSquare>& square_of)
+        : points_(points),
+          e_(e),
+          anisotropy_(anisotropy),
+          longest_(longest),
+          square_of_(square_of) {}
+
+    /// All candidates of these models; empty where none fits at all.
+    /// @param report  gets the share that is done; throws to stop
+    std::vector<Candidate> run(std::span<const VariogramModel> models,
+                               const std::function<void(double)>& report);
+
+    /// Changes the ranges, the rougher part and the nugget of a variogram by steps, as long as the
+    /// prediction improves by more than chance.
+    /// @param start  its mean square is that of these points
+    Candidate refined(const Candidate& start) const;
+
+private:
+    void start(std::span<const VariogramModel> models);
+    std::optional<Candidate> candidate(const Curve& curve, double nugget) const;
+    void attempt(const Curve& curve, double nugget, double longest);
+    void vary(const Candidate& start);
+    void roughen(VariogramModel model);
+    const Candidate* best_with(VariogramModel model) const;
+
+    const LeaveOneOut& points_;
+    const ExperimentalVariogram& e_;
+    const Anisotropy& anisotropy_;
+    double longest_;
+    std::optional<CappedSquare>& square_of_;
+    std::vector<Candidate> all_;
+};
+
+}  // namespace realmodel::interpolation

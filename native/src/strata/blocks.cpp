@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/blocks.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/parallel_counts.hpp"
+#include "strata/cells/cell_building.hpp"
+#include "strata/cells/whole_faces.hpp"
+#include "strata/overlay/block_envelope.hpp"
+#include "strata/overlay/rock_footprints.hpp"
+#include "strata/steps.hpp"
+#include "strata/tiling/block_raising.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+/// So many triangles of a surface in a tile, on average. Fewer sort more and cost more.
+constexpr std::size_t kTrianglesInTile = 1;
+
+PlanBox around(const PlanBox& a, const PlanBox& b) {
+    return {std::min(a.low_x, b.low_x), std::min(a.low_y, b.low_y), std::max(a.high_x, b.high_x),
+            std::max(a.high_y, b.high_y)};
+}
+
+/// The surfaces of all rock masses, and how their triangles hang together.
+struct Surfaces {
+    TriangleLinks links;
+    std::vector<std::vector<BlockTiling>> of_rock;  ///< oldest first
+    PlanBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    double largest_height = 0;
+    std::size_t tiles = 1;
+
+    void measure(const exact::PlanArrangement& geometry, int threads, const Progress* progress);
+};
+
+/// Finds the box and heights of all triangles, and how many tiles are right for them: those of the
+/// largest surface of each rock mass.
+void Surfaces::measure(const exact::PlanArrangement& geometry, int threads,
+                       const Progress* progress) {
+    constexpr std::size_t kTriangles = 8192;
+    struct Extent {
+        PlanBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+        double largest_height = 0;
+    };
+    std::size_t triangles = 0;
+    for (const auto& tilings : of_rock) {
+        std::size_t largest = 0;
+        for (const BlockTiling& tiling : tilings) {
+            largest = std::max(largest, tiling.whole.size());
+            std::vector<Extent> extents((tiling.whole.size() + kTriangles - 1) / kTriangles);
+            parallel_ranges(tiling.whole.size(), kTriangles, threads, progress,
+                            [&](std::size_t begin, std::size_t end) {
+                                Extent& extent = extents[begin / kTriangles];
+                                for (std::size_t t = begin; t < end; ++t) {
+                                    const auto b = bounds_of(geometry, tiling.whole[t]);
+                                    extent.box = around(extent.box, b.box);
+                                    extent.largest_height = std::max(
+                                        {extent.largest_height, std::abs(b.low), std::abs(b.high)});
+                                }
+                            });
+            for (const Extent& extent : extents) {
+                box = around(box, extent.box);
+                largest_height = std::max(largest_height, extent.largest_height);
+            }
+        }
+        triangles += largest;
+    }
+    if (triangles == 0) box = {};
+    tiles = triangles / kTrianglesInTile;
+}
+
+Surfaces make_surfaces(Site& site, int threads, const Progress* progress) {
+    Surfaces surfaces;
+    for (EnteredRock& rock : site.rocks) {
+        auto& tilings = surfaces.of_rock.emplace_back();
+        for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
+            if (progress != nullptr) progress->check();
+            const auto number = rock.first_surface + static_cast<std::int32_t>(k);
+            tilings.push_back(make_block_tiling(site.geometry, rock.surfaces[k].triangles,
+                                                std::move(rock.plans[k]), number, surfaces.links,
+                                                threads, progress));
+            site.surface_of_plane.resize(site.geometry.plane_count(), number);
+            rock.surfaces[k] = {};
+        }
+        for (const BorderEdge& edge : rock.region_border)
+            surfaces.links.border.emplace_back(edge.low, edge.high);
+    }
+    surfaces.links.neighbor.resize(site.geometry.plane_count(), {-1, -1, -1});
+    surfaces.measure(site.geometry, threads, progress);
+    return surfaces;
+}
+
+/// Turns the surfaces of a rock mass to what its rules leave of them.
+void replay_rules(Site& site, const EnteredRock& rock, const Surfaces& surfaces,
+                  const BorderEdges& borders, std::vector<BlockTiling>& tilings, int threads,
+                  const Progress* progress) {
+    RuleReplay replay(BlockRaising(site.geometry, surfaces.links, borders, surfaces.largest_height,
+                                   threads, progress),
+                      rock.rules);
+    for (BlockTiling& tiling : tilings) {
+        if (progress != nullptr) progress->check();
+        tiling = replay.add(std::move(tiling));
+    }
+}
+
+}  // namespace
+
+CellComplex build_blocks(Site& site, int threads, Progress* progress) {
+    Surfaces surfaces = make_surfaces(site, threads, progress);
+    const BorderEdges borders(site.geometry, PlanTiles(surfaces.box, surfaces.tiles),
+                              std::move(surfaces.links.border));
+    Construction construction;
+    WholeTriangles wholes(site.geometry.plane_count());
+    RockFootprints footprints;
+    double start = kInputDone;
+    for (std::size_t r = 0; r < site.rocks.size(); ++r) {
+        EnteredRock& rock = site.rocks[r];
+        std::vector<BlockTiling>& tilings = surfaces.of_rock[r];
+        const double share = (kOverlayDone - kInputDone) / std::max(site.surfaces, 1);
+        const std::size_t first_node = construction.node_block.size(),
+                          first_face = construction.faces.size();
+        if (!rock.is_erosional())
+            replay_rules(site, rock, surfaces, borders, tilings, threads, progress);
+        BlockEnvelope envelope(site.geometry, surfaces.links, borders, surfaces.largest_height,
+                               construction, wholes, threads, progress);
+        if (rock.region) envelope.start_region(rock.region_filling);
+        for (std::size_t k = tilings.size(); k-- > 0;) {
+            begin_step(progress, start, share, "intersecting the surfaces");
+            envelope.add(tilings[k], static_cast<std::int32_t>(k));
+            tilings[k] = {};
+            start += share;
+        }
+        if (rock.base) check_base(rock, envelope.lowest());
+        envelope.finish(rock.base);
+        construction.count_blocks_from(first_node, rock.first_surface);
+        add_touched_triangles(site.geometry, surfaces.links, wholes, construction.faces, threads,
+                              progress);
+        if (site.rocks.size() > 1)
+            footprints.add(site.geometry, construction.faces, first_face, progress);
+    }
+    const BlockLinks links{surfaces.links, wholes, borders};
+    return build_cells(site.geometry, construction, &links, site.surface_of_plane, threads,
+                       progress);
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/cells/assembly.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "base/parallel_counts.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+constexpr std::size_t kFaces = 1 << 13;  // copied at a time
+
+/// The faces on surfaces, which come first; those that only have a cell above are seen from below.
+class SurfaceFaces {
+public:
+    SurfaceFaces(const FaceList& faces, const ConformedFaces& loops, int threads,
+                 const Progress* progress)
+        : faces_(faces), loops_(loops), threads_(threads), progress_(progress) {
+        first_corner_.resize((faces.size() + kFaces - 1) / kFaces);
+        parallel_ranges(
+            faces.size(), kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
+                const std::uint32_t first = loops.face_offsets[begin],
+                                    last = loops.face_offsets[end];
+                const auto taken =
+                    std::count_if(loops.vertices.begin() + first, loops.vertices.begin() + last,
+                                  [](std::int32_t v) { return v >= 0; });
+                first_corner_[begin / kFaces] =
+                    static_cast<std::size_t>(taken + (late_from(last) - late_from(first)));
+            });
+        corners_ = count_before(first_corner_);
+    }
+
+    std::size_t corners() const { return corners_; }
+
+    void copy(const std::vector<std::int32_t>& surface_of_plane, CellComplex& complex) const {
+        parallel_ranges(
+            faces_.size(), kFaces, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+                auto late = late_from(loops_.face_offsets[begin]);
+                const auto start = complex.face_vertices.begin();
+                auto next = start + static_cast<std::ptrdiff_t>(first_corner_[begin / kFaces]);
+                for (std::size_t f = begin; f < end; ++f) {
+                    const auto face = next;
+                    for (auto e = loops_.face_offsets[f]; e < loops_.face_offsets[f + 1]; ++e) {
+                        if (loops_.vertices[e] >= 0) *next++ = loops_.vertices[e];
+                        for (; late != loops_.late.end() && late->entry == e; ++late)
+                            *next++ = late->vertex;
+                    }
+                    complex.face_offsets[f] = face - start;
+                    complex.face_surface[f] =
+                        surface_of_plane[static_cast<std::size_t>(faces_.plane[f])];
+                    if (faces_.below[f] >= 0) {
+                        complex.face_cells[f] = {faces_.below[f], faces_.above[f]};
+                    } else {
+                        complex.face_cells[f] = {faces_.above[f], kOutsideCell};
+                        std::reverse(face, next);
+                    }
+                }
+            });
+    }
+
+private:
+    /// The first late vertex of an entry, or of one after it.
+    std::vector<InsertedVertex>::const_iterator late_from(std::uint32_t entry) const {
+        return std::lower_bound(
+            loops_.late.begin(), loops_.late.end(), entry,
+            [](const InsertedVertex& late, std::uint32_t e) { return late.entry < e; });
+    }
+
+    const FaceList& faces_;
+    const ConformedFaces& loops_;
+    int threads_;
+    const Progress* progress_;
+    std::vector<std::size_t> first_corner_;  ///< of so many faces each
+    std::size_t corners_ = 0;
+};
+
+/// Copies some walls, the first of them as a given face.
+void copy_walls(const WallBatch& walls, std::size_t face, std::size_t corner,
+                CellComplex& complex) {
+    auto from = walls.vertices.begin();
+    for (std::size_t w = 0; w < walls.sizes.size(); ++w, ++face) {
+        const std::int32_t size = walls.sizes[w];
+        const auto to = complex.face_vertices.begin() + static_cast<std::ptrdiff_t>(corner);
+        const auto [left, right] = walls.cells[w];
+        complex.face_offsets[face] = static_cast<std::int64_t>(corner);
+        complex.face_surface[face] = kWall;
+        if (left >= 0) {
+            complex.face_cells[face] = {left, right};
+            std::copy(from, from + size, to);
+        } else {
+            complex.face_cells[face] = {right, kOutsideCell};
+            std::reverse_copy(from, from + size, to);
+        }
+        from += size;
+        corner += static_cast<std::size_t>(size);
+    }
+}
+
+}  // namespace
+
+CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
+                     ConformedFaces loops, std::vector<WallBatch> walls,
+                     GrowingArray<std::int32_t> cell_block, int threads, const Progress* progress) {
+    CellComplex complex;
+    complex.vertices = std::move(loops.positions);
+    complex.cell_block = std::move(cell_block);
+    std::vector<std::size_t> first_wall, first_corner;
+    for (const WallBatch& batch : walls) {
+        first_wall.push_back(batch.sizes.size());
+        first_corner.push_back(batch.vertices.size());
+    }
+    const std::size_t face_count = faces.size() + count_before(first_wall);
+    const SurfaceFaces surface_faces(faces, loops, threads, progress);
+    const std::size_t corners_of_faces = surface_faces.corners();
+    complex.face_vertices.resize(corners_of_faces + count_before(first_corner));
+    complex.face_offsets.resize(face_count + 1);
+    complex.face_offsets[face_count] = static_cast<std::int64_t>(complex.face_vertices.size());
+    complex.face_cells.resize(face_count);
+    complex.face_surface.resize(face_count);
+    surface_faces.copy(surface_of_plane, complex);
+    loops = {};
+    parallel_chunks(walls.size(), threads, progress, [&](std::size_t batch) {
+        copy_walls(walls[batch], faces.size() + first_wall[batch],
+                   corners_of_faces + first_corner[batch], complex);
+        walls[batch] = {};
+    });
+    return complex;
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "realmodel/strata/stack.hpp"
+#include "strata/conform/walls.hpp"
+
+namespace realmodel::strata {
+
+/// The complex (docs/geometry.md) from finished faces, conformed faces and walls, which are given
+/// back as they are used.
+CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
+                     ConformedFaces loops, std::vector<WallBatch> walls,
+                     GrowingArray<std::int32_t> cell_block, int threads, const Progress* progress);
+
+}  // namespace realmodel::strata

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/cells/cell_building.hpp"
+
+#include <cassert>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "realmodel/base/memory.hpp"
+#include "strata/cells/assembly.hpp"
+#include "strata/cells/closedness.hpp"
+#include "strata/cells/distinct_positions.hpp"
+#include "strata/cells/node_cells.hpp"
+#include "strata/cells/whole_faces.hpp"
+#include "strata/conform/walls.hpp"
+#include "strata/steps.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+/// Faces that conform, and what stands between them.
+struct Conformed {
+    PlanVertices places;
+    ConformedFaces loops;
+    FoundWalls walls;
+    std::vector<ExtraPoint> crossings;  ///< of columns along lines
+    double done = 0;                    ///< of the work
+};
+
+/// Repeats the steps until no two columns cross in height between the vertices of a line; the
+/// second round is the last one.
+Conformed conform(exact::PlanArrangement& geometry, const Construction& construction,
+                  const BlockLinks* blocks, int threads, Progress* progress) {
+    const FaceList& faces = construction.faces;
+    Conformed c;
+    c.done = kOverlayDone;
+    for (int round = 0;; ++round) {
+        const auto next = [&](double of_round, const char* text) {
+            // a second round, where there is one, shares what is left
+            const double share = of_round * (1.0 - kOverlayDone) * (round == 0 ? 0.5 : 0.25);
+            begin_step(progress, c.done, share, text);
+            c.done += share;
+        };
+        next(0.2, "joining points");
+        c.places = find_plan_vertices(geometry, faces, c.crossings, threads, progress);
+        next(0.4, "joining edges");
+        CollinearEdges lines = find_collinear_edges(
+            geometry, faces, c.places, c.crossings,
+            blocks == nullptr ? &construction.node_is_thick : nullptr, threads, progress);
+        next(0.3, "rounding");
+        c.loops = conform_faces(geometry, faces, c.places, lines, threads, progress);
+        next(0.1, "building walls");
+        std::optional<BlockLines> of_blocks;
+        if (blocks != nullptr)
+            of_blocks.emplace(construction.node_block, c.places, blocks->borders);
+        c.walls = find_walls(geometry, faces, lines, c.loops, of_blocks ? &*of_blocks : nullptr,
+                             threads, progress);
+        if (c.walls.missing.empty()) return c;
+        c.crossings.insert(c.crossings.end(), c.walls.missing.begin(), c.walls.missing.end());
+    }
+}
+
+/// Names the cells that rounding left without a volume.
+Warning left_flat(const std::vector<FlatCell>& flat, const CellComplex& complex) {
+    const auto& [cell, at] = flat.front();
+    Warning warning{"flat_cells", complex.cell_block[static_cast<std::size_t>(cell)], {}, {}};
+    for (const FlatCell& one : flat)
+        warning.items.push_back(one.cell);
+    warning.text = std::to_string(flat.size()) + (flat.size() == 1 ? " cell is" : " cells are") +
+                   " thinner than the spacing of doubles and stayed flat, the first at (" +
+                   std::to_string(at[0]) + ", " + std::to_string(at[1]) + ")";
+    return warning;
+}
+
+}  // namespace
+
+CellComplex build_cells(exact::PlanArrangement& geometry, Construction& construction,
+                        const BlockLinks* blocks, const std::vector<std::int32_t>& surface_of_plane,
+                        int threads, Progress* progress) {
+    // The peak of memory is still to come, and what chunks of overlays were made in is free.
+    geometry.forget_names();
+    constexpr std::size_t kManyPoints = 1000000;
+    if (geometry.point_count() > kManyPoints) give_back_memory();
+    Conformed c = conform(geometry, construction, blocks, threads, progress);
+    FaceList& faces = construction.faces;
+    // What comes out takes the memory of what it was made of.
+    if (blocks == nullptr) {
+        c.loops.entries = {};
+        geometry.forget_all();
+        faces.layer = {};
+    }
+    begin_step(progress, c.done, 1.0 - c.done, "putting the cells together");
+    set_vertex_positions(c.places, c.loops, threads, progress);
+    GrowingArray<std::int32_t> cell_block;
+    std::vector<std::int32_t> cell_of_node;
+    if (blocks == nullptr) {
+        cell_block = std::move(construction.node_block);
+    } else {
+        auto& links = construction.links;
+        links.insert(links.end(), c.walls.links.begin(), c.walls.links.end());
+        cell_of_node = cells_of_nodes(construction, blocks->triangles, blocks->wholes, cell_block,
+                                      threads, progress);
+        for (auto* nodes : {&faces.above, &faces.below}) {
+            for (std::int32_t& node : *nodes)
+                node = node < 0 ? kOutsideCell : cell_of_node[static_cast<std::size_t>(node)];
+        }
+    }
+    const std::vector<FlatCell> flat =
+        make_distinct(geometry, faces, c.places, c.loops, threads, progress);
+    std::optional<UntouchedTriangles> untouched;
+    if (blocks != nullptr) {
+        c.walls.walls.assign(1, join_stretches(c.walls.stretches, cell_of_node, faces, c.crossings,
+                                               c.places, c.loops, threads, progress));
+        untouched.emplace(geometry, blocks->wholes, surface_of_plane, faces, c.loops, threads,
+                          progress);
+    }
+    c.places = {};
+    if (blocks == nullptr) faces.polygons = {};
+    CellComplex complex =
+        assemble(faces, surface_of_plane, std::move(c.loops), std::move(c.walls.walls),
+                 std::move(cell_block), threads, progress);
+    if (untouched) untouched->add_to(complex, cell_of_node);
+    assert(are_closed(complex));
+    if (!flat.empty()) complex.warnings.push_back(left_flat(flat, complex));
+    return complex;
+}
+
+}  // namespace realmodel::strata

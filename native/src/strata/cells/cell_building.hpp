@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "realmodel/strata/stack.hpp"
+#include "strata/overlay/border_edges.hpp"
+#include "strata/overlay/sheet_links.hpp"
+
+namespace realmodel::strata {
+
+/// What is known besides of nodes that become the cells of blocks.
+struct BlockLinks {
+    const TriangleLinks& triangles;
+    const WholeTriangles& wholes;
+    const BorderEdges& borders;
+};
+
+/// Joins the faces of a construction to a complex: without `blocks` each node is a cell, a column;
+/// else what hangs together is one. Gives back what is done with on the way, so that afterwards
+/// only the geometry's counts are there.
+CellComplex build_cells(exact::PlanArrangement& geometry, Construction& construction,
+                        const BlockLinks* blocks, const std::vector<std::int32_t>& surface_of_plane,
+                        int threads, Progress* progress);
+
+}  // namespace realmodel::strata

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/strata/cell_components.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "base/disjoint_sets.hpp"
+#include "base/parallel.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+void check_cells(const std::array<std::int32_t, 2>& sides, std::size_t face, std::size_t cells) {
+    const auto count = static_cast<std::int64_t>(cells);
+    if (std::max(sides[0], sides[1]) < count && std::min(sides[0], sides[1]) >= -1) return;
+    throw InputError("bad_index",
+                     "face " + std::to_string(face) + " names a cell that is not there", -1,
+                     {static_cast<std::int64_t>(face)});
+}
+
+}  // namespace
+
+std::vector<std::int32_t> cell_components(std::span<const std::array<std::int32_t, 2>> face_cells,
+                                          std::span<const std::int32_t> cell_block,
+                                          const Progress* progress) {
+    const auto cells = static_cast<std::int32_t>(cell_block.size());
+    DisjointSets parts(cell_block.size());
+    for (std::size_t f = 0; f < face_cells.size(); ++f) {
+        poll(progress, f);
+        const auto [first, second] = face_cells[f];
+        check_cells(face_cells[f], f, cell_block.size());
+        if (first < 0 || second < 0) continue;
+        if (cell_block[static_cast<std::size_t>(first)] ==
+            cell_block[static_cast<std::size_t>(second)]) {
+            parts.join(first, second);
+        }
+    }
+    std::vector<std::int32_t> component(cell_block.size());
+    for (std::int32_t c = 0; c < cells; ++c) {
+        poll(progress, static_cast<std::size_t>(c));
+        component[static_cast<std::size_t>(c)] = parts.find(c);
+    }
+    return component;
+}
+
+CellSides cell_sides(std::span<const std::array<std::int32_t, 2>> face_cells, std::size_t cells,
+                     const Progress* progress) {
+    CellSides result;
+    result.offsets.assign(cells + 1, 0);
+    for (std::size_t f = 0; f < face_cells.size(); ++f) {
+        poll(progress, f);
+        check_cells(face_cells[f], f, cells);
+        for (const std::int32_t cell : face_cells[f]) {
+            if (cell >= 0) ++result.offsets[static_cast<std::size_t>(cell) + 1];
+        }
+    }
+    for (std::size_t c = 0; c < cells; ++c) {
+        poll(progress, c);
+        result.offsets[c + 1] += result.offsets[c];
+    }
+    result.sides.resize(static_cast<std::size_t>(result.offsets.back()));
+    std::vector<std::int64_t> next(result.offsets.begin(), result.offsets.end() - 1);
+    for (std::size_t f = 0; f < face_cells.size(); ++f) {
+        poll(progress, f);
+        for (std::size_t second = 0; second < 2; ++second) {
+            const std::int32_t cell = face_cells[f][second];
+            if (cell < 0) continue;
+            const auto side = static_cast<std::int64_t>(2 * f + second);
+            result.sides[static_cast<std::size_t>(next[static_cast<std::size_t>(cell)]++)] = side;
+        }
+    }
+    return result;
+}
+
+}  // namespace realmodel::strata

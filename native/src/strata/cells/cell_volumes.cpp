@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/strata/cell_volumes.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "base/parallel.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+using Position = std::array<double, 3>;
+
+constexpr std::size_t kFacesOfChunk = 1 << 13;
+
+/// A face as the divergence theorem sees it: its first corner, and twice its area vector.
+struct FaceArea {
+    Position first, area;
+};
+
+FaceArea area_of(std::span<const Position> vertices, std::span<const std::int32_t> loop) {
+    const auto at = [&](std::size_t i) -> const Position& {
+        return vertices[static_cast<std::size_t>(loop[i])];
+    };
+    FaceArea face{at(0), {0, 0, 0}};
+    Position u{};
+    for (std::size_t i = 1; i < loop.size(); ++i) {
+        const Position& p = at(i);
+        const Position v{p[0] - face.first[0], p[1] - face.first[1], p[2] - face.first[2]};
+        if (i > 1) {
+            face.area[0] += u[1] * v[2] - u[2] * v[1];
+            face.area[1] += u[2] * v[0] - u[0] * v[2];
+            face.area[2] += u[0] * v[1] - u[1] * v[0];
+        }
+        u = v;
+    }
+    return face;
+}
+
+[[noreturn]] void refuse(std::size_t face, const char* what) {
+    throw InputError("bad_index", "face " + std::to_string(face) + " names " + what, -1,
+                     {static_cast<std::int64_t>(face)});
+}
+
+}  // namespace
+
+std::vector<double> cell_volumes(std::span<const Position> vertices,
+                                 std::span<const std::int64_t> face_offsets,
+                                 std::span<const std::int32_t> face_vertices,
+                                 std::span<const std::array<std::int32_t, 2>> face_cells,
+                                 std::size_t cells, int threads, const Progress* progress) {
+    const std::size_t faces = face_cells.size();
+    if (face_offsets.size() != faces + 1) refuse(faces, "more or fewer offsets than faces");
+    const auto loop_of = [&](std::size_t f) {
+        const std::int64_t begin = face_offsets[f], end = face_offsets[f + 1];
+        if (begin < 0 || begin >= end || end > static_cast<std::int64_t>(face_vertices.size()))
+            refuse(f, "corners that are not there");
+        return face_vertices.subspan(static_cast<std::size_t>(begin),
+                                     static_cast<std::size_t>(end - begin));
+    };
+    std::vector<std::int32_t> origin(cells, -1);  // a corner of each cell
+    for (std::size_t f = 0; f < faces; ++f) {
+        poll(progress, f);
+        const auto loop = loop_of(f);
+        for (const std::int32_t v : loop) {
+            if (v < 0 || static_cast<std::size_t>(v) >= vertices.size())
+                refuse(f, "a vertex that is not there");
+        }
+        for (const std::int32_t cell : face_cells[f]) {
+            if (cell < -1 || cell >= static_cast<std::int64_t>(cells))
+                refuse(f, "a cell that is not there");
+            if (cell >= 0 && origin[static_cast<std::size_t>(cell)] < 0)
+                origin[static_cast<std::size_t>(cell)] = loop[0];
+        }
+    }
+    // the shares of the faces on several threads; then in order, so that sums do not depend on them
+    std::vector<std::array<double, 2>> share(faces);
+    parallel_chunks(
+        (faces + kFacesOfChunk - 1) / kFacesOfChunk, threads, progress, [&](std::size_t chunk) {
+            const std::size_t end = std::min(faces, (chunk + 1) * kFacesOfChunk);
+            for (std::size_t f = chunk * kFacesOfChunk; f < end; ++f) {
+                const FaceArea face = area_of(vertices, loop_of(f));
+                for (std::size_t side = 0; side < 2; ++side) {
+                    const std::int32_t cell = face_cells[f][side];
+                    if (cell < 0) continue;
+                    const auto corner =
+                        static_cast<std::size_t>(origin[static_cast<std::size_t>(cell)]);
+                    const Position& o = vertices[corner];
+                    const double volume = ((face.first[0] - o[0]) * face.area[0] +
+                                           (face.first[1] - o[1]) * face.area[1] +
+                                           (face.first[2] - o[2]) * face.area[2]) /
+                                          6;
+                    share[f][side] = side == 0 ? volume : -volume;
+                }
+            }
+        });
+    std::vector<double> volume(cells, 0.0);
+    for (std::size_t f = 0; f < faces; ++f) {
+        poll(progress, f);
+        for (std::size_t side = 0; side < 2; ++side) {
+            const std::int32_t cell = face_cells[f][side];
+            if (cell >= 0) volume[static_cast<std::size_t>(cell)] += share[f][side];
+        }
+    }
+    return volume;
+}
+
+}  // namespace realmodel::strata

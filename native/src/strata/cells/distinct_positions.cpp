@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/cells/distinct_positions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "base/parallel_counts.hpp"
+#include "base/ulp.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+/// Moves places to free positions beside them.
+class Spreader {
+public:
+    Spreader(const exact::PlanArrangement& geometry, const PlanVertices& places)
+        : geometry_(geometry), places_(places) {}
+
+    bool movable(std::size_t place) const {
+        return places_.representative[place] >= geometry_.vertex_count();
+    }
+    const PlanPosition& at(std::size_t place) const {
+        if (!moved_.empty()) {
+            const auto moved = moved_.find(place);
+            if (moved != moved_.end()) return moved->second;
+        }
+        return places_.position[place];
+    }
+    /// The places that were moved, and where to.
+    const std::map<std::size_t, PlanPosition>& moved() const { return moved_; }
+
+    /// Gives places in equal positions positions of their own.
+    void separate() {
+        // input vertices come first among equals, so these are crossings
+        for (const PlanVertexId place : places_.coincident)
+            move(static_cast<std::size_t>(place), [](int, int) { return true; });
+    }
+
+    /// Moves a place by as little as possible, but along the given axis.
+    void move_along(std::size_t place, int axis) {
+        move(place, [axis](int x, int y) { return (axis == 0 ? x : y) != 0; });
+    }
+
+private:
+    bool take(const PlanPosition& position) {
+        if (std::binary_search(places_.position.begin(), places_.position.end(), position))
+            return false;
+        return taken_.insert(position).second;
+    }
+
+    template <class Allowed>
+    void move(std::size_t place, const Allowed& allowed) {
+        const PlanPosition from = at(place);
+        for (int reach = 1;; ++reach) {
+            for (int x = -reach; x <= reach; ++x) {
+                for (int y = -reach; y <= reach; ++y) {
+                    if (std::max(std::abs(x), std::abs(y)) != reach || !allowed(x, y)) continue;
+                    const PlanPosition to{moved_by_ulps(from[0], x), moved_by_ulps(from[1], y)};
+                    if (!take(to)) continue;
+                    moved_[place] = to;
+                    return;
+                }
+            }
+        }
+    }
+
+    const exact::PlanArrangement& geometry_;
+    const PlanVertices& places_;
+    std::map<std::size_t, PlanPosition> moved_;
+    std::set<PlanPosition> taken_;  ///< besides the places' own positions
+};
+
+struct Extent {
+    PlanPosition low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+    void include(const PlanPosition& p) {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            low[axis] = std::min(low[axis], p[axis]);
+            high[axis] = std::max(high[axis], p[axis]);
+        }
+    }
+    bool is_flat(std::size_t axis) const { return low[axis] == high[axis]; }
+};
+
+/// Finds cells whose places all have one x, or one y, and spreads them.
+class FlatCells {
+public:
+    FlatCells(const FaceList& faces, const PlanVertices& places, Spreader& spreader, int threads,
+              const Progress* progress)
+        : faces_(faces),
+          places_(places),
+          spreader_(spreader),
+          threads_(threads),
+          progress_(progress) {}
+
+    /// Finds the cells; whether there are any.
+    bool find() {
+        cells_ = cells_of_flat_faces();
+        if (cells_.empty()) return false;
+        // Few, and all of their faces must be flat.
+        find_faces();
+        extents_.assign(cells_.size(), {});
+        for_each_corner(
+            [&](std::size_t i, std::size_t place) { extents_[i].include(spreader_.at(place)); });
+        return std::any_of(extents_.begin(), extents_.end(),
+                           [](const Extent& e) { return e.is_flat(0) || e.is_flat(1); });
+    }
+    /// Spreads those found last; false where no place of them may move.
+    bool spread() {
+        std::vector<std::array<std::int64_t, 2>> to_move(cells_.size(), {-1, -1});
+        bool any = false;
+        for_each_corner([&](std::size_t i, std::size_t place) {
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                if (!extents_[i].is_flat(axis) || !spreader_.movable(place)) continue;
+                to_move[i][axis] = std::max(to_move[i][axis], static_cast<std::int64_t>(place));
+                any = true;
+            }
+        });
+        for (const auto& of_cell : to_move) {
+            for (int axis = 0; axis < 2; ++axis) {
+                const std::int64_t place = of_cell[static_cast<std::size_t>(axis)];
+                if (place >= 0) spreader_.move_along(static_cast<std::size_t>(place), axis);
+            }
+        }
+        return any;
+    }
+    /// Those found last.
+    std::vector<FlatCell> found() const {
+        std::vector<FlatCell> flat;
+        for (std::size_t i = 0; i < cells_.size(); ++i) {
+            if (extents_[i].is_flat(0) || extents_[i].is_flat(1))
+                flat.push_back({cells_[i], extents_[i].low});
+        }
+        return flat;
+    }
+
+private:
+    std::size_t place_of(const Corner& corner) const {
+        return static_cast<std::size_t>(places_.of_point[static_cast<std::size_t>(corner.point)]);
+    }
+
+    /// Asks for what will be read of the faces after one: mostly that of two corners.
+    [[gnu::always_inline]] void prefetch_face(std::size_t face) const {
+        const auto first_corner = [&](std::size_t ahead) {
+            const std::size_t f = std::min(face + ahead, faces_.size() - 1);
+            return faces_.polygons.corners.data() + faces_.polygons.offsets[f];
+        };
+        prefetch(&places_.of_point[static_cast<std::size_t>(first_corner(24)->point)]);
+        const Corner* const near = first_corner(12);
+        prefetch(&places_.position[place_of(near[0])]);
+        prefetch(&places_.position[place_of(near[1])]);
+    }
+
+    bool is_flat(PolygonView face) const {
+        const PlanPosition& first = spreader_.at(place_of(face[0]));
+        bool same_x = true, same_y = true;
+        for (std::size_t i = 1; i < face.size() && (same_x || same_y); ++i) {
+            const PlanPosition& next = spreader_.at(place_of(face[i]));
+            same_x = same_x && next[0] == first[0];
+            same_y = same_y && next[1] == first[1];
+        }
+        return same_x || same_y;
+    }
+
+    /// Appends what collect(face, found) finds of all faces, in their order.
+    template <class Found, class Collect>
+    std::vector<Found> collected(const Collect& collect) const {
+        constexpr std::size_t kFaces = 1 << 13;
+        std::vector<std::vector<Found>> found((faces_.size() + kFaces - 1) / kFaces);
+        parallel_ranges(faces_.size(), kFaces, threads_, progress_,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t f = begin; f < end; ++f)
+                                collect(f, found[begin / kFaces]);
+                        });
+        std::vector<Found> all;
+        for (const auto& some : found)
+            all.insert(all.end(), some.begin(), some.end());
+        return all;
+    }
+
+    /// The cells above and below faces that are flat themselves, ascending.
+    std::vector<std::int32_t> cells_of_flat_faces() const {
+        auto cells = collected<std::int32_t>([&](std::size_t f, auto& found) {
+            prefetch_face(f);
+            if (!is_flat(faces_.polygons[f])) return;
+            for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
+                if (cell != kOutsideCell) found.push_back(cell);
+            }
+        });
+        std::sort(cells.begin(), cells.end());
+        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+        return cells;
+    }
+
+    void find_faces() {
+        of_cells_ = collected<std::pair<std::size_t, std::size_t>>([&](std::size_t f, auto& found) {
+            for (const std::int32_t cell : {faces_.above[f], faces_.below[f]}) {
+                const auto at = std::lower_bound(cells_.begin(), cells_.end(), cell);
+                if (at != cells_.end() && *at == cell)
+                    found.emplace_back(static_cast<std::size_t>(at - cells_.begin()), f);
+            }
+        });
+    }
+
+    /// Calls visit(i, place) for every corner of every face of the i-th of the cells.
+    template <class Visit>
+    void for_each_corner(const Visit& visit) const {
+        for (const auto& [i, face] : of_cells_) {
+            for (const Corner& corner : faces_.polygons[face])
+                visit(i, place_of(corner));
+        }
+    }
+
+    const FaceList& faces_;
+    const PlanVertices& places_;
+    Spreader& spreader_;
+    int threads_;
+    const Progress* progress_;
+    std::vector<std::int32_t> cells_;                            ///< with a flat face, ascending
+    std::vector<Extent> extents_;                                ///< of each of them
+    std::vector<std::pair<std::size_t, std::size_t>> of_cells_;  ///< which of them, and a face
+};
+
+}  // namespace
+
+std::vector<FlatCell> make_distinct(const exact::PlanArrangement& geometry, const FaceList& faces,
+                                    const PlanVertices& places, ConformedFaces& loops, int threads,
+                                    const Progress* progress) {
+    Spreader spreader(geometry, places);
+    spreader.separate();
+    // Moving one cell's place may flatten its neighbor; a few rounds settle it.
+    constexpr int kRounds = 16;
+    FlatCells flat(faces, places, spreader, threads, progress);
+    std::vector<FlatCell> left;
+    for (int round = 0; flat.find(); ++round) {
+        if (round < kRounds && flat.spread()) continue;
+        left = flat.found();
+        break;
+    }
+    for (const auto& [place, position] : spreader.moved()) {
+        for (auto v = loops.place_offsets[place]; v < loops.place_offsets[place + 1]; ++v) {
+            auto& vertex = loops.positions[static_cast<std::size_t>(v)];
+            vertex[0] = position[0];
+            vertex[1] = position[1];
+        }
+    }
+    return left;
+}
+
+}  // namespace realmodel::strata

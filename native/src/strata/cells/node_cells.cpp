@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/cells/node_cells.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "base/disjoint_sets.hpp"
+#include "base/parallel_counts.hpp"
+#include "strata/conform/interval_curves.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+constexpr std::size_t kTriangles = 1 << 13, kLinks = 1 << 14, kEntries = 1 << 15;
+
+/// Whether walls beside each other at a vertical edge make one face: where the edge is much longer
+/// than what rounding moves positions by, for rounded ones are not quite on one line.
+bool is_high(const std::array<double, 3>& lower, const std::array<double, 3>& upper) {
+    return upper[2] - lower[2] > 0x1p-26 * std::max(std::abs(lower[0]), std::abs(lower[1]));
+}
+
+/// Calls emit(wall) with the walls between cells.
+template <class Emit>
+void for_each_wall(std::span<const WallStretch> stretches,
+                   const std::vector<std::int32_t>& cell_of_node, const ConformedFaces& loops,
+                   const Emit& emit) {
+    const auto position = [&](std::int32_t v) -> const std::array<double, 3>& {
+        return loops.positions[static_cast<std::size_t>(v)];
+    };
+    const auto cell = [&](std::int32_t node) {
+        return node < 0 ? kOutsideCell : cell_of_node[static_cast<std::size_t>(node)];
+    };
+    WallJoining joining;
+    for (std::size_t i = 0; i < stretches.size(); ++i) {
+        const WallStretch& s = stretches[i];
+        assert(cell(s.left) != cell(s.right));
+        joining.add(s.lower, s.upper, cell(s.left), cell(s.right),
+                    is_high(position(s.lower[0]), position(s.upper[0])));
+        const bool is_last = i + 1 == stretches.size();
+        if (!is_last && stretches[i + 1].line == s.line && stretches[i + 1].interval == s.interval)
+            continue;
+        joining.end_interval(emit);
+        if (is_last || stretches[i + 1].line != s.line ||
+            stretches[i + 1].interval != s.interval + 1)
+            joining.end_line(emit);
+    }
+}
+
+/// Keeps some of the vertices.
+/// @return the new number of each, -1 of those that are gone
+std::vector<std::int32_t> keep_vertices(const std::vector<std::uint8_t>& is_needed,
+                                        ConformedFaces& loops, int threads,
+                                        const Progress* progress) {
+    std::vector<std::int32_t> number(is_needed.size(), -1);
+    std::int32_t count = 0;
+    for (std::size_t v = 0; v < is_needed.size(); ++v) {
+        if (is_needed[v] == 0) continue;
+        loops.positions[static_cast<std::size_t>(count)] = loops.positions[v];
+        number[v] = count++;
+    }
+    loops.positions.resize(static_cast<std::size_t>(count));
+    parallel_ranges(loops.vertices.size(), kEntries, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t e = begin; e < end; ++e)
+                            loops.vertices[e] = number[static_cast<std::size_t>(loops.vertices[e])];
+                    });
+    return number;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
+                                         const TriangleLinks& links, const WholeTriangles& wholes,
+                                         GrowingArray<std::int32_t>& cell_block, int threads,
+                                         const Progress* progress) {
+    const auto block = [&](std::int32_t node) {
+        return construction.node_block[static_cast<std::size_t>(node)];
+    };
+    DisjointSets sets(construction.node_block.size());
+    parallel_ranges(construction.links.size(), kLinks, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i) {
+                            const auto [a, b] = construction.links[i];
+                            assert(block(a) == block(b));
+                            sets.join(a, b);
+                        }
+                    });
+    const auto join = [&](std::int32_t a, std::int32_t b) {
+        if (a >= 0 && b >= 0 && block(a) == block(b)) sets.join(a, b);
+    };
+    parallel_ranges(links.neighbor.size(), kTriangles, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (auto plane = static_cast<PlaneId>(begin);
+                             plane < static_cast<PlaneId>(end); ++plane) {
+                            const WholeFace& face = wholes.of(plane);
+                            if (!face.is_set()) continue;
+                            for (const PlaneId n : links.of(plane)) {
+                                if (n <= plane || !wholes.of(n).is_set()) continue;
+                                join(face.above, wholes.of(n).above);
+                                join(face.below, wholes.of(n).below);
+                            }
+                        }
+                    });
+    std::vector<std::int32_t> cell_of_node(construction.node_block.size());
+    for (std::size_t n = 0; n < cell_of_node.size(); ++n) {
+        poll(progress, n);
+        const auto root = static_cast<std::size_t>(sets.find(static_cast<std::int32_t>(n)));
+        if (root == n) {
+            cell_of_node[n] = static_cast<std::int32_t>(cell_block.size());
+            cell_block.push_back(construction.node_block[n]);
+        } else {
+            cell_of_node[n] = cell_of_node[root];
+        }
+    }
+    return cell_of_node;
+}
+
+WallBatch join_stretches(std::span<const WallStretch> stretches,
+                         const std::vector<std::int32_t>& cell_of_node, const FaceList& faces,
+                         std::span<const ExtraPoint> crossings, const PlanVertices& places,
+                         ConformedFaces& loops, int threads, const Progress* progress) {
+    std::vector<std::uint8_t> is_needed(loops.positions.size(), 0), may_bend(is_needed);
+    for (std::size_t c = 0; c < faces.polygons.corners.size(); ++c)
+        is_needed[static_cast<std::size_t>(loops.vertices[loops.entries.first(c)])] = 1;
+    for (const ExtraPoint& e : crossings) {
+        const auto place =
+            static_cast<std::size_t>(places.of_point[static_cast<std::size_t>(e.point)]);
+        std::fill(may_bend.begin() + loops.place_offsets[place],
+                  may_bend.begin() + loops.place_offsets[place + 1], std::uint8_t{1});
+    }
+    for (const WallStretch& s : stretches) {
+        for (const std::int32_t v : {s.lower[0], s.lower[1], s.upper[0], s.upper[1]})
+            is_needed[static_cast<std::size_t>(v)] |= may_bend[static_cast<std::size_t>(v)];
+    }
+    const auto for_all = [&](const auto& emit) {
+        for_each_wall(stretches, cell_of_node, loops, emit);
+    };
+    for_all([&](const OpenWall& wall) {
+        for (const std::int32_t v :
+             {wall.lower.front(), wall.lower.back(), wall.upper.front(), wall.upper.back()})
+            is_needed[static_cast<std::size_t>(v)] = 1;
+    });
+    WallBatch walls;
+    for_all([&](const OpenWall& wall) {
+        const std::size_t first = walls.vertices.size();
+        add_wall_loop(wall.lower, wall.upper, walls.vertices,
+                      [&](std::int32_t v) { return is_needed[static_cast<std::size_t>(v)] != 0; });
+        walls.sizes.push_back(static_cast<std::int32_t>(walls.vertices.size() - first));
+        walls.cells.push_back({wall.left, wall.right});
+    });
+    const auto number = keep_vertices(is_needed, loops, threads, progress);
+    for (std::int32_t& v : walls.vertices)
+        v = number[static_cast<std::size_t>(v)];
+    return walls;
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/cells/volumes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel_counts.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+/// Sum with a running correction (Knuth's exact sum of two doubles, added up).
+struct Sum {
+    double total = 0, correction = 0;
+    void add(double value) {
+        const double next = total + value;
+        const double added = next - total;
+        correction += (total - (next - added)) + (value - added);
+        total = next;
+    }
+    double value() const { return total + correction; }
+};
+
+/// The area of a face in plan, and the volume between the face and the height of its first corner.
+struct Projection {
+    double area = 0, volume = 0;
+};
+
+Projection project(const CellComplex& complex, std::size_t face) {
+    const auto corner = [&](std::int64_t i) -> const std::array<double, 3>& {
+        return complex
+            .vertices[static_cast<std::size_t>(complex.face_vertices[static_cast<std::size_t>(i)])];
+    };
+    const std::int64_t begin = complex.face_offsets[face], end = complex.face_offsets[face + 1];
+    const auto corners = static_cast<std::int64_t>(complex.face_vertices.size());
+    constexpr std::int64_t kAhead = 40;  // corners
+    for (std::int64_t i = begin + kAhead; i < std::min(end + kAhead, corners); ++i)
+        prefetch(&corner(i));
+    const auto& origin = corner(begin);
+    Projection sum;
+    const auto* last = &corner(begin + 1);
+    double x = (*last)[0] - origin[0], y = (*last)[1] - origin[1], z = (*last)[2] - origin[2];
+    for (std::int64_t i = begin + 2; i < end; ++i) {
+        const auto& next = corner(i);
+        const double u = next[0] - origin[0], v = next[1] - origin[1], w = next[2] - origin[2];
+        const double twice_area = x * v - u * y;
+        sum.area += twice_area;
+        sum.volume += twice_area * (z + w);
+        x = u;
+        y = v;
+        z = w;
+    }
+    sum.area /= 2;
+    sum.volume /= 6;
+    return sum;
+}
+
+/// What some faces of a block add up to, seen from a height of one of them: terms are then no
+/// larger than the block is high, at whatever elevation it lies.
+struct BlockSum {
+    bool is_empty = true;
+    double anchor = 0;
+    Sum volume, area;
+
+    void add(const Projection& face, double height, double sign) {
+        if (is_empty) anchor = height;
+        is_empty = false;
+        volume.add(sign * (face.volume + face.area * (height - anchor)));
+        area.add(sign * face.area);
+    }
+    void add(const BlockSum& other) {
+        if (other.is_empty) return;
+        if (is_empty) anchor = other.anchor;
+        is_empty = false;
+        for (const double part : {other.volume.total, other.volume.correction,
+                                  other.area.value() * (other.anchor - anchor)})
+            volume.add(part);
+    }
+};
+
+}  // namespace
+
+// A face within a block adds to one cell what it takes from the other. Walls between blocks count
+// too: the rounded corners of one are in line in plan only up to rounding.
+std::vector<double> block_volumes(const CellComplex& complex, std::size_t blocks, int threads,
+                                  const Progress* progress) {
+    const auto block_of = [&](std::int32_t cell) {
+        return static_cast<std::size_t>(complex.cell_block[static_cast<std::size_t>(cell)]);
+    };
+    // Chunks depend on the input alone, and so do the sums.
+    const std::size_t faces = complex.face_cells.size();
+    const std::size_t chunk = std::max<std::size_t>(1 << 13, faces / 256 + 1);
+    std::vector<std::vector<BlockSum>> sums((faces + chunk - 1) / chunk);
+    parallel_ranges(faces, chunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+        auto& of_chunk = sums[begin / chunk];
+        of_chunk.resize(blocks);
+        for (std::size_t f = begin; f < end; ++f) {
+            const auto [inside, outside] = complex.face_cells[f];
+            if (outside >= 0 && block_of(inside) == block_of(outside)) continue;
+            const Projection below = project(complex, f);
+            const auto first = static_cast<std::size_t>(complex.face_offsets[f]);
+            const double height =
+                complex.vertices[static_cast<std::size_t>(complex.face_vertices[first])][2];
+            of_chunk[block_of(inside)].add(below, height, 1.0);
+            if (outside >= 0) of_chunk[block_of(outside)].add(below, height, -1.0);
+        }
+    });
+    std::vector<double> result;
+    for (std::size_t b = 0; b < blocks; ++b) {
+        BlockSum sum;
+        for (const auto& of_chunk : sums)
+            sum.add(of_chunk[b]);
+        result.push_back(sum.volume.value());
+    }
+    return result;
+}
+
+}  // namespace realmodel::strata

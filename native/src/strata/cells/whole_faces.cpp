@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/cells/whole_faces.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+
+#include "base/parallel_counts.hpp"
+#include "strata/tiling/triangle_outlines.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanArrangement;
+using exact::SpaceId;
+
+namespace {
+
+constexpr std::size_t kTriangles = 1 << 13, kVertices = 1 << 14;
+
+std::int32_t cell(const std::vector<std::int32_t>& cell_of_node, std::int32_t node) {
+    return node < 0 ? kOutsideCell : cell_of_node[static_cast<std::size_t>(node)];
+}
+
+/// The faces of a complex are seen from outside the cell below, or from below where there is none.
+std::array<std::int32_t, 2> turn_outwards(std::int32_t* first, std::int32_t* last,
+                                          std::int32_t above, std::int32_t below) {
+    if (below >= 0) return {below, above};
+    std::reverse(first, last);
+    return {above, below};
+}
+
+}  // namespace
+
+void add_touched_triangles(PlanArrangement& geometry, const TriangleLinks& links,
+                           WholeTriangles& wholes, FaceList& faces, int threads,
+                           const Progress* progress) {
+    std::vector<std::uint8_t> is_touched(links.neighbor.size(), 0);
+    parallel_ranges(
+        is_touched.size(), kTriangles, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p) {
+                if (!wholes.face[p].is_set() || wholes.is_added[p] != 0) continue;
+                const auto& neighbors = links.neighbor[p];
+                is_touched[p] =
+                    wholes.is_exact[p] != 0 ||
+                    std::any_of(neighbors.begin(), neighbors.end(), [&](PlaneId n) {
+                        return n >= 0 && wholes.is_in_parts[static_cast<std::size_t>(n)] != 0;
+                    });
+            }
+        });
+    std::vector<PlaneId> planes;
+    for (std::size_t p = 0; p < is_touched.size(); ++p) {
+        poll(progress, p);
+        if (is_touched[p] == 0) continue;
+        wholes.is_added[p] = 1;
+        if (wholes.face[p].is_face()) planes.push_back(static_cast<PlaneId>(p));
+    }
+    PolygonPool outlines;
+    add_outlines(
+        geometry, planes.size(), [&](std::size_t i) { return geometry.plane(planes[i]).plan; },
+        outlines, progress);
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        const WholeFace& face = wholes.of(planes[i]);
+        faces.add(outlines[i], planes[i], face.layer, face.above, face.below);
+    }
+    for (const auto& [plane, base, node] : wholes.on_base) {
+        if (is_touched[static_cast<std::size_t>(plane)] == 0) continue;
+        faces.add(triangle_outline(geometry, geometry.plane(plane).plan), base, -1, node,
+                  kOutsideCell);
+    }
+}
+
+UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
+                                       const WholeTriangles& wholes,
+                                       const std::vector<std::int32_t>& surface_of_plane,
+                                       const FaceList& faces, const ConformedFaces& loops,
+                                       int threads, const Progress* progress)
+    : geometry_(geometry),
+      wholes_(wholes),
+      surface_of_plane_(surface_of_plane),
+      threads_(threads),
+      progress_(progress),
+      of_space_(static_cast<std::size_t>(geometry.space_count()), -1),
+      of_base_(wholes.on_base.empty() ? 0 : static_cast<std::size_t>(geometry.vertex_count()), -1) {
+    // Several threads may say so of one vertex at once; they all write the same, but for vertices
+    // of several bases, which lie on borders and so on no untouched triangle.
+    const auto set = [](std::int32_t& number, std::int32_t to) {
+        std::atomic_ref(number).store(to, std::memory_order_relaxed);
+    };
+    parallel_ranges(
+        faces.size(), kTriangles, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t f = begin; f < end; ++f) {
+                const bool is_base = surface_of_plane[static_cast<std::size_t>(faces.plane[f])] < 0;
+                const auto last = static_cast<std::size_t>(faces.polygons.offsets[f + 1]);
+                for (auto c = static_cast<std::size_t>(faces.polygons.offsets[f]); c < last; ++c) {
+                    const PointId point = faces.polygons.corners[c].point;
+                    if (point >= geometry.vertex_count()) continue;
+                    const std::int32_t number = loops.vertices[loops.entries.first(c)];
+                    if (is_base) {
+                        if (!of_base_.empty())
+                            set(of_base_[static_cast<std::size_t>(point)], number);
+                        continue;
+                    }
+                    const SpaceId s = geometry.corner_above(faces.plane[f], point);
+                    if (s >= 0) set(of_space_[static_cast<std::size_t>(s)], number);
+                }
+            }
+        });
+}
+
+void UntouchedTriangles::add_to(CellComplex& complex,
+                                const std::vector<std::int32_t>& cell_of_node) {
+    number_vertices(complex);
+    add_triangles(complex, cell_of_node);
+    add_bases(complex, cell_of_node);
+}
+
+/// Numbers the input vertices that only untouched triangles have, in their order.
+void UntouchedTriangles::number_vertices(CellComplex& complex) {
+    auto is_new = zeros<std::uint8_t>(of_space_.size(), threads_, progress_);
+    parallel_ranges(wholes_.face.size(), kTriangles, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t p = begin; p < end; ++p) {
+                            if (!is_face(p)) continue;
+                            for (const SpaceId s : geometry_.plane(static_cast<PlaneId>(p)).corner)
+                                mark(is_new[static_cast<std::size_t>(s)]);
+                        }
+                    });
+    std::vector<std::size_t> first((of_space_.size() + kVertices - 1) / kVertices);
+    const auto for_new = [&](const auto& visit) {
+        parallel_ranges(of_space_.size(), kVertices, threads_, progress_,
+                        [&](std::size_t begin, std::size_t end) {
+                            std::size_t count = 0;
+                            for (std::size_t s = begin; s < end; ++s) {
+                                if (is_new[s] != 0 && of_space_[s] < 0)
+                                    visit(s, begin / kVertices, count++);
+                            }
+                        });
+    };
+    for_new([&](std::size_t, std::size_t range, std::size_t) { ++first[range]; });
+    const std::size_t before = complex.vertices.size(), more = count_before(first);
+    check_total(before + more, INT32_MAX);
+    complex.vertices.resize(before + more);
+    for_new([&](std::size_t s, std::size_t range, std::size_t count) {
+        const std::size_t v = before + first[range] + count;
+        const auto& space = geometry_.space(static_cast<SpaceId>(s));
+        const auto& at = geometry_.point(space.plan);
+        complex.vertices[v] = {at.x, at.y, space.z};
+        of_space_[s] = static_cast<std::int32_t>(v);
+    });
+}
+
+void UntouchedTriangles::add_triangles(CellComplex& complex,
+                                       const std::vector<std::int32_t>& cell_of_node) const {
+    const std::size_t planes = wholes_.face.size();
+    std::vector<std::size_t> first((planes + kTriangles - 1) / kTriangles);
+    parallel_ranges(planes, kTriangles, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t p = begin; p < end; ++p)
+                            first[begin / kTriangles] += is_face(p) ? 1 : 0;
+                    });
+    const std::size_t count = count_before(first), faces = complex.face_cells.size(),
+                      corners = complex.face_vertices.size();
+    complex.face_vertices.resize(corners + 3 * count);
+    complex.face_offsets.resize(faces + count + 1);
+    complex.face_cells.resize(faces + count);
+    complex.face_surface.resize(faces + count);
+    parallel_ranges(
+        planes, kTriangles, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+            std::size_t next = first[begin / kTriangles];
+            for (std::size_t p = begin; p < end; ++p) {
+                if (!is_face(p)) continue;
+                const auto& corner = geometry_.plane(static_cast<PlaneId>(p)).corner;
+                std::int32_t* loop = complex.face_vertices.begin() + corners + 3 * next;
+                std::transform(corner.begin(), corner.end(), loop,
+                               [&](SpaceId s) { return of_space_[static_cast<std::size_t>(s)]; });
+                complex.face_cells[faces + next] =
+                    turn_outwards(loop, loop + 3, cell(cell_of_node, wholes_.face[p].above),
+                                  cell(cell_of_node, wholes_.face[p].below));
+                complex.face_surface[faces + next] = surface_of_plane_[p];
+                ++next;
+                complex.face_offsets[faces + next] = static_cast<std::int64_t>(corners + 3 * next);
+            }
+        });
+}
+
+void UntouchedTriangles::add_bases(CellComplex& complex,
+                                   const std::vector<std::int32_t>& cell_of_node) {
+    auto& loop = complex.face_vertices;
+    for (const auto& [plane, base, node] : wholes_.on_base) {
+        if (wholes_.is_added[static_cast<std::size_t>(plane)] != 0) continue;
+        const double z = geometry_.space(geometry_.plane(base).corner[0]).z;
+        for (const exact::VertexId v : geometry_.plane(plane).plan) {
+            std::int32_t& number = of_base_[static_cast<std::size_t>(v)];
+            if (number < 0) {
+                number = static_cast<std::int32_t>(complex.vertices.size());
+                check_total(complex.vertices.size() + 1, INT32_MAX);
+                complex.vertices.push_back({geometry_.point(v).x, geometry_.point(v).y, z});
+            }
+            loop.push_back(number);
+        }
+        complex.face_cells.push_back(
+            turn_outwards(loop.end() - 3, loop.end(), cell(cell_of_node, node), kOutsideCell));
+        complex.face_offsets.push_back(static_cast<std::int64_t>(loop.size()));
+        complex.face_surface.push_back(kBase);
+    }
+}
+
+}  // namespace realmodel::strata

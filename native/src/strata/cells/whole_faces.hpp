@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "realmodel/strata/stack.hpp"
+#include "strata/conform/conforming.hpp"
+#include "strata/overlay/sheet_links.hpp"
+
+namespace realmodel::strata {
+
+/// Adds the whole triangles on whose edges vertices may lie to the faces that are conformed: those
+/// looked at exactly, and the neighbors of divided ones. The others are touched by nothing.
+void add_touched_triangles(exact::PlanArrangement& geometry, const TriangleLinks& links,
+                           WholeTriangles& wholes, FaceList& faces, int threads,
+                           const Progress* progress);
+
+/// The whole triangles that are taken as they are.
+class UntouchedTriangles {
+public:
+    /// Finds the vertices that the conformed faces have of them; `loops` are not needed afterwards.
+    UntouchedTriangles(const exact::PlanArrangement& geometry, const WholeTriangles& wholes,
+                       const std::vector<std::int32_t>& surface_of_plane, const FaceList& faces,
+                       const ConformedFaces& loops, int threads, const Progress* progress);
+
+    /// Adds them as faces, and the vertices that only they have.
+    void add_to(CellComplex& complex, const std::vector<std::int32_t>& cell_of_node);
+
+private:
+    bool is_face(std::size_t plane) const {
+        return wholes_.is_added[plane] == 0 && wholes_.face[plane].is_face();
+    }
+    void number_vertices(CellComplex& complex);
+    void add_triangles(CellComplex& complex, const std::vector<std::int32_t>& cell_of_node) const;
+    void add_bases(CellComplex& complex, const std::vector<std::int32_t>& cell_of_node);
+
+    const exact::PlanArrangement& geometry_;
+    const WholeTriangles& wholes_;
+    const std::vector<std::int32_t>& surface_of_plane_;
+    int threads_;
+    const Progress* progress_;
+    std::vector<std::int32_t> of_space_;  ///< vertex of each space vertex, -1 where there is none
+    std::vector<std::int32_t> of_base_;   ///< the same on flat bases, of each plan vertex
+};
+
+}  // namespace realmodel::strata

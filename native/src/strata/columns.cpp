@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/columns.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "strata/cells/cell_building.hpp"
+#include "strata/overlay/facet_overlay.hpp"
+#include "strata/overlay/rock_footprints.hpp"
+#include "strata/steps.hpp"
+#include "strata/tiling/rules.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+/// The tilings e_k of a rock mass, from the youngest to the oldest.
+class TilingSequence {
+public:
+    TilingSequence(Site& site, EnteredRock& rock, int threads, const Progress* progress)
+        : site_(site), rock_(rock), threads_(threads), progress_(progress) {
+        if (rock.is_erosional()) return;  // e_k is the surface itself, made when it is asked for
+        RuleReplay replay(TilingRaising(site.geometry, threads, progress), rock.rules);
+        for (std::size_t k = 0; k < rock.surfaces.size(); ++k) {
+            if (progress != nullptr) progress->check();
+            replayed_.push_back(replay.add(surface(k)));
+        }
+    }
+
+    SurfaceTiling take(std::int32_t k) {
+        if (replayed_.empty()) return surface(static_cast<std::size_t>(k));
+        SurfaceTiling tiling = std::move(replayed_.back());
+        replayed_.pop_back();
+        return tiling;
+    }
+    /// Takes the outlines of a tiling that was taken before and is done with: the next one may be
+    /// on the same mesh.
+    void give_back(SurfaceTiling tiling) { similar_ = std::move(tiling.polygons); }
+
+private:
+    SurfaceTiling surface(std::size_t k) {
+        const auto number = rock_.first_surface + static_cast<std::int32_t>(k);
+        SurfaceTiling tiling =
+            make_surface_tiling(site_.geometry, rock_.surfaces[k].triangles, rock_.plans[k],
+                                similar_, number, threads_, progress_);
+        rock_.surfaces[k] = {};
+        rock_.plans[k] = {};
+        site_.surface_of_plane.resize(site_.geometry.plane_count(), number);
+        return tiling;
+    }
+
+    Site& site_;
+    EnteredRock& rock_;
+    int threads_;
+    const Progress* progress_;
+    PolygonPool similar_;
+    std::vector<SurfaceTiling> replayed_;
+};
+
+/// Closes the rock mass beneath its envelope.
+void finish_rock(const Site& site, const EnteredRock& rock, const Envelope& envelope,
+                 Construction& construction) {
+    bool is_far_above = false;
+    if (rock.base) {
+        const auto lowest = lowest_position(site.geometry, envelope);
+        check_base(rock, lowest);
+        const double base = *rock.base_elevation;
+        is_far_above = lowest[2] - base >
+                       site.geometry.clear_height(std::max(std::abs(lowest[2]), std::abs(base)));
+    }
+    finish(envelope, rock.base, is_far_above, construction);
+}
+
+/// Adds the columns and faces of a rock mass, going down from its youngest surface.
+void add_rock(Site& site, EnteredRock& rock, Construction& construction, double start, double share,
+              int threads, Progress* progress) {
+    const std::size_t first_node = construction.node_block.size();
+    const auto count = static_cast<std::int32_t>(rock.surfaces.size());
+    Envelope envelope;
+    if (rock.region) {
+        envelope = initial_envelope(
+            make_region_tiling(site.geometry, *rock.region, rock.region_filling), -1);
+    }
+    TilingSequence tilings(site, rock, threads, progress);
+    for (std::int32_t k = count - 1; k >= 0; --k) {
+        begin_step(progress, start + share * static_cast<double>(count - 1 - k) / count,
+                   share / count, "intersecting the surfaces");
+        SurfaceTiling tiling = tilings.take(k);
+        envelope = envelope.size() == 0 ? initial_envelope(tiling, k)
+                                        : overlay_columns(site.geometry, envelope, tiling, k,
+                                                          construction, threads, progress);
+        tilings.give_back(std::move(tiling));
+    }
+    finish_rock(site, rock, envelope, construction);
+    construction.count_blocks_from(first_node, rock.first_surface);
+}
+
+}  // namespace
+
+CellComplex build_columns(Site& site, int threads, Progress* progress) {
+    // of triangulations of these vertices, and one is crossed by a trace here and there
+    site.geometry.expect_lines(4 * site.geometry.point_count());
+    Construction construction;
+    RockFootprints footprints;
+    double start = kInputDone;
+    for (EnteredRock& rock : site.rocks) {
+        const double share = (kOverlayDone - kInputDone) *
+                             static_cast<double>(rock.surfaces.size()) / std::max(site.surfaces, 1);
+        const std::size_t first_face = construction.faces.size();
+        add_rock(site, rock, construction, start, share, threads, progress);
+        start += share;
+        if (site.rocks.size() > 1)
+            footprints.add(site.geometry, construction.faces, first_face, progress);
+    }
+    return build_cells(site.geometry, construction, nullptr, site.surface_of_plane, threads,
+                       progress);
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/conform/collinear_lines.hpp"
+
+#include <bit>
+#include <tuple>
+
+#include "base/bucket_sort.hpp"
+#include "base/parallel_counts.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanArrangement;
+
+namespace {
+
+constexpr std::size_t kChunk = 1 << 13, kMostChunks = 64;
+
+/// A line with a number that is equal for lines that run through the same places, and hardly ever
+/// for others.
+struct Keyed {
+    std::uint64_t key;
+    LineId line;
+};
+
+/// A line and the lowest one that runs through the same places.
+struct Follower {
+    LineId line, leader;
+};
+
+std::uint64_t mixed(const std::array<double, 3>& key) {
+    std::uint64_t h = 0;
+    for (const double part : key) {
+        h = (h ^ std::bit_cast<std::uint64_t>(part + 0.0)) * 0x9E3779B97F4A7C15u;  // -0 is 0
+        h ^= h >> 29;
+    }
+    return h * 0xBF58476D1CE4E5B9u;
+}
+
+GrowingArray<Keyed> lines_in_use(const PlanArrangement& geometry, const FaceList& faces,
+                                 int threads, const Progress* progress) {
+    auto used = zeros<std::uint8_t>(geometry.line_count(), threads, progress);
+    const auto& corners = faces.polygons.corners;
+    parallel_ranges(corners.size(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t c = begin; c < end; ++c)
+                            mark(used[static_cast<std::size_t>(exact::line_of(corners[c].line))]);
+                    });
+    std::vector<std::size_t> before((used.size() + kChunk - 1) / kChunk);
+    parallel_ranges(
+        used.size(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+            before[begin / kChunk] =
+                static_cast<std::size_t>(std::count(used.begin() + begin, used.begin() + end, 1));
+        });
+    GrowingArray<Keyed> lines(count_before(before));
+    parallel_ranges(used.size(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        LocalArrangement scope(geometry);
+                        std::size_t next = before[begin / kChunk];
+                        for (std::size_t l = begin; l < end; ++l) {
+                            if (used[l] == 0) continue;
+                            const auto line = static_cast<LineId>(l);
+                            lines[next++] = {mixed(scope.line_key(line)), line};
+                        }
+                    });
+    return lines;
+}
+
+/// The lines that run where a lower one does; rounded slope and offset are equal for them, and
+/// among lines with equal ones the exact test decides.
+std::vector<Follower> find_followers(const PlanArrangement& geometry, GrowingArray<Keyed> lines,
+                                     int threads, const Progress* progress) {
+    const auto in_order = [](const Keyed& a, const Keyed& b) {
+        return std::tie(a.key, a.line) < std::tie(b.key, b.line);
+    };
+    // Keys are spread evenly.
+    const auto share = [](const Keyed& line) { return static_cast<double>(line.key) * 0x1p-64; };
+    {
+        const std::size_t chunks = std::clamp<std::size_t>(lines.size() / kChunk, 1, kMostChunks);
+        const auto produce = [&](std::size_t chunk, const auto& take) {
+            const std::size_t end = lines.size() * (chunk + 1) / chunks;
+            for (std::size_t i = lines.size() * chunk / chunks; i < end; ++i)
+                take(lines[i]);
+        };
+        lines = BucketSort<Keyed, decltype(share), decltype(in_order)>(share, in_order)
+                    .sorted(chunks, lines.size(), produce, threads, progress);
+    }
+    std::vector<std::vector<Follower>> found((lines.size() + kChunk - 1) / kChunk);
+    parallel_ranges(
+        lines.size(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+            LocalArrangement scope(geometry);
+            std::vector<LineId> leaders;
+            for (std::size_t i = begin; i < end; ++i) {
+                if (i > 0 && lines[i].key == lines[i - 1].key)
+                    continue;  // not the first of a group
+                leaders.assign(1, lines[i].line);
+                for (std::size_t j = i + 1; j < lines.size() && lines[j].key == lines[i].key; ++j) {
+                    const LineId line = lines[j].line;
+                    const auto leader =
+                        std::find_if(leaders.begin(), leaders.end(),
+                                     [&](LineId other) { return scope.same_line(line, other); });
+                    if (leader == leaders.end()) {
+                        leaders.push_back(line);
+                    } else {
+                        found[begin / kChunk].push_back({line, *leader});
+                    }
+                }
+            }
+        });
+    std::vector<Follower> all;
+    for (const auto& some : found)
+        all.insert(all.end(), some.begin(), some.end());
+    return all;
+}
+
+}  // namespace
+
+CollinearLines join_lines(const PlanArrangement& geometry, const FaceList& faces, int threads,
+                          const Progress* progress) {
+    GrowingArray<Keyed> lines = lines_in_use(geometry, faces, threads, progress);
+    CollinearLines tracks;
+    tracks.of_line = FlatArray<std::int32_t>(geometry.line_count());
+    std::fill(tracks.of_line.begin(), tracks.of_line.end(), -1);
+    for (const Keyed& line : lines)
+        tracks.of_line[static_cast<std::size_t>(line.line)] = 0;
+    const auto followers = find_followers(geometry, std::move(lines), threads, progress);
+    for (const Follower& follower : followers)
+        tracks.of_line[static_cast<std::size_t>(follower.line)] = -1;
+
+    std::vector<std::size_t> before((tracks.of_line.size() + kChunk - 1) / kChunk);
+    parallel_ranges(
+        tracks.of_line.size(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+            before[begin / kChunk] = static_cast<std::size_t>(
+                std::count(tracks.of_line.begin() + begin, tracks.of_line.begin() + end, 0));
+        });
+    tracks.representative = FlatArray<LineId>(count_before(before));
+    parallel_ranges(tracks.of_line.size(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        std::size_t next = before[begin / kChunk];
+                        for (std::size_t l = begin; l < end; ++l) {
+                            if (tracks.of_line[l] < 0) continue;
+                            tracks.of_line[l] = static_cast<std::int32_t>(next);
+                            tracks.representative[next++] = static_cast<LineId>(l);
+                        }
+                    });
+    for (const Follower& follower : followers) {
+        tracks.of_line[static_cast<std::size_t>(follower.line)] =
+            tracks.of_line[static_cast<std::size_t>(follower.leader)];
+    }
+    return tracks;
+}
+
+}  // namespace realmodel::strata

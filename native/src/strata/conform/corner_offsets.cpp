@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/conform/corner_offsets.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace realmodel::strata {
+
+namespace {
+
+/// Calls visit(corner, number of places) for all edges of some passed places.
+template <class Visit>
+void for_each_edge(const PassedVertices& passed, const Visit& visit) {
+    for (std::size_t i = 0; i < passed.size();) {
+        const auto places = static_cast<std::uint32_t>(std::abs(passed[i + 1]));
+        visit(static_cast<std::uint32_t>(passed[i]), places);
+        i += 2 + places;
+    }
+}
+
+}  // namespace
+
+CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::size_t corners,
+                             int threads, const Progress* progress)
+    : corners_(corners) {
+    const std::size_t blocks = corners / kBlock + 1;  // the number of corners itself has one, too
+    passing_of_block_ = zeros<std::uint32_t>(blocks + 1, threads, progress);
+    std::vector<std::vector<std::uint32_t>> number(passed.size());  // of each edge in its block
+    parallel_chunks(passed.size(), threads, progress, [&](std::size_t chunk) {
+        for_each_edge(passed[chunk], [&](std::uint32_t corner, std::uint32_t) {
+            number[chunk].push_back(count_one(passing_of_block_[corner / kBlock]));
+        });
+    });
+    running_totals(passing_of_block_, UINT32_MAX, threads, progress);
+    passing_ = FlatArray<Passing>(passing_of_block_[blocks]);
+    parallel_chunks(passed.size(), threads, progress, [&](std::size_t chunk) {
+        auto next = number[chunk].begin();
+        for_each_edge(passed[chunk], [&](std::uint32_t corner, std::uint32_t places) {
+            passing_[passing_of_block_[corner / kBlock] + *next++] = {corner, places};
+        });
+    });
+    entry_of_block_ = FlatArray<std::uint32_t>(blocks + 1);
+    parallel_ranges(blocks, 1 << 12, threads, progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block) {
+            const auto first = passing_.begin() + passing_of_block_[block];
+            const auto last = passing_.begin() + passing_of_block_[block + 1];
+            std::sort(first, last,
+                      [](const Passing& a, const Passing& b) { return a.corner < b.corner; });
+            std::size_t entries = std::min(kBlock, corners - block * kBlock);
+            for (auto passing = first; passing != last; ++passing)
+                entries += passing->places;
+            entry_of_block_[block] = static_cast<std::uint32_t>(entries);
+        }
+    });
+    running_totals(entry_of_block_, UINT32_MAX, threads, progress);
+}
+
+}  // namespace realmodel::strata

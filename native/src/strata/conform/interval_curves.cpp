@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/conform/interval_curves.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/parallel_counts.hpp"
+
+namespace realmodel::strata {
+
+/// Asks for what is known of the edges after one.
+[[gnu::always_inline]] inline void IntervalCurves::prefetch_edge(const LineEdge* edge) const {
+    const std::ptrdiff_t left = tracks_.edges.end() - 1 - edge;
+    const LineEdge& far = edge[std::min<std::ptrdiff_t>(24, left)];
+    const auto face = static_cast<std::size_t>(far.face);
+    prefetch(&loops_.face_offsets[face]);
+    prefetch(&faces_.above[face]);
+    prefetch(&faces_.below[face]);
+    const LineEdge& near = edge[std::min<std::ptrdiff_t>(8, left)];
+    prefetch(&loops_.vertices[near.begin]);
+}
+
+/// Ascending; where two curves start at one vertex the lower end comes first, and of equal
+/// curves on one side the younger is the upper.
+bool IntervalCurves::before(const Curve& a, const Curve& b) const {
+    if (a.start != b.start) return a.start < b.start;
+    if (a.end != b.end) return a.end < b.end;
+    if (a.left != b.left) return b.left;
+    const auto layer = [&](const Curve& curve) {
+        return faces_.layer[static_cast<std::size_t>(curve.face)];
+    };
+    return std::pair(layer(a), a.face) < std::pair(layer(b), b.face);
+}
+
+void IntervalCurves::collect(std::size_t track) {
+    const auto first = tracks_.edges.begin() + tracks_.edge_offsets[track];
+    const auto last = tracks_.edges.begin() + tracks_.edge_offsets[track + 1];
+    begins_.clear();
+    for (auto edge = first; edge != last; ++edge) {
+        const auto [low, high] = std::minmax(edge->from, edge->to);
+        if (begins_.size() < static_cast<std::size_t>(high) + 1)
+            begins_.resize(static_cast<std::size_t>(high) + 1, 0);
+        for (std::int32_t i = low; i < high; ++i)
+            ++begins_[static_cast<std::size_t>(i)];
+    }
+    std::uint32_t total = 0;
+    for (std::uint32_t& begin : begins_) {
+        const std::uint32_t own = begin;
+        begin = total;
+        total += own;
+    }
+    curves_.resize(total);
+    free_.assign(begins_.begin(), begins_.end());
+    for (auto edge = first; edge != last; ++edge) {
+        prefetch_edge(edge);
+        add_curves(*edge);
+    }
+    for (std::size_t i = 0; i + 1 < begins_.size(); ++i) {
+        const auto begin = curves_.begin() + begins_[i], end = curves_.begin() + begins_[i + 1];
+        if (end - begin == 2) {
+            if (before(begin[1], begin[0])) std::swap(begin[0], begin[1]);
+        } else {
+            std::sort(begin, end, [&](const Curve& a, const Curve& b) { return before(a, b); });
+        }
+    }
+}
+
+void IntervalCurves::add_curves(const LineEdge& edge) {
+    const auto face = static_cast<std::size_t>(edge.face);
+    const bool left = edge.from < edge.to;
+    Curve curve{0, 0, edge.face, faces_.above[face], faces_.below[face], left};
+    const std::int32_t steps = std::abs(edge.to - edge.from);
+    std::uint32_t entry = edge.begin;
+    std::int32_t vertex = loops_.vertices[entry];
+    std::int32_t interval = left ? edge.from : edge.from - 1;
+    for (std::int32_t s = 0; s < steps; ++s) {
+        ++entry;
+        if (entry == loops_.face_offsets[face + 1]) entry = loops_.face_offsets[face];
+        const std::int32_t next = loops_.vertices[entry];
+        curve.start = left ? vertex : next;
+        curve.end = left ? next : vertex;
+        curves_[free_[static_cast<std::size_t>(interval)]++] = curve;
+        vertex = next;
+        interval += left ? 1 : -1;
+    }
+}
+
+std::int32_t below_all(std::span<const Curve> curves, bool left) {
+    const auto lowest = std::find_if(curves.begin(), curves.end(),
+                                     [&](const Curve& curve) { return curve.left == left; });
+    return lowest == curves.end() ? kOutsideCell : lowest->below;
+}
+
+void IntervalCurves::find_crossings(std::size_t track, std::span<const Curve> curves,
+                                    LocalArrangement& scope,
+                                    std::vector<ExtraPoint>& missing) const {
+    const auto plane = [&](const Curve& curve) {
+        return faces_.plane[static_cast<std::size_t>(curve.face)];
+    };
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        for (std::size_t j = i + 1; j < curves.size(); ++j) {
+            const Curve &a = curves[i], &b = curves[j];
+            if (a.start >= b.start || a.end <= b.end) continue;
+            const LineId line = tracks_.representative[track];
+            const LineId trace = exact::line_of(scope.trace(plane(a), plane(b)));
+            missing.push_back({line, scope.crossing(line, trace)});
+        }
+    }
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "strata/conform/conforming.hpp"
+
+namespace realmodel::strata {
+
+/// A face edge over one interval of a track: a straight line in height between two verticals.
+struct Curve {
+    std::int32_t start, end;  ///< vertices on the two verticals; ascending means rising
+    std::int32_t face;
+    std::int32_t above, below;  ///< what the face lies between: cells, or nodes
+    bool left;                  ///< the face lies left of the track
+
+    bool as_high_as(const Curve& other) const { return start == other.start && end == other.end; }
+};
+
+/// The face edges of one track after another: what stands on its two sides.
+class IntervalCurves {
+public:
+    IntervalCurves(const FaceList& faces, const CollinearEdges& tracks, const ConformedFaces& loops)
+        : faces_(faces), tracks_(tracks), loops_(loops) {}
+
+    /// Puts the curves of a track in order of intervals, and those of each in order of height.
+    void collect(std::size_t track);
+    std::size_t intervals() const { return begins_.empty() ? 0 : begins_.size() - 1; }
+    std::span<const Curve> of_interval(std::size_t i) const {
+        return {curves_.data() + begins_[i], begins_[i + 1] - begins_[i]};
+    }
+
+    /// The points where curves of an interval cross in height, which the track must pass first.
+    void find_crossings(std::size_t track, std::span<const Curve> curves, LocalArrangement& scope,
+                        std::vector<ExtraPoint>& missing) const;
+
+private:
+    bool before(const Curve& a, const Curve& b) const;
+    void add_curves(const LineEdge& edge);
+    void prefetch_edge(const LineEdge* edge) const;
+
+    const FaceList& faces_;
+    const CollinearEdges& tracks_;
+    const ConformedFaces& loops_;
+    std::vector<Curve> curves_;
+    std::vector<std::uint32_t> begins_, free_;  ///< curves of each interval, and where more go
+};
+
+/// What is below the lowest curve on one side; kOutsideCell where that has none.
+std::int32_t below_all(std::span<const Curve> curves, bool left);
+
+/// Calls visit(low, high, left, right) for each two neighbouring heights of an interval: a curve at
+/// either, and what lies between the two left and right of the track.
+template <class Visit>
+void for_each_gap(std::span<const Curve> curves, const Visit& visit) {
+    std::int32_t left = below_all(curves, true), right = below_all(curves, false);
+    for (std::size_t i = 0; i < curves.size();) {
+        std::size_t level = i;  // past the curves at this height
+        for (; level < curves.size() && curves[level].as_high_as(curves[i]); ++level) {
+            (curves[level].left ? left : right) = curves[level].above;
+        }
+        if (level == curves.size()) break;
+        visit(curves[i], curves[level], left, right);
+        i = level;
+    }
+}
+
+/// Adds a wall face: along its lower vertices, up the far vertical, back along the upper ones and
+/// down the near vertical, through every vertex on them that is to be kept.
+template <class Keep>
+void add_wall_loop(std::span<const std::int32_t> lower, std::span<const std::int32_t> upper,
+                   std::vector<std::int32_t>& loop, const Keep& is_kept) {
+    const auto add = [&](std::int32_t v) {
+        if (is_kept(v)) loop.push_back(v);
+    };
+    for (const std::int32_t v : lower)
+        add(v);
+    for (std::int32_t v = lower.back() + 1; v < upper.back(); ++v)
+        add(v);
+    const std::size_t last = upper.back() == lower.back() ? upper.size() - 1 : upper.size();
+    const std::size_t first = upper.front() == lower.front() ? 1 : 0;
+    for (std::size_t i = last; i-- > first;)
+        add(upper[i]);
+    for (std::int32_t v = upper.front() - 1; v > lower.front(); --v)
+        add(v);
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/conform/line_buckets.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "base/parallel_counts.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+constexpr std::size_t kEdges = 1 << 14;         // in a bucket: they fit the cache of a core
+constexpr std::size_t kMostEdges = 2000000000;  // so that places on tracks can be numbered
+constexpr std::size_t kCorners = 1 << 17, kMostChunks = 64;  // sorted into buckets at a time
+
+/// How many faces of a chunk are in a bucket, or where the next of them goes.
+struct Filling {
+    std::uint32_t count = 0;
+    std::int32_t last_face = -1;  ///< counted, for one that has several edges there
+};
+
+}  // namespace
+
+LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines, int threads,
+                         const Progress* progress)
+    : faces_(faces), lines_(lines), tracks_(lines.representative.size()) {
+    const auto& corners = faces.polygons.corners;
+    check_total(corners.size(), kMostEdges);
+    const std::size_t edges_of_track = corners.size() / std::max<std::size_t>(tracks_, 1) + 1;
+    tracks_together_ = std::bit_floor(std::max<std::size_t>(kEdges / edges_of_track, 1));
+    const std::size_t buckets = (tracks_ + tracks_together_ - 1) / tracks_together_;
+    const int shift = std::countr_zero(tracks_together_);
+
+    const std::size_t chunks = std::clamp<std::size_t>(corners.size() / kCorners, 1, kMostChunks);
+    std::vector<std::vector<Filling>> filling(chunks);
+    const auto for_each_once = [&](std::size_t chunk, const auto& visit) {
+        const std::size_t end = faces.size() * (chunk + 1) / chunks;
+        for (std::size_t f = faces.size() * chunk / chunks; f < end; ++f) {
+            const auto face = static_cast<std::int32_t>(f);
+            for (const Corner& corner : faces.polygons[f]) {
+                Filling& bucket = filling[chunk][track_of(corner) >> shift];
+                if (bucket.last_face == face) continue;
+                bucket.last_face = face;
+                visit(bucket, face);
+            }
+        }
+    };
+    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+        filling[chunk].resize(buckets);
+        for_each_once(chunk, [](Filling& bucket, std::int32_t) { ++bucket.count; });
+    });
+    std::size_t total = 0;
+    for (std::size_t b = 0; b < buckets; ++b) {
+        first_.push_back(total);
+        for (auto& of_chunk : filling) {
+            const std::uint32_t own = of_chunk[b].count;
+            of_chunk[b] = {static_cast<std::uint32_t>(total), -1};
+            total += own;
+        }
+    }
+    first_.push_back(total);
+    faces_of_bucket_ = FlatArray<std::int32_t>(total);
+    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+        for_each_once(chunk, [&](Filling& bucket, std::int32_t face) {
+            faces_of_bucket_[bucket.count++] = face;
+        });
+        filling[chunk] = {};
+    });
+}
+
+/// Asks for what will be read of the faces after one, and for what pairing will want to know.
+[[gnu::always_inline]] inline void LineBuckets::prefetch_faces(std::size_t number,
+                                                               std::size_t end) const {
+    const auto far = static_cast<std::size_t>(faces_of_bucket_[std::min(number + 32, end - 1)]);
+    prefetch(&faces_.polygons.offsets[far]);
+    prefetch(&faces_.plane[far]);
+    prefetch(&faces_.above[far]);
+    prefetch(&faces_.below[far]);
+    const auto near = static_cast<std::size_t>(faces_of_bucket_[std::min(number + 12, end - 1)]);
+    prefetch(&faces_.polygons.corners[static_cast<std::size_t>(faces_.polygons.offsets[near])]);
+}
+
+void LineBuckets::collect(std::size_t bucket, const PlanVertices& places, BucketEdges& into) const {
+    const std::size_t first = first_track(bucket), tracks = first_track(bucket + 1) - first;
+    const Corner* const corners = faces_.polygons.corners.data();
+    const PlanVertexId* const of_point = places.of_point.begin();
+    const auto place_of = [&](std::size_t corner) {
+        return of_point[static_cast<std::size_t>(corners[corner].point)];
+    };
+    // Counted two further on, these become the ends, and filled up to their ends the beginnings.
+    // About every other edge is on a track of another bucket: it is put down, too, and the next one
+    // in its place.
+    into.offsets_.assign(tracks + 3, 0);
+    std::uint32_t* const next = into.offsets_.data();
+    std::size_t count = 0;
+    for (std::size_t i = first_[bucket]; i < first_[bucket + 1]; ++i) {
+        prefetch_faces(i, first_[bucket + 1]);
+        const std::int32_t face = faces_of_bucket_[i];
+        const auto begin =
+            static_cast<std::size_t>(faces_.polygons.offsets[static_cast<std::size_t>(face)]);
+        const auto end =
+            static_cast<std::size_t>(faces_.polygons.offsets[static_cast<std::size_t>(face) + 1]);
+        if (count + (end - begin) > into.found_.size())
+            into.found_.resize(2 * into.found_.size() + (end - begin) + kEdges);
+        Found* const found = into.found_.data();
+        PlanVertexId from = place_of(end - 1);
+        std::size_t leaving = end - 1;
+        for (std::size_t c = begin; c < end; ++c) {
+            const PlanVertexId to = place_of(c);
+            const std::size_t track = track_of(corners[leaving]) - first;  // huge, where before
+            const std::size_t known = std::min(track, tracks);
+            ++next[known + 2];
+            found[count] = {{from, to, static_cast<std::uint32_t>(leaving), face},
+                            static_cast<std::uint32_t>(known)};
+            count += known < tracks ? 1 : 0;
+            from = to;
+            leaving = c;
+        }
+    }
+    for (std::size_t t = 2; t < tracks + 2; ++t)
+        next[t] += next[t - 1];
+    into.edges_.resize(count);
+    for (std::size_t i = 0; i < count; ++i)
+        into.edges_[next[into.found_[i].track + 1]++] = into.found_[i].edge;
+}
+
+}  // namespace realmodel::strata

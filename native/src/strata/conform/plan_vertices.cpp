@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <tuple>
+
+#include "base/bucket_sort.hpp"
+#include "base/parallel_counts.hpp"
+#include "strata/conform/conforming.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanArrangement;
+
+namespace {
+
+constexpr std::size_t kChunk = 1 << 14, kMostChunks = 64;
+
+/// A point with its rounded position.
+struct Rounded {
+    double x, y;
+    PointId point;
+
+    bool in_position_of(const Rounded& other) const { return x == other.x && y == other.y; }
+};
+
+/// A range of x.
+struct XRange {
+    double low = HUGE_VAL, high = -HUGE_VAL, scale = 0;
+
+    void include(double x) {
+        low = std::min(low, x);
+        high = std::max(high, x);
+    }
+    /// How much of it lies before x, from 0 to 1.
+    double share(double x) const { return std::clamp((x - low) * scale, 0.0, 1.0); }
+};
+
+/// Where the vertices in use are, and nearly all points with them.
+XRange range_of_vertices(const PlanArrangement& geometry, const FlatArray<std::uint8_t>& used,
+                         int threads, const Progress* progress) {
+    const auto vertices = static_cast<std::size_t>(geometry.vertex_count());
+    std::vector<XRange> ranges((vertices + kChunk - 1) / kChunk);
+    parallel_ranges(vertices, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+            if (used[v] != 0)
+                ranges[begin / kChunk].include(geometry.point(static_cast<PointId>(v)).x);
+        }
+    });
+    XRange all;
+    for (const XRange& range : ranges) {
+        all.include(range.low);
+        all.include(range.high);
+    }
+    const double width = all.high - all.low;
+    if (!std::isfinite(width) || !std::isnormal(1 / width)) return {0, 0, 0};  // nothing is known
+    all.scale = 1 / width;
+    return all;
+}
+
+/// The points that faces use and the extra ones, in order of position.
+GrowingArray<Rounded> points_in_use(const PlanArrangement& geometry, const FaceList& faces,
+                                    const std::vector<ExtraPoint>& extra, int threads,
+                                    const Progress* progress) {
+    auto used = zeros<std::uint8_t>(geometry.point_count(), threads, progress);
+    const auto& corners = faces.polygons.corners;
+    parallel_ranges(corners.size(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t c = begin; c < end; ++c)
+                            mark(used[static_cast<std::size_t>(corners[c].point)]);
+                    });
+    for (const ExtraPoint& e : extra)
+        used[static_cast<std::size_t>(e.point)] = 1;
+    const XRange range = range_of_vertices(geometry, used, threads, progress);
+    const auto share = [range](const Rounded& p) { return range.share(p.x); };
+    const auto in_order = [](const Rounded& a, const Rounded& b) {
+        return std::tie(a.x, a.y, a.point) < std::tie(b.x, b.y, b.point);
+    };
+    const std::size_t chunks = std::clamp<std::size_t>(used.size() / kChunk, 1, kMostChunks);
+    const auto produce = [&](std::size_t chunk, const auto& take) {
+        const std::size_t end = used.size() * (chunk + 1) / chunks;
+        for (std::size_t p = used.size() * chunk / chunks; p < end; ++p) {
+            if (used[p] == 0) continue;
+            const auto id = static_cast<PointId>(p);
+            take(Rounded{geometry.point(id).x, geometry.point(id).y, id});
+        }
+    };
+    // input vertices have the lowest ids
+    return BucketSort<Rounded, decltype(share), decltype(in_order)>(share, in_order)
+        .sorted(chunks, used.size(), produce, threads, progress);
+}
+
+/// Calls visit(begin, end) for the groups of points in equal positions that begin in a range.
+template <class Visit>
+void for_each_position(const GrowingArray<Rounded>& points, std::size_t begin, std::size_t end,
+                       const Visit& visit) {
+    while (begin < end && begin > 0 && points[begin].in_position_of(points[begin - 1]))
+        ++begin;
+    while (begin < end) {
+        std::size_t next = begin + 1;
+        while (next < points.size() && points[next].in_position_of(points[begin]))
+            ++next;
+        visit(begin, next);
+        begin = next;
+    }
+}
+
+}  // namespace
+
+// Rounded coordinates are the same for every way to name a place, so only points with equal ones
+// can be in the same place; among those the exact test decides.
+PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList& faces,
+                                const std::vector<ExtraPoint>& extra, int threads,
+                                const Progress* progress) {
+    const GrowingArray<Rounded> points = points_in_use(geometry, faces, extra, threads, progress);
+    FlatArray<std::uint32_t> first_there(points.size());  // the first point in the place of each
+    std::vector<std::size_t> before((points.size() + kChunk - 1) / kChunk);
+    parallel_ranges(points.size(), kChunk, threads, progress,
+                    [&](std::size_t range_begin, std::size_t range_end) {
+                        LocalArrangement scope(geometry);
+                        std::size_t places = 0;
+                        for_each_position(
+                            points, range_begin, range_end,
+                            [&](std::size_t begin, std::size_t end) {
+                                for (std::size_t i = begin; i < end; ++i) {
+                                    first_there[i] = static_cast<std::uint32_t>(i);
+                                    for (std::size_t j = begin; j < i; ++j) {
+                                        if (first_there[j] == j &&
+                                            scope.same_place(points[i].point, points[j].point)) {
+                                            first_there[i] = static_cast<std::uint32_t>(j);
+                                            break;
+                                        }
+                                    }
+                                    places += first_there[i] == i;
+                                }
+                            });
+                        before[range_begin / kChunk] = places;
+                    });
+
+    PlanVertices places;
+    const std::size_t count = count_before(before);
+    places.representative = FlatArray<PointId>(count);
+    places.position = FlatArray<PlanPosition>(count);
+    places.same_x_bits = zeros<std::uint64_t>(count / 64 + 1, threads, progress);
+    places.of_point = FlatArray<PlanVertexId>(geometry.point_count());
+    parallel_ranges(places.of_point.size(), 1 << 18, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        std::fill(places.of_point.begin() + begin, places.of_point.begin() + end,
+                                  -1);
+                    });
+    std::vector<std::vector<PlanVertexId>> coincident(before.size());
+    parallel_ranges(
+        points.size(), kChunk, threads, progress,
+        [&](std::size_t range_begin, std::size_t range_end) {
+            std::size_t next = before[range_begin / kChunk];
+            for_each_position(
+                points, range_begin, range_end, [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t i = begin; i < end; ++i) {
+                        auto& place = places.of_point[static_cast<std::size_t>(points[i].point)];
+                        if (first_there[i] != i) {
+                            place = places.of_point[static_cast<std::size_t>(
+                                points[first_there[i]].point)];
+                            continue;
+                        }
+                        place = static_cast<PlanVertexId>(next);
+                        places.representative[next] = points[i].point;
+                        places.position[next] = {points[i].x, points[i].y};
+                        if (next > 0 && points[i - 1].x == points[i].x) {
+                            std::atomic_ref(places.same_x_bits[(next - 1) / 64])
+                                .fetch_or(std::uint64_t{1} << (next - 1) % 64,
+                                          std::memory_order_relaxed);
+                        }
+                        if (i > begin) coincident[range_begin / kChunk].push_back(place);
+                        ++next;
+                    }
+                });
+        });
+    for (const auto& some : coincident)
+        places.coincident.insert(places.coincident.end(), some.begin(), some.end());
+    return places;
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/conform/walls.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <memory>
+#include <utility>
+
+#include "base/parallel_counts.hpp"
+#include "strata/conform/interval_curves.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanArrangement;
+
+namespace {
+
+constexpr std::size_t kTracks = 1 << 10;  // worked on at a time
+
+/// What the walls of some lines are found in.
+struct Batch {
+    explicit Batch(const PlanArrangement& geometry) : scope(geometry) {}
+    LocalArrangement scope;
+    WallBatch walls;
+    FoundWalls found;
+};
+
+/// The walls of one line after another.
+class LineWalls {
+public:
+    LineWalls(const FaceList& faces, const CollinearEdges& tracks, const ConformedFaces& loops,
+              const BlockLines* blocks, Batch& batch)
+        : loops_(loops), blocks_(blocks), curves_(faces, tracks, loops), batch_(batch) {}
+
+    void process(std::size_t line) {
+        const auto emit = [&](const OpenWall& wall) {
+            auto& loop = batch_.walls.vertices;
+            const std::size_t first = loop.size();
+            add_wall_loop(wall.lower, wall.upper, loop, [](std::int32_t) { return true; });
+            batch_.walls.sizes.push_back(static_cast<std::int32_t>(loop.size() - first));
+            batch_.walls.cells.push_back({wall.left, wall.right});
+        };
+        curves_.collect(line);
+        for (std::size_t i = 0; i < curves_.intervals(); ++i) {
+            process_interval(line, i, curves_.of_interval(i));
+            joining_.end_interval(emit);
+        }
+        joining_.end_line(emit);
+    }
+
+private:
+    /// Whether no wall stands between two cells: they are the same column, or of one block.
+    bool is_same(std::int32_t a, std::int32_t b) const {
+        return a == b || (blocks_ != nullptr && block(a) == block(b));
+    }
+    std::int32_t block(std::int32_t node) const {
+        return node < 0 ? kOutsideCell : blocks_->node_block[static_cast<std::size_t>(node)];
+    }
+    void link(std::int32_t a, std::int32_t b) {
+        if (blocks_ != nullptr && a != b && a >= 0 && b >= 0 && block(a) == block(b))
+            batch_.found.links.emplace_back(a, b);
+    }
+
+    void process_interval(std::size_t line, std::size_t interval, std::span<const Curve> curves) {
+        if (curves.empty()) return;
+        // The common case: one face edge on either side, the same cells above and below. They hang
+        // together whether walls may stand here or not.
+        if (curves.size() == 2) {
+            const Curve &a = curves[0], &b = curves[1];
+            if (a.left != b.left && a.as_high_as(b) && is_same(a.above, b.above) &&
+                is_same(a.below, b.below)) {
+                link(a.above, b.above);
+                link(a.below, b.below);
+                return;
+            }
+        }
+        if (blocks_ != nullptr && !may_have_walls(curves.front())) {
+            continue_faces(curves);
+            return;
+        }
+        auto& missing = batch_.found.missing;
+        const std::size_t known = missing.size();
+        curves_.find_crossings(line, curves, batch_.scope, missing);
+        if (missing.size() > known) return;
+        for_each_gap(curves, [&](const Curve& low, const Curve& high, std::int32_t left,
+                                 std::int32_t right) {
+            const std::array lower{low.start, low.end}, upper{high.start, high.end};
+            if (is_same(left, right)) {
+                link(left, right);
+            } else if (blocks_ == nullptr) {
+                joining_.add(lower, upper, left, right, low.start != high.start);
+            } else {
+                batch_.found.stretches.push_back({static_cast<std::int32_t>(line),
+                                                  static_cast<std::int32_t>(interval), lower, upper,
+                                                  left, right});
+            }
+        });
+    }
+
+    bool may_have_walls(const Curve& curve) {
+        const PlanVertices& places = blocks_->places;
+        const std::size_t from = place_of(curve.start), to = place_of(curve.end);
+        const PlanPosition &p = places.position[from], &q = places.position[to];
+        const TileSpan span =
+            blocks_->borders.tiles().span({std::min(p[0], q[0]), std::min(p[1], q[1]),
+                                           std::max(p[0], q[0]), std::max(p[1], q[1])});
+        return blocks_->borders.near(span) &&
+               blocks_->borders.run_between(batch_.scope, places.representative[from],
+                                            places.representative[to], span);
+    }
+    std::size_t place_of(std::int32_t vertex) const {
+        const auto& first = loops_.place_offsets;
+        return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), vertex) -
+                                        first.begin()) -
+               1;
+    }
+
+    /// No wall: what is above the uppermost face at a height, and what is below the lowest one,
+    /// goes on beyond the line.
+    void continue_faces(std::span<const Curve> curves) {
+        for (std::size_t i = 0; i < curves.size();) {
+            std::size_t left = i;  // the first curve to the left of the line at this height
+            while (left < curves.size() && curves[left].as_high_as(curves[i]) && !curves[left].left)
+                ++left;
+            std::size_t level = left;
+            while (level < curves.size() && curves[level].as_high_as(curves[i]))
+                ++level;
+            if (i < left && left < level) {
+                link(curves[left - 1].above, curves[level - 1].above);
+                link(curves[i].below, curves[left].below);
+            }
+            i = level;
+        }
+    }
+
+    const ConformedFaces& loops_;
+    const BlockLines* blocks_;
+    IntervalCurves curves_;
+    Batch& batch_;
+    WallJoining joining_;
+};
+
+/// The walls of tracks on which all edges are pairs.
+class PlannedWalls {
+public:
+    PlannedWalls(const ConformedFaces& loops, WallBatch& walls) : loops_(loops), walls_(walls) {}
+
+    void add(const MatchedEdges& paired) {
+        const std::int32_t* next = paired.walls.data();
+        const std::int32_t* const end = next + paired.walls.size();
+        while (next < end) {
+            for (std::ptrdiff_t ahead = 0; ahead < 8; ++ahead) {
+                const auto corner = [&](std::ptrdiff_t further) {
+                    return corner_of(next[std::min(further + ahead, end - 1 - next)]);
+                };
+                loops_.entries.prefetch(corner(96));
+                prefetch(&loops_.vertices[loops_.entries.first(corner(48))]);
+            }
+            const std::array cells{next[0], next[1]};
+            const std::int32_t above = next[2], beneath = next[3];
+            next = collect(next + 4, above, upper_);
+            next = collect(next, beneath, lower_);
+            add_parts(cells);
+        }
+    }
+
+private:
+    /// A number of the plan as that of a corner: counts and cells are those of some corner, too.
+    std::size_t corner_of(std::int32_t number) const {
+        const auto corner = static_cast<std::size_t>(std::max(number, 0));
+        return std::min(corner, loops_.entries.corners() - 1);
+    }
+
+    /// The vertices along some edges that follow each other.
+    /// @return what comes after them in the plan
+    const std::int32_t* collect(const std::int32_t* corner, std::int32_t count,
+                                std::vector<std::int32_t>& vertices) const {
+        vertices.clear();
+        for (std::int32_t i = 0; i < count; ++i, ++corner) {
+            const auto c = static_cast<std::size_t>(*corner);
+            const std::uint32_t end = loops_.entries.first(c + 1);
+            for (std::uint32_t e = loops_.entries.first(c); e < end; ++e) {
+                if (loops_.vertices[e] >= 0) vertices.push_back(loops_.vertices[e]);
+            }
+        }
+        const auto end = static_cast<std::size_t>(*corner);
+        vertices.push_back(loops_.vertices[loops_.entries.first(end)]);
+        return corner + 1;
+    }
+
+    /// Adds the wall between upper_ and lower_, divided where these touch on the way.
+    void add_parts(const std::array<std::int32_t, 2>& cells) {
+        std::size_t u = 0, l = 0;
+        while (u + 1 < upper_.size() && l + 1 < lower_.size()) {
+            const auto [next_u, next_l] = next_contact(u, l);
+            const bool is_flat = next_u == u + 1 && next_l == l + 1 && upper_[u] == lower_[l] &&
+                                 upper_[next_u] == lower_[next_l];
+            if (!is_flat) {
+                auto& loop = walls_.vertices;
+                const std::size_t first = loop.size();
+                add_wall_loop(std::span(lower_).subspan(l, next_l - l + 1),
+                              std::span(upper_).subspan(u, next_u - u + 1), loop,
+                              [](std::int32_t) { return true; });
+                walls_.sizes.push_back(static_cast<std::int32_t>(loop.size() - first));
+                walls_.cells.push_back(cells);
+            }
+            u = next_u;
+            l = next_l;
+        }
+    }
+
+    /// Where upper_ and lower_ have a vertex in common next, or end.
+    std::pair<std::size_t, std::size_t> next_contact(std::size_t u, std::size_t l) const {
+        for (std::size_t i = u + 1; i < upper_.size(); ++i) {
+            const auto at = std::find(lower_.begin() + static_cast<std::ptrdiff_t>(l) + 1,
+                                      lower_.end(), upper_[i]);
+            if (at != lower_.end()) return {i, static_cast<std::size_t>(at - lower_.begin())};
+        }
+        return {upper_.size() - 1, lower_.size() - 1};
+    }
+
+    const ConformedFaces& loops_;
+    WallBatch& walls_;
+    std::vector<std::int32_t> upper_, lower_;
+};
+
+}  // namespace
+
+FoundWalls find_walls(PlanArrangement& geometry, const FaceList& faces, CollinearEdges& tracks,
+                      const ConformedFaces& loops, const BlockLines* blocks, int threads,
+                      const Progress* progress) {
+    const std::size_t chunks = (tracks.size() + kTracks - 1) / kTracks;
+    FoundWalls found;
+    found.walls.resize(chunks);
+    std::vector<std::unique_ptr<Batch>> batches(chunks);  // of which more is asked below
+    parallel_ranges(tracks.size(), kTracks, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        auto batch = std::make_unique<Batch>(geometry);
+                        LineWalls of_line(faces, tracks, loops, blocks, *batch);
+                        for (std::size_t t = begin; t < end; ++t)
+                            of_line.process(t);
+                        found.walls[begin / kTracks] = std::move(batch->walls);
+                        if (blocks != nullptr || !batch->found.missing.empty())
+                            batches[begin / kTracks] = std::move(batch);
+                    });
+    for (const auto& batch : batches) {
+        if (batch == nullptr) continue;
+        if (!batch->found.missing.empty()) batch->scope.commit(geometry);
+        for (const ExtraPoint& e : batch->found.missing)
+            found.missing.push_back({e.line, batch->scope.shared_point(e.point)});
+        const FoundWalls& own = batch->found;
+        found.links.insert(found.links.end(), own.links.begin(), own.links.end());
+        found.stretches.insert(found.stretches.end(), own.stretches.begin(), own.stretches.end());
+    }
+    if (!found.missing.empty()) return {std::move(found.missing), {}, {}, {}};
+    found.walls.resize(chunks + tracks.paired.size());
+    parallel_chunks(tracks.paired.size(), threads, progress, [&](std::size_t chunk) {
+        const MatchedEdges paired = std::move(tracks.paired[chunk]);
+        WallBatch& batch = found.walls[chunks + chunk];
+        batch.sizes.reserve(paired.wall_count);
+        batch.cells.reserve(paired.wall_count);
+        PlannedWalls(loops, batch).add(paired);
+    });
+    return found;
+}
+
+}  // namespace realmodel::strata

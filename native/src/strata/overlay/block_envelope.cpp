@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/overlay/block_envelope.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "base/parallel_counts.hpp"
+#include "strata/tiling/triangle_outlines.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanArrangement;
+
+BlockEnvelope::BlockEnvelope(PlanArrangement& geometry, const TriangleLinks& links,
+                             const BorderEdges& borders, double largest_height,
+                             Construction& construction, WholeTriangles& wholes, int threads,
+                             const Progress* progress)
+    : geometry_(geometry),
+      links_(links),
+      borders_(borders),
+      construction_(construction),
+      wholes_(wholes),
+      threads_(threads),
+      progress_(progress),
+      filter_(geometry, borders, largest_height, threads, progress),
+      cover_(tiles().size(), Cover::kFacets) {}
+
+void BlockEnvelope::add_sky(const PlanTriangle& triangle, PlaneId plane, Cover cover) {
+    parts_.add_facet(triangle_outline(geometry_, triangle), plane, -1, kSkyBlock);
+    tiles().for_each_centre_in(corners_of(geometry_, triangle),
+                               [&](std::size_t tile) { cover_[tile] = cover; });
+}
+
+void BlockEnvelope::start_region(const FrameTriangles& filling) {
+    is_started_ = true;
+    for (const bool inside : {true, false}) {
+        for (std::size_t t = 0; t < filling.triangles.size(); ++t) {
+            if ((filling.covered[t] != 0) != inside) continue;
+            add_sky(filling.triangles[t], inside ? kSky : kOutside,
+                    inside ? Cover::kSkyOnly : Cover::kNothing);
+        }
+    }
+}
+
+void BlockEnvelope::start(const BlockTiling& tiling, std::int32_t number) {
+    is_started_ = true;
+    for (const PlanTriangle& t : tiling.empty)
+        add_sky(t, kSky, Cover::kSkyOnly);
+    for (std::size_t t = 0; t < tiling.whole.size(); ++t) {
+        poll(progress_, t);
+        enter(tiling.whole[t], number, kOutsideCell,
+              tiles().span(bounds_of(geometry_, tiling.whole[t]).box));
+    }
+    std::swap(whole_, next_whole_);
+    std::swap(whole_block_, next_whole_block_);
+    for (std::size_t p = 0; p < tiling.part_plane.size(); ++p) {
+        const PlaneId plane = tiling.part_plane[p];
+        wholes_.is_in_parts[static_cast<std::size_t>(plane)] = 1;
+        parts_.add_facet(tiling.parts[p], plane, number, number);
+        parts_.add_face(tiling.parts[p], kOutsideCell);
+    }
+}
+
+/// Makes a whole triangle of a surface a facet.
+void BlockEnvelope::enter(PlaneId plane, std::int32_t number, std::int32_t node_above,
+                          const TileSpan& span) {
+    assert(!wholes_.of(plane).is_set());
+    wholes_.of(plane) = {node_above, WholeFace::kUnset, number};
+    if (borders_.near(span)) wholes_.is_exact[static_cast<std::size_t>(plane)] = 1;
+    next_whole_.push_back(plane);
+    next_whole_block_.push_back(number);
+}
+
+Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTiling& part,
+                                        std::int32_t number) {
+    const std::vector<std::size_t> exact = filter_.exact_facets();
+    const auto first_part = static_cast<std::size_t>(
+        std::lower_bound(exact.begin(), exact.end(), whole_.size()) - exact.begin());
+    PolygonPool outlines;
+    add_outlines(
+        geometry_, first_part,
+        [&](std::size_t i) { return geometry_.plane(whole_[exact[i]]).plan; }, outlines, progress_);
+    Envelope envelope;
+    BlockFacets blocks{&borders_, {}, std::vector<std::uint8_t>(exact.size(), 1)};
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+        const std::size_t f = exact[i];
+        blocks.span.push_back(filter_.facet_at[f].span);
+        if (i < first_part) {
+            const WholeFace& face = wholes_.of(whole_[f]);
+            wholes_.is_exact[static_cast<std::size_t>(whole_[f])] = 1;
+            // until it turns out to be kept or sealed as it is
+            wholes_.is_in_parts[static_cast<std::size_t>(whole_[f])] = kMayStayWhole;
+            envelope.add_facet(outlines[i], whole_[f], face.layer, whole_block_[f]);
+            envelope.add_face(outlines[i], face.above);
+            continue;
+        }
+        envelope.add_facet_of(parts_, f - whole_.size(), facets.block(f));
+        if (facets.plane(f) < 0) {
+            blocks.is_complete[i] = !tiles().any(filter_.facet_at[f].span, [&](std::size_t tile) {
+                return !borders_.in_tile(tile) && filter_.is_empty[tile] == 0;
+            });
+        }
+    }
+    const std::size_t first_face = construction_.faces.size();
+    Overlaid overlaid = overlay_facets(geometry_, envelope, part, number, &blocks, construction_,
+                                       threads_, progress_);
+    sort_overlaid(overlaid.kept, first_face);
+    for (std::size_t i = 0; i < first_part; ++i) {
+        std::uint8_t& in_parts = wholes_.is_in_parts[static_cast<std::size_t>(whole_[exact[i]])];
+        in_parts = in_parts == kMayStayWhole ? 1 : 0;
+    }
+    return overlaid;
+}
+
+/// Whether a polygon in the plane of a triangle is all of it.
+bool BlockEnvelope::is_triangle(PolygonView polygon, PlaneId plane) const {
+    const PlanTriangle& corner = geometry_.plane(plane).plan;
+    return polygon.size() == 3 && polygon[0].point == corner[0] && polygon[1].point == corner[1] &&
+           polygon[2].point == corner[2];
+}
+
+/// Of what facets overlaid exactly became, whole triangles stay or become whole faces.
+void BlockEnvelope::sort_overlaid(const Envelope& kept, std::size_t first_face) {
+    const auto stays_whole = [&](PolygonView polygon, PlaneId plane) {
+        if (plane < 0) return false;
+        std::uint8_t& in_parts = wholes_.is_in_parts[static_cast<std::size_t>(plane)];
+        if (in_parts != kMayStayWhole || !is_triangle(polygon, plane)) return false;
+        in_parts = kStaysWhole;
+        return true;
+    };
+    const FaceList& faces = construction_.faces;
+    for (std::size_t f = first_face; f < faces.size(); ++f) {
+        // where a border or a touch divides what is beneath, the triangle is in parts all the same
+        if (construction_.node_is_thick[static_cast<std::size_t>(faces.below[f])] == 0 ||
+            !stays_whole(faces.polygons[f], faces.plane[f]))
+            continue;
+        wholes_.of(faces.plane[f]).below = faces.below[f];
+        wholes_.is_added[static_cast<std::size_t>(faces.plane[f])] = 1;
+    }
+    for (std::size_t f = 0; f < kept.size(); ++f) {
+        if (stays_whole(kept.outlines[f], kept.plane[f])) {
+            next_whole_.push_back(kept.plane[f]);
+            next_whole_block_.push_back(kept.block_beneath[f]);
+        } else {
+            next_parts_.add_facet_of(kept, f, kept.block_beneath[f]);
+        }
+    }
+}
+
+/// Facets that bounds sorted.
+SealedFacets BlockEnvelope::sort_facets(std::int32_t number) {
+    SealedFacets sealed;
+    sealed.first_node = static_cast<std::int32_t>(construction_.node_block.size());
+    for (std::size_t f = 0; f < whole_.size(); ++f) {
+        const Standing standing = filter_.facet[f];
+        if (standing == Standing::kAbove) {
+            wholes_.of(whole_[f]).below = construction_.add_node(whole_block_[f], true);
+            sealed.wholes.push_back(whole_[f]);
+        } else if (standing != Standing::kExact) {
+            next_whole_.push_back(whole_[f]);
+            next_whole_block_.push_back(standing == Standing::kBelow ? number : whole_block_[f]);
+        }
+    }
+    for (std::size_t f = 0; f < parts_.size(); ++f) {
+        const Standing standing = filter_.facet[whole_.size() + f];
+        if (standing == Standing::kAbove) {
+            construction_.seal(parts_, f, construction_.add_node(parts_.block_beneath[f], true));
+            sealed.parts.push_back(f);
+        } else if (standing != Standing::kExact) {
+            next_parts_.add_facet_of(
+                parts_, f, standing == Standing::kBelow ? number : parts_.block_beneath[f]);
+        }
+    }
+    return sealed;
+}
+
+/// Of each triangle in the exact part, whether it stays whole: it touches the facets nowhere, has
+/// one block above it, and no border divides it. What stands on a divided one has its foot there.
+std::vector<std::uint8_t> BlockEnvelope::find_whole(const SurfaceTiling& part,
+                                                    const PiecesOfPolygons& pieces,
+                                                    const Overlaid& overlaid,
+                                                    std::size_t triangles) const {
+    constexpr std::size_t kPolygons = 1 << 10;
+    const auto block_above = [&](std::uint32_t piece) {
+        const std::int32_t node = overlaid.below.node_above[piece];
+        return node < 0 ? kSkyBlock : construction_.node_block[static_cast<std::size_t>(node)];
+    };
+    std::vector<std::uint8_t> is_whole(part.plane.size(), 0);
+    parallel_ranges(
+        triangles, kPolygons, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+            LocalArrangement scope(geometry_);
+            for (std::size_t t = begin; t < end; ++t) {
+                if (filter_.polygon[t] < 0) continue;
+                const auto p = static_cast<std::size_t>(filter_.polygon[t]);
+                const auto own = pieces[p];
+                if (own.empty() || overlaid.is_divided[p] != 0 || overlaid.is_touched[p] != 0)
+                    continue;
+                const bool alike = std::all_of(own.begin(), own.end(), [&](std::uint32_t i) {
+                    return block_above(i) == block_above(own.front());
+                });
+                is_whole[p] =
+                    alike && !borders_.divide(scope, part.polygons[p], filter_.surface_at[t].span);
+            }
+        });
+    return is_whole;
+}
+
+/// The surface's own facets.
+void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& part,
+                                std::int32_t number, Overlaid& overlaid) {
+    const std::size_t triangles = tiling.whole.size();
+    const PiecesOfPolygons pieces =
+        sort_by_polygon(overlaid.below, part.plane.size(), threads_, progress_);
+    const auto is_whole = find_whole(part, pieces, overlaid, triangles);
+    const auto node_of = [&](std::uint32_t piece) { return overlaid.below.node_above[piece]; };
+    const auto link = [&](std::int32_t a, std::int32_t b) {
+        if (a >= 0 && b >= 0 && a != b) construction_.links.emplace_back(a, b);
+    };
+    node_above_.assign(triangles, kOutsideCell);
+    std::vector<std::uint8_t>& use = overlaid.is_divided;
+    for (std::size_t t = 0; t < tiling.size(); ++t) {
+        const Standing standing = filter_.surface[t];
+        const PlaneId plane = tiling.plane(t);
+        if (standing == Standing::kBelow) {
+            if (filter_.block[t] != kSkyBlock)
+                node_above_[t] = construction_.add_node(filter_.block[t], true);
+            enter(plane, number, node_above_[t], filter_.surface_at[t].span);
+        }
+        if (filter_.polygon[t] < 0) continue;
+        const auto p = static_cast<std::size_t>(filter_.polygon[t]);
+        const auto own = pieces[p];
+        if (standing != Standing::kExact || own.empty()) {
+            use[p] = kElsewhere;
+            if (standing == Standing::kAbove) continue;
+            for (const std::uint32_t piece : own)
+                link(node_above_[t], node_of(piece));
+            continue;
+        }
+        wholes_.is_exact[static_cast<std::size_t>(plane)] = 1;
+        if (is_whole[p] == 0) {
+            wholes_.is_in_parts[static_cast<std::size_t>(plane)] = 1;
+            continue;
+        }
+        use[p] = kElsewhere;
+        for (const std::uint32_t piece : own)
+            link(node_of(own.front()), node_of(piece));
+        enter(plane, number, node_of(own.front()), filter_.surface_at[t].span);
+    }
+    add_surface_facets(part, use, overlaid.below, pieces, number, next_parts_, threads_, progress_);
+}
+
+void BlockEnvelope::add(const BlockTiling& tiling, std::int32_t number) {
+    if (!is_started_) {
+        start(tiling, number);
+        return;
+    }
+    const FacetView facets = view();
+    filter_.begin(tiling);
+    filter_.compare(facets);
+    next_whole_.clear();
+    next_whole_block_.clear();
+    next_parts_ = {};
+    const SurfaceTiling part = filter_.exact_part(geometry_, links_, facets);
+    Overlaid overlaid = overlay_exactly(facets, part, number);
+    const SealedFacets sealed = sort_facets(number);
+    add_surface(tiling, part, number, overlaid);
+    link_sheets(geometry_, links_, filter_, tiling, node_above_, sealed, parts_, wholes_,
+                construction_, threads_, progress_);
+    for (std::size_t tile = 0; tile < cover_.size(); ++tile) {
+        if (cover_[tile] == Cover::kSkyOnly && filter_.is_empty[tile] == 0)
+            cover_[tile] = Cover::kFacets;
+    }
+    std::swap(whole_, next_whole_);
+    std::swap(whole_block_, next_whole_block_);
+    std::swap(parts_, next_parts_);
+}
+
+void BlockEnvelope::finish(std::optional<PlaneId> base) {
+    for (std::size_t f = 0; f < whole_.size(); ++f) {
+        std::int32_t node = kOutsideCell;
+        if (base && whole_block_[f] == 0) {
+            node = construction_.add_node(0, true);
+            wholes_.on_base.push_back({whole_[f], *base, node});
+        }
+        wholes_.of(whole_[f]).below = node;
+    }
+    strata::finish(parts_, base, true, construction_);
+    whole_ = next_whole_ = {};
+    parts_ = next_parts_ = {};
+}
+
+std::array<double, 3> BlockEnvelope::lowest() const {
+    std::array<double, 3> lowest = lowest_position(geometry_, parts_);
+    for (const PlaneId plane : whole_) {
+        for (const exact::SpaceId s : geometry_.plane(plane).corner) {
+            const auto& vertex = geometry_.space(s);
+            const auto& at = geometry_.point(vertex.plan);
+            if (vertex.z < lowest[2]) lowest = {at.x, at.y, vertex.z};
+        }
+    }
+    return lowest;
+}
+
+}  // namespace realmodel::strata

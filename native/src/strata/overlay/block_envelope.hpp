@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "strata/overlay/facet_overlay.hpp"
+#include "strata/overlay/sheet_links.hpp"
+#include "strata/overlay/whole_triangles.hpp"
+
+namespace realmodel::strata {
+
+/// The envelope of one rock mass while blocks are built: triangles that the filter sorts wholly
+/// above or below what they meet are neither cut nor named anywhere; only the others are overlaid.
+class BlockEnvelope {
+public:
+    BlockEnvelope(exact::PlanArrangement& geometry, const TriangleLinks& links,
+                  const BorderEdges& borders, double largest_height, Construction& construction,
+                  WholeTriangles& wholes, int threads, const Progress* progress);
+
+    /// Begins under the sky over a region (what is covered), with the outside around it.
+    void start_region(const FrameTriangles& filling);
+    /// Lays the next older surface under the envelope; the first one, without a region, is it.
+    void add(const BlockTiling& tiling, std::int32_t number);
+    /// The lowest position of the envelope.
+    std::array<double, 3> lowest() const;
+    /// Closes what is left, down to a flat base where there is one.
+    void finish(std::optional<PlaneId> base);
+
+private:
+    // Instead of 0 or 1 in WholeTriangles::is_in_parts, while a surface is added.
+    static constexpr std::uint8_t kMayStayWhole = 2, kStaysWhole = 3;
+
+    FacetView view() const {
+        return {whole_,
+                whole_block_,
+                parts_.outlines,
+                {parts_.plane.begin(), parts_.plane.end()},
+                {parts_.block_beneath.begin(), parts_.block_beneath.end()},
+                cover_};
+    }
+    void add_sky(const PlanTriangle& triangle, PlaneId plane, Cover cover);
+    void start(const BlockTiling& tiling, std::int32_t number);
+    void enter(PlaneId plane, std::int32_t number, std::int32_t node_above, const TileSpan& span);
+    Overlaid overlay_exactly(const FacetView& facets, const SurfaceTiling& part,
+                             std::int32_t number);
+    void sort_overlaid(const Envelope& kept, std::size_t first_face);
+    SealedFacets sort_facets(std::int32_t number);
+    std::vector<std::uint8_t> find_whole(const SurfaceTiling& part, const PiecesOfPolygons& pieces,
+                                         const Overlaid& overlaid, std::size_t triangles) const;
+    void add_surface(const BlockTiling& tiling, const SurfaceTiling& part, std::int32_t number,
+                     Overlaid& overlaid);
+
+    bool is_triangle(PolygonView polygon, PlaneId plane) const;
+    const PlanTiles& tiles() const { return borders_.tiles(); }
+
+    exact::PlanArrangement& geometry_;
+    const TriangleLinks& links_;
+    const BorderEdges& borders_;
+    Construction& construction_;
+    WholeTriangles& wholes_;
+    int threads_;
+    const Progress* progress_;
+    WholeTriangleFilter filter_;
+    bool is_started_ = false;
+    std::vector<PlaneId> whole_, next_whole_;
+    std::vector<std::int32_t> whole_block_, next_whole_block_;  ///< beneath each
+    Envelope parts_, next_parts_;  ///< facets that are parts of triangles; the sky, the outside
+    std::vector<Cover> cover_;     ///< of each tile without a border
+    std::vector<std::int32_t> node_above_;  ///< of the surface's triangles that are below
+};
+
+}  // namespace realmodel::strata

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/overlay/border_edges.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "exact/orient2d.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanArrangement;
+
+BorderEdges::BorderEdges(PlanArrangement& geometry, const PlanTiles& tiles, std::vector<Edge> edges)
+    : tiles_(tiles), offsets_(tiles.size() + 1, 0) {
+    for (auto& [from, to] : edges) {
+        if (from > to) std::swap(from, to);
+    }
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    segments_.reserve(edges.size());
+    for (const auto& [from, to] : edges)
+        segments_.push_back({from, to, exact::line_of(geometry.add_edge(from, to))});
+    const auto for_all = [&](const auto& visit) {
+        for (std::size_t s = 0; s < segments_.size(); ++s) {
+            const auto &p = geometry.point(segments_[s].from), &q = geometry.point(segments_[s].to);
+            const PlanBox box{std::min(p.x, q.x), std::min(p.y, q.y), std::max(p.x, q.x),
+                              std::max(p.y, q.y)};
+            tiles_.for_each(tiles_.span(box), [&](std::size_t tile) { visit(tile, s); });
+        }
+    };
+    for_all([&](std::size_t tile, std::size_t) { ++offsets_[tile + 1]; });
+    std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+    in_tiles_.resize(offsets_.back());
+    auto free = offsets_;
+    for_all([&](std::size_t tile, std::size_t s) {
+        in_tiles_[free[tile]++] = static_cast<std::uint32_t>(s);
+    });
+}
+
+template <class Holds>
+bool BorderEdges::any_in(const TileSpan& span, const Holds& holds) const {
+    return tiles_.any(span, [&](std::size_t tile) {
+        return std::any_of(in_tiles_.begin() + offsets_[tile],
+                           in_tiles_.begin() + offsets_[tile + 1],
+                           [&](std::uint32_t s) { return holds(segments_[s]); });
+    });
+}
+
+/// Whether a segment has a place inside a convex polygon. What is convex lies apart where a line
+/// along an edge of either separates the two.
+/// @param side_of_segment  side_of_segment(i): on which side of the segment corner i lies
+/// @param side_of_edge     side_of_edge(i, end): on which side of the edge from there the end lies
+template <class SideOfSegment, class SideOfEdge>
+bool BorderEdges::reaches_inside(const Segment& segment, std::size_t corners,
+                                 const SideOfSegment& side_of_segment,
+                                 const SideOfEdge& side_of_edge) {
+    bool any_left = false, any_right = false;
+    for (std::size_t i = 0; i < corners; ++i) {
+        const int side = side_of_segment(i);
+        any_left |= side > 0;
+        any_right |= side < 0;
+    }
+    if (!any_left || !any_right) return false;
+    for (std::size_t i = 0; i < corners; ++i) {
+        if (side_of_edge(i, segment.from) <= 0 && side_of_edge(i, segment.to) <= 0) return false;
+    }
+    return true;
+}
+
+bool BorderEdges::divide(LocalArrangement& scope, PolygonView polygon, const TileSpan& span) const {
+    return any_in(span, [&](const Segment& segment) {
+        const auto line = exact::directed(segment.line, false);
+        return reaches_inside(
+            segment, polygon.size(),
+            [&](std::size_t i) { return scope.side(line, polygon[i].point); },
+            [&](std::size_t i, PointId end) { return scope.side(polygon[i].line, end); });
+    });
+}
+
+bool BorderEdges::divide(const PlanArrangement& geometry, const PlanTriangle& triangle,
+                         const TileSpan& span) const {
+    using Position = std::array<double, 2>;
+    const auto position = [&](exact::VertexId v) -> Position {
+        return {geometry.point(v).x, geometry.point(v).y};
+    };
+    const std::array corners{position(triangle[0]), position(triangle[1]), position(triangle[2])};
+    Position low = corners[0], high = corners[0];
+    for (const Position& p : corners) {
+        low = {std::min(low[0], p[0]), std::min(low[1], p[1])};
+        high = {std::max(high[0], p[0]), std::max(high[1], p[1])};
+    }
+    return any_in(span, [&](const Segment& segment) {
+        const Position from = position(segment.from), to = position(segment.to);
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            if (std::max(from[axis], to[axis]) <= low[axis] ||
+                std::min(from[axis], to[axis]) >= high[axis])
+                return false;
+        }
+        return reaches_inside(
+            segment, corners.size(),
+            [&](std::size_t i) { return exact::orient2d(from, to, corners[i]); },
+            [&](std::size_t i, exact::VertexId end) {
+                return exact::orient2d(corners[i], corners[(i + 1) % 3],
+                                       end == segment.from ? from : to);
+            });
+    });
+}
+
+bool BorderEdges::run_between(LocalArrangement& scope, PointId a, PointId b,
+                              const TileSpan& span) const {
+    return any_in(span, [&](const Segment& segment) {
+        const auto line = exact::directed(segment.line, false);
+        if (scope.side(line, a) != 0 || scope.side(line, b) != 0) return false;
+        const int axis = scope.compare(0, segment.from, segment.to) != 0 ? 0 : 1;
+        const auto before = [&](PointId p, PointId q) { return scope.compare(axis, p, q) > 0; };
+        const auto [low, high] = std::minmax(segment.from, segment.to, before);
+        const auto [first, last] = std::minmax(a, b, before);
+        return before(low, last) && before(first, high);
+    });
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/overlay/chunk_joining.hpp"
+
+#include <algorithm>
+
+#include "base/parallel.hpp"
+#include "strata/overlay/shared_polygons.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+/// Room that most facets leave unused, each list of polygons for itself.
+constexpr std::size_t kPolygonsOfFacet = 8, kCornersOfFacet = 32, kSome = 4096;
+
+void pass(PoolStart& start, const PolygonPool& pool) {
+    start.polygon += pool.size();
+    start.corner += pool.corners.size();
+}
+
+/// Lists as long as the faces, facets or pieces that they are of.
+auto lists_of(FaceList& faces) {
+    return std::array{&faces.plane, &faces.layer, &faces.above, &faces.below};
+}
+auto lists_of(PiecesBelow& below) {
+    return std::array{&below.polygon, &below.node_above};
+}
+auto lists_of(Envelope& envelope) {
+    return std::array{&envelope.plane, &envelope.layer, &envelope.block_beneath};
+}
+
+template <class Array>
+void make_room(Array& array, std::size_t more) {
+    const std::size_t size = array.size() + more;
+    if (size > array.capacity()) array.reserve(std::max(size, 2 * array.capacity()));
+}
+void make_room(PolygonPool& pool, std::size_t facets) {
+    make_room(pool.offsets, facets * kPolygonsOfFacet + kSome);
+    make_room(pool.corners, facets * kCornersOfFacet + kSome);
+}
+
+/// Makes memory ready for so many elements where there is room for them without moving any.
+template <class Array>
+bool has_room(Array& array, std::size_t size) {
+    if (size > array.capacity()) return false;
+    array.make_ready(size);
+    return true;
+}
+/// The same for the polygons up to somewhere, and for the lists that go with them.
+template <class Lists>
+bool has_room(PolygonPool& pool, const Lists& lists, const PoolStart& end) {
+    return has_room(pool.offsets, end.polygon + 1) && has_room(pool.corners, end.corner) &&
+           std::all_of(lists.begin(), lists.end(),
+                       [&](auto* list) { return has_room(*list, end.polygon); });
+}
+
+void resize(PolygonPool& pool, const PoolStart& end) {
+    pool.offsets.resize(end.polygon + 1);
+    pool.corners.resize(end.corner);
+}
+
+template <class Element, class From>
+void put(GrowingArray<Element>& to, std::size_t at, const From& from) {
+    std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
+/// Puts polygons of a scope that was handed over.
+void put(PolygonPool& to, const PoolStart& at, const PolygonPool& from, LocalArrangement& scope) {
+    share(scope, from, to.corners.begin() + static_cast<std::ptrdiff_t>(at.corner));
+    for (std::size_t i = 1; i < from.offsets.size(); ++i)
+        to.offsets[at.polygon + i] = static_cast<std::int64_t>(at.corner) + from.offsets[i];
+}
+
+}  // namespace
+
+ChunkResult::ChunkResult(const exact::PlanArrangement& geometry, std::size_t facets)
+    : scope(std::make_unique<LocalArrangement>(geometry)) {
+    // on surfaces of much the same resolution
+    constexpr std::size_t kPoints = 4, kPolygons = 6, kCorners = 4;
+    scope->expect_points(kPoints * facets);
+    for (PolygonPool* pool : {&faces.polygons, &below_outlines}) {
+        pool->offsets.reserve(kPolygons * facets);
+        pool->corners.reserve(kPolygons * kCorners * facets);
+    }
+    for (auto* list : lists_of(faces))
+        list->reserve(kPolygons * facets);
+    below.reserve(kPolygons * facets);
+}
+
+void ChunkStart::pass(const ChunkResult& chunk) {
+    node += static_cast<std::int64_t>(chunk.node_block.size());
+    strata::pass(face, chunk.faces.polygons);
+    strata::pass(below, chunk.below_outlines);
+    strata::pass(facet, chunk.kept.outlines);
+    strata::pass(facet_face, chunk.kept.face_polygons);
+}
+
+ChunkJoining::ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, std::size_t facets,
+                           Construction& construction, Envelope& next, PiecesBelow& below)
+    : chunks_(chunks),
+      construction_(construction),
+      next_(next),
+      below_(below),
+      start_(chunks.size()),
+      fits_(chunks.size()) {
+    end_.node = static_cast<std::int64_t>(construction.node_block.size());
+    strata::pass(end_.face, construction.faces.polygons);
+    for (PolygonPool* pool :
+         {&construction.faces.polygons, &below.outlines, &next.outlines, &next.face_polygons})
+        make_room(*pool, facets);
+    const std::size_t polygons = facets * kPolygonsOfFacet + kSome;
+    make_room(construction.node_block, polygons);
+    make_room(construction.node_is_thick, polygons);
+    for (auto* list : lists_of(construction.faces))
+        make_room(*list, polygons);
+    for (auto* list : lists_of(below))
+        make_room(*list, polygons);
+    for (auto* list : lists_of(next))
+        make_room(*list, polygons);
+    make_room(next.face_offsets, polygons);
+    make_room(next.face_above, polygons);
+}
+
+bool ChunkJoining::has_room() {
+    const auto nodes = static_cast<std::size_t>(end_.node);
+    return strata::has_room(construction_.node_block, nodes) &&
+           strata::has_room(construction_.node_is_thick, nodes) &&
+           strata::has_room(next_.face_offsets, end_.facet.polygon + 1) &&
+           strata::has_room(construction_.faces.polygons, lists_of(construction_.faces),
+                            end_.face) &&
+           strata::has_room(below_.outlines, lists_of(below_), end_.below) &&
+           strata::has_room(next_.outlines, lists_of(next_), end_.facet) &&
+           strata::has_room(next_.face_polygons, std::array{&next_.face_above}, end_.facet_face);
+}
+
+void ChunkJoining::find_offset(std::size_t chunk) {
+    start_[chunk] = end_;
+    end_.pass(*chunks_[chunk]);
+    check_nodes(end_.node);
+    fits_[chunk] = has_room() ? 1 : 0;
+}
+
+void ChunkJoining::put_where_room(std::size_t chunk) {
+    if (fits_[chunk] != 0) put(chunk);
+}
+
+void ChunkJoining::finish(int threads, const Progress* progress) {
+    construction_.node_block.resize(static_cast<std::size_t>(end_.node));
+    construction_.node_is_thick.resize(static_cast<std::size_t>(end_.node));
+    resize(construction_.faces.polygons, end_.face);
+    for (auto* list : lists_of(construction_.faces))
+        list->resize(end_.face.polygon);
+    resize(below_.outlines, end_.below);
+    for (auto* list : lists_of(below_))
+        list->resize(end_.below.polygon);
+    resize(next_.outlines, end_.facet);
+    for (auto* list : lists_of(next_))
+        list->resize(end_.facet.polygon);
+    next_.face_offsets.resize(end_.facet.polygon + 1);
+    resize(next_.face_polygons, end_.facet_face);
+    next_.face_above.resize(end_.facet_face.polygon);
+    parallel_chunks(chunks_.size(), threads, progress, [&](std::size_t c) {
+        if (chunks_[c]) put(c);
+    });
+}
+
+void ChunkJoining::put(std::size_t c) {
+    const ChunkResult& chunk = *chunks_[c];
+    const ChunkStart& at = start_[c];
+    LocalArrangement& scope = *chunk.scope;
+    const auto shared_node = [&](std::int32_t node) {
+        return node == kOutsideCell ? node : node + static_cast<std::int32_t>(at.node);
+    };
+    FaceList& faces = construction_.faces;
+    strata::put(construction_.node_block, static_cast<std::size_t>(at.node), chunk.node_block);
+    strata::put(construction_.node_is_thick, static_cast<std::size_t>(at.node),
+                chunk.node_is_thick);
+    strata::put(faces.polygons, at.face, chunk.faces.polygons, scope);
+    strata::put(faces.plane, at.face.polygon, chunk.faces.plane);
+    strata::put(faces.layer, at.face.polygon, chunk.faces.layer);
+    strata::put(faces.above, at.face.polygon, chunk.faces.above);
+    std::transform(chunk.faces.below.begin(), chunk.faces.below.end(),
+                   faces.below.begin() + static_cast<std::ptrdiff_t>(at.face.polygon), shared_node);
+    strata::put(below_.outlines, at.below, chunk.below_outlines, scope);
+    for (std::size_t i = 0; i < chunk.below.size(); ++i) {
+        below_.polygon[at.below.polygon + i] = chunk.below[i].polygon;
+        below_.node_above[at.below.polygon + i] = shared_node(chunk.below[i].node_above);
+    }
+    strata::put(next_.outlines, at.facet, chunk.kept.outlines, scope);
+    strata::put(next_.plane, at.facet.polygon, chunk.kept.plane);
+    strata::put(next_.layer, at.facet.polygon, chunk.kept.layer);
+    strata::put(next_.block_beneath, at.facet.polygon, chunk.kept.block_beneath);
+    for (std::size_t f = 1; f < chunk.kept.face_offsets.size(); ++f) {
+        next_.face_offsets[at.facet.polygon + f] =
+            static_cast<std::int64_t>(at.facet_face.polygon) + chunk.kept.face_offsets[f];
+    }
+    strata::put(next_.face_polygons, at.facet_face, chunk.kept.face_polygons, scope);
+    strata::put(next_.face_above, at.facet_face.polygon, chunk.kept.face_above);
+    chunks_[c].reset();
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "realmodel/base/progress.hpp"
+#include "strata/overlay/envelope.hpp"
+#include "strata/overlay/surface_facets.hpp"
+
+namespace realmodel::strata {
+
+/// A piece of the surface that becomes part of the envelope.
+struct PieceBelow {
+    std::int32_t polygon;     ///< of the tiling
+    std::int32_t node_above;  ///< counted within the chunk, or kOutsideCell
+};
+
+/// What one chunk of facets became. Lines and points are the scope's for as long as there is one;
+/// nodes are counted from 0.
+struct ChunkResult {
+    /// Makes room for what most chunks of so many facets become.
+    ChunkResult(const exact::PlanArrangement& geometry, std::size_t facets);
+
+    std::unique_ptr<LocalArrangement> scope;
+    GrowingArray<std::int32_t> node_block;
+    GrowingArray<std::uint8_t> node_is_thick;
+    FaceList faces;  ///< finished; above is a shared node, below one of the chunk's
+    PolygonPool below_outlines;
+    GrowingArray<PieceBelow> below;
+    Envelope kept;
+
+    std::array<PolygonPool*, 4> pools() {
+        return {&faces.polygons, &below_outlines, &kept.outlines, &kept.face_polygons};
+    }
+};
+
+/// Polygons and corners counted up to a chunk.
+struct PoolStart {
+    std::size_t polygon = 0, corner = 0;
+};
+
+/// Where the elements of a chunk go.
+struct ChunkStart {
+    std::int64_t node = 0;
+    PoolStart face, below, facet, facet_face;
+
+    void pass(const ChunkResult& chunk);
+};
+
+/// Puts what the chunks became behind what is there already, in order of chunks. A chunk is put
+/// there as soon as it was handed over, by any thread, and its memory is the next one's; what there
+/// is no room for waits until all are done.
+class ChunkJoining {
+public:
+    /// Makes room for what becomes of most envelopes of so many facets.
+    ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, std::size_t facets,
+                 Construction& construction, Envelope& next, PiecesBelow& below);
+
+    /// Finds where a chunk goes; to be called once for each, in order, by one thread at a time.
+    /// @throws InputError kind too_large, where there are more nodes than numbers for them
+    void find_offset(std::size_t chunk);
+    /// Puts a chunk whose offset was found there, if there is room; several threads may do so.
+    void put_where_room(std::size_t chunk);
+    /// Puts what is left. To be called once, when all have their offsets.
+    void finish(int threads, const Progress* progress);
+
+private:
+    bool has_room();
+    void put(std::size_t chunk);
+
+    std::vector<std::unique_ptr<ChunkResult>>& chunks_;
+    Construction& construction_;
+    Envelope& next_;
+    PiecesBelow& below_;
+    std::vector<ChunkStart> start_;
+    std::vector<std::uint8_t> fits_;  ///< of each chunk, whether there is room for it
+    ChunkStart end_;                  ///< of the chunks that have their offsets
+};
+
+}  // namespace realmodel::strata

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "strata/overlay/polygon.hpp"
+#include "strata/tiling/surface_tiling.hpp"
+
+namespace realmodel::strata {
+
+/// Instead of a node or a cell.
+inline constexpr std::int32_t kOutsideCell = -1;
+
+/// Faces that are finished: convex plan polygons, each in the plane of a triangle, between two
+/// nodes.
+struct FaceList {
+    PolygonPool polygons;
+    GrowingArray<PlaneId> plane;
+    GrowingArray<std::int32_t> layer;  ///< number of the surface that the face lies on, -1 the base
+    GrowingArray<std::int32_t> above;  ///< node, or kOutsideCell
+    GrowingArray<std::int32_t> below;
+
+    std::size_t size() const { return plane.size(); }
+    void add(PolygonView polygon, PlaneId in_plane, std::int32_t in_layer, std::int32_t node_above,
+             std::int32_t node_below) {
+        polygons.add(polygon);
+        plane.push_back(in_plane);
+        layer.push_back(in_layer);
+        above.push_back(node_above);
+        below.push_back(node_below);
+    }
+};
+
+/// The lower envelope of the surfaces seen so far, youngest first: what survives of them, as convex
+/// facets that tile the frame. Each facet lies in one plane and carries the faces that nodes above
+/// it already have there; they tile the facet.
+struct Envelope {
+    PolygonPool outlines;
+    GrowingArray<PlaneId> plane;               ///< kSky, kOutside, or the plane of a triangle
+    GrowingArray<std::int32_t> layer;          ///< surface of the facet, -1 for the sky
+    GrowingArray<std::int32_t> block_beneath;  ///< the last surface seen here, -1 the sky
+    GrowingArray<std::int64_t> face_offsets{0};
+    PolygonPool face_polygons;
+    GrowingArray<std::int32_t> face_above;  ///< node above each face, or kOutsideCell
+
+    std::size_t size() const { return plane.size(); }
+    std::pair<std::size_t, std::size_t> faces_of(std::size_t facet) const {
+        return {static_cast<std::size_t>(face_offsets[facet]),
+                static_cast<std::size_t>(face_offsets[facet + 1])};
+    }
+    void add_facet(PolygonView outline, PlaneId in_plane, std::int32_t in_layer,
+                   std::int32_t block) {
+        outlines.add(outline);
+        plane.push_back(in_plane);
+        layer.push_back(in_layer);
+        block_beneath.push_back(block);
+        face_offsets.push_back(face_offsets.back());
+    }
+    /// Adds a facet of another envelope, with its faces.
+    void add_facet_of(const Envelope& other, std::size_t facet, std::int32_t block) {
+        add_facet(other.outlines[facet], other.plane[facet], other.layer[facet], block);
+        const auto [begin, end] = other.faces_of(facet);
+        for (std::size_t f = begin; f < end; ++f)
+            add_face(other.face_polygons[f], other.face_above[f]);
+    }
+    /// Adds a face to the facet added last.
+    void add_face(PolygonView polygon, std::int32_t node_above) {
+        face_polygons.add(polygon);
+        face_above.push_back(node_above);
+        ++face_offsets.back();
+    }
+};
+
+/// Nodes and faces made so far. A node is a piece of a block: a column, or what links join to the
+/// cell of a whole block.
+struct Construction {
+    FaceList faces;
+    GrowingArray<std::int32_t> node_block;
+    /// Of each node: 1 where its top is above its bottom everywhere, its border included, by far
+    /// more than rounding moves heights.
+    GrowingArray<std::uint8_t> node_is_thick;
+    std::vector<std::pair<std::int32_t, std::int32_t>> links;  ///< nodes of one block that touch
+
+    /// @throws InputError kind too_large, where there are more nodes than numbers for them
+    std::int32_t add_node(std::int32_t block, bool is_thick);
+    /// Finishes the faces of a facet: the node beneath it is known now.
+    void seal(const Envelope& envelope, std::size_t facet, std::int32_t node);
+    /// Counts the blocks of a rock mass, whose nodes begin at `first_node`, among those of all.
+    void count_blocks_from(std::size_t first_node, std::int32_t first_block);
+};
+
+/// @throws InputError kind too_large, where so many nodes have no numbers
+void check_nodes(std::int64_t count);
+
+/// The envelope before the first overlay: the youngest surface itself, or the region under the sky.
+Envelope initial_envelope(const SurfaceTiling& tiling, std::int32_t number);
+
+/// The lowest position of the facets that lie on surfaces.
+std::array<double, 3> lowest_position(const exact::PlanArrangement& geometry,
+                                      const Envelope& envelope);
+
+/// Closes what is left: block 0 down to a flat base where there is one, the outside elsewhere.
+/// @param is_thick  whether the base is far below all, see Construction
+void finish(const Envelope& envelope, std::optional<PlaneId> base, bool is_thick,
+            Construction& construction);
+
+}  // namespace realmodel::strata

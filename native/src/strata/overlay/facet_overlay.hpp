@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "strata/overlay/border_edges.hpp"
+#include "strata/overlay/envelope.hpp"
+#include "strata/overlay/surface_facets.hpp"
+
+namespace realmodel::strata {
+
+/// What more is asked of facets where nodes are pieces of blocks: beneath a facet that no border
+/// divides, and that touches the surface nowhere, there is one node; else each piece has its own.
+struct BlockFacets {
+    const BorderEdges* borders;
+    std::vector<TileSpan> span;  ///< of each facet
+    /// Of each facet: 1 where the tiling has all polygons over it. Only the sky and the outside may
+    /// lack those that the filter of whole triangles sorted.
+    std::vector<std::uint8_t> is_complete;
+};
+
+/// What facets and a surface became.
+struct Overlaid {
+    Envelope kept;      ///< what is left of the facets
+    PiecesBelow below;  ///< what of the surface lies beneath them
+    /// Of each polygon of the surface: 1 where a part of it does not lie below.
+    std::vector<std::uint8_t> is_divided;
+    /// Of each polygon, for blocks: 1 where one of its pieces is somewhere as high as the facet.
+    std::vector<std::uint8_t> is_touched;
+};
+
+/// Overlays facets with surface `number`: beneath those parts that lie above it nodes are closed.
+/// Pieces are grouped to columns, or as `blocks` says.
+Overlaid overlay_facets(exact::PlanArrangement& geometry, const Envelope& envelope,
+                        const SurfaceTiling& tiling, std::int32_t number, const BlockFacets* blocks,
+                        Construction& construction, int threads, const Progress* progress);
+
+/// Lays surface `number` under the envelope: where it is lower, a column is closed between the two
+/// and the surface becomes the envelope; elsewhere it was eroded away and the envelope stays.
+Envelope overlay_columns(exact::PlanArrangement& geometry, const Envelope& envelope,
+                         const SurfaceTiling& tiling, std::int32_t number,
+                         Construction& construction, int threads, const Progress* progress);
+
+}  // namespace realmodel::strata

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/overlay/pieces.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+
+namespace realmodel::strata {
+
+namespace {
+
+/// Whether two convex polygons have the same corners.
+bool same_corners(PolygonView a, PolygonView b) {
+    if (a.size() != b.size()) return false;
+    std::size_t j = 0;
+    while (j < b.size() && b[j].point != a[0].point)
+        ++j;
+    if (j == b.size()) return false;
+    for (const Corner& corner : a) {
+        if (corner.point != b[j].point) return false;
+        j = j + 1 < b.size() ? j + 1 : 0;
+    }
+    return true;
+}
+
+/// Twice the area of a polygon, seen from a position near it.
+[[maybe_unused]] double twice_area(LocalArrangement& scope, PolygonView polygon,
+                                   const std::array<double, 2>& origin) {
+    double sum = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const auto p = scope.rounded(polygon[i].point);
+        const auto q = scope.rounded(polygon[i + 1 < polygon.size() ? i + 1 : 0].point);
+        sum += (p[0] - origin[0]) * (q[1] - origin[1]) - (q[0] - origin[0]) * (p[1] - origin[1]);
+    }
+    return sum;
+}
+
+/// Whether pieces tile their facet, as far as the sum of rounded areas says.
+[[maybe_unused]] bool tile(LocalArrangement& scope, const Pieces& pieces, PolygonView facet) {
+    const auto origin = scope.rounded(facet[0].point);
+    double reach = 0;
+    for (const Corner& corner : facet) {
+        const auto p = scope.rounded(corner.point);
+        reach = std::max({reach, std::abs(p[0] - origin[0]), std::abs(p[1] - origin[1])});
+    }
+    const double area = twice_area(scope, facet, origin);
+    double sum = 0;
+    for (const Piece& piece : pieces.list)
+        sum += twice_area(scope, pieces.outline(piece), origin);
+    const double ulps = 0x1p-48 * (std::abs(origin[0]) + std::abs(origin[1]) + reach);
+    return std::abs(sum - area) <=
+           1e-9 * area + ulps * reach * static_cast<double>(4 + pieces.corners.size());
+}
+
+}  // namespace
+
+/// Finds polygons that may share an area with the outline. Where one is the outline, as on meshes
+/// that surfaces have in common and where the frame is filled around equal borders, it is the only
+/// one; whether so is the result.
+bool PieceFinder::find_candidates(PolygonView outline) {
+    const auto polygon = [&](std::size_t i) { return layer_.polygons[i]; };
+    if (expected_ < layer_.polygons.size() && same_corners(outline, polygon(expected_))) {
+        candidates_.assign(1, static_cast<std::int32_t>(expected_++));
+        return true;
+    }
+    layer_.grid.candidates(scope_, outline, candidates_);
+    for (const std::int32_t c : candidates_) {
+        if (!same_corners(outline, polygon(static_cast<std::size_t>(c)))) continue;
+        candidates_.assign(1, c);
+        expected_ = static_cast<std::size_t>(c) + 1;
+        return true;
+    }
+    return false;
+}
+
+std::span<const std::int32_t> PieceFinder::overlapping(PolygonView outline) {
+    if (find_candidates(outline)) return {candidates_.begin(), candidates_.end()};
+    overlapping_.clear();
+    for (const std::int32_t c : candidates_) {
+        if (clipper_.overlap(outline, layer_.polygons[static_cast<std::size_t>(c)])) {
+            overlapping_.push_back(c);
+        }
+    }
+    return {overlapping_.begin(), overlapping_.end()};
+}
+
+/// Begins with a facet; true where one polygon of the layer is all that it meets, which is added.
+bool PieceFinder::begin(const Facet& facet) {
+    pieces_.clear();
+    if (find_candidates(facet.outline)) {
+        add_common(candidates_.front(), facet.outline, facet);
+        return true;
+    }
+    facet_clipper_.begin(facet.outline);
+    return false;
+}
+
+void PieceFinder::add_all(std::span<const std::int32_t> polygons, const Facet& facet) {
+    for (const std::int32_t polygon : polygons)
+        add_common(polygon, facet_clipper_.intersect(outline_of(polygon)), facet);
+}
+
+const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
+    const Facet facet = facet_of(outline, plane);
+    if (!begin(facet)) add_all({candidates_.begin(), candidates_.end()}, facet);
+    assert(plane < 0 || tile(scope_, pieces_, outline));
+    return pieces_;
+}
+
+const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
+    if (plane < 0) return find(outline, plane);
+    const Facet facet = facet_of(outline, plane);
+    if (begin(facet)) return pieces_;
+    // for as long as all is higher, it is only looked which polygons meet the facet
+    higher_.clear();
+    auto c = candidates_.begin();
+    for (; c != candidates_.end(); ++c) {
+        if (!facet_clipper_.meets(outline_of(*c))) continue;
+        if (!is_higher(*c, facet)) break;
+        higher_.push_back(*c);
+    }
+    if (c == candidates_.end()) {
+        for (const std::int32_t polygon : higher_)
+            add(polygon, Side::kNotBelow, {});
+        return pieces_;
+    }
+    add_all({higher_.begin(), higher_.end()}, facet);
+    add_all({c, candidates_.end()}, facet);
+    assert(tile(scope_, pieces_, outline));
+    return pieces_;
+}
+
+/// Whether a polygon of the layer is nowhere below the facet where they meet, as far as heights and
+/// floating point tell.
+bool PieceFinder::is_higher(std::int32_t polygon, const Facet& facet) const {
+    const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
+    if (surface < 0) return false;
+    const HeightRange heights = layer_.heights[static_cast<std::size_t>(polygon)];
+    if (heights.low >= facet.heights.high) return true;
+    if (heights.high < facet.heights.high) return false;  // most that are not higher
+    const auto trace = scope_.shared().trace_filter(surface, facet.plane);
+    return std::all_of(facet.outline.begin(), facet.outline.end(), [&](const Corner& corner) {
+        return scope_.is_left_for_certain(trace, corner.point);
+    });
+}
+
+/// Adds what a facet has in common with a polygon, which may be nothing.
+void PieceFinder::add_common(std::int32_t polygon, PolygonView common, const Facet& facet) {
+    if (common.empty()) return;
+    const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
+    if (surface < 0) {
+        add(polygon, Side::kAbsent, common);
+    } else if (facet.plane < 0) {
+        add(polygon, facet.plane == kSky ? Side::kBelow : Side::kNotBelow, common);
+    } else {
+        // both are parts of triangles, so most are told apart by the heights of the corners
+        const HeightRange heights = layer_.heights[static_cast<std::size_t>(polygon)];
+        if (heights.high < facet.heights.low) {
+            add(polygon, Side::kBelow, common);
+        } else if (heights.low >= facet.heights.high) {
+            add(polygon, Side::kNotBelow, common);
+            return;
+        } else {
+            classify(polygon, facet.plane, common);
+        }
+        note_room(surface, facet, heights, common);
+    }
+}
+
+/// Notes whether there is room between the facet and a piece beneath it.
+void PieceFinder::note_room(PlaneId surface, const Facet& facet, const HeightRange& heights,
+                            PolygonView common) {
+    const HeightRange& above = facet.heights;
+    const double margin =
+        scope_.shared().clear_height(std::max({std::abs(heights.low), std::abs(heights.high),
+                                               std::abs(above.low), std::abs(above.high)}));
+    if (!pieces_.is_clear || heights.high + margin < above.low) return;
+    if (pieces_.list.back().side != Side::kBelow) {
+        pieces_.is_clear = false;
+        return;
+    }
+    const auto trace = scope_.shared().trace_filter(surface, facet.plane);
+    pieces_.is_clear = std::all_of(common.begin(), common.end(), [&](const Corner& corner) {
+        return scope_.is_right_by(trace, corner.point, margin);
+    });
+}
+
+void PieceFinder::classify(std::int32_t polygon, PlaneId facet_plane, PolygonView common) {
+    const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
+    bool lower = false, higher = false;
+    signs_.clear();
+    if (surface != facet_plane) {
+        const auto trace = scope_.shared().trace_filter(surface, facet_plane);
+        for (const Corner& corner : common) {
+            const int sign = scope_.compare_heights(surface, facet_plane, trace, corner.point);
+            lower |= sign < 0;
+            higher |= sign > 0;
+            signs_.push_back(static_cast<std::int8_t>(sign));
+        }
+    }
+    if (!lower || !higher) {
+        add(polygon, lower ? Side::kBelow : Side::kNotBelow, common);
+        if (lower) {
+            std::transform(signs_.begin(), signs_.end(),
+                           pieces_.touches.end() - static_cast<std::ptrdiff_t>(signs_.size()),
+                           [](std::int8_t sign) { return sign == 0 ? 1 : 0; });
+        }
+        return;
+    }
+    const DirectedLine above = scope_.trace(surface, facet_plane);
+    add_touching(polygon, clipper_.cut(common, exact::opposite(above)), surface, facet_plane);
+    add(polygon, Side::kNotBelow, clipper_.cut(common, above));
+}
+
+/// Adds a piece that touches the facet nowhere.
+void PieceFinder::add(std::int32_t polygon, Side side, PolygonView outline) {
+    const auto first = static_cast<std::int64_t>(pieces_.corners.size());
+    pieces_.corners.resize(pieces_.corners.size() + outline.size());
+    copy_corners(outline, pieces_.corners.begin() + first);
+    pieces_.touches.resize(pieces_.corners.size(), 0);
+    pieces_.list.push_back(
+        {polygon, side, first, static_cast<std::int64_t>(pieces_.corners.size())});
+}
+
+/// Adds a piece below the facet that is as high as it at some of its corners.
+void PieceFinder::add_touching(std::int32_t polygon, PolygonView outline, PlaneId lower,
+                               PlaneId upper) {
+    add(polygon, Side::kBelow, outline);
+    for (auto c = static_cast<std::size_t>(pieces_.list.back().first); c < pieces_.corners.size();
+         ++c) {
+        pieces_.touches[c] =
+            scope_.compare_heights(lower, upper, pieces_.corners[c].point) == 0 ? 1 : 0;
+    }
+}
+
+std::int32_t PieceGrouping::root(std::int32_t piece) {
+    while (parent_[static_cast<std::size_t>(piece)] != piece) {
+        auto& up = parent_[static_cast<std::size_t>(piece)];
+        up = parent_[static_cast<std::size_t>(up)];
+        piece = up;
+    }
+    return piece;
+}
+
+// Whether the cell goes through the edge that two pieces share: it is thick there and the surface
+// has no step.
+bool PieceGrouping::joined(const Pieces& pieces, const Edge& a, const Edge& b) {
+    if (!a.below || !b.below || a.thin || b.thin) return false;
+    const auto plane = [&](const Edge& e) {
+        const Piece& piece = pieces.list[static_cast<std::size_t>(e.piece)];
+        return layer_.plane[static_cast<std::size_t>(piece.polygon)];
+    };
+    return scope_.compare_heights(plane(a), plane(b), a.from) == 0 &&
+           scope_.compare_heights(plane(a), plane(b), a.to) == 0;
+}
+
+bool PieceGrouping::on_border(PolygonView facet, const Edge& edge) {
+    return std::any_of(facet.begin(), facet.end(), [&](const Corner& side) {
+        return scope_.side(side.line, edge.from) == 0 && scope_.side(side.line, edge.to) == 0;
+    });
+}
+
+void PieceGrouping::collect_edges(const Pieces& pieces) {
+    edges_.clear();
+    for (std::size_t i = 0; i < pieces.list.size(); ++i) {
+        const Piece& piece = pieces.list[i];
+        for (std::int64_t c = piece.first; c < piece.last; ++c) {
+            const auto here = static_cast<std::size_t>(c);
+            const auto there = static_cast<std::size_t>(c + 1 < piece.last ? c + 1 : piece.first);
+            edges_.push_back({pieces.corners[here].point, pieces.corners[there].point,
+                              static_cast<std::int32_t>(i), piece.side == Side::kBelow,
+                              pieces.touches[here] != 0 && pieces.touches[there] != 0});
+        }
+    }
+    std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) {
+        return std::pair(a.key(), a.piece) < std::pair(b.key(), b.piece);
+    });
+}
+
+std::int32_t PieceGrouping::group(PolygonView facet, const Pieces& pieces,
+                                  std::vector<std::int32_t>& group) {
+    const auto count = static_cast<std::int32_t>(pieces.list.size());
+    group.assign(static_cast<std::size_t>(count), -1);
+    parent_.resize(static_cast<std::size_t>(count));
+    std::iota(parent_.begin(), parent_.end(), 0);
+    collect_edges(pieces);
+    is_joined_.assign(edges_.size(), 0);
+    for (std::size_t i = 0; i + 1 < edges_.size(); ++i) {
+        const Edge &a = edges_[i], &b = edges_[i + 1];
+        if (a.key() != b.key() || !joined(pieces, a, b)) continue;
+        is_joined_[i] = is_joined_[i + 1] = 1;
+        const std::int32_t low = std::min(root(a.piece), root(b.piece));
+        const std::int32_t high = std::max(root(a.piece), root(b.piece));
+        parent_[static_cast<std::size_t>(high)] = low;
+    }
+    // The border of a cell in plan must pass each point once, or the cell would touch itself in a
+    // vertical edge; two of its pieces must not meet in an edge that does not join them; and where
+    // an edge inside the facet has no partner (a long one faces two short ones) nothing is known.
+    bool alone = false;
+    border_.clear();
+    for (std::size_t i = 0; i < edges_.size() && !alone; ++i) {
+        const Edge& edge = edges_[i];
+        if (!edge.below || is_joined_[i] != 0) continue;
+        border_.emplace_back(root(edge.piece), edge.from);
+        const bool before = i > 0 && edges_[i - 1].key() == edge.key();
+        const bool after = i + 1 < edges_.size() && edges_[i + 1].key() == edge.key();
+        if (!before && !after) {
+            alone = !on_border(facet, edge);
+        } else {
+            const Edge& partner = edges_[before ? i - 1 : i + 1];
+            alone = partner.below && root(partner.piece) == root(edge.piece);
+        }
+    }
+    std::sort(border_.begin(), border_.end());
+    alone |= std::adjacent_find(border_.begin(), border_.end()) != border_.end();
+
+    std::int32_t cells = 0;
+    for (std::int32_t i = 0; i < count; ++i) {
+        if (pieces.list[static_cast<std::size_t>(i)].side != Side::kBelow) continue;
+        auto& of_root = group[static_cast<std::size_t>(alone ? i : root(i))];
+        if (of_root < 0) of_root = cells++;
+        group[static_cast<std::size_t>(i)] = of_root;
+    }
+    return cells;
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "strata/overlay/envelope.hpp"
+#include "strata/overlay/facet_clipper.hpp"
+
+namespace realmodel::strata {
+
+/// Where the surface lies against a facet of the envelope.
+enum class Side : std::int8_t {
+    kBelow,     ///< below it somewhere and above it nowhere
+    kNotBelow,  ///< on or above it: eroded away here
+    kAbsent     ///< there is no surface
+};
+
+/// The common part of a facet and one polygon of the layer.
+struct Piece {
+    std::int32_t polygon;  ///< of the layer
+    Side side;
+    std::int64_t first;  ///< corners within Pieces::corners
+    std::int64_t last;
+};
+
+/// The overlay of one facet with the layer: convex pieces that tile the facet.
+struct Pieces {
+    GrowingArray<Piece> list;
+    GrowingArray<Corner> corners;
+    GrowingArray<std::uint8_t>
+        touches;           ///< for each corner: 1 where facet and surface are equally high
+    bool is_clear = true;  ///< all lie below the facet by far more than rounding moves heights
+
+    void clear() {
+        list.clear();
+        corners.clear();
+        touches.clear();
+        is_clear = true;
+    }
+    PolygonView outline(const Piece& piece) const {
+        return {corners.data() + piece.first, static_cast<std::size_t>(piece.last - piece.first)};
+    }
+};
+
+/// Finds the pieces of facets, one after another, in one thread's scope.
+class PieceFinder {
+public:
+    PieceFinder(LocalArrangement& scope, const SurfaceTiling& layer)
+        : scope_(scope), clipper_(scope), facet_clipper_(scope), layer_(layer) {}
+
+    /// Pieces of the facet with this outline and plane. All that there is lies below the sky, and
+    /// none of it below a void.
+    const Pieces& find(PolygonView outline, PlaneId plane);
+    /// The same, but pieces have no outlines where heights tell that the surface is nowhere below
+    /// the facet: it stays as it is.
+    const Pieces& find_for_split(PolygonView outline, PlaneId plane);
+    /// Polygons of the layer that share an area with the outline.
+    std::span<const std::int32_t> overlapping(PolygonView outline);
+
+private:
+    /// A facet of the envelope.
+    struct Facet {
+        PolygonView outline;
+        PlaneId plane;
+        HeightRange heights;
+    };
+    Facet facet_of(PolygonView outline, PlaneId plane) const {
+        return {outline, plane, plane < 0 ? HeightRange{} : heights_of(scope_.shared(), plane)};
+    }
+    PolygonView outline_of(std::int32_t polygon) const {
+        return layer_.polygons[static_cast<std::size_t>(polygon)];
+    }
+    bool is_higher(std::int32_t polygon, const Facet& facet) const;
+    void note_room(PlaneId surface, const Facet& facet, const HeightRange& heights,
+                   PolygonView common);
+    bool find_candidates(PolygonView outline);
+    bool begin(const Facet& facet);
+    void add_all(std::span<const std::int32_t> polygons, const Facet& facet);
+    void add_common(std::int32_t polygon, PolygonView common, const Facet& facet);
+    void add(std::int32_t polygon, Side side, PolygonView outline);
+    void add_touching(std::int32_t polygon, PolygonView outline, PlaneId lower, PlaneId upper);
+    void classify(std::int32_t polygon, PlaneId facet_plane, PolygonView common);
+
+    LocalArrangement& scope_;
+    Clipper clipper_;
+    FacetClipper facet_clipper_;
+    const SurfaceTiling& layer_;
+    Pieces pieces_;
+    std::vector<std::int8_t> signs_;  ///< of surface less facet at the corners of a piece
+    GrowingArray<std::int32_t> candidates_, overlapping_, higher_;
+    std::size_t expected_ = 0;  ///< polygon after the last that was a facet: the next one's, often
+};
+
+/// Groups the pieces below a facet into cells. Pieces are joined across edges where the cell is
+/// thick and the surface runs on; where joining would make a cell touch itself, every piece becomes
+/// a cell of its own (each is a column under one plane over one plane, which never does).
+class PieceGrouping {
+public:
+    PieceGrouping(LocalArrangement& scope, const SurfaceTiling& layer)
+        : scope_(scope), layer_(layer) {}
+
+    /// group[i] is the cell of piece i, numbered from 0 in order of first piece; -1 if not below.
+    /// Returns the number of cells.
+    std::int32_t group(PolygonView facet, const Pieces& pieces, std::vector<std::int32_t>& group);
+
+private:
+    struct Edge {
+        PointId from, to;
+        std::int32_t piece;
+        bool below;  ///< the piece is
+        bool thin;   ///< the cell has no thickness along it
+
+        std::pair<PointId, PointId> key() const { return {std::min(from, to), std::max(from, to)}; }
+    };
+    std::int32_t root(std::int32_t piece);
+    bool joined(const Pieces& pieces, const Edge& a, const Edge& b);
+    bool on_border(PolygonView facet, const Edge& edge);
+    void collect_edges(const Pieces& pieces);
+
+    LocalArrangement& scope_;
+    const SurfaceTiling& layer_;
+    std::vector<Edge> edges_;
+    std::vector<std::int32_t> parent_;
+    std::vector<std::uint8_t> is_joined_;  ///< for each edge
+    std::vector<std::pair<std::int32_t, PointId>> border_;
+};
+
+}  // namespace realmodel::strata

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "strata/overlay/polygon.hpp"
+
+namespace realmodel::strata {
+
+/// Asks for all lines and points of polygons that a scope found.
+inline void mark_used(LocalArrangement& scope, const PolygonPool& pool) {
+    for (const Corner& corner : pool.corners) {
+        scope.mark_point_used(corner.point);
+        scope.mark_line_used(exact::line_of(corner.line));
+    }
+}
+
+/// Puts the corners of polygons somewhere, with the shared lines and points, which the scope has
+/// handed over.
+inline void share(LocalArrangement& scope, const PolygonPool& pool, Corner* shared) {
+    for (const Corner& corner : pool.corners)
+        *shared++ = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};
+}
+
+/// Gives polygons the shared lines and points.
+inline void share(LocalArrangement& scope, PolygonPool& pool) {
+    share(scope, pool, pool.corners.begin());
+}
+
+}  // namespace realmodel::strata

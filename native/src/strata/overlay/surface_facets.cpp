@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/overlay/surface_facets.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "base/parallel_counts.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+constexpr std::size_t kPolygons = 1 << 12, kPieces = 1 << 14;  // worked on at a time
+constexpr std::size_t kAhead = 16;                             // pieces
+
+/// How much of an envelope there is up to somewhere.
+struct EnvelopeSize {
+    std::size_t facets = 0, corners = 0, faces = 0, face_corners = 0;
+
+    void add_facet(PolygonView outline) {
+        ++facets;
+        corners += outline.size();
+    }
+    void add_face(PolygonView outline) {
+        ++faces;
+        face_corners += outline.size();
+    }
+    EnvelopeSize& operator+=(const EnvelopeSize& more) {
+        facets += more.facets;
+        corners += more.corners;
+        faces += more.faces;
+        face_corners += more.face_corners;
+        return *this;
+    }
+};
+
+/// Writes facets and faces behind what an envelope that was made large enough has up to somewhere.
+class EnvelopeWriter {
+public:
+    EnvelopeWriter(Envelope& envelope, const EnvelopeSize& start, std::int32_t number)
+        : envelope_(envelope), at_(start), number_(number) {}
+
+    void add_facet(PolygonView outline, PlaneId plane) {
+        copy_corners(outline, envelope_.outlines.corners.begin() + at_.corners);
+        const std::size_t facet = at_.facets;
+        at_.add_facet(outline);
+        envelope_.outlines.offsets[facet + 1] = static_cast<std::int64_t>(at_.corners);
+        envelope_.plane[facet] = plane;
+        envelope_.layer[facet] = number_;
+        envelope_.block_beneath[facet] = number_;
+        envelope_.face_offsets[facet + 1] = static_cast<std::int64_t>(at_.faces);
+    }
+    /// Adds a face to the facet added last.
+    void add_face(PolygonView outline, std::int32_t node_above) {
+        copy_corners(outline, envelope_.face_polygons.corners.begin() + at_.face_corners);
+        envelope_.face_above[at_.faces] = node_above;
+        at_.add_face(outline);
+        envelope_.face_polygons.offsets[at_.faces] = static_cast<std::int64_t>(at_.face_corners);
+        envelope_.face_offsets[at_.facets] = static_cast<std::int64_t>(at_.faces);
+    }
+
+private:
+    Envelope& envelope_;
+    EnvelopeSize at_;
+    std::int32_t number_;
+};
+
+void resize(Envelope& envelope, const EnvelopeSize& size) {
+    envelope.outlines.offsets.resize(size.facets + 1);
+    envelope.outlines.corners.resize(size.corners);
+    for (auto* list : {&envelope.plane, &envelope.layer, &envelope.block_beneath})
+        list->resize(size.facets);
+    envelope.face_offsets.resize(size.facets + 1);
+    envelope.face_polygons.offsets.resize(size.faces + 1);
+    envelope.face_polygons.corners.resize(size.face_corners);
+    envelope.face_above.resize(size.faces);
+}
+
+}  // namespace
+
+PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons, int threads,
+                                 const Progress* progress) {
+    const std::size_t count = below.polygon.size();
+    PiecesOfPolygons of;
+    of.offsets = zeros<std::uint32_t>(polygons + 1, threads, progress);
+    FlatArray<std::uint32_t> number(count);
+    const auto for_all = [&](const auto& visit) {
+        parallel_ranges(count, kPieces, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                visit(i, static_cast<std::size_t>(below.polygon[i]));
+        });
+    };
+    for_all([&](std::size_t i, std::size_t p) { number[i] = count_one(of.offsets[p]); });
+    running_totals(of.offsets, UINT32_MAX, threads, progress);
+    of.pieces = FlatArray<std::uint32_t>(count);
+    for_all([&](std::size_t i, std::size_t p) {
+        of.pieces[of.offsets[p] + number[i]] = static_cast<std::uint32_t>(i);
+    });
+    parallel_ranges(
+        polygons, kPolygons, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p)
+                std::sort(of.pieces.begin() + of.offsets[p], of.pieces.begin() + of.offsets[p + 1]);
+        });
+    return of;
+}
+
+void add_surface_facets(const SurfaceTiling& tiling, const std::vector<std::uint8_t>& use,
+                        const PiecesBelow& below, const PiecesOfPolygons& of_polygon,
+                        std::int32_t number, Envelope& next, int threads,
+                        const Progress* progress) {
+    const std::size_t polygons = tiling.plane.size();
+    assert(use.size() == polygons && of_polygon.offsets.size() == polygons + 1);
+    // Says what a polygon becomes.
+    const auto visit = [&](std::size_t p, const auto& add_facet, const auto& add_face) {
+        const auto pieces = of_polygon[p];
+        if (pieces.empty() || use[p] == kElsewhere) return;
+        if (use[p] == kTogether) {
+            add_facet(tiling.polygons[p], tiling.plane[p]);
+            const bool open = std::all_of(pieces.begin(), pieces.end(), [&](std::uint32_t i) {
+                return below.node_above[i] == kOutsideCell;
+            });
+            if (open) {  // nothing above needs the pieces
+                add_face(tiling.polygons[p], kOutsideCell);
+                return;
+            }
+        }
+        for (const std::uint32_t i : pieces) {
+            if (use[p] == kDivided) add_facet(below.outlines[i], tiling.plane[p]);
+            add_face(below.outlines[i], below.node_above[i]);
+        }
+    };
+    std::vector<EnvelopeSize> start((polygons + kPolygons - 1) / kPolygons);
+    parallel_ranges(polygons, kPolygons, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        EnvelopeSize& size = start[begin / kPolygons];
+                        for (std::size_t p = begin; p < end; ++p) {
+                            visit(
+                                p, [&](PolygonView o, PlaneId) { size.add_facet(o); },
+                                [&](PolygonView o, std::int32_t) { size.add_face(o); });
+                        }
+                    });
+    EnvelopeSize total{next.size(), next.outlines.corners.size(), next.face_polygons.size(),
+                       next.face_polygons.corners.size()};
+    for (EnvelopeSize& size : start) {
+        const EnvelopeSize own = size;
+        size = total;
+        total += own;
+    }
+    resize(next, total);
+    parallel_ranges(
+        polygons, kPolygons, threads, progress, [&](std::size_t begin, std::size_t end) {
+            EnvelopeWriter writer(next, start[begin / kPolygons], number);
+            const std::size_t last_piece = of_polygon.offsets[end];
+            for (std::size_t p = begin; p < end; ++p) {
+                // its pieces lie anywhere, so those of later polygons are fetched
+                for (std::size_t k = of_polygon.offsets[p] + kAhead,
+                                 to = of_polygon.offsets[p + 1] + kAhead;
+                     k < to && k + kAhead < last_piece; ++k) {
+                    prefetch(below.outlines.corners.begin() +
+                             below.outlines.offsets[of_polygon.pieces[k]]);
+                    prefetch(below.outlines.offsets.begin() + of_polygon.pieces[k + kAhead]);
+                    prefetch(below.node_above.begin() + of_polygon.pieces[k + kAhead]);
+                }
+                visit(
+                    p, [&](PolygonView o, PlaneId plane) { writer.add_facet(o, plane); },
+                    [&](PolygonView o, std::int32_t above) { writer.add_face(o, above); });
+            }
+        });
+}
+
+}  // namespace realmodel::strata

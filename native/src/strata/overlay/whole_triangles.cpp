@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/overlay/whole_triangles.hpp"
+
+#include <cassert>
+
+#include "base/parallel_counts.hpp"
+#include "strata/tile_bins.hpp"
+#include "strata/tiling/triangle_outlines.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanArrangement;
+
+namespace {
+
+constexpr std::size_t kChunk = 512;
+
+std::int32_t merged(std::int32_t a, std::int32_t b) {
+    if (a == kNoBlock || a == b) return b;
+    return b == kNoBlock ? a : kSeveral;
+}
+
+}  // namespace
+
+void WholeTriangleFilter::begin(const BlockTiling& tiling) {
+    tiling_ = &tiling;
+    surface_tiles_ = {};
+}
+
+/// Finds where everything is.
+void WholeTriangleFilter::locate(const FacetView& facets) {
+    const BlockTiling& tiling = *tiling_;
+    const bool is_new = surface_tiles_.low.empty();
+    if (is_new) surface_at.resize(tiling.size());
+    facet_at.resize(facets.size());
+    const std::size_t own = is_new ? tiling.size() : 0;
+    parallel_ranges(own + facets.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        const LocalArrangement scope(geometry_);
+                        const auto at = [&](const auto& list, std::size_t i) {
+                            const PlaneId plane = list.plane(i);
+                            if (list.is_whole(i)) return located(bounds_of(geometry_, plane));
+                            TriangleBounds bounds{};
+                            if (plane >= 0) bounds = bounds_of(geometry_, plane);
+                            bounds.box = box_of(scope, list.parts[i - list.whole.size()]);
+                            return located(bounds);
+                        };
+                        for (std::size_t i = begin; i < end; ++i) {
+                            if (i < own) {
+                                surface_at[i] = at(tiling, i);
+                            } else {
+                                facet_at[i - own] = at(facets, i - own);
+                            }
+                        }
+                    });
+    parallel_chunks(2, threads_, progress_, [&](std::size_t which) {
+        if (which == 0 && is_new) measure_surface();
+        if (which == 1) measure_facets(facets);
+    });
+}
+
+void WholeTriangleFilter::measure_surface() {
+    surface_tiles_ = TileHeights(tiles().size());
+    is_empty.assign(tiles().size(), 0);
+    for (std::size_t t = 0; t < tiling_->size(); ++t) {
+        poll(progress_, t);
+        surface_tiles_.include(tiles(), surface_at[t]);
+    }
+    for (const PlanTriangle& t : tiling_->empty) {
+        tiles().for_each_centre_in(corners_of(geometry_, t),
+                                   [&](std::size_t tile) { is_empty[tile] = 1; });
+    }
+    for (std::size_t tile = 0; tile < is_empty.size(); ++tile) {
+        if (surface_tiles_.low[tile] > surface_tiles_.high[tile]) is_empty[tile] = 1;
+    }
+}
+
+void WholeTriangleFilter::measure_facets(const FacetView& facets) {
+    facet_tiles_ = TileHeights(tiles().size());
+    block_tiles_.assign(tiles().size(), kNoBlock);
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+        poll(progress_, f);
+        if (facets.plane(f) < 0) continue;
+        facet_tiles_.include(tiles(), facet_at[f]);
+        tiles().for_each(facet_at[f].span, [&](std::size_t tile) {
+            block_tiles_[tile] = merged(block_tiles_[tile], facets.block(f));
+        });
+    }
+}
+
+/// Marks tiles, from any thread.
+void WholeTriangleFilter::mark_tiles(const TileSpan& span, std::vector<std::uint8_t>& marks) const {
+    tiles().for_each(span, [&](std::size_t tile) { mark(marks[tile]); });
+}
+
+void WholeTriangleFilter::compare(const FacetView& facets) {
+    assert(tiling_ != nullptr && facets.cover.size() == tiles().size());
+    locate(facets);
+    is_same_.clear();
+    if (tiling_->is_raised) {
+        is_same_.resize(static_cast<std::size_t>(geometry_.plane_count()));
+        for (const PlaneId plane : facets.whole)
+            is_same_[static_cast<std::size_t>(plane)] = 1;
+        for (const PlaneId plane : tiling_->whole)
+            is_same_[static_cast<std::size_t>(plane)] |= 2;
+    }
+    classify_surface(facets);
+    classify_facets(facets);
+}
+
+void WholeTriangleFilter::classify_surface(const FacetView& facets) {
+    surface.assign(tiling_->size(), Standing::kExact);
+    block.assign(tiling_->size(), kSeveral);
+    const auto classify = [&](std::size_t t) {
+        const auto& [b, span] = surface_at[t];
+        if (!is_same_.empty() && is_same_[static_cast<std::size_t>(tiling_->whole[t])] == 3) {
+            surface[t] = Standing::kAbove;
+            return;
+        }
+        if (borders_.near(span)) {
+            block[t] = kBesideBorder;  // heights in tiles decide nothing there
+            return;
+        }
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        std::int32_t over = kNoBlock;
+        const bool mixed = tiles().any(span, [&](std::size_t tile) {
+            if (facets.cover[tile] == Cover::kNothing) {
+                low = -HUGE_VAL;
+                over = merged(over, kOutsideBlock);
+            } else if (facets.cover[tile] == Cover::kSkyOnly) {
+                high = HUGE_VAL;
+                over = merged(over, kSkyBlock);
+            } else {
+                low = std::min(low, facet_tiles_.low[tile]);
+                high = std::max(high, facet_tiles_.high[tile]);
+                over = merged(over, block_tiles_[tile]);
+            }
+            return over == kSeveral;
+        });
+        if (mixed || over == kNoBlock) return;
+        block[t] = over;
+        if (b.high + margin_ < low) {
+            surface[t] = Standing::kBelow;
+        } else if (b.low > high + margin_) {
+            surface[t] = Standing::kAbove;
+        }
+    };
+    std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
+    parallel_ranges(tiling_->whole.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t t = begin; t < end; ++t) {
+                            classify(t);
+                            if (is_to_compare(t)) mark_tiles(surface_at[t].span, is_wanted);
+                        }
+                    });
+    compare_surface(facets, is_wanted);
+}
+
+/// Compares triangles that heights alone do not sort with the facets near them, plane by plane.
+void WholeTriangleFilter::compare_surface(const FacetView& facets,
+                                          const std::vector<std::uint8_t>& is_wanted) {
+    const TileBins bins(
+        tiles(), is_wanted, facets.size(),
+        [&](std::size_t f) { return facets.plane(f) < 0 ? nullptr : &facet_at[f].span; }, threads_,
+        progress_);
+    is_unclear_.assign(tiles().size(), 0);
+    parallel_ranges(tiling_->size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t t = begin; t < end; ++t) {
+                            if (is_to_compare(t)) compare_triangle(facets, bins, t);
+                            if (surface[t] == Standing::kExact)
+                                mark_tiles(surface_at[t].span, is_unclear_);
+                        }
+                    });
+}
+
+void WholeTriangleFilter::compare_triangle(const FacetView& facets, const TileBins& bins,
+                                           std::size_t t) {
+    const PlaneId plane = tiling_->whole[t];
+    const auto& [bounds, span] = surface_at[t];
+    // No border divides a triangle beside one: there are facets over all of it if there is one over
+    // its middle.
+    const bool beside = block[t] == kBesideBorder;
+    if (beside && borders_.divide(geometry_, geometry_.plane(plane).plan, span)) return;
+    const auto middle = middle_of(geometry_, plane);
+    bool below = true, above = true, covered = !beside;
+    std::int32_t over = beside ? kNoBlock : block[t];
+    bins.all(span, [&](std::int32_t number) {
+        const auto f = static_cast<std::size_t>(number);
+        const PlaneId other = facets.plane(f);
+        const PlanBox& box = facet_at[f].bounds.box;
+        if (!bounds.box.meets(box)) return true;
+        const Comparison found = compare_over(geometry_, plane, other, bounds.box, box, margin_);
+        if (found == Comparison::kApart) return true;
+        if (beside) {
+            over = merged(over, facets.block(f));
+            covered =
+                covered || (facets.is_whole(f) &&
+                            side_of_border(geometry_, geometry_.plane(other).plan, middle) > 0);
+        }
+        below &= found == Comparison::kBelow;
+        above &= found == Comparison::kAbove;
+        return over != kSeveral && (below || above);
+    });
+    if (over == kSeveral || !covered || below == above) return;
+    block[t] = over;
+    surface[t] = below ? Standing::kBelow : Standing::kAbove;
+}
+
+void WholeTriangleFilter::classify_facets(const FacetView& facets) {
+    facet.assign(facets.size(), Standing::kExact);
+    const auto by_tiles = [&](const TileBounds& at) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        bool any_empty = false, any_surface = false, near_unclear = false;
+        const bool mixed = tiles().any(at.span, [&](std::size_t tile) {
+            near_unclear |= is_unclear_[tile] != 0;
+            if (is_empty[tile] != 0) {
+                any_empty = true;
+            } else {
+                any_surface = true;
+                low = std::min(low, surface_tiles_.low[tile]);
+                high = std::max(high, surface_tiles_.high[tile]);
+            }
+            return any_empty && any_surface;
+        });
+        if (mixed) return Standing::kExact;
+        if (any_empty) return near_unclear ? Standing::kExact : Standing::kUncovered;
+        if (near_unclear) return Standing::kToCompare;
+        if (high + margin_ < at.bounds.low) return Standing::kAbove;
+        return at.bounds.high + margin_ < low ? Standing::kBelow : Standing::kToCompare;
+    };
+    const auto classify = [&](std::size_t f) {
+        const PlaneId plane = facets.plane(f);
+        if (plane < 0) return Standing::kExact;
+        if (facets.is_whole(f) && !is_same_.empty() &&
+            is_same_[static_cast<std::size_t>(plane)] == 3)
+            return Standing::kBelow;
+        const TileSpan& span = facet_at[f].span;
+        if (!borders_.near(span)) return by_tiles(facet_at[f]);
+        const bool is_exact =
+            !facets.is_whole(f) || borders_.divide(geometry_, geometry_.plane(plane).plan, span);
+        return is_exact ? Standing::kExact : Standing::kToCompare;
+    };
+    std::vector<std::uint8_t> is_wanted(tiles().size(), 0);
+    parallel_ranges(facets.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f) {
+                            facet[f] = classify(f);
+                            if (facet[f] == Standing::kToCompare)
+                                mark_tiles(facet_at[f].span, is_wanted);
+                        }
+                    });
+    compare_facets(facets, is_wanted);
+}
+
+/// Compares facets that heights alone do not sort with the triangles near them. A facet has to be
+/// exact where a triangle is, for the triangle's parts to be complete.
+void WholeTriangleFilter::compare_facets(const FacetView& facets,
+                                         const std::vector<std::uint8_t>& is_wanted) {
+    const TileBins bins(
+        tiles(), is_wanted, tiling_->size(), [&](std::size_t t) { return &surface_at[t].span; },
+        threads_, progress_);
+    parallel_ranges(facets.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f) {
+                            if (facet[f] == Standing::kToCompare)
+                                facet[f] = compare_facet(facets.plane(f), facet_at[f], bins);
+                        }
+                    });
+}
+
+Standing WholeTriangleFilter::compare_facet(PlaneId plane, const TileBounds& at,
+                                            const TileBins& bins) const {
+    const PlanBox& box = at.bounds.box;
+    // No border divides a facet beside one: there is a surface under all of it if there is under
+    // its middle.
+    const bool beside = borders_.near(at.span);
+    const auto middle = middle_of(geometry_, plane);
+    bool below = true, above = true, covers = !beside;
+    const bool clear = bins.all(at.span, [&](std::int32_t number) {
+        const auto t = static_cast<std::size_t>(number);
+        const PlaneId triangle = tiling_->plane(t);
+        const PlanBox& other = surface_at[t].bounds.box;
+        if (!box.meets(other)) return true;
+        if (surface[t] == Standing::kExact) return are_apart(geometry_, triangle, plane);
+        const Comparison found = compare_over(geometry_, triangle, plane, other, box, margin_);
+        if (found == Comparison::kApart) return true;
+        covers = covers || side_of_border(geometry_, geometry_.plane(triangle).plan, middle) > 0;
+        below &= found == Comparison::kBelow;
+        above &= found == Comparison::kAbove;
+        return below || above;
+    });
+    if (!clear || below == above || !covers) return Standing::kExact;
+    return below ? Standing::kAbove : Standing::kBelow;
+}
+
+void WholeTriangleFilter::cover(const FacetView& facets) {
+    locate(facets);
+    surface.assign(tiling_->size(), Standing::kBelow);
+    facet.assign(facets.size(), Standing::kExact);
+    parallel_ranges(facets.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f) {
+                            const TileSpan& span = facet_at[f].span;
+                            if (facets.plane(f) < 0 || borders_.near(span)) continue;
+                            bool any_empty = false, any_surface = false;
+                            tiles().for_each(span, [&](std::size_t tile) {
+                                (is_empty[tile] != 0 ? any_empty : any_surface) = true;
+                            });
+                            if (any_empty && any_surface) continue;
+                            facet[f] = any_empty ? Standing::kUncovered : Standing::kBelow;
+                        }
+                    });
+}
+
+SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const TriangleLinks& links,
+                                              const FacetView& facets) {
+    const BlockTiling& tiling = *tiling_;
+    const std::size_t triangles = tiling.whole.size();
+    std::vector<std::uint8_t> is_needed(tiles().size(), 0);
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+        if (facet[f] != Standing::kExact || facets.plane(f) < 0) continue;
+        tiles().for_each(facet_at[f].span, [&](std::size_t tile) { is_needed[tile] = 1; });
+    }
+    polygon.assign(tiling.size(), -1);
+    parallel_ranges(triangles, 2 * kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t t = begin; t < end; ++t) {
+                            if (surface[t] == Standing::kExact ||
+                                tiles().any(surface_at[t].span,
+                                            [&](std::size_t tile) { return is_needed[tile] != 0; }))
+                                polygon[t] = 0;
+                        }
+                    });
+    SurfaceTiling part;
+    for (std::size_t t = 0; t < triangles; ++t) {
+        poll(progress_, t);
+        if (polygon[t] < 0) continue;
+        polygon[t] = static_cast<std::int32_t>(part.plane.size());
+        part.plane.push_back(tiling.whole[t]);
+    }
+    add_outlines(
+        geometry, part.plane.size(),
+        [&](std::size_t i) { return geometry.plane(part.plane[i]).plan; },
+        [&](std::size_t i, std::size_t e) {
+            const PlaneId other = links.of(part.plane[i])[e];
+            if (tiling.is_raised || other < 0 || other > part.plane[i]) return kNoOutline;
+            return polygon[static_cast<std::size_t>(other - tiling.whole.front())];
+        },
+        [](std::size_t) { return PolygonView(); }, part.polygons, progress_);
+    for (std::size_t i = 0; i < tiling.part_plane.size(); ++i) {
+        polygon[triangles + i] = static_cast<std::int32_t>(part.plane.size());
+        part.polygons.add(tiling.parts[i]);
+        part.plane.push_back(tiling.part_plane[i]);
+    }
+    for (const PlanTriangle& t : tiling.empty) {
+        part.polygons.add(triangle_outline(geometry, t));
+        part.plane.push_back(kVoid);
+    }
+    part.index(geometry, threads_, progress_, std::max(tiles().size(), part.plane.size()));
+    return part;
+}
+
+std::vector<std::size_t> WholeTriangleFilter::exact_facets() const {
+    std::vector<std::size_t> exact;
+    for (std::size_t f = 0; f < facet.size(); ++f) {
+        if (facet[f] == Standing::kExact) exact.push_back(f);
+    }
+    return exact;
+}
+
+}  // namespace realmodel::strata

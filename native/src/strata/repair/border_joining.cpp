@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/repair/border_joining.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/keep_single.hpp"
+#include "base/parallel.hpp"
+#include "exact/orient2d.hpp"
+#include "strata/limits.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+using PlanPosition = std::array<double, 2>;
+using PlanEdge = std::pair<PlanPosition, PlanPosition>;  ///< the lesser end first
+
+PlanEdge edge_between(const PlanPosition& a, const PlanPosition& b) {
+    return a < b ? PlanEdge{a, b} : PlanEdge{b, a};
+}
+
+/// One mesh of the input, of a surface (three columns) or a region (two), with snapped positions.
+struct Mesh {
+    std::span<const double> vertices;
+    std::span<const std::int32_t> triangles;
+    std::size_t columns;
+    const PlanSnapping* snapping;
+
+    std::size_t size() const { return triangles.size() / 3; }
+    PlanPosition position(std::int32_t v) const {
+        const double* row = &vertices[static_cast<std::size_t>(v) * columns];
+        return {snapping->x(row[0]), snapping->y(row[1])};
+    }
+    /// The corners' numbers; none where they are refused later or the triangle has no area.
+    std::optional<std::array<std::int32_t, 3>> corners(std::size_t t) const {
+        const std::array<std::int32_t, 3> v{triangles[3 * t], triangles[3 * t + 1],
+                                            triangles[3 * t + 2]};
+        std::array<PlanPosition, 3> p;
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (v[i] < 0 || (static_cast<std::size_t>(v[i]) + 1) * columns > vertices.size())
+                return {};
+            p[i] = position(v[i]);
+            if (!std::isfinite(p[i][0]) || !std::isfinite(p[i][1])) return {};
+        }
+        if (exact::orient2d(p[0], p[1], p[2]) == 0) return {};
+        return v;
+    }
+};
+
+/// The edges that one triangle only has, by vertex numbers, the lower first.
+std::vector<std::array<std::int32_t, 2>> single_edges(const Mesh& mesh, const Progress* progress) {
+    check_triangle_count(mesh.size());
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    triangles.reserve(mesh.size());
+    std::vector<std::uint32_t> offsets(mesh.vertices.size() / mesh.columns + 1, 0);
+    const auto lower = [](const std::array<std::int32_t, 3>& v, std::size_t i) {
+        return static_cast<std::size_t>(std::min(v[i], v[(i + 1) % 3]));
+    };
+    for (std::size_t t = 0; t < mesh.size(); ++t) {
+        poll(progress, t);
+        const auto v = mesh.corners(t);
+        if (!v) continue;
+        triangles.push_back(*v);
+        for (std::size_t i = 0; i < 3; ++i)
+            ++offsets[lower(*v, i) + 1];
+    }
+    for (std::size_t i = 1; i < offsets.size(); ++i)
+        offsets[i] += offsets[i - 1];
+    std::vector<std::int32_t> higher(3 * triangles.size());
+    std::vector<std::uint32_t> free(offsets.begin(), offsets.end() - 1);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        poll(progress, t);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto& v = triangles[t];
+            higher[free[lower(v, i)]++] = std::max(v[i], v[(i + 1) % 3]);
+        }
+    }
+    std::vector<std::array<std::int32_t, 2>> single;
+    std::vector<std::int32_t> of_vertex;
+    for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
+        poll(progress, i);
+        of_vertex.assign(higher.begin() + offsets[i], higher.begin() + offsets[i + 1]);
+        std::sort(of_vertex.begin(), of_vertex.end());
+        keep_single(of_vertex);
+        for (const std::int32_t other : of_vertex)
+            single.push_back({static_cast<std::int32_t>(i), other});
+    }
+    return single;
+}
+
+/// The edges that one triangle only has in plan, ascending.
+std::vector<PlanEdge> border_of(const Mesh& mesh, const Progress* progress) {
+    // first by number, which leaves few; then by place, for vertices that are given several times
+    const auto once = single_edges(mesh, progress);
+    std::vector<PlanEdge> edges;
+    for (const auto& [a, b] : once)
+        edges.push_back(edge_between(mesh.position(a), mesh.position(b)));
+    std::sort(edges.begin(), edges.end());
+    keep_single(edges);
+    return edges;
+}
+
+/// Border vertices in square bins.
+class VertexBins {
+public:
+    VertexBins(std::vector<PlanPosition> vertices, double reach)
+        : vertices_(std::move(vertices)), reach_(reach) {
+        low_ = high_ = vertices_.front();
+        for (const PlanPosition& p : vertices_) {
+            for (std::size_t i = 0; i < 2; ++i) {
+                low_[i] = std::min(low_[i], p[i]);
+                high_[i] = std::max(high_[i], p[i]);
+            }
+        }
+        side_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::sqrt(vertices_.size())));
+        std::vector<std::pair<std::size_t, PlanPosition>> keyed;
+        for (const PlanPosition& p : vertices_)
+            keyed.emplace_back(bin(p[0], 0) * side_ + bin(p[1], 1), p);
+        std::sort(keyed.begin(), keyed.end());
+        start_.assign(side_ * side_ + 1, 0);
+        for (std::size_t i = 0; i < keyed.size(); ++i) {
+            ++start_[keyed[i].first + 1];
+            vertices_[i] = keyed[i].second;
+        }
+        for (std::size_t i = 1; i < start_.size(); ++i)
+            start_[i] += start_[i - 1];
+    }
+
+    /// The vertices within rounding of the inside of an edge, from its first end; none where all of
+    /// them lie exactly on its line.
+    std::vector<PlanPosition> along(const PlanEdge& edge) const {
+        const auto& [p, q] = edge;
+        const double dx = q[0] - p[0], dy = q[1] - p[1], length = std::hypot(dx, dy);
+        std::vector<std::pair<double, PlanPosition>> found;
+        bool beside = false;
+        const double x0 = p[0] - reach_, x1 = q[0] + reach_;
+        const double y0 = std::min(p[1], q[1]) - reach_, y1 = std::max(p[1], q[1]) + reach_;
+        for (std::size_t column = bin(x0, 0); column <= bin(x1, 0); ++column) {
+            for (std::size_t row = bin(y0, 1); row <= bin(y1, 1); ++row) {
+                const std::size_t b = column * side_ + row;
+                for (std::size_t i = start_[b]; i < start_[b + 1]; ++i) {
+                    const PlanPosition& v = vertices_[i];
+                    const double vx = v[0] - p[0], vy = v[1] - p[1];
+                    if (std::abs(vx * dy - vy * dx) > reach_ * length) continue;
+                    const double way = (vx * dx + vy * dy) / length;
+                    if (way <= 2 * reach_ || way >= length - 2 * reach_) continue;
+                    found.emplace_back(way, v);
+                    beside |= exact::orient2d(p, q, v) != 0;
+                }
+            }
+        }
+        // An edge that is bent anywhere has to run through those on its line by name, too.
+        if (!beside) return {};
+        std::sort(found.begin(), found.end());
+        std::vector<PlanPosition> chain;
+        double last = 0;
+        for (const auto& [way, v] : found) {
+            if (!chain.empty() && way - last <= 2 * reach_) continue;
+            chain.push_back(v);
+            last = way;
+        }
+        return chain;
+    }
+
+private:
+    std::size_t bin(double value, std::size_t axis) const {
+        const double extent = high_[axis] - low_[axis];
+        if (!(extent > 0)) return 0;
+        const double at = (value - low_[axis]) / extent * static_cast<double>(side_);
+        return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(side_) - 0.5));
+    }
+
+    std::vector<PlanPosition> vertices_;
+    double reach_;
+    PlanPosition low_{}, high_{};
+    std::size_t side_ = 1;
+    std::vector<std::size_t> start_;
+};
+
+using Chains = std::map<PlanEdge, std::vector<PlanPosition>>;
+
+/// A mesh with the divided triangles' parts.
+class Divided {
+public:
+    Divided(const Mesh& mesh, const Chains& chains, const Progress* progress) : mesh_(mesh) {
+        vertices.assign(mesh.vertices.begin(), mesh.vertices.end());
+        for (std::size_t row = 0; row + mesh.columns <= vertices.size(); row += mesh.columns) {
+            vertices[row] = mesh.snapping->x(vertices[row]);
+            vertices[row + 1] = mesh.snapping->y(vertices[row + 1]);
+        }
+        triangles.assign(mesh.triangles.begin(), mesh.triangles.end());
+        for (std::size_t t = 0; t < mesh.size(); ++t) {
+            poll(progress, t);
+            if (const auto v = mesh.corners(t)) divide(t, *v, chains);
+        }
+    }
+
+    std::vector<double> vertices;
+    std::vector<std::int32_t> triangles;
+
+private:
+    using Corners = std::array<std::int32_t, 3>;
+    /// Vertices still to be inserted into the edges 0-1, 1-2 and 2-0 of a part, in that direction.
+    using Waiting = std::array<std::vector<std::int32_t>, 3>;
+
+    void divide(std::size_t t, const Corners& corners, const Chains& chains) {
+        Waiting waiting;
+        bool any = false;
+        const std::size_t vertices_before = vertices.size();
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::int32_t a = corners[i], b = corners[(i + 1) % 3];
+            const PlanEdge edge = edge_between(position(a), position(b));
+            const auto chain = chains.find(edge);
+            if (chain == chains.end()) continue;
+            any = true;
+            const bool ahead = position(a) == edge.first;
+            for (const PlanPosition& p : chain->second)
+                waiting[i].push_back(insert(p, ahead ? a : b, ahead ? b : a));
+            if (!ahead) std::reverse(waiting[i].begin(), waiting[i].end());
+        }
+        if (!any) return;
+        std::vector<Corners> parts;
+        part(corners, waiting, parts);
+        const int turn = turn_of(corners);
+        if (std::any_of(parts.begin(), parts.end(),
+                        [&](const Corners& p) { return turn_of(p) != turn; })) {
+            vertices.resize(vertices_before);
+            return;
+        }
+        std::copy(parts[0].begin(), parts[0].end(),
+                  triangles.begin() + static_cast<std::ptrdiff_t>(3 * t));
+        for (std::size_t i = 1; i < parts.size(); ++i)
+            triangles.insert(triangles.end(), parts[i].begin(), parts[i].end());
+    }
+
+    /// Splits along a fan from the corner opposite of the first edge that has vertices waiting.
+    void part(const Corners& c, const Waiting& waiting, std::vector<Corners>& parts) const {
+        std::size_t k = 0;
+        while (k < 3 && waiting[k].empty())
+            ++k;
+        if (k == 3) {
+            parts.push_back(c);
+            return;
+        }
+        std::vector<std::int32_t> along{c[k]};
+        along.insert(along.end(), waiting[k].begin(), waiting[k].end());
+        along.push_back(c[(k + 1) % 3]);
+        for (std::size_t i = 0; i + 1 < along.size(); ++i) {
+            Waiting rest;
+            if (i + 2 == along.size()) rest[1] = waiting[(k + 1) % 3];
+            if (i == 0) rest[2] = waiting[(k + 2) % 3];
+            part({along[i], along[i + 1], c[(k + 2) % 3]}, rest, parts);
+        }
+    }
+
+    /// A new vertex on the edge from a to b; its height is the same whichever triangle asks.
+    std::int32_t insert(const PlanPosition& p, std::int32_t a, std::int32_t b) {
+        const auto row = [&](std::int32_t v) {
+            return static_cast<std::size_t>(v) * mesh_.columns;
+        };
+        const PlanPosition from = position(a), to = position(b);
+        vertices.push_back(p[0]);
+        vertices.push_back(p[1]);
+        if (mesh_.columns == 3) {
+            const double dx = to[0] - from[0], dy = to[1] - from[1];
+            const double share =
+                ((p[0] - from[0]) * dx + (p[1] - from[1]) * dy) / (dx * dx + dy * dy);
+            const double za = vertices[row(a) + 2], zb = vertices[row(b) + 2];
+            vertices.push_back(za + share * (zb - za));
+        }
+        return static_cast<std::int32_t>(vertices.size() / mesh_.columns) - 1;
+    }
+
+    PlanPosition position(std::int32_t v) const {
+        const std::size_t row = static_cast<std::size_t>(v) * mesh_.columns;
+        return {vertices[row], vertices[row + 1]};
+    }
+    int turn_of(const Corners& c) const {
+        return exact::orient2d(position(c[0]), position(c[1]), position(c[2]));
+    }
+
+    const Mesh& mesh_;
+};
+
+}  // namespace
+
+JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping& snapping,
+                           int threads, const Progress* progress) {
+    std::vector<Mesh> meshes;
+    for (const StackInput& rock : rocks) {
+        for (const SurfaceView& s : rock.surfaces)
+            meshes.push_back({s.vertices, s.triangles, 3, &snapping});
+        if (rock.region)
+            meshes.push_back({rock.region->vertices, rock.region->triangles, 2, &snapping});
+    }
+    std::vector<PlanEdge> edges;
+    std::vector<std::vector<PlanEdge>> borders(meshes.size());
+    parallel_chunks(meshes.size(), threads, progress,
+                    [&](std::size_t m) { borders[m] = border_of(meshes[m], progress); });
+    for (const auto& border : borders)
+        edges.insert(edges.end(), border.begin(), border.end());
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    if (edges.empty()) return {};
+    std::vector<PlanPosition> ends;
+    double largest = 0;
+    for (const auto& [a, b] : edges) {
+        for (const PlanPosition& p : {a, b}) {
+            ends.push_back(p);
+            largest = std::max({largest, std::abs(p[0]), std::abs(p[1])});
+        }
+    }
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+
+    const VertexBins bins(std::move(ends),
+                          largest * 0x1p-50);  // four to eight units in the last place
+    Chains chains;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        poll(progress, i);
+        auto chain = bins.along(edges[i]);
+        if (!chain.empty()) chains.emplace(edges[i], std::move(chain));
+    }
+    JoinedBorders joined;
+    joined.divided = chains.size();
+    if (chains.empty()) return joined;
+    std::size_t next = 0;
+    const auto divided = [&] {
+        Divided parts(meshes[next++], chains, progress);
+        joined.vertices.push_back(std::move(parts.vertices));
+        joined.triangles.push_back(std::move(parts.triangles));
+    };
+    for (const StackInput& rock : rocks) {
+        StackInput& copy = joined.rocks.emplace_back(rock);
+        for (SurfaceView& s : copy.surfaces) {
+            divided();
+            s = {joined.vertices.back(), joined.triangles.back()};
+        }
+        if (copy.region) {
+            divided();
+            copy.region = RegionView{joined.vertices.back(), joined.triangles.back()};
+        }
+    }
+    return joined;
+}
+
+Warning joined_by_rounding(const PlanSnapping& snapping, const JoinedBorders& borders) {
+    const std::size_t coordinates = snapping.x.size() + snapping.y.size();
+    std::string text;
+    if (coordinates > 0) {
+        text = "plan coordinates that differ by rounding only taken as one: " +
+               std::to_string(coordinates);
+    }
+    if (borders.divided > 0) {
+        text += (text.empty() ? "" : "; ") +
+                ("border edges divided at vertices within rounding of them: " +
+                 std::to_string(borders.divided));
+    }
+    return {"joined", -1, {}, text};
+}
+
+}  // namespace realmodel::strata

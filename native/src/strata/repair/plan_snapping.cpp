@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/repair/plan_snapping.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include "base/parallel.hpp"
+#include "base/sort_doubles.hpp"
+#include "exact/orient2d.hpp"
+#include "strata/repair/surface_input.hpp"
+
+namespace realmodel::strata {
+
+namespace {
+
+using PlanPosition = std::array<double, 2>;
+using SpacePosition = std::array<double, 3>;
+
+/// One mesh of the input, of a surface (three columns) or a region (two).
+struct PlanMesh {
+    std::span<const double> vertices;
+    std::size_t columns;
+    std::span<const std::int32_t> triangles;
+
+    std::size_t size() const { return vertices.size() / columns; }
+    PlanPosition position(std::size_t v) const {
+        return {vertices[v * columns], vertices[v * columns + 1]};
+    }
+    SpacePosition corner(std::size_t v) const {
+        return {vertices[v * columns], vertices[v * columns + 1],
+                columns < 3 ? 0.0 : vertices[v * columns + 2]};
+    }
+};
+
+std::vector<PlanMesh> meshes_of(std::span<const StackInput> rocks) {
+    std::vector<PlanMesh> meshes;
+    for (const StackInput& rock : rocks) {
+        for (const SurfaceView& s : rock.surfaces)
+            meshes.push_back({s.vertices, 3, s.triangles});
+        if (rock.region) meshes.push_back({rock.region->vertices, 2, rock.region->triangles});
+    }
+    return meshes;
+}
+
+template <class Position>
+bool is_finite(const Position& p) {
+    return std::all_of(p.begin(), p.end(), [](double c) { return std::isfinite(c); });
+}
+
+/// What orients a triangle: in plan, or where it has no area there whether it has none in space.
+int orientation(const std::array<SpacePosition, 3>& p) {
+    const int in_plan = exact::orient2d({p[0][0], p[0][1]}, {p[1][0], p[1][1]}, {p[2][0], p[2][1]});
+    constexpr int kUpright = 2;
+    return in_plan != 0 || in_one_line(p[0], p[1], p[2]) ? in_plan : kUpright;
+}
+
+/// Calls visit(position) for all vertices; what the builder refuses later (numbers that are not
+/// finite) is passed over.
+template <class Visit>
+void for_each_vertex(std::span<const StackInput> rocks, const Progress* progress,
+                     const Visit& visit) {
+    for (const PlanMesh& mesh : meshes_of(rocks)) {
+        for (std::size_t v = 0; v < mesh.size(); ++v) {
+            poll(progress, v);
+            const PlanPosition p = mesh.position(v);
+            if (is_finite(p)) visit(p);
+        }
+    }
+}
+
+/// Calls visit(corners) for all triangles; what the builder refuses later is passed over.
+template <class Visit>
+void for_each_triangle(std::span<const StackInput> rocks, const Progress* progress,
+                       const Visit& visit) {
+    for (const PlanMesh& mesh : meshes_of(rocks)) {
+        for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+            poll(progress, t);
+            std::array<SpacePosition, 3> corners;
+            bool sound = true;
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::int32_t v = mesh.triangles[t + i];
+                sound = sound && v >= 0 && static_cast<std::size_t>(v) < mesh.size();
+                if (!sound) break;
+                corners[i] = mesh.corner(static_cast<std::size_t>(v));
+                sound = is_finite(corners[i]);
+            }
+            if (sound) visit(corners);
+        }
+    }
+}
+
+/// Runs of sorted values no further apart than `reach`: each of several values becomes the most
+/// frequent of them (of equally frequent ones the lowest), unless one of them is to be left alone.
+AxisSnapping join_close(const std::vector<double>& sorted, double reach,
+                        const std::set<double>& left_alone) {
+    std::vector<std::pair<double, double>> changes;
+    for (std::size_t i = 0; i < sorted.size();) {
+        std::size_t end = i + 1;
+        while (end < sorted.size() && sorted[end] - sorted[end - 1] <= reach)
+            ++end;
+        if (sorted[i] != sorted[end - 1]) {
+            double common = sorted[i];
+            std::size_t most = 0;
+            bool alone = false;
+            std::vector<double> values;
+            for (std::size_t j = i; j < end;) {
+                std::size_t same = j;
+                while (same < end && sorted[same] == sorted[j])
+                    ++same;
+                values.push_back(sorted[j]);
+                alone |= left_alone.contains(sorted[j]);
+                if (same - j > most) {
+                    most = same - j;
+                    common = sorted[j];
+                }
+                j = same;
+            }
+            for (const double v : values) {
+                if (!alone && v != common) changes.emplace_back(v, common);
+            }
+        }
+        i = end;
+    }
+    return AxisSnapping(std::move(changes));
+}
+
+}  // namespace
+
+bool share_one_plan(std::span<const StackInput> rocks) {
+    const std::vector<PlanMesh> meshes = meshes_of(rocks);
+    return std::all_of(meshes.begin(), meshes.end(), [&](const PlanMesh& mesh) {
+        const PlanMesh& first = meshes.front();
+        if (first.size() != mesh.size()) return false;
+        for (std::size_t v = 0; v < mesh.size(); ++v) {
+            if (first.position(v) != mesh.position(v)) return false;
+        }
+        return true;
+    });
+}
+
+double AxisSnapping::changed(double value) const {
+    const auto at = std::lower_bound(changes_.begin(), changes_.end(), value,
+                                     [](const auto& change, double v) { return change.first < v; });
+    return at != changes_.end() && at->first == value ? at->second : value;
+}
+
+PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads,
+                           const Progress* progress) {
+    std::array<std::vector<double>, 2> values;
+    std::array<double, 2> largest{0, 0};
+    std::size_t vertices = 0;
+    for (const PlanMesh& mesh : meshes_of(rocks))
+        vertices += mesh.size();
+    for (auto& of_axis : values)
+        of_axis.reserve(vertices);
+    for_each_vertex(rocks, progress, [&](const PlanPosition& p) {
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            values[axis].push_back(p[axis]);
+            largest[axis] = std::max(largest[axis], std::abs(p[axis]));
+        }
+    });
+    std::array<double, 2> reach;
+    parallel_chunks(2, threads, progress, [&](std::size_t axis) {
+        sort_doubles(values[axis], progress);
+        reach[axis] = largest[axis] * 0x1p-51;  // two to four units in the last place
+    });
+    // Values whose joining would turn a triangle are left alone, until none is turned. Input so
+    // fine that this does not settle soon is taken as it is.
+    constexpr int kRounds = 8;
+    std::array<std::set<double>, 2> left_alone;
+    for (int round = 0; round < kRounds; ++round) {
+        PlanSnapping snapping{join_close(values[0], reach[0], left_alone[0]),
+                              join_close(values[1], reach[1], left_alone[1])};
+        if (snapping.empty()) return snapping;
+        bool turned = false;
+        for_each_triangle(rocks, progress, [&](const std::array<SpacePosition, 3>& p) {
+            std::array<SpacePosition, 3> q;
+            for (std::size_t i = 0; i < 3; ++i)
+                q[i] = {snapping.x(p[i][0]), snapping.y(p[i][1]), p[i][2]};
+            if (p == q || orientation(p) == orientation(q)) return;
+            turned = true;
+            for (std::size_t i = 0; i < 3; ++i) {
+                for (std::size_t axis = 0; axis < 2; ++axis)
+                    left_alone[axis].insert(p[i][axis]);
+            }
+        });
+        if (!turned) return snapping;
+    }
+    return {};
+}
+
+}  // namespace realmodel::strata

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/repair/site.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "exact/orient2d.hpp"
+#include "realmodel/base/errors.hpp"
+#include "strata/limits.hpp"
+#include "strata/repair/surface_input.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanArrangement;
+using exact::VertexId;
+
+namespace {
+
+std::vector<PlanTriangle> enter_region(PlanArrangement& geometry, const RegionView& region,
+                                       std::int32_t first_surface, const PlanSnapping& snapping) {
+    for (std::size_t i = 0; i < region.vertices.size(); ++i) {
+        if (is_within_limits(region.vertices[i])) continue;
+        throw InputError("not_finite",
+                         "corner " + std::to_string(i / 2) +
+                             " of the region has a coordinate that is not a number or is beyond "
+                             "1e50",
+                         first_surface, {static_cast<std::int64_t>(i / 2)});
+    }
+    std::vector<PlanTriangle> triangles;
+    for (std::size_t t = 0; t * 3 < region.triangles.size(); ++t) {
+        std::array<std::array<double, 2>, 3> p;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto row = static_cast<std::size_t>(region.triangles[t * 3 + i]) * 2;
+            if (region.triangles[t * 3 + i] < 0 || row + 1 >= region.vertices.size()) {
+                throw InputError("bad_index",
+                                 "a triangle of the region names a vertex that is not there", -1,
+                                 {static_cast<std::int64_t>(t)});
+            }
+            p[i] = {snapping.x(region.vertices[row]), snapping.y(region.vertices[row + 1])};
+        }
+        const int orientation = exact::orient2d(p[0], p[1], p[2]);
+        if (orientation == 0) continue;
+        if (orientation < 0) std::swap(p[1], p[2]);
+        PlanTriangle v;
+        for (std::size_t i = 0; i < 3; ++i)
+            v[i] = geometry.add_vertex(p[i][0], p[i][1]);
+        triangles.push_back(v);
+    }
+    return triangles;
+}
+
+Frame enter_frame(PlanArrangement& geometry) {
+    std::array<double, 2> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
+    for (VertexId v = 0; v < static_cast<VertexId>(geometry.point_count()); ++v) {
+        const std::array<double, 2> p{geometry.point(v).x, geometry.point(v).y};
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            low[axis] = std::min(low[axis], p[axis]);
+            high[axis] = std::max(high[axis], p[axis]);
+        }
+    }
+    // A power of two keeps the exact numbers short where the input is a lattice.
+    const double extent = std::max({high[0] - low[0], high[1] - low[1], std::abs(high[0]) * 0x1p-30,
+                                    std::abs(high[1]) * 0x1p-30, std::abs(low[0]) * 0x1p-30,
+                                    std::abs(low[1]) * 0x1p-30, 1e-30});
+    const double step = std::exp2(std::ceil(std::log2(extent)));
+    const auto down = [&](double v) { return (std::floor(v / step) - 1.0) * step; };
+    const auto up = [&](double v) { return (std::ceil(v / step) + 1.0) * step; };
+    const double x0 = down(low[0]), y0 = down(low[1]), x1 = up(high[0]), y1 = up(high[1]);
+    Frame frame{geometry.add_vertex(x0, y0), geometry.add_vertex(x1, y0),
+                geometry.add_vertex(x1, y1), geometry.add_vertex(x0, y1)};
+    // What fills the frame around long borders would all run to its corners and be near everything
+    // there, were there not more vertices along its sides. Halves of halves are exact.
+    const double wanted = std::sqrt(static_cast<double>(geometry.point_count())) / 8;
+    const double parts = std::exp2(std::floor(std::log2(std::clamp(wanted, 1.0, 256.0))));
+    for (double i = 1; i < parts; ++i) {
+        const double x = x0 + (x1 - x0) * (i / parts), y = y0 + (y1 - y0) * (i / parts);
+        for (const auto& p : {std::array{x, y0}, {x1, y}, {x, y1}, {x0, y}})
+            frame.push_back(geometry.add_vertex(p[0], p[1]));
+    }
+    return frame;
+}
+
+EnteredRock enter_rock(PlanArrangement& geometry, const StackInput& input,
+                       std::int32_t first_surface, const PlanSnapping& snapping,
+                       std::vector<Warning>& warnings, int threads, const Progress* progress) {
+    EnteredRock rock;
+    rock.first_surface = first_surface;
+    rock.rules = input.rules;
+    if (input.base_elevation && !is_within_limits(*input.base_elevation)) {
+        throw InputError("not_finite", "the base elevation is not a number or is beyond 1e50",
+                         first_surface);
+    }
+    rock.base_elevation = input.base_elevation;
+    rock.surfaces = enter_surfaces(geometry, input.surfaces, first_surface, snapping, warnings,
+                                   threads, progress);
+    if (input.region) rock.region = enter_region(geometry, *input.region, first_surface, snapping);
+    return rock;
+}
+
+/// The base of a rock mass; its heights must be there before the vertices are frozen.
+void enter_base(Site& site, EnteredRock& rock) {
+    if (!rock.base_elevation) return;
+    std::array<exact::SpaceId, 3> corner;
+    for (std::size_t i = 0; i < 3; ++i)
+        corner[i] = site.geometry.add_space_vertex(site.frame[i], *rock.base_elevation);
+    rock.base = site.geometry.add_plane(corner);
+    site.surface_of_plane.resize(static_cast<std::size_t>(site.geometry.plane_count()), kBase);
+}
+
+}  // namespace
+
+bool EnteredRock::is_erosional() const {
+    return std::all_of(rules.begin(), rules.end(), [](Rule r) { return r == Rule::kErosional; });
+}
+
+std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSnapping& snapping,
+                                 std::vector<Warning>& warnings, int threads,
+                                 const Progress* progress) {
+    auto entered = std::make_unique<Site>();
+    Site& site = *entered;
+    std::size_t vertices = 0, triangles = 0;
+    for (const StackInput& rock : rocks) {
+        for (const SurfaceView& surface : rock.surfaces) {
+            vertices += surface.vertices.size() / 3;
+            triangles += surface.triangles.size() / 3;
+        }
+    }
+    site.geometry.expect_vertices(vertices);
+    site.geometry.expect_planes(triangles + rocks.size());
+    for (const StackInput& rock : rocks) {
+        site.rocks.push_back(
+            enter_rock(site.geometry, rock, site.surfaces, snapping, warnings, threads, progress));
+        site.surfaces += static_cast<std::int32_t>(rock.surfaces.size());
+    }
+    if (site.is_empty()) return entered;
+    site.frame = enter_frame(site.geometry);
+    for (EnteredRock& rock : site.rocks)
+        enter_base(site, rock);
+    site.geometry.freeze_vertices();
+    for (EnteredRock& rock : site.rocks) {
+        rock.plans = plan_surfaces(site.geometry, rock.surfaces, site.frame, threads, progress);
+        for (const SurfacePlan& plan : rock.plans)
+            site.is_single_valued &= plan.filling.has_value();
+        if (rock.region) {
+            rock.region_border = link_triangles(*rock.region, progress).border;
+            auto filling = fill_frame(site.geometry, rock.region_border, site.frame);
+            site.is_single_valued &= filling.has_value();
+            if (filling) rock.region_filling = std::move(*filling);
+        }
+    }
+    return entered;
+}
+
+void Site::check_regions() const {
+    for (const EnteredRock& rock : rocks) {
+        if (!rock.region || !rock.region_filling.triangles.empty()) continue;
+        throw InputError("crossing", "edges of the region's border cross", rock.first_surface);
+    }
+}
+
+void check_base(const EnteredRock& rock, const std::array<double, 3>& lowest) {
+    const double base = *rock.base_elevation;
+    if (lowest[2] > base) return;
+    throw InputError("base_not_below",
+                     "base_elevation " + std::to_string(base) +
+                         " is not below all of the rock mass: its lowest place is " +
+                         std::to_string(lowest[2]) + " at (" + std::to_string(lowest[0]) + ", " +
+                         std::to_string(lowest[1]) + "); give a lower base_elevation",
+                     rock.first_surface, {}, lowest);
+}
+
+}  // namespace realmodel::strata

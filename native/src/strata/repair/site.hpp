@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "strata/repair/plan_snapping.hpp"
+#include "strata/tiling/surface_tiling.hpp"
+
+namespace realmodel::strata {
+
+/// A rock mass whose vertices are entered.
+struct EnteredRock {
+    std::int32_t first_surface = 0;  ///< counted through all rock masses
+    std::vector<EnteredSurface> surfaces;
+    std::vector<SurfacePlan> plans;  ///< of the surfaces
+    std::vector<Rule> rules;
+    std::optional<std::vector<PlanTriangle>> region;
+    std::vector<BorderEdge> region_border;
+    FrameTriangles region_filling;  ///< the frame around the region
+    std::optional<double> base_elevation;
+    std::optional<PlaneId> base;  ///< a plane over the frame
+
+    bool is_erosional() const;
+};
+
+/// What all rock masses share while they are built.
+struct Site {
+    exact::PlanArrangement geometry;
+    Frame frame;  ///< corners of a box that lies well outside of all input, and vertices between
+    std::vector<EnteredRock> rocks;
+    std::vector<std::int32_t> surface_of_plane;  ///< kBase for the flat bases
+    std::int32_t surfaces = 0;                   ///< in all rock masses
+    /// Whether no surface covers a position twice, and no border of a region crosses itself.
+    bool is_single_valued = true;
+
+    /// @throws InputError kind crossing, where the border of a region crosses itself
+    void check_regions() const;
+    bool is_empty() const { return geometry.point_count() == 0; }
+};
+
+/// Checks and enters the input: its vertices, a frame around them and flat bases; and finds how
+/// each surface lies in the frame.
+/// @throws InputError kinds not_finite, bad_index, vertical_triangle
+std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSnapping& snapping,
+                                 std::vector<Warning>& warnings, int threads,
+                                 const Progress* progress);
+
+/// @throws InputError kind base_not_below, where the lowest position of a rock mass is not above
+/// its base
+void check_base(const EnteredRock& rock, const std::array<double, 3>& lowest);
+
+}  // namespace realmodel::strata

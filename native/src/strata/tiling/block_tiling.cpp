@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/tiling/block_tiling.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+
+#include "base/parallel_counts.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanArrangement;
+
+namespace {
+
+/// Whether neighbors have each other.
+[[maybe_unused]] bool are_symmetric(const TriangleLinks& links, PlaneId first) {
+    for (std::size_t p = static_cast<std::size_t>(first); p < links.neighbor.size(); ++p) {
+        for (const PlaneId n : links.neighbor[p]) {
+            if (n < 0) continue;
+            const auto& back = links.of(n);
+            if (std::find(back.begin(), back.end(), static_cast<PlaneId>(p)) == back.end())
+                return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
+                              SurfacePlan plan, std::int32_t number, TriangleLinks& links,
+                              int threads, const Progress* progress) {
+    constexpr std::size_t kTriangles = 8192;
+    if (!plan.filling)
+        make_surface_tiling(geometry, triangles, plan, {}, number, threads, progress);  // refuses
+    const PlaneId first = make_planes(geometry, triangles, threads, progress);
+    assert(plan.links.neighbour.size() == triangles.size());
+    links.neighbor.resize(static_cast<std::size_t>(first), {-1, -1, -1});  // planes of bases
+    links.neighbor.insert(links.neighbor.end(), plan.links.neighbour.begin(),
+                          plan.links.neighbour.end());
+    BlockTiling tiling;
+    tiling.whole.resize(triangles.size());
+    std::iota(tiling.whole.begin(), tiling.whole.end(), first);
+    std::vector<std::vector<std::pair<exact::VertexId, exact::VertexId>>> border(
+        (triangles.size() + kTriangles - 1) / kTriangles);
+    parallel_ranges(
+        triangles.size(), kTriangles, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t) {
+                const PlaneId plane = tiling.whole[t];
+                const PlanTriangle& corner = geometry.plane(plane).plan;
+                auto& neighbors = links.neighbor[static_cast<std::size_t>(plane)];
+                for (std::size_t i = 0; i < 3; ++i) {
+                    PlaneId& n = neighbors[i];
+                    n = n < 0 ? -1 : n + first;
+                    if (n >= 0 && meet_in_height(geometry, plane, i, n)) continue;
+                    n = -1;
+                    border[begin / kTriangles].emplace_back(corner[i], corner[(i + 1) % 3]);
+                }
+            }
+        });
+    assert(are_symmetric(links, first));
+    for (const auto& some : border)
+        links.border.insert(links.border.end(), some.begin(), some.end());
+    for (std::size_t t = 0; t < plan.filling->triangles.size(); ++t) {
+        if (plan.filling->covered[t] == 0) tiling.empty.push_back(plan.filling->triangles[t]);
+    }
+    return tiling;
+}
+
+}  // namespace realmodel::strata

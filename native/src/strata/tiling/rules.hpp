@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "realmodel/strata/stack.hpp"
+#include "strata/tiling/surface_tiling.hpp"
+
+namespace realmodel::strata {
+
+/// Replays the rules forward in time: turns each surface S_k, as it comes, into e_k, what it leaves
+/// as the top of the rock: S_k itself, or the top so far (the floor that may not be cut) where S_k
+/// lies below it and its rule does not cut (something protects itself). The tilings of e_k are made
+/// of facets of S_k and of older tilings, all in the planes of input triangles.
+///
+/// `Raising` says how: raise(surface, bound) is the higher of the two where there is a surface,
+/// first(e) a bound that has nothing but e, and cover(bound, e, surface) a bound with e where there
+/// is a surface.
+template <class Raising>
+class RuleReplay {
+public:
+    using Tiling = typename Raising::Tiling;
+    using Bound = typename Raising::Bound;
+
+    /// rules: of all surfaces, oldest first; what no later surface asks for is not kept.
+    RuleReplay(Raising raising, std::vector<Rule> rules)
+        : raising_(std::move(raising)), rules_(std::move(rules)) {}
+
+    /// The next surface, oldest first; returns its e_k.
+    Tiling add(Tiling surface) {
+        const Rule rule = rules_[next_++];
+        const std::optional<Bound>& bound = meaning(rule).cuts ? floor_ : top_;
+        raising_.begin(surface);
+        std::optional<Tiling> raised;
+        if (bound) raised = raising_.raise(surface, *bound);
+        const Tiling& e = raised ? *raised : surface;
+        const auto renew = [&](std::optional<Bound>& kept) {
+            kept = kept ? raising_.cover(*kept, e, surface) : raising_.first(e);
+        };
+        if (!is_needed_later(false)) {
+            top_.reset();
+        } else {
+            renew(top_);
+        }
+        if (!is_needed_later(true)) {
+            floor_.reset();
+        } else if (meaning(rule).protects) {
+            renew(floor_);
+        }
+        return raised ? std::move(*raised) : std::move(surface);
+    }
+
+private:
+    /// The floor only matters to surfaces that cut: the top, which bounds the others, is never
+    /// below it.
+    bool is_needed_later(bool by_cutting) const {
+        return std::any_of(rules_.begin() + static_cast<std::ptrdiff_t>(next_), rules_.end(),
+                           [&](Rule r) { return meaning(r).cuts == by_cutting; });
+    }
+
+    Raising raising_;
+    std::vector<Rule> rules_;
+    std::size_t next_ = 0;
+    std::optional<Bound> top_, floor_;
+};
+
+/// The higher of a surface and a bound, where there is a surface. Polygons that are `given` are not
+/// among the result: they lie elsewhere, or the bound is above them.
+/// @param given  of each polygon of the surface; empty: none
+SurfaceTiling raise_tiling(exact::PlanArrangement& geometry, const SurfaceTiling& surface,
+                           const SurfaceTiling& bound, std::span<const std::uint8_t> given,
+                           int threads, const Progress* progress);
+
+/// What of an older tiling the surface does not cover; facets that it covers nowhere are not
+/// divided.
+SurfaceTiling uncovered_part(exact::PlanArrangement& geometry, const SurfaceTiling& older,
+                             const SurfaceTiling& surface, int threads, const Progress* progress);
+
+/// Rules on whole tilings.
+class TilingRaising {
+public:
+    using Tiling = SurfaceTiling;
+    using Bound = SurfaceTiling;
+
+    TilingRaising(exact::PlanArrangement& geometry, int threads, const Progress* progress)
+        : geometry_(geometry), threads_(threads), progress_(progress) {}
+
+    void begin(const SurfaceTiling&) const {}
+    SurfaceTiling raise(const SurfaceTiling& surface, const SurfaceTiling& bound) const;
+    SurfaceTiling first(const SurfaceTiling& e) const { return e; }
+    SurfaceTiling cover(const SurfaceTiling& older, const SurfaceTiling& newer,
+                        const SurfaceTiling& surface) const;
+
+private:
+    exact::PlanArrangement& geometry_;
+    int threads_;
+    const Progress* progress_;
+};
+
+}  // namespace realmodel::strata

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/tiling/surface_tiling.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "base/parallel.hpp"
+#include "base/parallel_counts.hpp"
+#include "realmodel/base/errors.hpp"
+#include "strata/tiling/triangle_outlines.hpp"
+
+namespace realmodel::strata {
+
+using exact::PlanArrangement;
+using exact::VertexId;
+
+namespace {
+
+constexpr std::size_t kRange = 8192;
+
+void add_triangle(PlanArrangement& geometry, PolygonPool& pool, const PlanTriangle& triangle) {
+    pool.add(triangle_outline(geometry, triangle));
+}
+
+PlanTriangle plan_of(const PlanArrangement& geometry, const UsedTriangle& triangle) {
+    PlanTriangle v;
+    for (std::size_t i = 0; i < 3; ++i)
+        v[i] = geometry.space(triangle.corner[i]).plan;
+    return v;
+}
+
+/// Void triangles (plane `empty`) where nothing is covered.
+void add_empty(PlanArrangement& geometry, SurfaceTiling& layer, const FrameTriangles& filling,
+               PlaneId empty) {
+    for (std::size_t t = 0; t < filling.triangles.size(); ++t) {
+        if (filling.covered[t] != 0) continue;
+        add_triangle(geometry, layer.polygons, filling.triangles[t]);
+        layer.plane.push_back(empty);
+    }
+}
+
+[[noreturn]] void refuse_pair(LocalArrangement& scope, const SurfaceTiling& layer,
+                              const std::vector<UsedTriangle>& triangles, std::size_t one,
+                              std::size_t other, int index) {
+    Clipper clipper(scope);
+    const PolygonView common = clipper.intersect(layer.polygons[one], layer.polygons[other]);
+    std::array<double, 3> place{0, 0, 0};
+    const auto share = 1.0 / static_cast<double>(common.size());
+    for (const Corner& corner : common) {
+        const auto& p = scope.point(corner.point);
+        place[0] += p.x * share;
+        place[1] += p.y * share;
+        place[2] += scope.rounded_height(layer.plane[one], corner.point) * share;
+    }
+    throw InputError("double_valued",
+                     "triangles " + std::to_string(triangles[one].number) + " and " +
+                         std::to_string(triangles[other].number) +
+                         " overlap in plan: the surface has two heights there",
+                     index, {triangles[one].number, triangles[other].number}, place);
+}
+
+/// Names the first two triangles that overlap; to be called where there are some.
+[[noreturn]] void refuse_overlap(const PlanArrangement& geometry, const SurfaceTiling& layer,
+                                 const std::vector<UsedTriangle>& triangles, int index, int threads,
+                                 const Progress* progress) {
+    constexpr std::size_t kChunk = 1024;
+    parallel_chunks(
+        (triangles.size() + kChunk - 1) / kChunk, threads, progress, [&](std::size_t chunk) {
+            LocalArrangement scope(geometry);
+            Clipper clipper(scope);
+            GrowingArray<std::int32_t> candidates;
+            const std::size_t end = std::min(triangles.size(), (chunk + 1) * kChunk);
+            for (std::size_t t = chunk * kChunk; t < end; ++t) {
+                layer.grid.candidates(scope, layer.polygons[t], candidates);
+                for (const std::int32_t c : candidates) {
+                    const auto other = static_cast<std::size_t>(c);
+                    if (other > t && clipper.overlap(layer.polygons[t], layer.polygons[other])) {
+                        refuse_pair(scope, layer, triangles, t, other, index);
+                    }
+                }
+            }
+        });
+    throw std::logic_error("a surface covers a place twice, yet no two of its triangles overlap");
+}
+
+/// Where triangles that turn counter-clockwise lie in the frame; nothing where they cover a place
+/// twice.
+std::optional<FrameTriangles> cover_frame(const PlanArrangement& geometry,
+                                          const std::vector<BorderEdge>& border,
+                                          const Frame& frame) {
+    auto filling = fill_frame(geometry, border, frame);
+    if (!filling) return std::nullopt;
+    const auto [least, most] =
+        std::minmax_element(filling->covered.begin(), filling->covered.end());
+    if (*least < 0 || *most > 1) return std::nullopt;
+    return filling;
+}
+
+}  // namespace
+
+std::array<Corner, 3> triangle_outline(PlanArrangement& geometry, const PlanTriangle& v) {
+    return {{{v[0], geometry.add_edge(v[0], v[1])},
+             {v[1], geometry.add_edge(v[1], v[2])},
+             {v[2], geometry.add_edge(v[2], v[0])}}};
+}
+
+HeightRange heights_of(const PlanArrangement& geometry, PlaneId plane) {
+    const auto& corner = geometry.plane(plane).corner;
+    const auto [low, high] = std::minmax(
+        {geometry.space(corner[0]).z, geometry.space(corner[1]).z, geometry.space(corner[2]).z});
+    return {low, high};
+}
+
+void SurfaceTiling::index(const PlanArrangement& geometry, int threads, const Progress* progress,
+                          std::size_t cells) {
+    std::vector<std::uint8_t> is_surface(plane.size());
+    std::transform(plane.begin(), plane.end(), is_surface.begin(),
+                   [](PlaneId p) { return static_cast<std::uint8_t>(p == kVoid ? 0 : 1); });
+    runs_on.assign(plane.size(), 0);
+    grid = PlanGrid(geometry, polygons, is_surface, cells, threads, progress);
+    heights = FlatArray<HeightRange>(plane.size());
+    parallel_ranges(
+        plane.size(), kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t p = begin; p < end; ++p)
+                heights[p] = plane[p] < 0 ? HeightRange{} : heights_of(geometry, plane[p]);
+        });
+}
+
+bool meet_in_height(const PlanArrangement& geometry, PlaneId plane, std::size_t i, PlaneId other) {
+    const auto& corner = geometry.plane(plane).corner;
+    for (const exact::SpaceId s : {corner[i], corner[(i + 1) % 3]}) {
+        if (geometry.corner_above(other, geometry.space(s).plan) != s) return false;
+    }
+    return true;
+}
+
+std::vector<SurfacePlan> plan_surfaces(const PlanArrangement& geometry,
+                                       std::vector<EnteredSurface>& surfaces, const Frame& frame,
+                                       int threads, const Progress* progress) {
+    std::vector<SurfacePlan> plans(surfaces.size());
+    parallel_chunks(surfaces.size(), threads, progress, [&](std::size_t k) {
+        plans[k].links = std::move(surfaces[k].links);
+        plans[k].filling = cover_frame(geometry, plans[k].links.border, frame);
+    });
+    return plans;
+}
+
+PlaneId make_planes(PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
+                    int threads, const Progress* progress) {
+    const PlaneId first = geometry.make_planes(triangles.size());
+    parallel_ranges(
+        triangles.size(), kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t)
+                geometry.set_plane(first + static_cast<PlaneId>(t), triangles[t].corner);
+        });
+    return first;
+}
+
+SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
+                                  const std::vector<UsedTriangle>& triangles,
+                                  const SurfacePlan& plan, const PolygonPool& similar, int index,
+                                  int threads, const Progress* progress) {
+    SurfaceTiling layer;
+    const PlaneId first = make_planes(geometry, triangles, threads, progress);
+    layer.plane.resize(triangles.size());
+    std::iota(layer.plane.begin(), layer.plane.end(), first);
+    add_outlines(
+        geometry, triangles.size(), [&](std::size_t t) { return plan_of(geometry, triangles[t]); },
+        [&](std::size_t t, std::size_t i) {
+            const std::int32_t n = plan.links.neighbour[t][i];
+            return n >= 0 && static_cast<std::size_t>(n) < t ? n : kNoOutline;
+        },
+        [&](std::size_t t) { return t < similar.size() ? similar[t] : PolygonView(); },
+        layer.polygons, progress);
+    if (!plan.filling) {
+        layer.index(geometry, threads, progress);
+        refuse_overlap(geometry, layer, triangles, index, threads, progress);
+    }
+    add_empty(geometry, layer, *plan.filling, kVoid);
+    layer.index(geometry, threads, progress);
+    parallel_ranges(
+        triangles.size(), kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t) {
+                bool runs_on = true;
+                for (std::size_t i = 0; i < 3 && runs_on; ++i) {
+                    const std::int32_t n = plan.links.neighbour[t][i];
+                    runs_on = n >= 0 && meet_in_height(geometry, layer.plane[t], i,
+                                                       layer.plane[static_cast<std::size_t>(n)]);
+                }
+                layer.runs_on[t] = runs_on ? 1 : 0;
+            }
+        });
+    return layer;
+}
+
+SurfaceTiling make_region_tiling(PlanArrangement& geometry,
+                                 const std::vector<PlanTriangle>& triangles,
+                                 const FrameTriangles& filling) {
+    SurfaceTiling layer;
+    for (const PlanTriangle& triangle : triangles) {
+        add_triangle(geometry, layer.polygons, triangle);
+        layer.plane.push_back(kSky);
+    }
+    add_empty(geometry, layer, filling, kOutside);
+    return layer;
+}
+
+}  // namespace realmodel::strata

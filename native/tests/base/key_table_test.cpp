@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/key_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+#include <vector>
+
+namespace realmodel {
+namespace {
+
+TEST(KeyTable, NumbersKeysInOrderOfFirstInsertion) {
+    KeyTable table;
+    std::vector<KeyTable::Key> keys;
+    const auto insert = [&](const KeyTable::Key& key) {
+        const auto found = table.insert(
+            key, [&](std::int32_t known) { return keys[static_cast<std::size_t>(known)]; });
+        if (found.is_new) keys.push_back(key);
+        return found;
+    };
+    std::map<KeyTable::Key, std::int32_t> reference;
+    std::mt19937 random(1);
+    std::uniform_int_distribution<std::int32_t> number(-20, 20);
+    for (int i = 0; i < 20000; ++i) {
+        const KeyTable::Key key{number(random), number(random), number(random), 0};
+        const auto next = static_cast<std::int32_t>(reference.size());
+        const auto [at, is_new] = reference.emplace(key, next);
+        const auto found = insert(key);
+        EXPECT_EQ(found.number, at->second);
+        EXPECT_EQ(found.is_new, is_new);
+    }
+    for (const auto& [key, n] : reference)
+        EXPECT_EQ(insert(key).number, n);
+    EXPECT_EQ(table.size(), static_cast<std::int32_t>(reference.size()));
+}
+
+}  // namespace
+}  // namespace realmodel

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/parallel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel {
+namespace {
+
+/// The loops that run chunks, alike to their callers.
+using Loop = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
+
+std::vector<Loop> loops() {
+    return {
+        [](std::size_t count, const auto& work) { parallel_chunks(count, 3, nullptr, work); },
+        [](std::size_t count, const auto& work) {
+            parallel_workers(count, 3, nullptr, [&] { return work; });
+        },
+        [](std::size_t count, const auto& work) { parallel_even(count, 3, work); },
+    };
+}
+
+TEST(Parallel, EveryChunkRunsOnce) {
+    for (const Loop& loop : loops()) {
+        for (const std::size_t count : {0, 1, 2, 3, 4, 1000}) {
+            std::vector<int> runs(count, 0);
+            loop(count, [&](std::size_t chunk) { ++runs[chunk]; });
+            EXPECT_EQ(runs, std::vector<int>(count, 1));
+        }
+    }
+}
+
+TEST(Parallel, RangesCoverEverythingOnce) {
+    for (const std::size_t count : {0, 1, 99, 100, 101, 1000}) {
+        std::vector<int> seen(count, 0);
+        parallel_ranges(count, 100, 3, nullptr, [&](std::size_t begin, std::size_t end) {
+            EXPECT_EQ(begin % 100, 0u);
+            EXPECT_LE(end - begin, 100u);
+            for (std::size_t i = begin; i < end; ++i)
+                ++seen[i];
+        });
+        EXPECT_EQ(seen, std::vector<int>(count, 1));
+    }
+}
+
+TEST(Parallel, TheErrorIsThatOfTheLowestFailedChunk) {
+    for (const Loop& loop : loops()) {
+        for (int repeat = 0; repeat < 20; ++repeat) {
+            std::vector<int> runs(300, 0);
+            try {
+                loop(runs.size(), [&](std::size_t chunk) {
+                    ++runs[chunk];
+                    if (chunk == 140) std::this_thread::yield();
+                    if (chunk >= 140 && chunk % 2 == 0)
+                        throw std::runtime_error(std::to_string(chunk));
+                });
+                FAIL();
+            } catch (const std::runtime_error& error) {
+                EXPECT_STREQ(error.what(), "140");
+            }
+            // what comes before it has run in any case
+            EXPECT_EQ(std::vector<int>(runs.begin(), runs.begin() + 141), std::vector<int>(141, 1));
+        }
+    }
+}
+
+TEST(Parallel, ChunksAboveAFailedOneAreSkipped) {
+    std::atomic<std::size_t> runs{0};
+    const auto fail = [&](std::size_t) {
+        ++runs;
+        throw std::bad_alloc();
+    };
+    EXPECT_THROW(parallel_chunks(1000000, 3, nullptr, fail), std::bad_alloc);
+    EXPECT_LE(runs, 3u);  // one by each thread
+    EXPECT_THROW(parallel_even(1000000, 1, fail), std::bad_alloc);
+    EXPECT_LE(runs, 4u);
+}
+
+TEST(Parallel, EachThreadHasAWorkerOfItsOwn) {
+    std::atomic<int> workers{0};
+    std::vector<const int*> scratch_of(1000);
+    parallel_workers(scratch_of.size(), 3, nullptr, [&] {
+        ++workers;
+        return [&, scratch = std::vector<int>(1, 0)](std::size_t chunk) mutable {
+            EXPECT_EQ(scratch.front()++, 0);  // nobody else is using it
+            scratch_of[chunk] = scratch.data();
+            std::this_thread::yield();
+            EXPECT_EQ(--scratch.front(), 0);
+        };
+    });
+    EXPECT_GE(workers, 1);
+    EXPECT_LE(workers, 3);
+    EXPECT_EQ(std::count(scratch_of.begin(), scratch_of.end(), nullptr), 0);
+}
+
+TEST(Parallel, AWorkerThatCannotBeMadeFailsTheLoop) {
+    const auto make = []() -> std::function<void(std::size_t)> { throw std::bad_alloc(); };
+    EXPECT_THROW(parallel_workers(100, 3, nullptr, make), std::bad_alloc);
+    EXPECT_NO_THROW(parallel_workers(0, 3, nullptr, make));
+}
+
+TEST(Parallel, StopsWhereItIsCancelled) {
+    Progress progress;
+    std::atomic<std::size_t> runs{0};
+    const auto work = [&](std::size_t chunk) {
+        ++runs;
+        if (chunk == 5) progress.cancel();
+        if (chunk == 6) throw std::runtime_error("the caller no longer wants to know");
+    };
+    EXPECT_THROW(parallel_chunks(1000000, 1, &progress, work), Cancelled);
+    EXPECT_EQ(runs, 6u);
+    EXPECT_THROW(parallel_chunks(1000000, 3, &progress, work), Cancelled);
+    EXPECT_EQ(runs, 6u);
+    EXPECT_THROW(poll(&progress, 0), Cancelled);
+    EXPECT_NO_THROW(poll(&progress, 1));
+}
+
+TEST(Parallel, LongWorkMayAskForItself) {
+    Progress progress;
+    std::thread canceller([&] { progress.cancel(); });
+    EXPECT_THROW(parallel_chunks(2, 2, &progress,
+                                 [&](std::size_t) {
+                                     for (;;)
+                                         progress.check();
+                                 }),
+                 Cancelled);
+    canceller.join();
+}
+
+TEST(Parallel, ChunksAreCountedIntoTheProgress) {
+    Progress progress;
+    progress.begin(0.2, 0.6, "half of it");
+    parallel_chunks(
+        8, 3, &progress, [](std::size_t) {}, 0.5);
+    EXPECT_DOUBLE_EQ(progress.fraction(), 0.4);
+    parallel_ranges(
+        800, 100, 3, &progress, [](std::size_t, std::size_t) {}, 1.0);
+    EXPECT_DOUBLE_EQ(progress.fraction(), 0.6);
+}
+
+}  // namespace
+}  // namespace realmodel

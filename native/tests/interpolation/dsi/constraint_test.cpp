@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "interpolation/dsi/constraint.hpp"
+
+#include <gtest/gtest.h>
+
+namespace realmodel::interpolation {
+namespace {
+
+using Kind = Constraint::Kind;
+
+TEST(Constraint, ValuesAndViolations) {
+    const Vector z{1, 2, 4};
+    const Constraint inside{{0, 1, 2}, {0.5, 0.25, 0.25}, 2, Kind::kEqual, 3};
+    EXPECT_EQ(inside.value(z), 2);
+    EXPECT_EQ(inside.violation(z), 1);
+    EXPECT_EQ(inside.next_multiplier(z), 2);
+    EXPECT_EQ(inside.corners(), 3U);
+    const std::vector<Position> nodes{{0, 0}, {4, 0}, {0, 8}};
+    EXPECT_EQ(inside.position(nodes), (Position{1, 2}));
+
+    const Constraint low = Constraint::at_node(1, 2, Kind::kLeast, 1.5);
+    EXPECT_EQ(low.value(z), 2);
+    EXPECT_EQ(low.violation(z), 0);
+    EXPECT_EQ(low.next_multiplier(z), 0);
+    EXPECT_EQ(low.position(nodes), (Position{4, 0}));
+    EXPECT_TRUE(low.of_node);
+    const Constraint high = Constraint::at_node(2, 2, Kind::kMost, 3);
+    EXPECT_EQ(high.violation(z), 1);
+    EXPECT_EQ(high.next_multiplier(z), -2);
+    Constraint met = Constraint::at_node(2, 2, Kind::kMost, 5);
+    met.multiplier = -1.5;
+    EXPECT_EQ(met.next_multiplier(z), 0);  // -1.5 + 2 is not below 0
+}
+
+}  // namespace
+}  // namespace realmodel::interpolation

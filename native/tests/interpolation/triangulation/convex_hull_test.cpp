@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/interpolation/convex_hull.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../dense_kriging.hpp"
+#include "exact/orient2d.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::interpolation {
+namespace {
+
+TEST(ConvexHull, CornersByHand) {
+    const ConvexHull square({{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 1}, {1, 0}, {2, 1}, {0, 0}});
+    EXPECT_EQ(square.corners(), (Nodes{{0, 0}, {2, 0}, {2, 2}, {0, 2}}));
+    for (const auto& inside : Nodes{{0, 0}, {1, 0}, {2, 1}, {0, 1}, {1, 2}, {1, 1}})
+        EXPECT_TRUE(square.contains(inside));
+    const double above = std::nextafter(2.0, 3.0);
+    for (const auto& outside : Nodes{{-1e-300, 1}, {1, -1e-300}, {1, above}, {above, 1}, {3, 3}})
+        EXPECT_FALSE(square.contains(outside));
+}
+
+TEST(ConvexHull, WithoutArea) {
+    const ConvexHull nothing({}), point({{3, 4}}), line({{0, 0}, {3, 1}, {6, 2}}),
+        upright({{1, 0}, {1, 5}, {1, 2}});
+    EXPECT_FALSE(nothing.contains({0, 0}));
+    EXPECT_TRUE(point.contains({3, 4}));
+    EXPECT_FALSE(point.contains({3, 5}));
+    EXPECT_TRUE(line.contains({3, 1}));
+    EXPECT_FALSE(line.contains({3, std::nextafter(1.0, 2.0)}));
+    EXPECT_FALSE(line.contains({9, 3}));
+    EXPECT_TRUE(upright.contains({1, 4}));
+    EXPECT_FALSE(upright.contains({1, 6}));
+    EXPECT_FALSE(upright.contains({2, 4}));
+}
+
+TEST(ConvexHull, EveryPointIsInItAndEveryTurnIsLeft) {
+    const Points points = hills(300, 10, {4e5, 5e6});
+    Nodes positions;
+    for (const auto& p : points)
+        positions.push_back({p[0], p[1]});
+    const ConvexHull hull(positions);
+    const Nodes corners = hull.corners();
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const auto& a = corners[i];
+        const auto& b = corners[(i + 1) % corners.size()];
+        EXPECT_EQ(exact::orient2d(a, b, corners[(i + 2) % corners.size()]), 1);
+        for (const auto& p : positions)
+            ASSERT_GE(exact::orient2d(a, b, p), 0);
+        EXPECT_TRUE(hull.contains(a));
+        EXPECT_FALSE(hull.contains({a[0] + (a[0] - 4e5 - 5), a[1] + (a[1] - 5e6 - 5)}));
+    }
+    for (const std::uint8_t outside : outside_hull(points, positions, 0))
+        EXPECT_EQ(outside, 0);
+    EXPECT_EQ(outside_hull(points, Nodes{{0, 0}}, 1), (std::vector<std::uint8_t>{1}));
+    EXPECT_THROW(outside_hull(points, Nodes{{std::nan(""), 0}}, 1), InputError);
+}
+
+}  // namespace
+}  // namespace realmodel::interpolation

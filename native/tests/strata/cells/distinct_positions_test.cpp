@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/cells/distinct_positions.hpp"
+
+#include <gtest/gtest.h>
+
+namespace realmodel::strata {
+namespace {
+
+/// A triangle with a given cell beneath it; each of its points is a plan vertex of its own, with
+/// one vertex.
+class DistinctPositionsTest : public testing::Test {
+protected:
+    /// @param inputs  so many of the points are input vertices, which never move
+    DistinctPositionsTest() = default;
+
+    std::vector<FlatCell> spread(const std::array<PlanPosition, 3>& at, int inputs) {
+        for (int i = 0; i < inputs; ++i)
+            geometry_.add_vertex(at[static_cast<std::size_t>(i)][0] + 10 * (i + 1), i);
+        geometry_.freeze_vertices();
+        places_.of_point = FlatArray<PlanVertexId>(3);
+        places_.representative = FlatArray<PointId>(3);
+        places_.position = FlatArray<PlanPosition>(3);
+        loops_.place_offsets = FlatArray<std::int32_t>(4);
+        std::array<Corner, 3> corners;
+        for (std::int32_t i = 0; i < 3; ++i) {
+            const auto p = static_cast<std::size_t>(i);
+            corners[p] = {i, 0};
+            places_.of_point[p] = places_.representative[p] = i;
+            places_.position[p] = at[p];
+            loops_.place_offsets[p] = i;
+            loops_.positions.push_back({at[p][0], at[p][1], 0.0});
+        }
+        loops_.place_offsets[3] = 3;
+        FaceList faces;
+        faces.add(corners, 0, 0, kOutsideCell, 0);
+        return make_distinct(geometry_, faces, places_, loops_, 1, nullptr);
+    }
+
+    exact::PlanArrangement geometry_;
+    PlanVertices places_;
+    ConformedFaces loops_;
+};
+
+TEST_F(DistinctPositionsTest, WhatHasAnExtentStays) {
+    EXPECT_TRUE(spread({{{0, 0}, {0, 1}, {1, 0}}}, 0).empty());
+    EXPECT_EQ(loops_.positions[2], (std::array<double, 3>{1, 0, 0}));
+}
+
+TEST_F(DistinctPositionsTest, AFlatCellGetsAnExtentByOneUnitInTheLastPlace) {
+    EXPECT_TRUE(spread({{{1, 0}, {1, 1}, {1, 2}}}, 2).empty());
+    EXPECT_EQ(loops_.positions[0][0], 1.0);
+    EXPECT_EQ(loops_.positions[1][0], 1.0);
+    EXPECT_NE(loops_.positions[2][0], 1.0);
+    EXPECT_NEAR(loops_.positions[2][0], 1.0, 1e-15);
+}
+
+TEST_F(DistinctPositionsTest, WhereNothingMayMoveTheCellIsReported) {
+    const auto left = spread({{{1, 0}, {1, 1}, {1, 2}}}, 3);
+    ASSERT_EQ(left.size(), 1u);
+    EXPECT_EQ(left[0].cell, 0);
+    EXPECT_EQ(left[0].at, (PlanPosition{1, 0}));
+    EXPECT_EQ(loops_.positions[2][0], 1.0);
+}
+
+}  // namespace
+}  // namespace realmodel::strata

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/overlay/whole_triangles.hpp"
+
+#include "../scene.hpp"
+
+namespace realmodel::strata {
+namespace {
+
+/// Facets that are all triangles of one surface, and another one that is compared with them.
+struct Comparing {
+    Scene scene;
+    TriangleLinks links;
+    BlockTiling lower, upper;
+    BorderEdges borders;
+    WholeTriangleFilter filter;
+    std::vector<Cover> cover;
+
+    /// @param raised  also put the facets among the surface's own triangles
+    Comparing(const OwnedSurface& below, const OwnedSurface& above, bool raised = false)
+        : scene({below, above}),
+          lower(scene.block_tiling(0, links)),
+          upper(scene.block_tiling(1, links)),
+          borders(scene.geometry(), PlanTiles({0, 0, 6, 6}, 36), links.border),
+          filter(scene.geometry(), borders, 2, 1, nullptr),
+          cover(filter.tiles().size(), Cover::kFacets) {
+        if (raised) lower = upper;
+        lower.is_raised = raised;
+        filter.begin(lower);
+        filter.compare({upper.whole, {}, PolygonPool(), {}, {}, cover});
+    }
+    long triangles(Standing standing) const {
+        return std::count(filter.surface.begin(), filter.surface.end(), standing);
+    }
+    long facets(Standing standing) const {
+        return std::count(filter.facet.begin(), filter.facet.end(), standing);
+    }
+};
+
+OwnedSurface level(double z, int n = 6, bool other = false) {
+    return grid(
+        n, n, 0, 0, 6, 6, [z](double, double) { return z; }, other);
+}
+
+TEST(WholeTriangles, FarBelowAreSorted) {
+    const Comparing c(level(0), level(1, 4, true));
+    EXPECT_EQ(c.triangles(Standing::kBelow), 72);
+    EXPECT_EQ(c.facets(Standing::kAbove), 32);
+}
+
+TEST(WholeTriangles, FarAboveAreSorted) {
+    const Comparing c(level(1), level(0, 4, true));
+    EXPECT_EQ(c.triangles(Standing::kAbove), 72);
+    EXPECT_EQ(c.facets(Standing::kBelow), 32);
+}
+
+TEST(WholeTriangles, EquallyHighOnesAreExact) {
+    const Comparing c(level(1), level(1, 4, true));
+    EXPECT_EQ(c.triangles(Standing::kExact), 72);
+    EXPECT_EQ(c.facets(Standing::kExact), 32);
+}
+
+TEST(WholeTriangles, OnlyThoseBesideACrossingAreExact) {
+    const auto slope = grid(6, 6, 0, 0, 6, 6, [](double x, double) { return x - 2.5; });
+    const Comparing c(level(0), slope);
+    // the crossing at x = 5/2 runs through the third column of squares
+    EXPECT_GE(c.triangles(Standing::kExact), 12);
+    EXPECT_GT(c.triangles(Standing::kAbove), 0);
+    EXPECT_GE(c.triangles(Standing::kBelow), 24);
+    for (std::size_t t = 0; t < c.lower.whole.size(); ++t) {
+        const auto box = bounds_of(c.scene.site->geometry, c.lower.whole[t]).box;
+        if (box.low_x < 2.5 && box.high_x > 2.5)
+            EXPECT_EQ(c.filter.surface[t], Standing::kExact);
+        else if (c.filter.surface[t] != Standing::kExact)
+            EXPECT_EQ(c.filter.surface[t], box.low_x > 2.5 ? Standing::kBelow : Standing::kAbove);
+    }
+}
+
+TEST(WholeTriangles, AreDividedByABorder) {
+    OwnedSurface holed = level(1, 2);
+    holed.triangles.erase(holed.triangles.begin(), holed.triangles.begin() + 3);
+    const Comparing c(level(0, 1), holed);
+    // both triangles beneath the hole's border are divided by it
+    EXPECT_EQ(c.triangles(Standing::kExact), 2);
+}
+
+TEST(WholeTriangles, OfRaisedSurfacesMayBeTheFacetsThemselves) {
+    const Comparing c(level(0), level(1), true);
+    EXPECT_EQ(c.triangles(Standing::kAbove), 72);  // not below: eroded there
+    EXPECT_EQ(c.facets(Standing::kBelow), 72);
+}
+
+TEST(TriangleLinks, AreSymmetricAndEndAtBorders) {
+    Scene scene({level(0, 2)});
+    TriangleLinks links;
+    const BlockTiling tiling = scene.block_tiling(0, links);
+    EXPECT_EQ(tiling.whole.size(), 8u);
+    EXPECT_EQ(links.border.size(), 8u);  // two edges on each side of the square
+    for (const PlaneId plane : tiling.whole) {
+        for (const PlaneId n : links.of(plane)) {
+            if (n < 0) continue;
+            const auto& back = links.of(n);
+            EXPECT_EQ(std::count(back.begin(), back.end(), plane), 1);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace realmodel::strata

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "../complex_checks.hpp"
+
+namespace realmodel::strata {
+namespace {
+
+constexpr Rule kAll[] = {Rule::kErosional, Rule::kConformable, Rule::kBase, Rule::kDiscontinuous};
+
+CellComplex build_ruled(const std::vector<OwnedSurface>& surfaces, std::vector<Rule> rules,
+                        std::optional<double> base = std::nullopt,
+                        CellKind cells = CellKind::kColumns) {
+    StackInput input;
+    for (const OwnedSurface& s : surfaces)
+        input.surfaces.push_back(s.view());
+    input.rules = std::move(rules);
+    input.base_elevation = base;
+    return build_stack(input, 2, nullptr, cells);
+}
+
+OwnedSurface flat(double z, bool other = false) {
+    return grid(
+        1, 1, 0, 0, 1, 1, [z](double, double) { return z; }, other);
+}
+
+OwnedSurface rising(double from, double to) {
+    return grid(1, 1, 0, 0, 1, 1, [=](double x, double) { return from + (to - from) * x; });
+}
+
+TEST(Rules, OnlapEndsWhereItMeetsTheTop) {
+    // a level at 1/2 over z = x fills the low half only
+    const auto c = build_ruled({flat(-1), rising(0, 1), flat(0.5, true)},
+                               {Rule::kErosional, Rule::kErosional, Rule::kConformable});
+    expect_valid(c);
+    EXPECT_DOUBLE_EQ(c.volumes[1], 1.5);
+    EXPECT_DOUBLE_EQ(c.volumes[2], 0.125);
+}
+
+TEST(Rules, WhatProtectsItselfIsNotCut) {
+    for (const Rule rule : {Rule::kBase, Rule::kDiscontinuous}) {
+        const auto c = build_ruled({flat(-1), rising(0, 1), flat(0.5, true)},
+                                   {Rule::kErosional, rule, Rule::kErosional});
+        expect_valid(c);
+        EXPECT_DOUBLE_EQ(c.volumes[1], 1.5);
+        EXPECT_DOUBLE_EQ(c.volumes[2], 0.125);
+    }
+}
+
+TEST(Rules, DiscontinuousCutsAndErosionalIsCut) {
+    const auto c =
+        build_ruled({flat(-1), flat(0), rising(-0.5, 0.5), flat(-0.25, true)},
+                    {Rule::kErosional, Rule::kErosional, Rule::kDiscontinuous, Rule::kErosional});
+    expect_valid(c);
+    EXPECT_DOUBLE_EQ(c.volumes[1], 1.0 - 0.125);
+    EXPECT_DOUBLE_EQ(c.volumes[2], 0.125);    // above z = 0 it protects what lies beneath it
+    EXPECT_DOUBLE_EQ(c.volumes[3], 0.03125);  // fills the low quarter of the dip
+}
+
+TEST(Rules, APartialSurfaceRaisesTheTopWhereItIs) {
+    const auto patch = grid(1, 1, 0.25, 0.25, 0.75, 0.75, [](double, double) { return 2; });
+    const auto c = build_ruled({flat(0), patch, flat(1, true)},
+                               {Rule::kErosional, Rule::kErosional, Rule::kConformable});
+    expect_valid(c);
+    EXPECT_DOUBLE_EQ(c.volumes[1], 0.5);
+    EXPECT_DOUBLE_EQ(c.volumes[2], 0.75);
+}
+
+/// Block k at one plan point by the recurrence of docs/geometry.md.
+std::vector<double> thickness(const std::vector<double>& heights, const std::vector<Rule>& rules) {
+    std::vector<double> e, before;
+    double top = 0, floor = -HUGE_VAL;
+    for (std::size_t k = 0; k < heights.size(); ++k) {
+        before.push_back(top);
+        double z = heights[k];
+        const bool cutting = rules[k] == Rule::kErosional || rules[k] == Rule::kDiscontinuous;
+        if (k > 0 && !cutting) z = std::max(z, top);
+        z = std::max(z, floor);
+        top = z;
+        if (rules[k] == Rule::kBase || rules[k] == Rule::kDiscontinuous) floor = z;
+        e.push_back(z);
+    }
+    std::vector<double> result(heights.size(), 0.0);
+    double lowest = HUGE_VAL;
+    for (std::size_t k = heights.size(); k-- > 1;) {
+        lowest = std::min(lowest, e[k]);
+        result[k] = lowest - std::min(before[k], lowest);
+    }
+    return result;
+}
+
+TEST(Rules, EveryMixtureOfFourLevelSurfacesIsTheClosedForm) {
+    const std::vector<double> heights{0, 3, 1, 2};
+    for (const Rule a : kAll) {
+        for (const Rule b : kAll) {
+            for (const Rule c : kAll) {
+                for (const Rule d : kAll) {
+                    const std::vector<Rule> rules{a, b, c, d};
+                    std::vector<OwnedSurface> surfaces;
+                    for (std::size_t k = 0; k < 4; ++k)
+                        surfaces.push_back(flat(heights[k], k % 2));
+                    const auto built = build_ruled(surfaces, rules);
+                    expect_valid(built);
+                    const auto expected = thickness(heights, rules);
+                    for (std::size_t k = 1; k < 4; ++k) {
+                        EXPECT_DOUBLE_EQ(built.volumes[k], expected[k]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(Rules, MixturesOverCrossingSurfacesAreValid) {
+    const std::vector<OwnedSurface> surfaces{
+        flat(-2), rising(1, -1), rising(-1, 1),
+        grid(
+            2, 2, 0, 0, 1, 1, [](double x, double y) { return 4 * (x - 0.5) * (y - 0.5); }, true)};
+    for (const Rule b : kAll) {
+        for (const Rule c : kAll) {
+            for (const Rule d : kAll) {
+                const std::vector<Rule> rules{Rule::kErosional, b, c, d};
+                const auto built = build_ruled(surfaces, rules, -3.0);
+                expect_valid(built);
+                const auto merged = merge_columns(built);
+                expect_valid(merged, true);
+                const auto blocks = build_ruled(surfaces, rules, -3.0, CellKind::kBlocks);
+                expect_valid(blocks, true);
+                EXPECT_EQ(cells_of_blocks(blocks), cells_of_blocks(merged));
+                for (std::size_t k = 0; k < built.volumes.size(); ++k)
+                    EXPECT_NEAR(blocks.volumes[k], built.volumes[k], 1e-12);
+            }
+        }
+    }
+}
+
+TEST(Rules, NothingButErosionIsTheSameByName) {
+    const std::vector<OwnedSurface> surfaces{flat(-2), rising(1, -1), rising(-1, 1)};
+    const auto named = build_ruled(surfaces, std::vector<Rule>(3, Rule::kErosional));
+    const auto plain = build(surfaces);
+    EXPECT_EQ(named.vertices, plain.vertices);
+    EXPECT_EQ(named.face_vertices, plain.face_vertices);
+}
+
+}  // namespace
+}  // namespace realmodel::strata
