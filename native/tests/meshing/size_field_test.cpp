@@ -65,7 +65,12 @@ TEST(SizeField, OutsideIsAsAtTheBorder) {
 
 TEST(SizeField, RefusesWhatNeedsTooManyLeaves) {
     const std::vector<SizeSource> fine{{{1000, 5000}, {1100, 5060}, 1e-3, 1e-3}};
-    EXPECT_EQ(refusal([&] { field_of(fine, 1000); }).kind, "too_large");
+    const SizeField size = field_of(fine, 1000);
+    const auto ask = [&] {
+        for (int i = 0; i < 1000; ++i)
+            size.at({1000 + 0.1 * i, 5000 + 0.06 * i});
+    };
+    EXPECT_EQ(refusal(ask).kind, "too_large");
 }
 
 }  // namespace
