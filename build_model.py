@@ -91,7 +91,7 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         type=Path,
         action="append",
         default=[],
-        help="write the model to F.npz or F.vtu; may be given several times",
+        help="write the model to F, whose ending says the format; may be given several times",
     )
     parser.add_argument("--report", metavar="F", type=Path, help="write a report to F.json")
     parser.add_argument("--render", metavar="F", type=Path, help="render a picture to F.png (in Blender)")

@@ -8,7 +8,7 @@
 #     release   g++, optimised: what users run
 #     dev       g++, not optimised, with assertions
 #     clang     clang++, optimised
-#     asan      g++, little optimised, under AddressSanitizer and UndefinedBehaviorSanitizer
+#     asan      clang++, little optimised, under AddressSanitizer and UndefinedBehaviorSanitizer
 # The exit status is 1 where bytes differ.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -18,6 +18,7 @@ ways=("$@")
 ((${#ways[@]} > 0)) || ways=(release dev clang)
 groups=(build)
 [[ " ${ways[*]} " == *" clang "* ]] && groups+=(clang)
+[[ " ${ways[*]} " == *" asan "* ]] && groups+=(tsan)
 scripts/install_dependencies.sh "${groups[@]}"
 
 folder=$root/build/digests

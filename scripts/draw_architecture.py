@@ -34,12 +34,14 @@ PARTS = (
         CREAM,
     ),
     ((0, 414, 390, 56), "native/bindings", "realmodel._native: arrays without copies, GIL released", PALE),
-    ((0, 516, 122, 104), "strata", "layers, overlay,|rules, places,|walls, rounding", SAND),
-    ((134, 516, 122, 104), "meshing", "outlines,|planar meshes|(CGAL)", SAND),
-    ((268, 516, 122, 104), "interpolation", "variogram,|kriging, inverse|distance (Eigen)", SAND),
-    ((0, 666, 122, 72), "exact", "one predicate,|filter, GMP", SAND),
-    ((268, 666, 122, 72), "spatial", "nearest points|(nanoflann)", SAND),
-    ((0, 764, 390, 56), "base", "errors, progress and cancelling, memory, version", STONE),
+    ((0, 516, 90, 104), "strata", "repair, tiling,|overlay,|conform, cells", SAND),
+    ((100, 516, 90, 104), "cutting", "and shells,|validation:|finished|models", SAND),
+    ((200, 516, 90, 104), "meshing", "outlines,|planar|meshes|(CGAL)", SAND),
+    ((300, 516, 90, 104), "interpolation", "variogram,|kriging, dsi|(Eigen, CGAL)", SAND),
+    ((0, 666, 122, 72), "exact", "all exact|arithmetic (GMP)", SAND),
+    ((134, 666, 122, 72), "arrangement", "triangles|in any position", SAND),
+    ((268, 666, 122, 72), "spatial", "what is near|(nanoflann)", SAND),
+    ((0, 764, 390, 56), "base", "errors, progress, memory, parallel loops, sorts, tables", STONE),
 )
 
 
@@ -61,15 +63,17 @@ def draw_parts(drawing):
     # build_model.py knows core too, past bl
     arrow((0, 86), (-14, 86), (-14, 320), (-2, 320))
     arrow((195, 368), (195, 412))
-    for x in (61, 195, 329):
+    for x in (45, 145, 245, 345):
         arrow((x, 470), (x, 514))
-    arrow((122, 568), (132, 568))
-    arrow((61, 620), (61, 664))
-    arrow((329, 620), (329, 664))
-    arrow((61, 738), (61, 762))
-    arrow((195, 620), (195, 762))
-    arrow((122, 610), (162, 640), (162, 762))
-    arrow((268, 610), (228, 640), (228, 762))
+    arrow((45, 620), (45, 664))
+    arrow((125, 620), (90, 664))
+    arrow((150, 620), (180, 664))
+    arrow((232, 620), (110, 664))
+    arrow((250, 620), (310, 664))
+    arrow((345, 620), (345, 664))
+    arrow((134, 702), (124, 702))
+    for x in (61, 195, 329):
+        arrow((x, 738), (x, 762))
 
 
 # --- the six steps
@@ -77,23 +81,23 @@ def draw_parts(drawing):
 PANEL_W, PANEL_H = 324, 374
 CAPTIONS = {
     1: """A surface covers part of the plan with triangles. Void triangles fill the rest of a frame around all
-    input, so every place lies in one polygon of every layer. Two heights at one place are refused here.
-    Where a rule does not cut, the surface is first raised to the top, or the protected floor, that it
-    meets.""",
+    input, so every position lies in one polygon of every tiling. Two heights at one position are refused
+    here. Where a rule does not cut, the surface is first raised to the top, or the protected floor, that
+    it meets.""",
     2: """E is the lower envelope of the surfaces seen so far and begins as the youngest. Where the next older
     one, S, lies below E, cells close between the two and S becomes the envelope. Elsewhere S was eroded
     away and E stays. Nothing that was built is cut again.""",
     3: """A facet of E over the triangles of S: convex pieces, cut where the two planes are equally high
     (red). Every question is on which side of one line two others cross: the sign of a 3 x 3 determinant
     that comes straight from the input, in whole numbers where doubles cannot tell.""",
-    4: """Crossings at one position are one place, however many lines run there; edges on one line are one
-    track with its places in order. A face takes up every place on its edges (red), so that neighbours
-    that were cut apart share their corners.""",
-    5: """Above a track stand the edges of the faces on its left and right. Sorted by height, each two
-    neighbours bound one wall if the cells left and right of it differ. Where heights cross (red) the
-    track gets one more place, and steps 4 and 5 run again.""",
-    6: """Every place and every height becomes the nearest double, the same however it was named. Those that
-    fall together take neighbouring doubles, heights in their order. Cells, faces and walls are already
+    4: """Crossings at one position become one plan vertex, however many lines meet there; edges on one line
+    are collected with its vertices in order. A face takes up every vertex on its edges (red), so that
+    neighbors that were cut apart share their corners.""",
+    5: """Above a line stand the edges of the faces on its left and right. Sorted by height, each two
+    neighbors bound one wall if the cells left and right of it differ. Where heights cross (red) the
+    line gets one more vertex, and steps 4 and 5 run again.""",
+    6: """Every position and every height becomes the nearest double, the same however it was named. Those that
+    fall together take neighboring doubles, heights in their order. Cells, faces and walls are already
     decided: rounding changes no neighbour. Volumes are summed last.""",
 }
 
@@ -138,7 +142,7 @@ def intersection(polygon, window):
     return polygon
 
 
-def draw_layers(d):
+def draw_tiling(d):
     panel(d, 1, "Surfaces tile the frame", CAPTIONS[1])
     corner = dict(zip("ABCD", [(4, 4), (254, 4), (254, 192), (4, 192)], strict=True))
     corner |= zip("abcdef", [(70, 50), (140, 34), (205, 72), (196, 140), (120, 164), (62, 118)], strict=True)
@@ -209,25 +213,25 @@ def draw_facet(d):
     d.text(128, 146, "S below: a cell", 11.5)
 
 
-def draw_tracks(d):
-    panel(d, 4, "Places and tracks", CAPTIONS[4])
+def draw_collinear_edges(d):
+    panel(d, 4, "Plan vertices, collinear edges", CAPTIONS[4])
     x0, y0, x1, y1 = 128, 10, 128, 194
-    places = [10, 62, 104, 150, 194]
+    vertices = [10, 62, 104, 150, 194]
     for lo, hi, far in ((10, 62, 22), (62, 150, 40), (150, 194, 30)):
         d.polygon([(x0, lo), (far, lo + 4), (far - 14, hi - 6), (x0, hi)], CREAM, INK, 1.2)
     for lo, hi, far in ((10, 104, 226), (104, 194, 236)):
         d.polygon([(x1, lo), (far, lo + 8), (far + 12, hi - 10), (x1, hi)], SAND, INK, 1.2)
     d.path([(x0, y0 - 8), (x1, y1 + 8)], BLUE, 2.6)
-    for number, y in enumerate(places):
+    for number, y in enumerate(vertices):
         d.dot((128, y), BLUE if number in (0, 4) else RED, 4.5)
-    d.text(138, 46, "track", 11.5, fill=BLUE)
+    d.text(138, 46, "line", 11.5, fill=BLUE)
     d.text(138, 66, "added right", 11, fill=RED)
     d.text(138, 154, "added right", 11, fill=RED)
     d.text(118, 108, "added left", 11, fill=RED, anchor="end")
 
 
 def draw_walls(d):
-    panel(d, 5, "Loops and walls", CAPTIONS[5])
+    panel(d, 5, "Conformed faces, walls", CAPTIONS[5])
     xs = [10, 88, 146, 248]
     left = list(zip(xs, [40, 52, 61, 77], strict=True))
     right = list(zip(xs, [82, 70, 61, 45], strict=True))
@@ -275,7 +279,7 @@ def drawing():
     draw_parts(whole)
     whole.at(462, 0)
     whole.text(0, 38, "How strata builds a stack, from the youngest surface down", 16, bold=True)
-    for draw in (draw_layers, draw_overlay, draw_facet, draw_tracks, draw_walls, draw_rounding):
+    for draw in (draw_tiling, draw_overlay, draw_facet, draw_collinear_edges, draw_walls, draw_rounding):
         draw(whole)
     return whole
 

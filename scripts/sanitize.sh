@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Looks for errors of memory, undefined behaviour and races: the C++ tests, the stacks of the corpus and
-# made ones, under AddressSanitizer with UndefinedBehaviorSanitizer (g++) and under ThreadSanitizer
-# (clang++, whose OpenMP archer explains to it). Every step ends in time.
+# made ones, under AddressSanitizer with UndefinedBehaviorSanitizer and under ThreadSanitizer
+# (clang++, whose OpenMP archer explains to the latter). Every step ends in time.
 #
 #   scripts/sanitize.sh [asan|tsan]... [--seconds S] [--seed K]
 #     asan, tsan    only these
@@ -49,9 +49,7 @@ step() { # LIMIT WHAT COMMAND...
 
 findings=$root/build/findings
 mkdir -p "$findings"
-groups=(build)
-[[ " ${presets[*]} " == *" tsan "* ]] && groups+=(tsan)
-scripts/install_dependencies.sh "${groups[@]}" || exit 1
+scripts/install_dependencies.sh build tsan || exit 1
 
 for preset in "${presets[@]}"; do
     step 1m "$preset: configure" cmake --preset "$preset" --log-level=WARNING

@@ -9,7 +9,8 @@
 #     --quick       without the sanitizer build, and without the comparison of builds
 #     --only STEP   only this step, and the build it needs:
 #                   format ruff shellcheck native core blender gui (a window under Xvfb) bpy package asan
-#                   builds; and two that are not run unless asked for: tidy tsan
+#                   builds; and three that are not run unless asked for: tidy tsan odr (check_odr.sh). Asked for
+#                   alone, builds compares clang++'s optimised code too
 #
 # shellcheck disable=SC2317  # the functions are called by name, through step
 set -uo pipefail # and not -e: one step that fails does not keep the others from running
@@ -24,9 +25,9 @@ while (($# > 0)); do
         --quick) steps=(format ruff shellcheck native core blender gui bpy package) ;;
         --only)
             case ${2-} in
-                format | ruff | shellcheck | native | core | blender | gui | bpy | package | asan | builds | tidy | tsan) only+=("$2") ;;
+                format | ruff | shellcheck | native | core | blender | gui | bpy | package | asan | builds | tidy | tsan | odr) only+=("$2") ;;
                 *)
-                    echo "test.sh: --only needs a step: ${all_steps[*]} tidy tsan" >&2
+                    echo "test.sh: --only needs a step: ${all_steps[*]} tidy tsan odr" >&2
                     exit 2
                     ;;
             esac
@@ -113,6 +114,7 @@ install() {
     wants blender package && groups+=(blender)
     wants gui && groups+=(gui)
     wants bpy && groups+=(bpy)
+    wants asan && groups+=(tsan)
     wants builds && groups+=(clang)
     wants tidy && groups+=(tidy)
     wants tsan && groups+=(tsan)
@@ -182,11 +184,15 @@ wants package && step package test_package
 wants asan && step asan test_sanitized asan
 if wants builds; then
     if command -v clang++ >/dev/null; then
-        step builds scripts/compare_builds.sh release asan clang
+        # the sanitizer build is clang++'s already
+        ways=(release asan)
+        ((${#only[@]} > 0)) && ways+=(clang)
+        step builds scripts/compare_builds.sh "${ways[@]}"
     else
         skip builds "there is no clang++ here, and it could not be installed"
     fi
 fi
 wants tidy && step tidy check_tidy
 wants tsan && step tsan test_sanitized tsan
+wants odr && step odr scripts/check_odr.sh
 finish

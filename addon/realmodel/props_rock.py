@@ -14,13 +14,7 @@ from bpy.props import (
 
 from . import props_surface
 from .bl import changes, plan_mesh, settings
-from .core.mesh_sizes import MESHERS
-
-_MESHERS = {
-    "delaunay": ("Delaunay", "Triangles as equal as refinement of a Delaunay triangulation makes them"),
-    "frontal": ("Frontal", "Triangles laid from the border inwards: close to equilateral nearly everywhere"),
-    "grid": ("Grid", "The nodes of a regular grid, and where its lines meet the outline"),
-}
+from .core.meshers import DEFAULT_MESHER, MESHERS
 
 _AT = (
     ("OUTLINE", "Outline", "Along the outline of the region and its holes"),
@@ -133,8 +127,8 @@ class RealModelRock(bpy.types.PropertyGroup):
     mesher: EnumProperty(
         name="Mesher",
         description="How the region is divided into triangles",
-        items=[(name, *_MESHERS[name]) for name in MESHERS],
-        default="delaunay",
+        items=[(name, mesher.label, mesher.tip) for name, mesher in MESHERS.items()],
+        default=DEFAULT_MESHER,
         update=changes.setting,
     )
     base_elevation: FloatProperty(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The settings of one surface, with the options of every method; the panel shows those of its own method."""
+"""The settings of one surface; the options of every method come from props_method."""
 
 import bpy
 from bpy.props import (
@@ -12,40 +12,24 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import props_reading
+from . import props_method, props_reading
 from .bl import changes, settings
-from .core.methods import DEFAULT_METHOD, DEFAULT_NEIGHBOURS, EXTRAPOLATE, METHODS, THICKNESS_METHODS
+from .core.methods import DEFAULT_METHOD, METHODS
+from .core.readers.mesh_file import MESH_FORMATS
+from .core.rules import DEFAULT_RULE, RULES
 from .core.variogram import VARIOGRAM_MODELS
 
 SOURCES = (
     ("POINTS_FILE", "Points file", "Text file with x, y and z of points that the surface is laid through"),
     ("POINTS_OBJECT", "Points object", "The vertices of a mesh object are points of the surface"),
     ("MESH_OBJECT", "Mesh object", "A mesh object of the scene, with its modifiers, is the surface"),
-    ("MESH_FILE", "Mesh file", "File with the triangles of the surface (OFF)"),
+    (
+        "MESH_FILE",
+        "Mesh file",
+        f"File with the triangles of the surface ({', '.join(known.name for known in MESH_FORMATS)})",
+    ),
     ("NONE", "No points", "For methods that make a surface without points: constant, parallel"),
 )
-
-RULES = (
-    ("erosional", "Erosional", "Cuts away what lies above it: a surface of erosion, the usual case"),
-    ("conformable", "Conformable", "Only deposits: ends where it meets what is there already (onlap)"),
-    ("base", "Base", "Only deposits, and younger surfaces cannot cut it (baselap)"),
-    ("discontinuous", "Discontinuous", "Cuts what is older, and younger surfaces cannot cut it"),
-)
-
-METHOD_LABELS = {
-    "kriging": ("Kriging", "The best guess from neighbouring points, as the variogram says how they vary"),
-    "universal_kriging": ("Universal kriging", "Kriging of what a trend, such as a dip, leaves over"),
-    "idw": ("Inverse distance", "Mean of neighbouring points, the nearer the more"),
-    "spline": ("Spline", "The smoothest sheet through the points: a thin plate"),
-    "dsi": ("DSI", "Discrete smooth interpolation: smooth on the mesh, through points, with constraints"),
-    "natural_neighbour": ("Natural neighbour", "Mean of the points around, by shares of their area"),
-    "tin": ("TIN", "Triangles between the points"),
-    "grid": ("Grid", "Points on a regular grid, bilinear between them"),
-    "plane": ("Plane", "One plane through the points, or of a given dip"),
-    "constant": ("Constant", "One height everywhere"),
-    "parallel": ("Parallel", "A given thickness above or below another surface"),
-    "auto": ("Automatic", "Chooses the method that predicts left-out points best"),
-}
 
 _VARIOGRAMS = {
     "spherical": ("Spherical", "Rises straight, and ends at the range: for heights that change often"),
@@ -58,13 +42,6 @@ _VARIOGRAMS = {
     "matern32": ("Matern 3/2", "Between exponential and Gaussian, the rougher one"),
     "matern52": ("Matern 5/2", "Between exponential and Gaussian, the smoother one"),
 }
-
-_EXTRAPOLATE = {
-    "method": ("As the method", "The method goes on outside the points"),
-    "nearest": ("Nearest point", "Outside the points the height of the nearest one"),
-    "none": ("Not at all", "The surface ends where the points end"),
-}
-_NOT_GIVEN_SURFACE = "Name of another surface of this rock mass, or a height"
 
 
 def _items(names, labels=None):
@@ -117,7 +94,7 @@ class RealModelStructure(bpy.types.PropertyGroup):
     exact: StringProperty(options={"HIDDEN"})
 
 
-class RealModelSurface(props_reading.ReadingSettings, bpy.types.PropertyGroup):
+class RealModelSurface(props_method.MethodSettings, props_reading.ReadingSettings, bpy.types.PropertyGroup):
     """A surface: where its shape comes from, its rule, and what lies beneath it."""
 
     name: StringProperty(name="Name", description="Name of the surface", update=changes.setting)
@@ -150,8 +127,8 @@ class RealModelSurface(props_reading.ReadingSettings, bpy.types.PropertyGroup):
     rule: EnumProperty(
         name="Rule",
         description="What the surface does to what is there when it comes",
-        items=RULES,
-        default="erosional",
+        items=[(name, rule.label, rule.tip) for name, rule in RULES.items()],
+        default=DEFAULT_RULE,
         update=changes.setting,
     )
     property_id: IntProperty(
@@ -187,33 +164,8 @@ class RealModelSurface(props_reading.ReadingSettings, bpy.types.PropertyGroup):
     method: EnumProperty(
         name="Method",
         description="How heights are made from the points",
-        items=_items(METHODS, METHOD_LABELS),
+        items=[(name, method.label, method.tip) for name, method in METHODS.items()],
         default=DEFAULT_METHOD,
-        update=changes.setting,
-    )
-    use_neighbours: BoolProperty(
-        name="Choose neighbours",
-        description="Say how many points count at each place; off: as many as suit the method",
-        update=changes.setting,
-    )
-    neighbours: IntProperty(
-        name="Neighbours",
-        description="How many points, the nearest in plan, count at each place; 0: all of them",
-        default=DEFAULT_NEIGHBOURS,
-        min=0,
-        update=changes.neighbours,
-    )
-    octants: IntProperty(
-        name="Per octant",
-        description="At most so many points from each eighth of the directions; 0: any number",
-        min=0,
-        update=changes.setting,
-    )
-    radius: FloatProperty(
-        name="Radius",
-        description="Points farther away do not count; 0: no limit",
-        min=0.0,
-        subtype="DISTANCE",
         update=changes.setting,
     )
     fit_variogram: BoolProperty(
@@ -268,91 +220,6 @@ class RealModelSurface(props_reading.ReadingSettings, bpy.types.PropertyGroup):
     anisotropy_azimuth: FloatProperty(
         name="Azimuth",
         description="Direction of the longest range, in degrees clockwise from north (+y)",
-        update=changes.setting,
-    )
-    drift: EnumProperty(
-        name="Drift",
-        description="Form of the trend",
-        items=(("linear", "Linear", "A plane"), ("quadratic", "Quadratic", "A curved sheet")),
-        update=changes.setting,
-    )
-    power: FloatProperty(
-        name="Power",
-        description="How fast the weight of a point falls with its distance",
-        default=2.0,
-        min=0.01,
-        update=changes.setting,
-    )
-    smoothing: FloatProperty(
-        name="Smoothing",
-        description="0: the sheet goes through every point; more: it may leave them to be smoother",
-        min=0.0,
-        update=changes.setting,
-    )
-    use_weight: BoolProperty(
-        name="Loose points",
-        description="Points need not hold exactly",
-        update=changes.setting,
-    )
-    weight: FloatProperty(
-        name="Weight",
-        description="Weight of a point against the roughness of one node",
-        default=1.0,
-        min=1e-9,
-        update=changes.setting,
-    )
-    border: StringProperty(
-        name="Border",
-        description=f"What the surface is at the border of the region. {_NOT_GIVEN_SURFACE}; empty: free",
-        update=changes.setting,
-    )
-    above: StringProperty(
-        name="Stay above", description=f"{_NOT_GIVEN_SURFACE}; empty: no bound", update=changes.setting
-    )
-    below: StringProperty(
-        name="Stay below", description=f"{_NOT_GIVEN_SURFACE}; empty: no bound", update=changes.setting
-    )
-    use_dip: BoolProperty(
-        name="Given dip", description="Give the dip; off: it is fitted to the points", update=changes.setting
-    )
-    dip: FloatProperty(
-        name="Dip", description="Degrees below the horizontal", min=0.0, max=89.999, update=changes.setting
-    )
-    dip_direction: FloatProperty(
-        name="Dip direction",
-        description="Azimuth to which the plane falls, in degrees clockwise from north (+y)",
-        update=changes.setting,
-    )
-    use_value: BoolProperty(
-        name="Given height",
-        description="Give the height; off: the mean of the points",
-        update=changes.setting,
-    )
-    value: FloatProperty(
-        name="Height", description="Height everywhere", subtype="DISTANCE", update=changes.setting
-    )
-    to: StringProperty(name="Parallel to", description=_NOT_GIVEN_SURFACE, update=changes.setting)
-    use_thickness: BoolProperty(
-        name="Given thickness",
-        description="Give the thickness; off: it comes from the points",
-        update=changes.setting,
-    )
-    thickness: FloatProperty(
-        name="Thickness",
-        description="Distance above the other surface; negative: below it",
-        subtype="DISTANCE",
-        update=changes.setting,
-    )
-    thickness_method: EnumProperty(
-        name="Spread by",
-        description="How the thickness at the points is spread between them",
-        items=_items(THICKNESS_METHODS, METHOD_LABELS),
-        update=changes.setting,
-    )
-    extrapolate: EnumProperty(
-        name="Outside",
-        description="What happens beyond the points",
-        items=_items(EXTRAPOLATE, _EXTRAPOLATE),
         update=changes.setting,
     )
     other_options: StringProperty(options={"HIDDEN"})

@@ -46,11 +46,12 @@ py::tuple to_tuple(meshing::PlanarMesh&& mesh) {
 }
 
 meshing::Mesher to_mesher(const std::string& name) {
-    if (name == "delaunay") return meshing::Mesher::kDelaunay;
-    if (name == "frontal") return meshing::Mesher::kFrontal;
-    if (name == "grid") return meshing::Mesher::kGrid;
-    throw InputError("mesher", "mesher \"" + name +
-                                   "\" is not known; use \"delaunay\", \"frontal\" or \"grid\"");
+    std::string known;
+    for (std::size_t mesher = 0; mesher < std::size(meshing::kMesherNames); ++mesher) {
+        if (meshing::kMesherNames[mesher] == name) return static_cast<meshing::Mesher>(mesher);
+        known += (mesher == 0 ? "\"" : ", \"") + std::string(meshing::kMesherNames[mesher]) + "\"";
+    }
+    throw InputError("mesher", "mesher \"" + name + "\" is not known; use " + known);
 }
 
 /// (places or None for the outlines, length, distance)

@@ -24,13 +24,8 @@ std::span<const T> view(const Array<T>& array) {
 }
 
 inline strata::Rule rule_of(const std::string& name) {
-    if (name == "erosional") return strata::Rule::kErosional;
-    if (name == "conformable") return strata::Rule::kConformable;
-    if (name == "base") return strata::Rule::kBase;
-    if (name == "discontinuous") return strata::Rule::kDiscontinuous;
-    throw pybind11::value_error(
-        "rules: \"erosional\", \"conformable\", \"base\" or \"discontinuous\", got \"" + name +
-        "\"");
+    if (const auto rule = strata::rule_named(name)) return *rule;
+    throw pybind11::value_error("rules: there is no rule \"" + name + "\"");
 }
 
 /// (surfaces, region, base elevation, rules).

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "case_file.hpp"
 
-#include <algorithm>
 #include <boost/property_tree/json_parser.hpp>
 #include <boost/property_tree/ptree.hpp>
 #include <cmath>
@@ -15,8 +14,6 @@ namespace realmodel::fuzz {
 namespace {
 
 using Tree = boost::property_tree::ptree;
-
-constexpr const char* kRuleNames[] = {"erosional", "conformable", "base", "discontinuous"};
 
 double number_of(const std::string& text) {
     char* end = nullptr;
@@ -47,11 +44,9 @@ RockCase rock_of(const Tree& tree) {
     }
     if (const auto rules = tree.get_child_optional("rules")) {
         for (const auto& [unnamed, name] : *rules) {
-            const auto* found =
-                std::find(std::begin(kRuleNames), std::end(kRuleNames), name.data());
-            if (found == std::end(kRuleNames))
-                throw std::runtime_error("rule '" + name.data() + "'");
-            rock.rules.push_back(static_cast<strata::Rule>(found - std::begin(kRuleNames)));
+            const auto rule = strata::rule_named(name.data());
+            if (!rule) throw std::runtime_error("rule '" + name.data() + "'");
+            rock.rules.push_back(*rule);
         }
     }
     if (const auto region = tree.get_child_optional("region")) {
@@ -100,8 +95,8 @@ std::string rock_text(const RockCase& rock, const std::string& margin) {
     if (!rock.rules.empty()) {
         text += margin + "\"rules\": [";
         for (std::size_t k = 0; k < rock.rules.size(); ++k) {
-            text += (k == 0 ? "\"" : ", \"") +
-                    std::string(kRuleNames[static_cast<std::size_t>(rock.rules[k])]) + "\"";
+            text +=
+                (k == 0 ? "\"" : ", \"") + std::string(strata::meaning(rock.rules[k]).name) + "\"";
         }
         text += "],\n";
     }

@@ -62,3 +62,10 @@ def test_pictures_of_the_algorithm_are_what_their_script_draws(monkeypatch):
     assert sorted(drawn) == sorted(path.name for path in images.glob("algorithm_*.svg"))
     for name, svg in drawn.items():
         assert (images / name).read_bytes() == svg.encode(), f"{name}: run scripts/draw_algorithm.py"
+
+
+def test_tables_are_what_the_registries_say():
+    write_tables = runpy.run_path(str(ROOT / "scripts" / "write_tables.py"))
+    text = write_tables["DOCUMENT"].read_text(encoding="utf-8")
+    assert text.count("<!-- table of ") == 3
+    assert write_tables["written"](text) == text, "run scripts/write_tables.py"

@@ -24,11 +24,15 @@ def base_elevation(rock, context):
         setting(rock, context)
 
 
-def neighbours(surface, context):
-    """Whoever gives a number of neighbours wants it."""
-    if not settings.is_filling():
-        surface.use_neighbours = True
-        setting(surface, context)
+def switched_on(switch):
+    """Of a setting that counts only where `switch` is on: whoever gives it wants it."""
+
+    def changed(row, context):
+        if not settings.is_filling():
+            setattr(row, switch, True)
+            setting(row, context)
+
+    return changed
 
 
 def region(rock, context):

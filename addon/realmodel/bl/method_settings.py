@@ -3,36 +3,35 @@
 
 import json
 
-from ..core.methods import METHODS
+from ..core.methods import METHODS, OPTIONS
 from .settings import number, set_number
 
-# Settings that the panel shows for an option: the switch before it, if it has one, and its own.
-SHOWN = {
-    "neighbours": ("use_neighbours", ("neighbours",)),
-    "octants": (None, ("octants",)),
-    "radius": (None, ("radius",)),
-    "power": (None, ("power",)),
-    "smoothing": (None, ("smoothing",)),
-    "drift": (None, ("drift",)),
-    "extrapolate": (None, ("extrapolate",)),
-    "thickness_method": (None, ("thickness_method",)),
-    "border": (None, ("border",)),
-    "above": (None, ("above",)),
-    "below": (None, ("below",)),
-    "to": (None, ("to",)),
-    "weight": ("use_weight", ("weight",)),
-    "dip": ("use_dip", ("dip", "dip_direction")),
-    "dip_direction": (None, ()),
-    "value": ("use_value", ("value",)),
-    "thickness": ("use_thickness", ("thickness",)),
+_TABLES = {  # settings of the options that are tables, as SHOWN has them
     "anisotropy": ("use_anisotropy", ("anisotropy_ratio", "anisotropy_azimuth")),
     "variogram": (None, ()),
 }
+
+
+def switch_of(name):
+    """The setting that switches an option on; None where it is always on."""
+    option = OPTIONS[name]
+    if option.beside is not None:
+        return switch_of(option.beside)
+    return None if option.switch is None else f"use_{name}"
+
+
+def _shown(name, option):
+    if option.kind == "table":
+        return _TABLES[name]
+    if option.beside is not None:
+        return None, ()
+    beside = [other for other, given in OPTIONS.items() if given.beside == name]
+    return switch_of(name), (name, *beside)
+
+
+# Settings that the panel shows for an option: the switch before it, if it has one, its own and those beside.
+SHOWN = {name: _shown(name, option) for name, option in OPTIONS.items()}
 READY_MESHES = ("MESH_OBJECT", "MESH_FILE")  # sources of surfaces that are not interpolated
-_SURFACES = ("border", "above", "below", "to")
-_NONE_IS_ZERO = ("radius",)
-_WORDS = ("drift", "extrapolate", "thickness_method")
-_WHOLE = ("neighbours", "octants")
 _VARIOGRAM = ("range", "sill", "nugget")
 
 
@@ -58,21 +57,20 @@ def options_of(row):
 
 
 def _value(row, name):
-    switch, _ = SHOWN[name]
+    option, (switch, _) = OPTIONS[name], SHOWN[name]
+    switch = switch or switch_of(name)
     if switch is not None and not getattr(row, switch):
         return None
-    if name in _WORDS or name in _WHOLE:
-        return getattr(row, name)
-    if name in _SURFACES:
-        return _surface_or_height(getattr(row, name))
     if name == "variogram":
         return None if row.fit_variogram else _variogram(row)
     if name == "anisotropy":
         return _anisotropy(row)
-    if name == "dip_direction":
-        return number(row, name) if row.use_dip else None
+    if option.kind in ("word", "whole"):
+        return getattr(row, name)
+    if option.kind == "surface":
+        return _surface_or_height(getattr(row, name))
     value = number(row, name)
-    return None if name in _NONE_IS_ZERO and value == 0.0 else value
+    return None if option.zero_is_none and value == 0.0 else value
 
 
 def _surface_or_height(text):
@@ -121,24 +119,24 @@ def _set(row, name, value):
     """Whether the settings of a surface could take an option's value."""
     if value is None:
         return True
-    switch, _ = SHOWN.get(name, (None, ()))
+    if name not in OPTIONS:
+        return False
+    option, (switch, _) = OPTIONS[name], SHOWN[name]
     if switch is not None:
         setattr(row, switch, True)
-    if name in _WORDS or name in _WHOLE:
+    if name == "variogram":
+        return _set_variogram(row, value)
+    if name == "anisotropy":
+        for key, part in value.items():
+            set_number(row, f"anisotropy_{key}", part)
+    elif option.kind in ("word", "whole"):
         setattr(row, name, value)
-    elif name in _SURFACES:
+    elif option.kind == "surface":
         if not isinstance(value, (str, int, float)):
             return False
         setattr(row, name, value if isinstance(value, str) else repr(value))
-    elif name == "variogram":
-        return _set_variogram(row, value)
-    elif name == "anisotropy":
-        for key, part in value.items():
-            set_number(row, f"anisotropy_{key}", part)
-    elif name in SHOWN:
-        set_number(row, name, value)
     else:
-        return False
+        set_number(row, name, value)
     return True
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from .errors import InputRefused, UsageError
 from .exporters import write_model, writer_for
 from .exporters.sections import section_writer
-from .readers import read_off
+from .readers import MESH_ENDINGS, read_mesh
 from .readers.text import read_text
 
 
@@ -79,7 +79,7 @@ class CutRequest:
     def read(self) -> None:
         """Reads the surface and builds the other model, where there is one. Raises what that raises."""
         if isinstance(self.cutter, Path):
-            self._mesh = read_off(self.cutter)
+            self._mesh = read_mesh(self.cutter)
         elif isinstance(self.cutter, tuple) and self.cutter[0] is not None:
             from .build import build
             from .project_file import load_project
@@ -156,7 +156,7 @@ def cut_request(text: str) -> CutRequest:
         if not block:
             raise UsageError(f"--cut {text}: which block? write {what}NAME")
         return CutRequest((Path(project) if project else None, block), below, above)
-    if Path(what).suffix.lower() != ".off":
+    if Path(what).suffix.lower() not in MESH_ENDINGS:
         raise UsageError(
             f"--cut {text}: '{what}' is no cutter; use a plane X,Y,Z,NX,NY,NZ, a surface FILE.off, or a "
             "block PROJECT.toml:BLOCK (:BLOCK for one of the model's own)"

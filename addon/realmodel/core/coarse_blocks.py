@@ -8,13 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from .project import Rock
+from .rules import RULES
 from .work import native_module
 
 _MOST_BINS = 128  # along a side
 _FEWEST_BINS = 4
 _PLACES_PER_BIN = 2.0  # so that few bins inside a surface are empty
-_ONLY_DEPOSIT = ("conformable", "base")
-_PROTECT = ("base", "discontinuous")
 
 
 def coarse_blocks(rock: Rock, places: Sequence[np.ndarray]) -> int:
@@ -70,7 +69,7 @@ def _block_intervals(rock: Rock, heights: np.ndarray) -> list[tuple[np.ndarray, 
     under, laid = [], []
     for number, (z, surface) in enumerate(zip(heights, rock.surfaces, strict=True)):
         # fmax and fmin leave out what is NaN
-        level = np.fmax(z, top) if number and surface.rule in _ONLY_DEPOSIT else z
+        level = np.fmax(z, top) if number and not RULES[surface.rule].cuts else z
         level = np.where(np.isnan(z), np.nan, np.fmax(level, floor))
         under.append(top)
         laid.append(level)
@@ -78,7 +77,7 @@ def _block_intervals(rock: Rock, heights: np.ndarray) -> list[tuple[np.ndarray, 
         if not number:
             top = nothing  # the base bears the oldest surface only
         top = np.where(covered, level, top)
-        if surface.rule in _PROTECT:
+        if RULES[surface.rule].protects:
             floor = np.where(covered, level, floor)
     interval, least = [], nothing
     for level, bottom in zip(reversed(laid), reversed(under), strict=True):

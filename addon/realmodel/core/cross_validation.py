@@ -9,7 +9,7 @@ import numpy as np
 
 from .errors import InputRefused, UsageError
 from .heights import left_out_heights
-from .heights.run import LEAVE_ONE_OUT, heights
+from .heights.run import heights
 from .interpolation import checked_nodes, checked_points, checked_triangles, method_settings
 from .method_options import check_threads
 from .methods import METHODS
@@ -96,7 +96,7 @@ def validate(
     if len(points) < 2:
         raise InputRefused("one point alone cannot be told by others", item="points")
     variance, variogram = None, None
-    if method in LEAVE_ONE_OUT:
+    if METHODS[method].leaves_one_out:
         result = left_out_heights(work, points, method, settings, threads)
         z, variance, variogram = result.z, result.variance, result.variogram
     else:

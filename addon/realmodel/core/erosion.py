@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from .native_rocks import native_rocks
+from .rules import RULES
 from .work import Cancel, Progress, Work, native_module, run
 
-_CUT = ("erosional", "discontinuous")
 _RELATIVE = 1e-12  # how far sums of cells may be off
 
 
@@ -84,7 +84,7 @@ def _cut_at(model, k: int) -> list[tuple[int, np.ndarray]]:
     found = []
     first_surfaces = _first_surfaces(model)
     for rock, first in zip(model.project.rocks, first_surfaces[:-1], strict=True):
-        if k < len(rock.surfaces) and rock.surfaces[k].rule in _CUT:
+        if k < len(rock.surfaces) and RULES[rock.surfaces[k].rule].cuts:
             older = [b for b, block in enumerate(model.blocks) if first <= block.surface < first + k]
             if older:
                 found.append((int(first + k), np.array(older)))

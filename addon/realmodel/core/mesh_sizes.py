@@ -9,8 +9,8 @@ import numpy as np
 
 from .errors import InputRefused, UsageError
 from .finite import is_finite
+from .meshers import MESHERS
 
-MESHERS = ("delaunay", "frontal", "grid")
 AUTO = "auto"  # an edge length by the density of points
 AT_WORDS = ("outline", "constraints")
 _SIZE_KEYS = ("at", "length", "distance")

@@ -10,6 +10,7 @@ import numpy as np
 
 from .errors import InputRefused, place_text
 from .mesh_sizes import check_mesher, local_lengths, places_of, size_of_edges
+from .meshers import DEFAULT_MESHER
 from .region_rings import numbered_ring, region_rings
 from .work import Cancel, Progress, Work, native_module, run
 
@@ -27,7 +28,7 @@ def mesh_region(
     outline,
     holes=(),
     edge_length: float | str | None = None,
-    mesher: str = "delaunay",
+    mesher: str = DEFAULT_MESHER,
     *,
     triangles: int | None = None,
     size: Iterable[Mapping] = (),
@@ -81,7 +82,7 @@ def estimate_mesh(
     outline,
     holes=(),
     edge_length: float | str | None = None,
-    mesher: str = "delaunay",
+    mesher: str = DEFAULT_MESHER,
     *,
     triangles: int | None = None,
     size: Iterable[Mapping] = (),

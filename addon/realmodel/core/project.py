@@ -15,7 +15,8 @@ from .errors import InputRefused
 from .finite import is_finite
 from .library import Library
 from .map_layer import MapLayer
-from .mesh_sizes import AUTO, MESHERS, edge_length_fault, local_lengths, triangles_fault
+from .mesh_sizes import AUTO, edge_length_fault, local_lengths, triangles_fault
+from .meshers import DEFAULT_MESHER, MESHERS
 from .methods import (
     DEFAULT_METHOD,
     METHODS,
@@ -28,10 +29,9 @@ from .plan_input import check_layer, files_of_sizes, is_place_elsewhere, layer_f
 from .point_file import MeshFile, PointFile, ReadingRefused
 from .readers.point_input import companions
 from .region_rings import is_several
+from .rules import DEFAULT_RULE, RULES
 from .toml_table import TomlDocument
 from .units import METRES, MODEL_UNIT
-
-RULES = ("erosional", "conformable", "base", "discontinuous")
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Surface:
     points: np.ndarray | str | Path | PointFile | None = None
     method: str | None = None
     options: dict = field(default_factory=dict)
-    rule: str = "erosional"
+    rule: str = DEFAULT_RULE
     property: int = 0
     block: str | None = None
     mesh: str | Path | MeshFile | None = None
@@ -147,7 +147,7 @@ class Rock:
     holes: Sequence = ()
     edge_length: float | str | None = None
     triangles: int | None = None
-    mesher: str = "delaunay"
+    mesher: str = DEFAULT_MESHER
     size: Sequence[Mapping] = ()
     base_elevation: float | None = None
     constraints: Sequence = ()

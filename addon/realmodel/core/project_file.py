@@ -11,10 +11,12 @@ from .boreholes import Boreholes
 from .finite import is_finite
 from .library import load_library
 from .map_layer import MapLayer, is_wkt
+from .meshers import DEFAULT_MESHER
 from .methods import ALL_OPTIONS
 from .plan_input import is_place_elsewhere
 from .point_file import MeshFile, PointFile
 from .project import Project, Rock, Source, Surface, check_project, is_file
+from .rules import DEFAULT_RULE
 from .toml_table import Table, TomlDocument
 from .units import METRES, MODEL_UNIT
 
@@ -101,7 +103,7 @@ def _read_rock(table: Table, folder: Path) -> Rock:
         else table.number("edge_length"),
         triangles=table.integer("triangles"),
         size=_read_size(table, folder),
-        mesher=table.text("mesher") or "delaunay",
+        mesher=table.text("mesher") or DEFAULT_MESHER,
         base_elevation=table.number("base_elevation"),
         constraints=_read_constraints(table, folder),
         boreholes=_read_boreholes(table, folder),
@@ -252,7 +254,7 @@ def _read_surface(table: Table, folder: Path) -> Surface:
         name=name,
         method=table.text("method"),
         options=options,
-        rule=table.text("rule") or "erosional",
+        rule=table.text("rule") or DEFAULT_RULE,
         property=0 if property_id is None else property_id,
         block=table.text("block"),
         minimum_thickness=table.number("minimum_thickness"),

@@ -17,9 +17,11 @@ import numpy as np
 from .atomic import Outputs
 from .errors import UsageError
 from .library import Library, Property
+from .meshers import DEFAULT_MESHER
 from .project import Project, Rock, Surface, check_project
 from .region_rings import is_several
 from .rock_input import checked_triangulation
+from .rules import DEFAULT_RULE
 from .units import MODEL_UNIT
 
 _NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")
@@ -98,7 +100,7 @@ def _rock_lines(rock: Rock) -> list[str]:
             "edge_length": rock.edge_length,
             "triangles": rock.triangles,
             "size": list(rock.size) or None,
-            "mesher": rock.mesher if rock.mesher != "delaunay" else None,
+            "mesher": rock.mesher if rock.mesher != DEFAULT_MESHER else None,
             "base_elevation": rock.base_elevation,
         }
     )
@@ -144,7 +146,7 @@ def _surface_lines(surface: Surface, shape: tuple[str, str] | None) -> list[str]
     if given.interpolated:
         values |= {"method": given.method, **given.options, "minimum_thickness": given.minimum_thickness}
     values |= {
-        "rule": given.rule if given.rule != "erosional" else None,
+        "rule": given.rule if given.rule != DEFAULT_RULE else None,
         "property": given.property or None,
         "block": given.block,
     }

@@ -16,7 +16,7 @@ from .mesh_sizes import AUTO
 from .plan_input import map_layer, read_constraints, read_rings, read_sizes, ring_path
 from .planar_mesh import mesh_rings, triangulate_rings
 from .project import Project, Rock, Surface, rock_item, surface_item
-from .readers import Picks, read_boreholes, read_off, read_point_file
+from .readers import Picks, read_boreholes, read_mesh, read_point_file
 from .readers.text import no_step
 from .surface_heights import Triangulation, give_heights, interpolation_order, named_surfaces
 from .work import Work, run
@@ -214,7 +214,7 @@ def _read_surface(
                 told,
             )
         if surface.mesh is not None:
-            mesh = read_off(surface.input_file, step)
+            mesh = read_mesh(surface.input_file, step)
             vertices, triangles, faces = mesh.vertices, mesh.triangles, mesh.face_of_triangle
             plan_scale, height_scale = surface.mesh_file.scale(units)
             if (plan_scale, height_scale) != (1.0, 1.0):

@@ -8,7 +8,7 @@ import numpy as np
 from .build_warning import BuildWarning
 from .errors import InputRefused, place_text
 from .heights import Interpolation, heights
-from .methods import SURFACE_OPTIONS, checked_options
+from .methods import METHODS, SURFACE_OPTIONS, checked_options
 from .project import Rock, surface_item
 from .work import Work, native_module
 from .wrong_sides import Triangulation, heights_at, listed
@@ -108,8 +108,6 @@ def _older_points_above(
     return listed(rock, number - 1, points[:, 2] - z, "above", number)
 
 
-# Local methods give on a part of the nodes what they give on all, and cheap ones cost nothing.
-_SAMPLED_METHODS = ("kriging", "universal_kriging", "idw", "constant", "plane")
 _STAND_IN = "idw"
 
 
@@ -128,7 +126,7 @@ def rough_heights(work: Work, entry, number: int, nodes: np.ndarray, threads: in
         if isinstance(settings["to"], np.ndarray):  # known at all the nodes only
             return np.full(len(nodes), np.nanmean(settings["to"]) + settings["thickness"])
     points = surface.points
-    if len(points) and (method not in _SAMPLED_METHODS or settings.get("neighbours") == 0):
+    if len(points) and (not METHODS[method].is_local or settings.get("neighbours") == 0):
         method, settings = _STAND_IN, checked_options(_STAND_IN, {})
     z = heights(work, points, nodes, method, settings, threads).z
     if surface.minimum_thickness is not None:

@@ -8,11 +8,10 @@ import numpy as np
 from .build_warning import BuildWarning
 from .errors import place_text
 from .project import Rock
+from .rules import RULES
 from .work import Work, native_module
 
 Triangulation = tuple[np.ndarray, np.ndarray]
-CUTTING = ("erosional", "discontinuous")
-PROTECTING = ("base", "discontinuous")
 
 
 def heights_at(work: Work, shape: Triangulation, plan: np.ndarray, threads: int) -> np.ndarray:
@@ -43,13 +42,13 @@ def points_too_low(work: Work, entry, number: int, threads: int) -> list[BuildWa
         own = _Floor(len(points))
         own.raise_to(before, older)
         covered = np.isfinite(before)
-        if rock.surfaces[older].rule not in CUTTING:
+        if not RULES[rock.surfaces[older].rule].cuts:
             own.raise_to(np.where(covered, top.z, np.nan), top.surface)
         own.raise_to(np.where(covered, firm.z, np.nan), firm.surface)
         top.take(own, covered)
-        if rock.surfaces[older].rule in PROTECTING:
+        if RULES[rock.surfaces[older].rule].protects:
             firm.take(own, covered)
-    floor = firm if surface.rule in CUTTING else top
+    floor = firm if RULES[surface.rule].cuts else top
     if surface.minimum_thickness is not None and entry.surfaces[number - 1] is not None:
         floor.raise_to(before, number - 1)
     return listed(rock, number, floor.z - points[:, 2], "below", floor.surface)

@@ -11,11 +11,25 @@ from bpy_extras.io_utils import ImportHelper
 from ..bl import built_scene, live, project_settings, settings
 from ..core import InputRefused, PointFile
 from ..core.errors import HeightsMissing
-from ..core.readers import read_off, read_point_file
+from ..core.readers import MESH_ENDINGS, read_mesh, read_point_file
 from .reporting import Reporting, needed_surface
 from .rocks import add_rock
 
-_MESH_ENDINGS = (".off",)
+_POINT_ENDINGS = (
+    ".csv",
+    ".xyz",
+    ".txt",
+    ".dat",
+    ".tsv",
+    ".asc",
+    ".tif",
+    ".tiff",
+    ".geojson",
+    ".json",
+    ".gpkg",
+    ".shp",
+    ".wkt",
+)
 
 
 class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
@@ -36,7 +50,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
         name="Empty", description="Choose the source afterwards", options={"SKIP_SAVE", "HIDDEN"}
     )
     filter_glob: StringProperty(
-        default="*.off;*.csv;*.xyz;*.txt;*.dat;*.tsv;*.asc;*.tif;*.tiff;*.geojson;*.json;*.gpkg;*.shp;*.wkt",
+        default=";".join(f"*{ending}" for ending in (*MESH_ENDINGS, *_POINT_ENDINGS)),
         options={"HIDDEN"},
     )
     filename_ext = ""
@@ -59,7 +73,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
             if item is not None:
                 row.source, row.object = "MESH_OBJECT", item
             elif path is not None:
-                row.source = "MESH_FILE" if path.suffix.lower() in _MESH_ENDINGS else "POINTS_FILE"
+                row.source = "MESH_FILE" if path.suffix.lower() in MESH_ENDINGS else "POINTS_FILE"
                 row.filepath = str(path)
             rock.active_surface = len(rock.surfaces) - 1
         live.touch(scene)
@@ -78,8 +92,8 @@ def _check_file(path: Path):
     what holds the heights of shapes may be chosen once the surface is there."""
     if not path.is_file():
         raise InputRefused(f"there is no file {path}", advice="check the path")
-    if path.suffix.lower() in _MESH_ENDINGS:
-        read_off(path)
+    if path.suffix.lower() in MESH_ENDINGS:
+        read_mesh(path)
     else:
         with contextlib.suppress(HeightsMissing):
             read_point_file(PointFile(path))

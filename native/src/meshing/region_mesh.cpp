@@ -134,12 +134,12 @@ private:
     SizeField field(double length, double scale) const {
         require_room(length);
         SizeField size = unchecked_field(length, scale);
-        if (request_.mesher == Mesher::kFrontal) size = graded_to_detail(std::move(size), scale);
         if (!size.is_uniform()) {
             const double need = triangles_of(size);
             if (need > fitting_) refuse_size(need);
             require_precision(size.smallest());
         }
+        if (request_.mesher == Mesher::kFrontal) size = graded_to_detail(std::move(size), scale);
         return size;
     }
 
@@ -147,26 +147,25 @@ private:
         const std::vector<SizeSource> sources = requested_sources(graph_, request_, length, scale);
         const double pieces = pieces_along(sources, extent_.low, extent_.high);
         if (pieces > fitting_) refuse_size(2 * pieces);
-        return {length,
-                kGradation,
-                sources,
-                extent_.low,
-                extent_.high,
-                fitting_,
-                step(0.01, 0.01, "sizing the triangles")};
+        return {length, kGradation, sources, extent_.low, extent_.high, fitting_};
     }
 
-    /// Also fine where the border has detail: triangles there grow more gently than refinement of
-    /// angles alone would let them.
+    /// Also fine where the border has detail, as far as doubles can tell points apart: triangles
+    /// there grow more gently than refinement of angles alone would let them.
     SizeField graded_to_detail(SizeField&& size, double scale) const {
-        const Check check = step(0.01, 0.01, "looking for detail");
-        std::vector<SizeSource> sources = border_detail(
-            graph_, size, kLeastAngle, kShortestEdge * size.largest(), most_vertices(), check);
+        std::vector<SizeSource> sources =
+            border_detail(graph_, size, kLeastAngle, kShortestEdge * size.largest(),
+                          most_vertices(), step(0.01, 0.01, "looking for detail"));
+        for (SizeSource& source : sources) {
+            source.start = std::max(source.start, finest_length());
+            source.least = std::max(source.least, finest_length());
+        }
         if (sources.empty()) return std::move(size);
         const std::vector<SizeSource> wanted =
             requested_sources(graph_, request_, size.largest(), scale);
         sources.insert(sources.end(), wanted.begin(), wanted.end());
-        return {size.largest(), kGradation, sources, extent_.low, extent_.high, fitting_, check};
+        return {size.largest(), kGradation,   std::move(sources),
+                extent_.low,    extent_.high, fitting_};
     }
 
     std::size_t most_vertices() const { return static_cast<std::size_t>(fitting_ / 2); }
@@ -197,15 +196,19 @@ private:
         require_precision(edge_length);
     }
 
+    /// The shortest length at which doubles tell points of a mesh apart.
+    double finest_length() const {
+        return 16 * extent_.reach * std::numeric_limits<double>::epsilon() / kShortestEdge;
+    }
+
     void require_precision(double edge_length) const {
-        const double step = extent_.reach * std::numeric_limits<double>::epsilon();
-        if (edge_length * kShortestEdge >= 16 * step) return;
+        if (edge_length >= finest_length()) return;
         throw InputError("edge_length",
                          "edge length " + number_text(edge_length) +
                              " is too small for coordinates as large as " +
                              number_text(extent_.reach) +
                              ": doubles cannot tell the points apart; use at least " +
-                             number_text(17 * step / kShortestEdge) +
+                             number_text(17.0 / 16 * finest_length()) +
                              ", or move the region nearer to the origin");
     }
 

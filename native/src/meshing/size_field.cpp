@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -26,100 +27,128 @@ double distance(const SizeSource& source, double x, double y) {
 
 }  // namespace
 
-SizeField::SizeField(double largest, double gradation, std::span<const SizeSource> sources,
-                     const PlanPoint& low, const PlanPoint& high, double most_leaves,
-                     const Check& check)
+SizeField::SizeField(double largest, double gradation, std::vector<SizeSource> sources,
+                     const PlanPoint& low, const PlanPoint& high, double most_leaves)
     : largest_(largest),
       smallest_(largest),
       gradation_(gradation),
       most_leaves_(most_leaves),
-      low_(low) {
-    std::vector<std::int32_t> all(sources.size());
-    std::iota(all.begin(), all.end(), 0);
-    std::erase_if(all, [&](std::int32_t s) { return sources[s].least >= largest; });
-    if (all.empty()) return;
+      low_(low),
+      sources_(std::move(sources)) {
+    std::erase_if(sources_, [&](const SizeSource& source) { return source.least >= largest; });
+    if (sources_.empty()) return;
+    if (static_cast<double>(sources_.size()) > std::numeric_limits<std::int32_t>::max()) {
+        throw InputError("too_large", "there are more local lengths than 32-bit numbers can count");
+    }
     width_ = std::max(high[0] - low[0], high[1] - low[1]);
-    nodes_.push_back({});
-    build(0, {low[0], low[1], width_, 0}, sources, all, check);
+    const PlanPoint center{low[0] + width_ / 2, low[1] + width_ / 2};
+    for (const SizeSource& source : sources_) {
+        const double growth = std::min(gradation_, source.growth);
+        const double nearest =
+            std::max(0.0, distance(source, center[0], center[1]) - width_ / std::numbers::sqrt2);
+        smallest_ = std::min(smallest_, std::max(source.least, source.start + growth * nearest));
+    }
+    candidates_.resize(sources_.size());
+    std::iota(candidates_.begin(), candidates_.end(), 0);
+    nodes_.push_back({0, static_cast<std::int32_t>(candidates_.size())});
 }
 
-void SizeField::build(std::int32_t node, const Cell& cell, std::span<const SizeSource> sources,
-                      std::span<const std::int32_t> candidates, const Check& check) {
-    if (nodes_.size() % 1024 == 1) check(0);
+/// What a source asks for at a point, its least length not yet considered.
+double SizeField::length_at(const SizeSource& source, double x, double y) const {
+    return source.start + std::min(gradation_, source.growth) * distance(source, x, y);
+}
+
+/// Makes a node a leaf, or an inner node with four children to be opened.
+void SizeField::open(std::int32_t node, const Cell& cell) const {
+    const auto [begin, count] = nodes_[node];
     const double half = cell.width / 2, reach = gradation_ * half * std::numbers::sqrt2;
     const double x = cell.x + half, y = cell.y + half;
-    const auto start_and_growth = [&](const SizeSource& source, double at_x, double at_y) {
-        return source.start + std::min(gradation_, source.growth) * distance(source, at_x, at_y);
-    };
     // Bounds of what each source asks for over the cell.
     double lowest = largest_, highest = largest_;
-    std::vector<double> middle(candidates.size());
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-        const SizeSource& source = sources[candidates[i]];
-        middle[i] = start_and_growth(source, x, y);
+    std::vector<double> middle(count);
+    for (std::int32_t i = 0; i < count; ++i) {
+        const SizeSource& source = sources_[candidates_[begin + i]];
+        middle[i] = length_at(source, x, y);
         lowest = std::min(lowest, std::max(source.least, middle[i] - reach));
         highest = std::min(highest, std::max(source.least, middle[i] + reach));
     }
-    if (static_cast<double>(leaves_.size()) >= most_leaves_) {
+    if (static_cast<double>(leaves_.size()) >= most_leaves_ ||
+        static_cast<double>(nodes_.size()) > std::numeric_limits<std::int32_t>::max() - 4.0 ||
+        static_cast<double>(candidates_.size()) >
+            std::numeric_limits<std::int32_t>::max() - count) {
         throw InputError("too_large",
                          "the local lengths are so short that the mesh would not fit into memory; "
                          "use longer ones");
     }
     const auto make_leaf = [&](const std::array<double, 4>& lengths) {
-        nodes_[node].children = -1 - static_cast<std::int32_t>(leaves_.size());
+        nodes_[node] = {static_cast<std::int32_t>(leaves_.size()), kLeaf};
         std::array<float, 4>& leaf = leaves_.emplace_back();
-        for (int i = 0; i < 4; ++i) {
+        for (int i = 0; i < 4; ++i)
             leaf[i] = static_cast<float>(lengths[i] / largest_);
-            smallest_ = std::min(smallest_, lengths[i]);
-        }
     };
     if (lowest >= highest) {
         make_leaf({lowest, lowest, lowest, lowest});
         return;
     }
-    std::vector<std::int32_t> kept;
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-        if (std::max(sources[candidates[i]].least, middle[i] - reach) < highest) {
-            kept.push_back(candidates[i]);
-        }
+    const auto first_kept = static_cast<std::int32_t>(candidates_.size());
+    for (std::int32_t i = 0; i < count; ++i) {
+        const std::int32_t s = candidates_[begin + i];
+        if (std::max(sources_[s].least, middle[i] - reach) < highest) candidates_.push_back(s);
     }
+    const auto kept = static_cast<std::int32_t>(candidates_.size()) - first_kept;
     if (cell.width <= kLeafPerLength * lowest || cell.depth == kDeepest) {
         std::array<double, 4> lengths;
         for (int i = 0; i < 4; ++i) {
             lengths[i] = largest_;
             const double cx = cell.x + (i & 1 ? cell.width : 0),
                          cy = cell.y + (i & 2 ? cell.width : 0);
-            for (const std::int32_t s : kept) {
-                const SizeSource& source = sources[s];
+            for (std::int32_t k = first_kept; k < first_kept + kept; ++k) {
+                const SizeSource& source = sources_[candidates_[k]];
                 lengths[i] =
-                    std::min(lengths[i], std::max(source.least, start_and_growth(source, cx, cy)));
+                    std::min(lengths[i], std::max(source.least, length_at(source, cx, cy)));
             }
         }
+        candidates_.resize(first_kept);
         make_leaf(lengths);
         return;
     }
-    const auto first = static_cast<std::int32_t>(nodes_.size());
-    nodes_[node].children = first;
-    nodes_.resize(nodes_.size() + 4);
-    for (int i = 0; i < 4; ++i) {
-        build(first + i, {i & 1 ? x : cell.x, i & 2 ? y : cell.y, half, cell.depth + 1}, sources,
-              kept, check);
-    }
+    nodes_[node] = {static_cast<std::int32_t>(nodes_.size()), kInner};
+    nodes_.insert(nodes_.end(), 4, Node{first_kept, kept});
 }
 
 double SizeField::look_up(const PlanPoint& p) const {
     double u = std::clamp((p[0] - low_[0]) / width_, 0.0, 1.0);
     double v = std::clamp((p[1] - low_[1]) / width_, 0.0, 1.0);
-    std::int32_t node = 0;
-    while (nodes_[node].children >= 0) {
-        u *= 2;
-        v *= 2;
-        const int right = u >= 1 ? 1 : 0, upper = v >= 1 ? 1 : 0;
-        u -= right;
-        v -= upper;
-        node = nodes_[node].children + right + 2 * upper;
+    // Mostly it is the leaf of the question before. (Scaling by a power of 2 and taking whole
+    // numbers off is exact: the way down would give the same u and v.)
+    const double last_u = u * last_.scale - last_.column, last_v = v * last_.scale - last_.row;
+    if (last_u >= 0 && last_u < 1 && last_v >= 0 && last_v < 1) {
+        u = last_u;
+        v = last_v;
+    } else {
+        Cell cell{low_[0], low_[1], width_, 0};
+        std::int32_t node = 0;
+        last_ = {1, 0, 0, 0};
+        while (nodes_[node].count != kLeaf) {
+            if (nodes_[node].count >= 0) {
+                open(node, cell);
+                continue;
+            }
+            u *= 2;
+            v *= 2;
+            const int right = u >= 1 ? 1 : 0, upper = v >= 1 ? 1 : 0;
+            u -= right;
+            v -= upper;
+            cell.width /= 2;
+            cell.x += right * cell.width;
+            cell.y += upper * cell.width;
+            ++cell.depth;
+            last_ = {2 * last_.scale, 2 * last_.column + right, 2 * last_.row + upper, 0};
+            node = nodes_[node].index + right + 2 * upper;
+        }
+        last_.leaf = nodes_[node].index;
     }
-    const std::array<float, 4>& leaf = leaves_[-1 - nodes_[node].children];
+    const std::array<float, 4>& leaf = leaves_[last_.leaf];
     const double below = leaf[0] + u * (leaf[1] - leaf[0]),
                  above = leaf[2] + u * (leaf[3] - leaf[2]);
     return largest_ * (below + v * (above - below));

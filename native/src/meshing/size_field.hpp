@@ -24,39 +24,53 @@ struct SizeSource {
 
 /// The least of what sources ask for, and of a largest length. No length differs from another by
 /// more than gradation * distance. Kept in a quadtree whose leaves are no larger than edges are
-/// there, each with the lengths at its corners.
+/// there, each with the lengths at its corners. Leaves are made where they are asked for: from one
+/// thread at a time.
 class SizeField {
 public:
     /// The same length everywhere.
     explicit SizeField(double length) : largest_(length), smallest_(length) {}
 
-    /// Between `low` and `high`, beyond them what is at their border. @throws InputError
-    /// "too_large" where it would need more than `most_leaves`.
-    SizeField(double largest, double gradation, std::span<const SizeSource> sources,
-              const PlanPoint& low, const PlanPoint& high, double most_leaves, const Check& check);
+    /// Between `low` and `high`, beyond them what is at their border. From `most_leaves` on it
+    /// refuses to answer, by InputError "too_large".
+    SizeField(double largest, double gradation, std::vector<SizeSource> sources,
+              const PlanPoint& low, const PlanPoint& high, double most_leaves);
 
     bool is_uniform() const { return nodes_.empty(); }
     double largest() const { return largest_; }
+    /// No length between `low` and `high` is less.
     double smallest() const { return smallest_; }
     double at(const PlanPoint& p) const { return nodes_.empty() ? largest_ : look_up(p); }
 
 private:
+    static constexpr std::int32_t kInner = -1, kLeaf = -2;
+
+    /// An inner node: the first of its four children; a leaf: its number; a node that nobody has
+    /// asked for yet: the first of the sources that may count in it, and how many they are.
     struct Node {
-        std::int32_t children;  // the first of four, or -1 - leaf
+        std::int32_t index, count;
     };
     struct Cell {
         double x, y, width;
         std::int32_t depth;
     };
+    /// A leaf, and where it is among the cells of its size.
+    struct FoundLeaf {
+        double scale, column, row;
+        std::int32_t leaf;
+    };
     double look_up(const PlanPoint& p) const;
-    void build(std::int32_t node, const Cell& cell, std::span<const SizeSource> sources,
-               std::span<const std::int32_t> candidates, const Check& check);
+    void open(std::int32_t node, const Cell& cell) const;
+    double length_at(const SizeSource& source, double x, double y) const;
 
     double largest_, smallest_, gradation_ = 0, most_leaves_ = 0;
     PlanPoint low_{};
     double width_ = 0;
-    std::vector<Node> nodes_;
-    std::vector<std::array<float, 4>> leaves_;  // shares of the largest length
+    std::vector<SizeSource> sources_;
+    mutable std::vector<Node> nodes_;
+    mutable std::vector<std::int32_t> candidates_;      // numbers of sources
+    mutable std::vector<std::array<float, 4>> leaves_;  // shares of the largest length
+    mutable FoundLeaf last_{0, 1, 1, 0};                // none yet
 };
 
 }  // namespace realmodel::meshing

@@ -11,11 +11,12 @@ namespace realmodel::meshing {
 
 namespace {
 
-constexpr int kRounds = 6;
+constexpr int kRounds = 4;
 constexpr int kJudgedRounds = 2;  // later ones find next to nothing
-constexpr int kMovesPerRound = 2;
+constexpr int kMovesPerRound = 1;
 constexpr int kLastMoves = 4;
 constexpr int kFlipsOfAGlide = 8;
+constexpr std::size_t kManyActive = 200'000;
 
 class Smoothing {
 public:
@@ -43,6 +44,7 @@ public:
             for (int i = 0; i < kMovesPerRound; ++i)
                 move_all(tick);
             make_delaunay(tick);
+            if (round == 0) leave_strips();
             if (round < kJudgedRounds) mend(check);
         }
         for (int i = 0; i < kLastMoves; ++i)
@@ -114,6 +116,20 @@ private:
                 before = border[v];
             }
         }
+    }
+
+    /// Strips, where the border has no room for vertices inside, take most of the time and gain
+    /// least (0.03 of the mean ratio): where there are very many, the first round must do.
+    void leave_strips() {
+        if (active_.size() < kManyActive) return;
+        std::erase_if(active_, [&](std::int32_t v) {
+            bool is_free = moves_.moves_freely(v);
+            if (valences_.is_gone(v)) return true;
+            valences_.around(v, [&](HalfEdge edge) {
+                is_free = is_free || moves_.moves_freely(mesh_.to(edge));
+            });
+            return !is_free;
+        });
     }
 
     void flip_towards_six(Ticker& tick) {

@@ -12,6 +12,9 @@ namespace realmodel::meshing {
 
 namespace {
 
+// Steps are made longer than Newton's: each vertex moves alone, and its neighbors will follow
+// (successive over-relaxation, Young 1954).
+constexpr double kFreeStep = 1.5, kSlidingStep = 1.4;
 constexpr double kMovedEnough = 1e-3;  // of an edge: less is not worth another visit
 
 }  // namespace
@@ -62,7 +65,7 @@ void StarMoves::step(std::int32_t v, const Shape& now, double way, const Place& 
     PlanPoint& p = mesh_.points[v];
     if (!std::isfinite(now.value) || !std::isfinite(way)) return;
     const double least = kMovedEnough * std::sqrt(squared_distance(p, mesh_.points[base_[0][0]]));
-    double share = 1;
+    double share = slides(v) ? kSlidingStep : kFreeStep;
     for (int halving = 0; halving < 6; ++halving, share /= 2) {
         if (share * way < least) return;
         const PlanPoint place = place_at(share);

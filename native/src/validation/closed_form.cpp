@@ -18,13 +18,6 @@ namespace {
 
 constexpr PlaneId kNone = -1;
 
-bool cuts(Rule rule) {
-    return rule == Rule::kErosional || rule == Rule::kDiscontinuous;
-}
-bool protects(Rule rule) {
-    return rule == Rule::kBase || rule == Rule::kDiscontinuous;
-}
-
 /// The planes of a rock mass's surfaces above one place.
 class PlaneColumn {
 public:
@@ -54,10 +47,10 @@ public:
             column.surface_height.back() = scope.rounded_height(e, point_);
             const Rule rule = rock.rules.empty() ? Rule::kErosional : rock.rules[k];
             before[k] = top;
-            if (!cuts(rule) && top != kNone) e = higher(e, top);
+            if (!meaning(rule).cuts && top != kNone) e = higher(e, top);
             if (floor != kNone) e = higher(e, floor);
             level[k] = top = e;
-            if (protects(rule)) floor = e;
+            if (meaning(rule).protects) floor = e;
         }
         std::vector<PlaneId> upper(count, kNone);
         PlaneId lowest = kNone;

@@ -30,7 +30,7 @@ double asked(const std::vector<SizeSource>& sources, const PlanPoint& p) {
 }
 
 SizeField field_of(const std::vector<SizeSource>& sources, double most_leaves = 1e6) {
-    return {largest, kGrowth, sources, low, high, most_leaves, [](double) {}};
+    return {largest, kGrowth, sources, low, high, most_leaves};
 }
 
 TEST(SizeField, IsUniformWithoutSources) {

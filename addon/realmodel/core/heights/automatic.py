@@ -46,12 +46,12 @@ class Trial:
     known: from_neighbours.Structure | None
 
     def run(self, task: Task, points: np.ndarray, nodes: np.ndarray) -> Result:
-        from .run import RUNS  # this method runs others
+        from .run import run_method  # this method runs others
 
         task = replace(task, points=points, nodes=nodes, settings=self.settings)
         if self.known is not None:
             return from_neighbours.krige(task, self.known)
-        return RUNS[self.candidate.method](task)
+        return run_method(self.candidate.method, task)
 
     def error(self, task: Task, points: np.ndarray) -> float:
         """Root of the mean squared error at points that are left out; the same ones for every candidate."""

@@ -75,7 +75,7 @@ def _with_variance(z, terms, start, terms_at_nodes) -> Result:
 def parallel(task: Task) -> Result:
     """The surface `to` and a thickness above it: `thickness`, or where it is not given what the points show,
     spread by `thickness_method`."""
-    from .run import RUNS, settings_of  # this method runs another one
+    from .run import run_method, settings_of  # this method runs another one
 
     below = heights_of(task, task.settings["to"], task.nodes, "to")
     thickness = task.settings["thickness"]
@@ -90,7 +90,7 @@ def parallel(task: Task) -> Result:
     points = task.points[known].copy()
     points[:, 2] -= under[known]
     method = task.settings["thickness_method"]
-    shown = RUNS[method](replace(task, points=points, settings=settings_of(method)))
+    shown = run_method(method, replace(task, points=points, settings=settings_of(method)))
     warnings = list(shown.warnings)
     if not known.all():
         left_out = int((~known).sum())

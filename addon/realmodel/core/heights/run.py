@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 
@@ -12,25 +12,15 @@ from ..errors import InputRefused
 from ..methods import METHODS, SURFACE_OPTIONS, checked_options
 from ..mis_ties import without_mis_ties
 from ..work import Work, native_module
-from . import automatic, from_neighbours, from_triangulation, on_mesh, plain, regular_grid
+from . import automatic
 from .extrapolation import outside_hull, replace_extrapolated
 from .interpolation import Interpolation, Result, Task
 
-RUNS: dict[str, Callable[[Task], Result]] = {
-    "kriging": from_neighbours.krige,
-    "universal_kriging": from_neighbours.krige,
-    "idw": from_neighbours.inverse_distance,
-    "spline": from_neighbours.thin_plate,
-    "dsi": on_mesh.dsi,
-    "natural_neighbour": from_triangulation.natural_neighbour,
-    "tin": from_triangulation.linear,
-    "grid": regular_grid.bilinear,
-    "plane": plain.plane,
-    "constant": plain.constant,
-    "parallel": plain.parallel,
-}
-# These can tell each point from the others at once; the rest are run again without some of the points.
-LEAVE_ONE_OUT = ("kriging", "universal_kriging", "idw")
+
+def run_method(method: str, task: Task) -> Result:
+    """Runs a method that is not "auto"."""
+    module, _, function = METHODS[method].run.rpartition(".")
+    return getattr(import_module(f".{module}", __package__), function)(task)
 
 
 def settings_of(method: str, options: dict | None = None) -> dict:
@@ -57,7 +47,7 @@ def heights(
             settings = {**settings_of(method), "extrapolate": settings["extrapolate"]}
             task = replace(task, settings=settings)
         else:
-            result = RUNS[method](task)
+            result = run_method(method, task)
         outside = result.outside if result.outside is not None else outside_hull(task)
         result = replace_extrapolated(task, result, outside)
     except native.InputError as error:
@@ -81,7 +71,7 @@ def heights(
 
 def few_points(points: np.ndarray, method: str) -> list[str]:
     """What to tell where points are too few for a surface that was to have a shape of its own."""
-    if method in ("constant", "parallel"):
+    if not METHODS[method].has_shape:
         return []
     # no sorting of all places: it takes seconds of millions, and lets no other thread run meanwhile
     elsewhere = points[(points[:, :2] != points[:1, :2]).any(axis=1), :2]
@@ -107,16 +97,10 @@ def elsewhere(points: np.ndarray, nodes: np.ndarray) -> list[str]:
     return []
 
 
-_TAMED_BY = {
-    "dsi": "points that differ much within a triangle make it steep: give points a weight",
-    "spline": 'use smoothing, or extrapolate = "nearest"',
-    "universal_kriging": 'its drift goes on beyond them: use a simpler one, or extrapolate = "nearest"',
-}
-
-
 def runs_away(points: np.ndarray, z: np.ndarray, method: str) -> list[str]:
     """What to tell where heights go much farther than the points do, beyond twice their range."""
-    if method not in _TAMED_BY or not len(points) or not np.isfinite(z).any():
+    tamed_by = METHODS[method].tamed_by
+    if tamed_by is None or not len(points) or not np.isfinite(z).any():
         return []
     low, high = points[:, 2].min(), points[:, 2].max()
     lowest, highest = np.nanmin(z), np.nanmax(z)
@@ -124,15 +108,15 @@ def runs_away(points: np.ndarray, z: np.ndarray, method: str) -> list[str]:
         return []
     return [
         f"its heights, {lowest:.6g} to {highest:.6g}, go far beyond those of its points, {low:.6g} to "
-        f"{high:.6g}; {_TAMED_BY[method]}"
+        f"{high:.6g}; {tamed_by}"
     ]
 
 
 def left_out_heights(work: Work, points, method: str, settings: dict, threads: int) -> Result:
-    """Each point as the others tell it, by a method of LEAVE_ONE_OUT."""
+    """Each point as the others tell it, by a method that leaves one out."""
     native = native_module()
     task = Task(work, points, np.empty((0, 2)), settings, threads)
     try:
-        return RUNS[method](replace(task, left_out=True))
+        return run_method(method, replace(task, left_out=True))
     except native.InputError as error:
         raise InputRefused(str(error), item="points", place=error.place) from error

@@ -3,13 +3,16 @@
 
 from .boreholes import Picks, read_boreholes
 from .map_input import read_region, read_shapes
+from .mesh_file import MESH_ENDINGS, read_mesh
 from .off import read_off
 from .point_input import read_point_file
 from .points import read_points
 
 __all__ = [
+    "MESH_ENDINGS",
     "Picks",
     "read_boreholes",
+    "read_mesh",
     "read_off",
     "read_point_file",
     "read_points",

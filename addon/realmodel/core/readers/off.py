@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
@@ -12,24 +11,20 @@ import numpy as np
 
 from ..errors import InputRefused
 from .text import LINES_AT_ONCE, NOT_FINITE, NUMBER, Step, column_numbers, no_step, read_text
+from .triangle_mesh import TriangleMesh
 
 _WHOLE = re.compile(r"-?[0-9]{1,18}")
 _HEADERS = ("OFF", "COFF", "NOFF", "CNOFF")  # colours and normals behind the coordinates are not used
 
 
-@dataclass(frozen=True)
-class OffMesh:
-    """vertices (V, 3) float64, triangles (T, 3) int32; polygons are fanned from their first corner.
-
-    face_of_triangle (T,): the face of the file that a triangle is of, from 0; None where they are the same.
-    """
-
-    vertices: np.ndarray
-    triangles: np.ndarray
-    face_of_triangle: np.ndarray | None = None
+def begins_as_off(head: bytes) -> bool:
+    """Whether a file that begins with these bytes is one, comments apart."""
+    lines = (line.partition(b"#")[0].split() for line in head.removeprefix(b"\xef\xbb\xbf").splitlines())
+    words = next((words for words in lines if words), [b""])
+    return words[0].upper().decode("latin-1") in _HEADERS
 
 
-def read_off(file: str | Path, step: Step = no_step) -> OffMesh:
+def read_off(file: str | Path, step: Step = no_step) -> TriangleMesh:
     """Reads an OFF mesh. Raises InputRefused naming file and line.
 
     step(fraction) is called at least every 20,000 lines; what it raises passes through.
@@ -124,7 +119,9 @@ def _vertices(file: Path, lines: list[str], numbers: list[int], step: Step) -> n
     raise InputRefused("the vertices cannot be read", file=file, line=numbers[0])
 
 
-def _faces(file: Path, vertices: np.ndarray, lines: list[str], numbers: list[int], step: Step) -> OffMesh:
+def _faces(
+    file: Path, vertices: np.ndarray, lines: list[str], numbers: list[int], step: Step
+) -> TriangleMesh:
     try:
         table = column_numbers(lines, (0, 1, 2, 3), None, np.int64, step)
     except ValueError:
@@ -133,7 +130,7 @@ def _faces(file: Path, vertices: np.ndarray, lines: list[str], numbers: list[int
         bad = np.flatnonzero(((table[:, 1:] < 0) | (table[:, 1:] >= len(vertices))).any(axis=1))
         if len(bad):
             raise _no_vertex(file, numbers[bad[0]], table[bad[0], 1:], len(vertices))
-        return OffMesh(vertices, np.ascontiguousarray(table[:, 1:], np.int32))
+        return TriangleMesh(vertices, np.ascontiguousarray(table[:, 1:], np.int32))
     triangles, owner = [], []
     for face, (line, number) in enumerate(zip(lines, numbers, strict=True)):
         if face % LINES_AT_ONCE == 0:
@@ -141,7 +138,7 @@ def _faces(file: Path, vertices: np.ndarray, lines: list[str], numbers: list[int
         corners = _polygon(file, line, number, len(vertices))
         triangles += [(corners[0], b, c) for b, c in pairwise(corners[1:])]
         owner += [face] * (len(corners) - 2)
-    return OffMesh(vertices, np.array(triangles, np.int32), np.array(owner, np.int64))
+    return TriangleMesh(vertices, np.array(triangles, np.int32), np.array(owner, np.int64))
 
 
 def _polygon(file: Path, line: str, number: int, vertex_count: int) -> list[int]:

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "realmodel/meshing/triangulation.hpp"
@@ -18,6 +19,9 @@ enum class Mesher : std::uint8_t {
     kFrontal,   ///< the same, filled by a front and smoothed: better triangles, more time
     kGrid,      ///< a regular grid of squares, halved, that ends at the outline
 };
+
+/// Their names in files, in the order of Mesher.
+inline constexpr std::string_view kMesherNames[] = {"delaunay", "frontal", "grid"};
 
 /// What a mesh must contain beside the outlines. Lines may cross one another and the outlines; what
 /// of them lies outside the region is left out. Points must lie in it.

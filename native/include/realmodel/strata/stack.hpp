@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "realmodel/base/growing_array.hpp"
@@ -33,6 +35,28 @@ enum class Rule {
     kBase,          ///< only deposits, and may not be cut by what is younger (baselap)
     kDiscontinuous  ///< cuts, and may not be cut
 };
+
+/// A rule's name in files, whether it cuts what is older, and whether what is younger may not cut
+/// it.
+struct RuleMeaning {
+    std::string_view name;
+    bool cuts, protects;
+};
+/// In the order of Rule.
+inline constexpr RuleMeaning kRules[] = {{"erosional", true, false},
+                                         {"conformable", false, false},
+                                         {"base", false, true},
+                                         {"discontinuous", true, true}};
+constexpr const RuleMeaning& meaning(Rule rule) {
+    return kRules[static_cast<std::size_t>(rule)];
+}
+/// The rule of a name, or nothing.
+constexpr std::optional<Rule> rule_named(std::string_view name) {
+    for (std::size_t rule = 0; rule < std::size(kRules); ++rule) {
+        if (kRules[rule].name == name) return static_cast<Rule>(rule);
+    }
+    return std::nullopt;
+}
 
 /// One rock mass.
 struct StackInput {

@@ -11,13 +11,6 @@
 
 namespace realmodel::strata {
 
-inline bool cuts(Rule rule) {
-    return rule == Rule::kErosional || rule == Rule::kDiscontinuous;
-}
-inline bool protects(Rule rule) {
-    return rule == Rule::kBase || rule == Rule::kDiscontinuous;
-}
-
 /// Replays the rules forward in time: turns each surface S_k, as it comes, into e_k, what it leaves
 /// as the top of the rock: S_k itself, or the top so far (the floor that may not be cut) where S_k
 /// lies below it and its rule does not cut (something protects itself). The tilings of e_k are made
@@ -39,7 +32,7 @@ public:
     /// The next surface, oldest first; returns its e_k.
     Tiling add(Tiling surface) {
         const Rule rule = rules_[next_++];
-        const std::optional<Bound>& bound = cuts(rule) ? floor_ : top_;
+        const std::optional<Bound>& bound = meaning(rule).cuts ? floor_ : top_;
         raising_.begin(surface);
         std::optional<Tiling> raised;
         if (bound) raised = raising_.raise(surface, *bound);
@@ -54,7 +47,7 @@ public:
         }
         if (!is_needed_later(true)) {
             floor_.reset();
-        } else if (protects(rule)) {
+        } else if (meaning(rule).protects) {
             renew(floor_);
         }
         return raised ? std::move(*raised) : std::move(surface);
@@ -65,7 +58,7 @@ private:
     /// below it.
     bool is_needed_later(bool by_cutting) const {
         return std::any_of(rules_.begin() + static_cast<std::ptrdiff_t>(next_), rules_.end(),
-                           [&](Rule r) { return cuts(r) == by_cutting; });
+                           [&](Rule r) { return meaning(r).cuts == by_cutting; });
     }
 
     Raising raising_;

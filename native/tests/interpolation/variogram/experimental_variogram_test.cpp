@@ -12,13 +12,13 @@ namespace {
 using Points = std::vector<std::array<double, 3>>;
 
 TEST(ExperimentalVariogram, OfThreePointsByHand) {
-    // Distances 3, 4 and 5; half the diagonal is 2.5, one and a half spacings are more: 4.5. Each
-    // pair within it is a class of its own: half the squared differences 2 and 5.
+    // Distances 3, 4 and 5. The spacing, the median of the nearest distances, is 3, so that pairs
+    // within 4.5 count; the first class ends at 3.75, the second 1.25 times as far.
     const ExperimentalVariogram e =
         experimental_variogram(Points{{0, 0, 1}, {3, 0, 3}, {0, 4, 6}}, {});
-    EXPECT_EQ(e.pairs, (std::vector<std::int64_t>{2}));
-    EXPECT_NEAR(e.lags[0], 3.5, 1e-14);
-    EXPECT_NEAR(e.gamma[0], (4 + 25) / 4.0, 1e-14);
+    EXPECT_EQ(e.pairs, (std::vector<std::int64_t>{1, 1}));
+    EXPECT_EQ(e.lags, (std::vector<double>{3, 4}));
+    EXPECT_EQ(e.gamma, (std::vector<double>{2, 12.5}));  // (3 - 1)^2 / 2, (6 - 1)^2 / 2
 }
 
 TEST(ExperimentalVariogram, OfALineOfPoints) {

@@ -192,10 +192,10 @@ TEST(VariogramFit, FindsAnAnisotropyWhereThereIsOne) {
     // Distances of the experimental values are those under it.
     EXPECT_EQ(fitted.experimental.gamma, experimental_variogram(points, found).gamma);
     const auto square = [&](const Variogram& v) {
-        const Kriged found = krige_left_out(points, v, {32, 0});
+        const Kriged kriged = krige_left_out(points, v, {32, 0});
         double sum = 0;
         for (std::size_t i = 0; i < points.size(); ++i)
-            sum += std::pow(found.z[i] - points[i][2], 2);
+            sum += std::pow(kriged.z[i] - points[i][2], 2);
         return sum;
     };
     EXPECT_LT(square(fitted.variogram), 0.97 * square(fit_variogram(points, {}).variogram));

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Ready triangulated surfaces from files: one registry of formats (docs/extending.md). The format is detected
+from what the file holds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import InputRefused
+from .off import begins_as_off, read_off
+from .text import Step, no_step
+from .triangle_mesh import TriangleMesh
+
+_HEAD = 512
+
+
+@dataclass(frozen=True)
+class MeshFormat:
+    """begins(head): whether a file that begins with these bytes is of this format. read(file, step) raises
+    InputRefused naming file and line."""
+
+    name: str
+    endings: tuple[str, ...]
+    begins: Callable[[bytes], bool]
+    read: Callable[[Path, Step], TriangleMesh]
+
+
+MESH_FORMATS = (MeshFormat("OFF", (".off",), begins_as_off, read_off),)
+MESH_ENDINGS = tuple(ending for known in MESH_FORMATS for ending in known.endings)
+
+
+def read_mesh(file: str | Path, step: Step = no_step) -> TriangleMesh:
+    """Reads a mesh in any format that is known. Raises InputRefused naming file and line."""
+    file = Path(file)
+    try:
+        with file.open("rb") as opened:
+            head = opened.read(_HEAD)
+    except OSError as error:
+        raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
+    by_ending = [known for known in MESH_FORMATS if file.suffix.lower() in known.endings]
+    found = next((known for known in MESH_FORMATS if known.begins(head)), (*by_ending, MESH_FORMATS[0])[0])
+    return found.read(file, step)

@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes the tables of docs/project_file.md that follow from the add-on's registries: rules, methods and their
+options. A test compares them (tests/core/test_documents.py).
+
+    python3 scripts/write_tables.py
+"""
+
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCUMENT = ROOT / "docs" / "project_file.md"
+TABLE = re.compile(r"(<!-- table of (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
+
+
+def _table(headings, rows):
+    lines = [headings, ["---"] * len(headings), *rows]
+    return "".join("| " + " | ".join(cells) + " |\n" for cells in lines).replace("|  |", "| |")
+
+
+def _is_default(name, default):
+    return f"`{name}` (default)" if name == default else f"`{name}`"
+
+
+def _rules():
+    from realmodel.core.rules import DEFAULT_RULE, RULES
+
+    yes_no = {True: "yes", False: "no"}
+    return _table(
+        ["rule", "cuts what is older", "protects itself from what is younger", ""],
+        [
+            [_is_default(name, DEFAULT_RULE), yes_no[rule.cuts], yes_no[rule.protects], rule.tip]
+            for name, rule in RULES.items()
+        ],
+    )
+
+
+def _methods():
+    from realmodel.core.methods import DEFAULT_METHOD, METHODS
+
+    rows = []
+    for name, method in METHODS.items():
+        own = [f"`{option}`" for option in method.options if option != "extrapolate"]
+        said = [", ".join(own)] if own else []
+        if "extrapolate" not in method.options:
+            said.append("no `extrapolate`")
+        if method.instead_of_points:
+            said.append(f"with `{method.instead_of_points}` no `points`")
+        rows.append([_is_default(f'"{name}"', f'"{DEFAULT_METHOD}"'), "; ".join(said), method.tip])
+    return _table(["`method`", "options beside `extrapolate`", ""], rows)
+
+
+def _options():
+    from realmodel.core.methods import OPTIONS
+
+    rows = []
+    for name, option in OPTIONS.items():
+        if option.default is None or option.unset != "none":
+            default = option.unset
+        else:
+            default = f'`"{option.default}"`' if isinstance(option.default, str) else f"{option.default:g}"
+        rows.append([f"`{name}`", default, "; ".join(text for text in (option.tip, option.more) if text)])
+    return _table(["option", "default", ""], rows)
+
+
+def written(text):
+    """The text of the document with its tables as the registries have them."""
+    tables = {"rules": _rules, "methods": _methods, "options": _options}
+    return TABLE.sub(lambda found: found[1] + "\n" + tables[found[2]]() + "\n" + found[3], text)
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(ROOT / "addon"))
+    DOCUMENT.write_text(written(DOCUMENT.read_text(encoding="utf-8")), encoding="utf-8")
