@@ -159,7 +159,7 @@ is the rings' corners and points added on their edges; the corners come first in
 
 Raises InputError: kind "no_outline", "not_finite", "outline_degenerate", "outline_crosses",
 "outline_overlaps" (items: ring and corner numbers; place), "edge_length", "triangles", "size",
-"density", "constraint_not_finite", "constraint_outside", "too_large", "too_close", "mesher";
+"density", "constraint_not_finite", "constraint_outside", "too_large", "mesher";
 Cancelled.)");
     module.def(
         "estimate_region_mesh", &estimate_region_mesh, py::arg("rings"), py::arg("edge_length"),

@@ -28,7 +28,6 @@ _EDGE_LENGTH_KINDS = (
     "size",
     "density",
     "too_large",
-    "too_close",
 )  # what native meshing lays to the edge length
 
 

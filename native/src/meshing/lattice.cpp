@@ -10,11 +10,13 @@ namespace realmodel::meshing {
 
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// Where something meets a row of the lattice.
-struct Stretch {
+struct Interval {
     std::int64_t row;
     double from, to;
-    bool operator<(const Stretch& other) const {
+    bool operator<(const Interval& other) const {
         if (row != other.row) return row < other.row;
         return from != other.from ? from < other.from : to < other.to;
     }
@@ -31,7 +33,7 @@ void widen_by_segment(double& low, double& high, const PlanPoint& a, const PlanP
     }
 }
 
-/// The stretch of the line y within `distance` of the segment ab: a convex set, hence an interval.
+/// The interval of the line y within `distance` of the segment ab: a convex set, hence an interval.
 /// Empty (low > high) where there is none.
 void near_segment(double& low, double& high, const PlanPoint& a, const PlanPoint& b,
                   double distance, double y) {
@@ -161,6 +163,152 @@ private:
     std::vector<std::int32_t> under_;  ///< the triangle under the edge to the next column
 };
 
+/// Fills the rows of a lattice between the crossings of the border with them.
+class RowFiller {
+public:
+    RowFiller(const LatticeFrame& frame, const SizeField& size, double edge_length, double room,
+              const Check& check)
+        : map_{frame},
+          frame_(frame),
+          size_(size),
+          edge_length_(edge_length),
+          room_(room),
+          check_(check) {}
+
+    void keep_off_border(const BorderPieces& border, std::span<const std::int32_t> loners) {
+        for (const auto& [from, to] : border.border) {
+            const PlanPoint a = map_.into(border.points[from]), b = map_.into(border.points[to]);
+            const auto [bottom, top] = std::minmax(a[1], b[1]);
+            // A piece owns its lower end but not its upper one, so a row through a corner counts
+            // once.
+            for (std::int64_t row = row_above(bottom); row < row_above(top); ++row) {
+                const double x = a[0] + (row_y(row) - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+                crossings_.push_back({row, x, x});
+            }
+            keep_off(a, b);
+        }
+        for (const auto& [from, to] : border.inner)
+            keep_off(map_.into(border.points[from]), map_.into(border.points[to]));
+        for (const std::int32_t loner : loners) {
+            const PlanPoint p = map_.into(border.points[loner]);
+            keep_off(p, p);
+        }
+        std::sort(crossings_.begin(), crossings_.end());
+        std::sort(too_near_.begin(), too_near_.end());
+        std::sort(kept_off_.begin(), kept_off_.end());
+        blocked_ = too_near_.begin();
+    }
+
+    Lattice fill() {
+        Weaver weaver(lattice_.mesh, frame_.is_square, std::move(kept_off_));
+        const auto finish_row = [&] {
+            if (!row_.columns.empty()) weaver.add(std::move(row_));
+            row_ = {};
+        };
+        for (std::size_t i = 0; i + 1 < crossings_.size(); i += 2) {
+            check_(static_cast<double>(i) / static_cast<double>(crossings_.size()));
+            if (crossings_[i].row != row_.number) {
+                finish_row();
+                begin_row(crossings_[i].row);
+            }
+            fill_between(crossings_[i].from, crossings_[i + 1].from);
+        }
+        finish_row();
+        find_rim();
+        return std::move(lattice_);
+    }
+
+private:
+    std::int64_t row_above(double y) const {
+        return static_cast<std::int64_t>(std::ceil(y / frame_.row_height));
+    }
+    double row_y(std::int64_t row) const { return static_cast<double>(row) * frame_.row_height; }
+
+    void keep_off(const PlanPoint& a, const PlanPoint& b) {
+        if (++seen_ % 4096 == 0) check_(0);
+        const auto [bottom, top] = std::minmax(a[1], b[1]);
+        if (frame_.is_square) {
+            const auto cell = [](double at, double width) {
+                return static_cast<std::int64_t>(std::floor(at / width));
+            };
+            const double reserve = 1e-6 * edge_length_;
+            const auto [left, right] = std::minmax(a[0], b[0]);
+            for (auto r = cell(bottom - reserve, frame_.row_height);
+                 r <= cell(top + reserve, frame_.row_height); ++r) {
+                for (auto k = cell(left - reserve, frame_.spacing);
+                     k <= cell(right + reserve, frame_.spacing); ++k)
+                    kept_off_.push_back({r, k});
+            }
+        }
+        const std::int64_t last = row_above(top + room_);
+        for (std::int64_t row = row_above(bottom - room_); row < last; ++row) {
+            double low = kInfinity, high = -kInfinity;
+            near_segment(low, high, a, b, room_, row_y(row));
+            if (low <= high) too_near_.push_back({row, low, high});
+        }
+    }
+
+    void begin_row(std::int64_t row) {
+        row_.number = row;
+        row_.first = static_cast<std::int32_t>(lattice_.points.size());
+        blocked_to_ = -kInfinity;
+        while (blocked_ != too_near_.end() && blocked_->row < row)
+            ++blocked_;
+    }
+
+    void fill_between(double from, double to) {
+        const double shift = (row_.number & 1) == 0 || frame_.is_square ? 0 : 0.5;
+        const auto column = [&](double x) { return x / frame_.spacing - shift; };
+        const auto last = static_cast<std::int64_t>(std::floor(column(to)));
+        for (auto k = static_cast<std::int64_t>(std::ceil(column(from))); k <= last; ++k) {
+            const double x = (static_cast<double>(k) + shift) * frame_.spacing;
+            while (blocked_ != too_near_.end() && blocked_->row == row_.number &&
+                   blocked_->from <= x) {
+                blocked_to_ = std::max(blocked_to_, blocked_->to);
+                ++blocked_;
+            }
+            if (x <= blocked_to_) continue;
+            const PlanPoint p = map_.out(x, row_y(row_.number));
+            if (!size_.is_uniform() &&
+                std::abs(size_.at(p) - edge_length_) > 0.002 * edge_length_) {
+                continue;
+            }
+            if (!row_.columns.empty() && row_.columns.back() >= k) continue;
+            row_.columns.push_back(k);
+            lattice_.points.push_back(p);
+        }
+    }
+
+    void find_rim() {
+        const FlatMesh& mesh = lattice_.mesh;
+        std::vector<bool> is_used(lattice_.points.size(), false);
+        const auto triangles = static_cast<std::int32_t>(mesh.corners.size());
+        for (std::int32_t t = 0; t < triangles; ++t) {
+            for (int i = 0; i < 3; ++i) {
+                const HalfEdge edge(t, i);
+                is_used[mesh.from(edge)] = true;
+                if (mesh.is_border(edge)) lattice_.rim.push_back(edge);
+            }
+        }
+        for (std::size_t i = 0; i < is_used.size(); ++i)
+            if (!is_used[i]) lattice_.loners.push_back(static_cast<std::int32_t>(i));
+    }
+
+    FrameMap map_;
+    const LatticeFrame& frame_;
+    const SizeField& size_;
+    double edge_length_, room_;
+    const Check& check_;
+    std::size_t seen_ = 0;
+    std::vector<Interval> crossings_;  // from: x where the border crosses the row; to: not used
+    std::vector<Interval> too_near_;
+    std::vector<std::array<std::int64_t, 2>> kept_off_;
+    Lattice lattice_;
+    Row row_;
+    std::vector<Interval>::const_iterator blocked_;
+    double blocked_to_ = -kInfinity;  // in the row, up to what is reached so far
+};
+
 /// An edge as seen in the direction that a frame may take.
 struct LongEdge {
     PlanPoint a, b;
@@ -245,120 +393,9 @@ LatticeFrame fitting_frame(const RegionGraph& graph, double edge_length) {
 Lattice lattice_inside(const BorderPieces& border, std::span<const std::int32_t> loners,
                        const LatticeFrame& frame, const SizeField& size, double edge_length,
                        double clearance, const Check& check) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    const FrameMap map{frame};
-    const double room = clearance * edge_length;
-    const auto row_above = [&](double y) {
-        return static_cast<std::int64_t>(std::ceil(y / frame.row_height));
-    };
-    const auto row_y = [&](std::int64_t row) {
-        return static_cast<double>(row) * frame.row_height;
-    };
-
-    std::vector<Stretch> crossings;  // from: x where the border crosses the row; to: not used
-    std::vector<Stretch> too_near;
-    std::vector<std::array<std::int64_t, 2>> kept_off;
-    std::size_t seen = 0;
-    const auto keep_off = [&](const PlanPoint& a, const PlanPoint& b) {
-        if (++seen % 4096 == 0) check(0);
-        const auto [bottom, top] = std::minmax(a[1], b[1]);
-        if (frame.is_square) {
-            const auto cell = [](double at, double width) {
-                return static_cast<std::int64_t>(std::floor(at / width));
-            };
-            const double reserve = 1e-6 * edge_length;
-            const auto [left, right] = std::minmax(a[0], b[0]);
-            for (auto r = cell(bottom - reserve, frame.row_height);
-                 r <= cell(top + reserve, frame.row_height); ++r) {
-                for (auto k = cell(left - reserve, frame.spacing);
-                     k <= cell(right + reserve, frame.spacing); ++k)
-                    kept_off.push_back({r, k});
-            }
-        }
-        const std::int64_t last = row_above(top + room);
-        for (std::int64_t row = row_above(bottom - room); row < last; ++row) {
-            double near_low = kInfinity, near_high = -kInfinity;
-            near_segment(near_low, near_high, a, b, room, row_y(row));
-            if (near_low <= near_high) too_near.push_back({row, near_low, near_high});
-        }
-    };
-    for (const auto& [from, to] : border.border) {
-        const PlanPoint a = map.into(border.points[from]), b = map.into(border.points[to]);
-        const auto [bottom, top] = std::minmax(a[1], b[1]);
-        // A piece owns its lower end but not its upper one, so a row through a corner counts once.
-        for (std::int64_t row = row_above(bottom); row < row_above(top); ++row) {
-            const double x = a[0] + (row_y(row) - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-            crossings.push_back({row, x, x});
-        }
-        keep_off(a, b);
-    }
-    for (const auto& [from, to] : border.inner)
-        keep_off(map.into(border.points[from]), map.into(border.points[to]));
-    for (const std::int32_t loner : loners) {
-        const PlanPoint p = map.into(border.points[loner]);
-        keep_off(p, p);
-    }
-    std::sort(crossings.begin(), crossings.end());
-    std::sort(too_near.begin(), too_near.end());
-
-    std::sort(kept_off.begin(), kept_off.end());
-    Lattice lattice;
-    Weaver weaver(lattice.mesh, frame.is_square, std::move(kept_off));
-    Row row_points;
-    const auto finish_row = [&] {
-        if (!row_points.columns.empty()) weaver.add(std::move(row_points));
-        row_points = {};
-    };
-    auto blocked = too_near.begin();
-    double blocked_to = -kInfinity;  // of the row, up to what is reached so far
-    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
-        const std::int64_t row = crossings[i].row;
-        check(static_cast<double>(i) / static_cast<double>(crossings.size()));
-        if (row != row_points.number) {
-            finish_row();
-            row_points.number = row;
-            row_points.first = static_cast<std::int32_t>(lattice.points.size());
-            blocked_to = -kInfinity;
-            while (blocked != too_near.end() && blocked->row < row)
-                ++blocked;
-        }
-        const double shift = (row & 1) == 0 || frame.is_square ? 0 : 0.5;
-        const auto column = [&](double x) { return x / frame.spacing - shift; };
-        const auto last = static_cast<std::int64_t>(std::floor(column(crossings[i + 1].from)));
-        for (auto k = static_cast<std::int64_t>(std::ceil(column(crossings[i].from))); k <= last;
-             ++k) {
-            const double x = (static_cast<double>(k) + shift) * frame.spacing;
-            while (blocked != too_near.end() && blocked->row == row && blocked->from <= x) {
-                blocked_to = std::max(blocked_to, blocked->to);
-                ++blocked;
-            }
-            if (x <= blocked_to) continue;
-            const PlanPoint p = map.out(x, row_y(row));
-            if (!size.is_uniform() && std::abs(size.at(p) - edge_length) > 0.002 * edge_length) {
-                continue;
-            }
-            if (!row_points.columns.empty() && row_points.columns.back() >= k) continue;
-            row_points.columns.push_back(k);
-            lattice.points.push_back(p);
-        }
-    }
-    finish_row();
-
-    const auto triangles = static_cast<std::int32_t>(lattice.mesh.corners.size());
-    std::vector<bool> used(lattice.points.size(), false);
-    lattice.on_rim.assign(lattice.points.size(), false);
-    for (std::int32_t t = 0; t < triangles; ++t) {
-        for (int i = 0; i < 3; ++i) {
-            const HalfEdge side(t, i);
-            used[lattice.mesh.from(side)] = true;
-            if (!lattice.mesh.is_border(side)) continue;
-            lattice.rim.push_back(side);
-            lattice.on_rim[lattice.mesh.from(side)] = lattice.on_rim[lattice.mesh.to(side)] = true;
-        }
-    }
-    for (std::size_t i = 0; i < used.size(); ++i)
-        if (!used[i]) lattice.loners.push_back(static_cast<std::int32_t>(i));
-    return lattice;
+    RowFiller filler(frame, size, edge_length, clearance * edge_length, check);
+    filler.keep_off_border(border, loners);
+    return filler.fill();
 }
 
 }  // namespace realmodel::meshing

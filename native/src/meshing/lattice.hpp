@@ -27,7 +27,6 @@ struct Lattice {
     FlatMesh mesh;
     std::vector<HalfEdge> rim;         ///< the sides with no triangle twin them
     std::vector<std::int32_t> loners;  ///< points that no triangle has
-    std::vector<bool> on_rim;          ///< of each point
 };
 
 /// The points of a lattice that lie in the region, where `size` asks for `edge_length` and nothing

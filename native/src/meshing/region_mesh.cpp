@@ -220,6 +220,8 @@ private:
                                           ": use longer ones, or shorter distances");
     }
 
+    BandedMesh first_mesh(const SizeField& size, double finest, const Check& cutting,
+                          const Check& placing, const Check& joining) const;
     PlanarMesh mesh(const SizeField& size, double begin, double end) const;
     PlanarMesh run_for_count();
 
@@ -264,39 +266,41 @@ PlanarMesh collected(FlatMesh&& flat, const Check& check) {
     return mesh;
 }
 
+/// Border, lattices and the band between them.
+BandedMesh Meshing::first_mesh(const SizeField& size, double finest, const Check& cutting,
+                               const Check& placing, const Check& joining) const {
+    BorderPieces border;
+    std::vector<Lattice> lattices;
+    if (request_.mesher == Mesher::kGrid) {
+        const double side = size.largest();
+        border = cut_border_by_grid(graph_, extent_.low, side, kGridClearance, finest, cutting);
+        lattices.push_back(lattice_inside(border, graph_.loners,
+                                          {extent_.low, {1, 0}, side, side, true}, size, side,
+                                          kGridClearance, placing));
+    } else {
+        border = cut_border(graph_, size, finest, cutting);
+        for (const double length : lattice_lengths(request_, size)) {
+            lattices.push_back(lattice_inside(border, graph_.loners, fitting_frame(graph_, length),
+                                              size, length, kClearance, placing));
+        }
+    }
+    const bool has_lattice = std::any_of(lattices.begin(), lattices.end(),
+                                         [](const Lattice& l) { return !l.points.empty(); });
+    if (request_.mesher == Mesher::kFrontal && !has_lattice)
+        return {mesh_without_lattice(graph_, border, finest, joining), 0, {}};
+    return join_band(std::move(border), graph_.loners, std::move(lattices), joining);
+}
+
 PlanarMesh Meshing::mesh(const SizeField& size, double begin, double end) const {
     const auto part = [&](double from, double to, const char* text) {
         return step(begin + (end - begin) * from, begin + (end - begin) * to, text);
     };
     const bool is_grid = request_.mesher == Mesher::kGrid;
-    const Check cutting = part(0, 0.05, "cutting the border");
-    const Check laying = part(0.05, 0.3, "laying out the points");
     const bool is_frontal = request_.mesher == Mesher::kFrontal;
     const double finest = kShortestEdge * size.largest();
-    BorderPieces border;
-    std::vector<Lattice> lattices;
-    if (is_grid) {
-        const double side = size.largest();
-        border = cut_border_by_grid(graph_, extent_.low, side, kGridClearance, finest, cutting);
-        lattices.push_back(lattice_inside(border, graph_.loners,
-                                          {extent_.low, {1, 0}, side, side, true}, size, side,
-                                          kGridClearance, laying));
-    } else {
-        border = cut_border(graph_, size, finest, cutting);
-        for (const double length : lattice_lengths(request_, size)) {
-            lattices.push_back(lattice_inside(border, graph_.loners, fitting_frame(graph_, length),
-                                              size, length, kClearance, laying));
-        }
-    }
-    const Check joining = part(0.3, 0.5, "triangulating");
-    const bool has_lattice = std::any_of(lattices.begin(), lattices.end(),
-                                         [](const Lattice& l) { return !l.points.empty(); });
-    BandedMesh banded;
-    if (is_frontal && !has_lattice) {
-        banded.mesh = mesh_without_lattice(graph_, border, finest, joining);
-    } else {
-        banded = join_band(std::move(border), graph_.loners, std::move(lattices), joining);
-    }
+    BandedMesh banded =
+        first_mesh(size, finest, part(0, 0.05, "cutting the border"),
+                   part(0.05, 0.3, "placing the points"), part(0.3, 0.5, "triangulating"));
     FlatMesh& flat = banded.mesh;
     if (!size.is_uniform()) {
         advance_front(flat, size, banded.first_of_band, most_vertices(),

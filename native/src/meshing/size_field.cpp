@@ -58,6 +58,26 @@ double SizeField::length_at(const SizeSource& source, double x, double y) const 
     return source.start + std::min(gradation_, source.growth) * distance(source, x, y);
 }
 
+void SizeField::make_leaf(std::int32_t node, const std::array<double, 4>& lengths) const {
+    nodes_[node] = {static_cast<std::int32_t>(leaves_.size()), kLeaf};
+    std::array<float, 4>& leaf = leaves_.emplace_back();
+    for (int i = 0; i < 4; ++i)
+        leaf[i] = static_cast<float>(lengths[i] / largest_);
+}
+
+std::array<double, 4> SizeField::corner_lengths(const Cell& cell,
+                                                std::span<const std::int32_t> sources) const {
+    std::array<double, 4> lengths;
+    for (int i = 0; i < 4; ++i) {
+        lengths[i] = largest_;
+        const double x = cell.x + (i & 1 ? cell.width : 0), y = cell.y + (i & 2 ? cell.width : 0);
+        for (const std::int32_t s : sources)
+            lengths[i] =
+                std::min(lengths[i], std::max(sources_[s].least, length_at(sources_[s], x, y)));
+    }
+    return lengths;
+}
+
 /// Makes a node a leaf, or an inner node with four children to be opened.
 void SizeField::open(std::int32_t node, const Cell& cell) const {
     const auto [begin, count] = nodes_[node];
@@ -80,14 +100,8 @@ void SizeField::open(std::int32_t node, const Cell& cell) const {
                          "the local lengths are so short that the mesh would not fit into memory; "
                          "use longer ones");
     }
-    const auto make_leaf = [&](const std::array<double, 4>& lengths) {
-        nodes_[node] = {static_cast<std::int32_t>(leaves_.size()), kLeaf};
-        std::array<float, 4>& leaf = leaves_.emplace_back();
-        for (int i = 0; i < 4; ++i)
-            leaf[i] = static_cast<float>(lengths[i] / largest_);
-    };
     if (lowest >= highest) {
-        make_leaf({lowest, lowest, lowest, lowest});
+        make_leaf(node, {lowest, lowest, lowest, lowest});
         return;
     }
     const auto first_kept = static_cast<std::int32_t>(candidates_.size());
@@ -97,19 +111,9 @@ void SizeField::open(std::int32_t node, const Cell& cell) const {
     }
     const auto kept = static_cast<std::int32_t>(candidates_.size()) - first_kept;
     if (cell.width <= kLeafPerLength * lowest || cell.depth == kDeepest) {
-        std::array<double, 4> lengths;
-        for (int i = 0; i < 4; ++i) {
-            lengths[i] = largest_;
-            const double cx = cell.x + (i & 1 ? cell.width : 0),
-                         cy = cell.y + (i & 2 ? cell.width : 0);
-            for (std::int32_t k = first_kept; k < first_kept + kept; ++k) {
-                const SizeSource& source = sources_[candidates_[k]];
-                lengths[i] =
-                    std::min(lengths[i], std::max(source.least, length_at(source, cx, cy)));
-            }
-        }
+        const auto lengths = corner_lengths(cell, std::span(candidates_).subspan(first_kept));
         candidates_.resize(first_kept);
-        make_leaf(lengths);
+        make_leaf(node, lengths);
         return;
     }
     nodes_[node] = {static_cast<std::int32_t>(nodes_.size()), kInner};

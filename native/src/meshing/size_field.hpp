@@ -61,6 +61,9 @@ private:
     };
     double look_up(const PlanPoint& p) const;
     void open(std::int32_t node, const Cell& cell) const;
+    void make_leaf(std::int32_t node, const std::array<double, 4>& lengths) const;
+    std::array<double, 4> corner_lengths(const Cell& cell,
+                                         std::span<const std::int32_t> sources) const;
     double length_at(const SizeSource& source, double x, double y) const;
 
     double largest_, smallest_, gradation_ = 0, most_leaves_ = 0;

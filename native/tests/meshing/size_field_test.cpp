@@ -67,8 +67,8 @@ TEST(SizeField, RefusesWhatNeedsTooManyLeaves) {
     const std::vector<SizeSource> fine{{{1000, 5000}, {1100, 5060}, 1e-3, 1e-3}};
     const SizeField size = field_of(fine, 1000);
     const auto ask = [&] {
-        for (int i = 0; i < 1000; ++i)
-            size.at({1000 + 0.1 * i, 5000 + 0.06 * i});
+        for (int i = 0; i < 2000; ++i)
+            size.at({1000 + 0.05 * i, 5000 + 0.03 * i});
     };
     EXPECT_EQ(refusal(ask).kind, "too_large");
 }

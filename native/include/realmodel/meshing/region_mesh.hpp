@@ -76,6 +76,10 @@ MeshEstimate estimate_region_mesh(std::span<const Ring> rings, double edge_lengt
 /// `grid`: the nodes of a grid along the axes that lie inside, and where its lines meet the
 /// outlines.
 ///
+/// Every valid outline is meshed, down to gaps of one unit in the last place: where there is no
+/// room for points, edges stay as they are given. Of a constraint what cannot be told from its
+/// crossings with others in doubles is left out.
+///
 /// The same input gives the same mesh. `progress` may be null.
 /// @throws InputError as triangulate_region does (rings.hpp), and of kind
 /// - "edge_length" (not positive and finite, or too small for doubles to tell points apart here),
@@ -85,9 +89,7 @@ MeshEstimate estimate_region_mesh(std::span<const Ring> rings, double edge_lengt
 /// - "constraint_outside" (items: the point; place),
 /// - "density" (points that are fewer than two or not finite),
 /// - "too_large" (more triangles than memory or 32-bit numbers allow; says how many, and the least
-///   edge length that fits),
-/// - "too_close" (outlines or constraints so near each other that points added on them collide;
-///   place);
+///   edge length that fits);
 /// Cancelled within 0.2 s of Progress::cancel.
 PlanarMesh mesh_region(std::span<const Ring> rings, const MeshRequest& request,
                        Progress* progress = nullptr);
