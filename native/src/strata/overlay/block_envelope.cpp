@@ -175,7 +175,7 @@ SealedFacets BlockEnvelope::sort_facets(std::int32_t number) {
 }
 
 /// Of each triangle in the exact part, whether it stays whole: it touches the facets nowhere, has
-/// one block above it, and no border divides it. What stands on a divided one has its foot there.
+/// one block above it, and no border divides it. Walls end on divided ones.
 std::vector<std::uint8_t> BlockEnvelope::find_whole(const SurfaceTiling& part,
                                                     const PiecesOfPolygons& pieces,
                                                     const Overlaid& overlaid,

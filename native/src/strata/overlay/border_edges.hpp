@@ -26,7 +26,7 @@ public:
     bool near(const TileSpan& span) const {
         return tiles_.any(span, [&](std::size_t tile) { return in_tile(tile); });
     }
-    /// Whether one has a place inside a convex polygon, whose tiles these are. Along its edges one
+    /// Whether one has a point inside a convex polygon, whose tiles these are. Along its edges one
     /// may run.
     bool divide(LocalArrangement& scope, PolygonView polygon, const TileSpan& span) const;
     /// The same of a triangle, whose lines need not exist.

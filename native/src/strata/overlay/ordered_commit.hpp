@@ -10,7 +10,7 @@
 
 namespace realmodel::strata {
 
-/// Hands what the scopes of many chunks found over to the geometry, in the order of the chunks
+/// Commits what the scopes of many chunks found to the geometry, in the order of the chunks
 /// whichever comes first, by whatever thread is free while others still work: the ids do not depend
 /// on threads, and nobody waits.
 class OrderedCommit {
@@ -28,14 +28,14 @@ public:
         std::size_t first = 0, last = 0;
     };
 
-    /// For callers whom it is all one when a chunk is handed over.
+    /// For callers to whom it does not matter when a chunk is committed.
     struct Nothing {
         void operator()(std::size_t) const {}
     };
 
     /// To be called when nothing more will be asked of the scope of a chunk. `passed` is called
-    /// with each chunk that is handed over, in order.
-    /// @return the chunks that this call handed over, which may be none or other ones: their scopes
+    /// with each chunk that is committed, in order.
+    /// @return the chunks that this call committed, which may be none or other ones: their scopes
     /// are the caller's again
     template <class Passed = Nothing>
     Chunks finished(std::size_t chunk, LocalArrangement& scope, const Passed& passed = {}) {
@@ -49,7 +49,7 @@ public:
         return {first, next_};
     }
 
-    /// To be called when all chunks are finished: hands over what is left, and returns it.
+    /// To be called when all chunks are finished: commits what is left, and returns it.
     template <class Passed = Nothing>
     Chunks finish(const Passed& passed = {}) {
         const std::size_t first = next_;
@@ -73,7 +73,7 @@ private:
     exact::PlanArrangement& geometry_;
     std::vector<std::atomic<LocalArrangement*>> finished_;
     std::mutex busy_;
-    std::size_t next_ = 0;  ///< chunk to be handed over; with busy_
+    std::size_t next_ = 0;  ///< chunk to be committed; with busy_
 };
 
 }  // namespace realmodel::strata

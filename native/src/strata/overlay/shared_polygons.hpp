@@ -14,7 +14,7 @@ inline void mark_used(LocalArrangement& scope, const PolygonPool& pool) {
 }
 
 /// Puts the corners of polygons somewhere, with the shared lines and points, which the scope has
-/// handed over.
+/// committed.
 inline void share(LocalArrangement& scope, const PolygonPool& pool, Corner* shared) {
     for (const Corner& corner : pool.corners)
         *shared++ = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};

@@ -27,8 +27,8 @@ void WholeTriangleFilter::begin(const BlockTiling& tiling) {
     surface_tiles_ = {};
 }
 
-/// Finds where everything is.
-void WholeTriangleFilter::locate(const FacetView& facets) {
+/// Finds where everything is, and if it is asked for the heights of facets in tiles.
+void WholeTriangleFilter::locate(const FacetView& facets, bool with_heights) {
     const BlockTiling& tiling = *tiling_;
     const bool is_new = surface_tiles_.low.empty();
     if (is_new) surface_at.resize(tiling.size());
@@ -55,7 +55,7 @@ void WholeTriangleFilter::locate(const FacetView& facets) {
                     });
     parallel_chunks(2, threads_, progress_, [&](std::size_t which) {
         if (which == 0 && is_new) measure_surface();
-        if (which == 1) measure_facets(facets);
+        if (which == 1 && with_heights) measure_facets(facets);
     });
 }
 
@@ -95,7 +95,7 @@ void WholeTriangleFilter::mark_tiles(const TileSpan& span, std::vector<std::uint
 
 void WholeTriangleFilter::compare(const FacetView& facets) {
     assert(tiling_ != nullptr && facets.cover.size() == tiles().size());
-    locate(facets);
+    locate(facets, true);
     is_same_.clear();
     if (tiling_->is_raised) {
         is_same_.resize(static_cast<std::size_t>(geometry_.plane_count()));
@@ -295,7 +295,7 @@ Standing WholeTriangleFilter::compare_facet(PlaneId plane, const TileBounds& at,
 }
 
 void WholeTriangleFilter::cover(const FacetView& facets) {
-    locate(facets);
+    locate(facets, false);
     surface.assign(tiling_->size(), Standing::kBelow);
     facet.assign(facets.size(), Standing::kExact);
     parallel_ranges(facets.size(), kChunk, threads_, progress_,

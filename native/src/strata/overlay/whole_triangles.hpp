@@ -96,7 +96,7 @@ public:
     /// own, then parts, then where there is no surface at all.
     SurfaceTiling exact_part(exact::PlanArrangement& geometry, const TriangleLinks& links,
                              const FacetView& facets);
-    /// The outlines of exact facets that lie on surfaces or not, in order, and their numbers.
+    /// The numbers of exact facets, in order.
     std::vector<std::size_t> exact_facets() const;
 
     const PlanTiles& tiles() const { return borders_.tiles(); }
@@ -119,7 +119,7 @@ public:
     std::vector<Standing> facet;
 
 private:
-    void locate(const FacetView& facets);
+    void locate(const FacetView& facets, bool with_heights);
     void measure_surface();
     void measure_facets(const FacetView& facets);
     void classify_surface(const FacetView& facets);
