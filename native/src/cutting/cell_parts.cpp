@@ -85,7 +85,7 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
         root[i] = sets.find(static_cast<std::int32_t>(i));
     attach_shells(refs, result, root);
     // a part that rounding has turned inside out may meet the one that it goes to along an edge
-    if (!model_.cells_are_blocks && !use_edges_twice(root, pieces)) return false;
+    if (model_.cell_kind != CellKind::kBlocks && !use_edges_twice(root, pieces)) return false;
 
     result.part.assign(count, -1);
     result.part_side.clear();

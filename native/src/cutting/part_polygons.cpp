@@ -216,7 +216,7 @@ NodeId PartRounding::add_middle(std::size_t piece) {
     }
     if (!taken_.insert(middle).second) {
         const std::int32_t face = pieces_[piece].face;
-        const bool on_base = face >= 0 && model_.face_surface[index(face)] == strata::kBase;
+        const bool on_base = face >= 0 && model_.face_surface[index(face)] == kBase;
         middle = free_position_beside(middle, on_base ? Freedom::kLevel : Freedom::kAny, taken_);
     }
     new_positions_.push_back(middle);

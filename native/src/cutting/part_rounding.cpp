@@ -44,7 +44,7 @@ bool PartRounding::is_changed(std::int32_t part) const {
 
 bool PartRounding::is_wall(std::size_t piece) const {
     const std::int32_t face = pieces_[piece].face;
-    return face >= 0 && model_.face_surface[index(face)] == strata::kWall;
+    return face >= 0 && model_.face_surface[index(face)] == kWall;
 }
 
 void PartRounding::run() {
@@ -75,9 +75,9 @@ void PartRounding::find_pieces_of_parts() {
         const std::int32_t face = pieces_[p].face;
         if (face < 0) continue;
         const std::int32_t surface = model_.face_surface[index(face)];
-        if (surface != strata::kBase && surface != strata::kWall) continue;
+        if (surface != kBase && surface != kWall) continue;
         for (const NodeId node : pieces_.polygons[p])
-            (surface == strata::kBase ? on_base_ : on_wall_)[index(node)] = 1;
+            (surface == kBase ? on_base_ : on_wall_)[index(node)] = 1;
     }
     pieces_of_ = grouped<std::int32_t>(half_cells_.size(), [this](const auto& visit) {
         for (std::size_t p = 0; p < pieces_.size(); ++p) {
@@ -92,7 +92,7 @@ void PartRounding::find_pieces_of_parts() {
 void PartRounding::level_base() {
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const std::int32_t face = pieces_[p].face;
-        if (face < 0 || model_.face_surface[index(face)] != strata::kBase) continue;
+        if (face < 0 || model_.face_surface[index(face)] != kBase) continue;
         const double height = vertices_[index(model_.face(index(face))[0])][2];
         for (const NodeId node : pieces_.polygons[p]) {
             if (is_new(node)) moving(node)[2] = height;
@@ -144,7 +144,8 @@ bool PartRounding::stays_sound(std::int32_t part) const {
     }
     std::sort(faces.begin(), faces.end());
     if (std::adjacent_find(faces.begin(), faces.end()) != faces.end()) return false;
-    if (model_.cells_are_blocks || touches_[half_cells_[index(part)].side == kAbove ? 1 : 0])
+    if (model_.cell_kind == CellKind::kBlocks ||
+        touches_[half_cells_[index(part)].side == kAbove ? 1 : 0])
         return true;
     std::sort(uses.begin(), uses.end());
     for (std::size_t i = 2; i < uses.size(); ++i) {

@@ -27,7 +27,7 @@ BlockEnvelope::BlockEnvelope(PlanArrangement& geometry, const TriangleLinks& lin
 
 void BlockEnvelope::add_sky(const PlanTriangle& triangle, PlaneId plane, Cover cover) {
     parts_.add_facet(triangle_outline(geometry_, triangle), plane, -1, kSkyBlock);
-    tiles().for_each_centre_in(corners_of(geometry_, triangle),
+    tiles().for_each_center_in(corners_of(geometry_, triangle),
                                [&](std::size_t tile) { cover_[tile] = cover; });
 }
 

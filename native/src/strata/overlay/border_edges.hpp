@@ -5,11 +5,15 @@
 #include <utility>
 #include <vector>
 
+#include "spatial/plan_tiles.hpp"
 #include "strata/overlay/polygon.hpp"
-#include "strata/plan_tiles.hpp"
 #include "strata/tiling/plan_links.hpp"
 
 namespace realmodel::strata {
+
+using spatial::PlanBox;
+using spatial::PlanTiles;
+using spatial::TileSpan;
 
 /// Where walls may stand: the borders of surfaces and of the region, and edges where a surface
 /// jumps, by the tiles that they run through.
