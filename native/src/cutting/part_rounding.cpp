@@ -79,7 +79,7 @@ void PartRounding::find_pieces_of_parts() {
         for (const NodeId node : pieces_.polygons[p])
             (surface == kBase ? on_base_ : on_wall_)[index(node)] = 1;
     }
-    pieces_of_ = grouped<std::int32_t>(half_cells_.size(), [this](const auto& visit) {
+    pieces_of_ = bucketize<std::int32_t>(half_cells_.size(), [this](const auto& visit) {
         for (std::size_t p = 0; p < pieces_.size(); ++p) {
             for (const std::int32_t part : pieces_[p].parts) {
                 if (part >= 0) visit(index(part), static_cast<std::int32_t>(p));
