@@ -34,10 +34,10 @@ PARTS = (
         CREAM,
     ),
     ((0, 414, 390, 56), "native/bindings", "realmodel._native: arrays without copies, GIL released", PALE),
-    ((0, 516, 90, 104), "strata", "repair, tiling,|overlay,|conform, cells", SAND),
-    ((100, 516, 90, 104), "cutting", "and shells,|validation:|finished|models", SAND),
-    ((200, 516, 90, 104), "meshing", "outlines,|planar|meshes|(CGAL)", SAND),
-    ((300, 516, 90, 104), "interpolation", "variogram,|kriging, dsi|(Eigen, CGAL)", SAND),
+    ((0, 516, 84, 104), "strata", "repair, tile,|overlay,|conform,|cells", SAND),
+    ((94, 516, 84, 104), "cutting", "and shells,|validation:|finished|models", SAND),
+    ((188, 516, 84, 104), "meshing", "outlines,|planar|meshes|(CGAL)", SAND),
+    ((282, 516, 108, 104), "interpolation", "variogram,|kriging, dsi|(Eigen, CGAL)", SAND),
     ((0, 666, 122, 72), "exact", "all exact|arithmetic (GMP)", SAND),
     ((134, 666, 122, 72), "arrangement", "triangles|in any position", SAND),
     ((268, 666, 122, 72), "spatial", "what is near|(nanoflann)", SAND),
@@ -63,13 +63,13 @@ def draw_parts(drawing):
     # build_model.py knows core too, past bl
     arrow((0, 86), (-14, 86), (-14, 320), (-2, 320))
     arrow((195, 368), (195, 412))
-    for x in (45, 145, 245, 345):
+    for x in (42, 136, 230, 336):
         arrow((x, 470), (x, 514))
-    arrow((45, 620), (45, 664))
-    arrow((125, 620), (90, 664))
+    arrow((42, 620), (42, 664))
+    arrow((115, 620), (80, 664))
     arrow((150, 620), (180, 664))
-    arrow((232, 620), (110, 664))
-    arrow((250, 620), (310, 664))
+    arrow((210, 620), (108, 664))
+    arrow((250, 620), (300, 664))
     arrow((345, 620), (345, 664))
     arrow((134, 702), (124, 702))
     for x in (61, 195, 329):
@@ -90,15 +90,15 @@ CAPTIONS = {
     3: """A facet of E over the triangles of S: convex pieces, cut where the two planes are equally high
     (red). Every question is on which side of one line two others cross: the sign of a 3 x 3 determinant
     that comes straight from the input, in whole numbers where doubles cannot tell.""",
-    4: """Crossings at one position become one plan vertex, however many lines meet there; edges on one line
-    are collected with its vertices in order. A face takes up every vertex on its edges (red), so that
+    4: """Crossings at one position become one plan vertex, however many lines meet there; edges on one
+    line are collected with its vertices in order. A face takes up every vertex on its edges (red), so that
     neighbors that were cut apart share their corners.""",
     5: """Above a line stand the edges of the faces on its left and right. Sorted by height, each two
     neighbors bound one wall if the cells left and right of it differ. Where heights cross (red) the
     line gets one more vertex, and steps 4 and 5 run again.""",
-    6: """Every position and every height becomes the nearest double, the same however it was named. Those that
-    fall together take neighboring doubles, heights in their order. Cells, faces and walls are already
-    decided: rounding changes no neighbour. Volumes are summed last.""",
+    6: """Every position and every height becomes the nearest double, the same however it was named. Those
+    that fall together take neighboring doubles, heights in their order. Cells, faces and walls are already
+    decided: rounding changes no neighbor. Volumes are summed last.""",
 }
 
 

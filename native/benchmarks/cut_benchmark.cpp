@@ -49,7 +49,7 @@ Surface make_surface(int quads, const Place& place) {
     return s;
 }
 
-realmodel::strata::CellComplex make_model(int quads, bool lattice, double shift, int threads) {
+realmodel::CellComplex make_model(int quads, bool lattice, double shift, int threads) {
     std::vector<Surface> made;
     for (int k = 0; k < 10; ++k) {
         const int own = quads + (lattice ? 0 : k % 5 - 2);
@@ -78,7 +78,7 @@ public:
         for (std::size_t i = 0; i < array.size() * sizeof(*array.data()); ++i)
             value_ = (value_ ^ bytes[i]) * 0x100000001b3ULL;
     }
-    void add(const realmodel::strata::CellComplex& c) {
+    void add(const realmodel::CellComplex& c) {
         add(c.vertices);
         add(c.face_vertices);
         add(c.face_offsets);
@@ -114,16 +114,16 @@ int main(int count, char** arguments) {
             const double x = -0.1 + 1.2 * u, y = -0.1 + 1.2 * v;
             return {x, y, 1.2 + 0.3 * std::sin(5 * x) * y};
         });
-    const auto other = kind == "block" ? make_model(quads, false, 0.03, threads)
-                                       : realmodel::strata::CellComplex{};
+    const auto other =
+        kind == "block" ? make_model(quads, false, 0.03, threads) : realmodel::CellComplex{};
     const auto began = std::chrono::steady_clock::now();
     const auto cut = [&] {
         if (kind == "block")
-            return realmodel::cutting::cut_by_block(view(model), view(other), 4, threads, nullptr);
+            return realmodel::cutting::cut_by_block(model, other, 4, threads, nullptr);
         if (kind == "plane")
-            return realmodel::cutting::cut_by_plane(view(model), {{-4, -4, 1.1}, {-0.3, 0.2, 1}},
-                                                    threads, nullptr);
-        return realmodel::cutting::cut_by_surface(view(model), {cutter.vertices, cutter.triangles},
+            return realmodel::cutting::cut_by_plane(model, {{-4, -4, 1.1}, {-0.3, 0.2, 1}}, threads,
+                                                    nullptr);
+        return realmodel::cutting::cut_by_surface(model, {cutter.vertices, cutter.triangles},
                                                   threads, nullptr);
     }();
     const double seconds =

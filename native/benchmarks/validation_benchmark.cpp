@@ -48,15 +48,6 @@ Surface make_surface(int quads, int number, std::mt19937_64& random) {
     return s;
 }
 
-std::span<const std::int32_t> pairs(
-    const realmodel::GrowingArray<std::array<std::int32_t, 2>>& rows) {
-    return {rows.empty() ? nullptr : rows.front().data(), 2 * rows.size()};
-}
-
-std::span<const double> triples(const realmodel::GrowingArray<std::array<double, 3>>& rows) {
-    return {rows.empty() ? nullptr : rows.front().data(), 3 * rows.size()};
-}
-
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -83,20 +74,8 @@ int main(int count, char** arguments) {
         input, threads, nullptr, blocks ? strata::CellKind::kBlocks : strata::CellKind::kColumns);
     const double built = seconds(begin);
 
-    const std::vector<double> no_base(model.volumes.size(),
-                                      std::numeric_limits<double>::quiet_NaN());
-    const validation::ComplexView view{.vertices = triples(model.vertices),
-                                       .face_offsets = model.face_offsets,
-                                       .face_vertices = model.face_vertices,
-                                       .face_cells = pairs(model.face_cells),
-                                       .face_surface = model.face_surface,
-                                       .cell_block = model.cell_block,
-                                       .block_volume = model.volumes,
-                                       .block_base = no_base,
-                                       .surfaces = surfaces,
-                                       .cells_are_blocks = blocks};
     const auto start = Clock::now();
-    const auto results = validation::check_topology(view, threads, nullptr);
+    const auto results = validation::check_topology(model, threads, nullptr);
     const double checked = seconds(start);
     const auto faces = static_cast<double>(model.face_cells.size());
     std::printf("%.0f faces: built in %.2f s, proven in %.3f s (%.1f %%), %.0f ns a face\n", faces,

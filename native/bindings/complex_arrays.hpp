@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <utility>
 
 #include "arrays.hpp"
-#include "realmodel/strata/stack.hpp"
+#include "realmodel/complex.hpp"
 
 namespace realmodel::bindings {
 
 /// The arrays of a complex as NumPy arrays, under the names of docs/geometry.md; the complex is
 /// left without them.
-inline pybind11::dict complex_arrays(strata::CellComplex& complex) {
+inline pybind11::dict complex_arrays(CellComplex& complex) {
     pybind11::dict result;
     result["vertices"] = to_array(std::move(complex.vertices));
     result["face_offsets"] = to_array(std::move(complex.face_offsets));
@@ -21,5 +23,32 @@ inline pybind11::dict complex_arrays(strata::CellComplex& complex) {
     result["volumes"] = to_array(std::move(complex.volumes));
     return result;
 }
+
+/// The arrays of a complex that come under these names, kept alive while the view is in use. How
+/// many blocks there are, and what their cells are, is left to the caller.
+struct ComplexArrays {
+    Array<double> vertices;
+    Array<std::int64_t> face_offsets;
+    Array<std::int32_t> face_vertices, face_cells, face_surface, cell_block;
+    ComplexView complex;
+
+    explicit ComplexArrays(const pybind11::dict& arrays) {
+        take(arrays, "vertices", vertices, complex.vertices);
+        take(arrays, "face_offsets", face_offsets, complex.face_offsets);
+        take(arrays, "face_vertices", face_vertices, complex.face_vertices);
+        take(arrays, "face_cells", face_cells, complex.face_cells);
+        take(arrays, "face_surface", face_surface, complex.face_surface);
+        take(arrays, "cell_block", cell_block, complex.cell_block);
+        require_columns(vertices, 3, "vertices");
+        require_columns(face_cells, 2, "face_cells");
+    }
+
+    template <class T>
+    static void take(const pybind11::dict& arrays, const char* name, Array<T>& kept,
+                     std::span<const T>& seen) {
+        kept = arrays[name].cast<Array<T>>();
+        seen = {kept.data(), static_cast<std::size_t>(kept.size())};
+    }
+};
 
 }  // namespace realmodel::bindings

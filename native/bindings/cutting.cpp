@@ -22,40 +22,16 @@ std::span<const T> view(const Array<T>& array) {
     return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
-/// The arrays of a model, kept alive while a view of them is in use.
-struct ModelArrays {
-    Array<double> vertices;
-    Array<std::int64_t> face_offsets;
-    Array<std::int32_t> face_vertices, face_cells, face_surface, cell_block;
-    cutting::ComplexView view_of;
-
-    explicit ModelArrays(const py::dict& arrays)
-        : vertices(take<double>(arrays, "vertices")),
-          face_offsets(take<std::int64_t>(arrays, "face_offsets")),
-          face_vertices(take<std::int32_t>(arrays, "face_vertices")),
-          face_cells(take<std::int32_t>(arrays, "face_cells")),
-          face_surface(take<std::int32_t>(arrays, "face_surface")),
-          cell_block(take<std::int32_t>(arrays, "cell_block")) {
-        require_columns(vertices, 3, "vertices");
-        require_columns(face_cells, 2, "face_cells");
-        view_of.vertices = view(vertices);
-        view_of.face_offsets = view(face_offsets);
-        view_of.face_vertices = view(face_vertices);
-        view_of.face_cells = view(face_cells);
-        view_of.face_surface = view(face_surface);
-        view_of.cell_block = view(cell_block);
-        view_of.blocks = arrays["blocks"].cast<std::size_t>();
-        view_of.cells_are_blocks = arrays["cell_kind"].cast<std::string>() == "blocks";
-    }
-
-private:
-    template <class T>
-    static Array<T> take(const py::dict& arrays, const char* name) {
-        return arrays[name].cast<Array<T>>();
+struct ModelArrays : ComplexArrays {
+    explicit ModelArrays(const py::dict& arrays) : ComplexArrays(arrays) {
+        complex.blocks = arrays["blocks"].cast<std::size_t>();
+        complex.surfaces = static_cast<std::int32_t>(complex.blocks);
+        if (arrays["cell_kind"].cast<std::string>() == "blocks")
+            complex.cell_kind = CellKind::kBlocks;
     }
 };
 
-py::dict to_dict(strata::CellComplex&& complex, std::vector<std::int32_t>&& origin) {
+py::dict to_dict(CellComplex&& complex, std::vector<std::int32_t>&& origin) {
     py::dict result = complex_arrays(complex);
     result["cells"] = to_array(std::move(origin));
     return result;
@@ -86,7 +62,7 @@ py::dict cut_by_plane(const py::dict& model, const std::array<double, 3>& point,
     cutting::Cut cut;
     {
         const py::gil_scoped_release release;
-        cut = cutting::cut_by_plane(arrays.view_of, {point, normal}, threads, control);
+        cut = cutting::cut_by_plane(arrays.complex, {point, normal}, threads, control);
     }
     return to_dict(std::move(cut));
 }
@@ -99,7 +75,7 @@ py::dict cut_by_surface(const py::dict& model, const Array<double>& vertices,
     cutting::Cut cut;
     {
         const py::gil_scoped_release release;
-        cut = cutting::cut_by_surface(arrays.view_of, {view(vertices), view(triangles)}, threads,
+        cut = cutting::cut_by_surface(arrays.complex, {view(vertices), view(triangles)}, threads,
                                       control);
     }
     return to_dict(std::move(cut));
@@ -111,7 +87,7 @@ py::dict cut_by_block(const py::dict& model, const py::dict& other, std::int32_t
     cutting::Cut cut;
     {
         const py::gil_scoped_release release;
-        cut = cutting::cut_by_block(arrays.view_of, others.view_of, block, threads, control);
+        cut = cutting::cut_by_block(arrays.complex, others.complex, block, threads, control);
     }
     return to_dict(std::move(cut));
 }
@@ -122,7 +98,7 @@ py::dict section_by_plane(const py::dict& model, const std::array<double, 3>& po
     cutting::Section section;
     {
         const py::gil_scoped_release release;
-        section = cutting::section_by_plane(arrays.view_of, {point, normal}, threads, control);
+        section = cutting::section_by_plane(arrays.complex, {point, normal}, threads, control);
     }
     return to_dict(std::move(section));
 }
@@ -133,7 +109,7 @@ py::dict fence_panel(const py::dict& model, const std::array<double, 2>& start,
     cutting::Section section;
     {
         const py::gil_scoped_release release;
-        section = cutting::fence_panel(arrays.view_of, start, end, threads, control);
+        section = cutting::fence_panel(arrays.complex, start, end, threads, control);
     }
     return to_dict(std::move(section));
 }

@@ -53,14 +53,20 @@ py::list complex_shells(const Array<double>& vertices, const Array<std::int64_t>
                         const Indices& face_vertices, const Indices& face_cells,
                         const Indices& cell_block, std::size_t blocks, const Position& origin,
                         std::optional<double> shrink, int threads, const Progress* control) {
-    const shells::Complex complex{
-        rows<3, double>(vertices, "vertices"), view(face_offsets), view(face_vertices),
-        rows<2, std::int32_t>(face_cells, "face_cells"), view(cell_block)};
+    require_columns(vertices, 3, "vertices");
+    require_columns(face_cells, 2, "face_cells");
+    const ComplexView complex{.vertices = view(vertices),
+                              .face_offsets = view(face_offsets),
+                              .face_vertices = view(face_vertices),
+                              .face_cells = view(face_cells),
+                              .face_surface = {},
+                              .cell_block = view(cell_block),
+                              .blocks = blocks};
     std::vector<shells::Shell> found;
     {
         const py::gil_scoped_release unlocked;
-        found = shrink ? shells::cell_shells(complex, blocks, *shrink, origin, threads, control)
-                       : shells::block_shells(complex, blocks, origin, threads, control);
+        found = shrink ? shells::cell_shells(complex, *shrink, origin, threads, control)
+                       : shells::block_shells(complex, origin, threads, control);
     }
     return shell_arrays(std::move(found));
 }

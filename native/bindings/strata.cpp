@@ -23,7 +23,7 @@ namespace realmodel::bindings {
 
 namespace {
 
-py::dict to_dict(strata::CellComplex&& complex) {
+py::dict to_dict(CellComplex&& complex) {
     py::dict result = complex_arrays(complex);
     py::list warnings;
     for (const strata::Warning& w : complex.warnings) {
@@ -51,7 +51,7 @@ py::dict build_rock_masses(const std::vector<RockArrays>& rocks, const std::stri
     std::vector<strata::StackInput> input;
     for (const RockArrays& rock : rocks)
         input.push_back(view_of(rock));
-    strata::CellComplex complex;
+    CellComplex complex;
     {
         const py::gil_scoped_release release;
         const MemoryGivenBack at_the_end;

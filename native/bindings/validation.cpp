@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "complex_arrays.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/validation/sampling.hpp"
 #include "realmodel/validation/topology.hpp"
@@ -47,50 +48,24 @@ py::list to_list(const std::vector<validation::TestResult>& results) {
     return list;
 }
 
-/// The arrays of a model, kept while they are looked at.
-struct ComplexArrays {
-    Array<double> vertices;
-    Array<std::int64_t> face_offsets;
-    Array<std::int32_t> face_vertices, face_cells, face_surface, cell_block;
+struct ModelArrays : ComplexArrays {
     Array<double> block_volume, block_base;
-    std::int32_t surfaces;
-    bool cells_are_blocks;
 
-    explicit ComplexArrays(const py::dict& model)
-        : vertices(model["vertices"].cast<decltype(vertices)>()),
-          face_offsets(model["face_offsets"].cast<decltype(face_offsets)>()),
-          face_vertices(model["face_vertices"].cast<decltype(face_vertices)>()),
-          face_cells(model["face_cells"].cast<decltype(face_cells)>()),
-          face_surface(model["face_surface"].cast<decltype(face_surface)>()),
-          cell_block(model["cell_block"].cast<decltype(cell_block)>()),
-          block_volume(model["block_volume"].cast<decltype(block_volume)>()),
-          block_base(model["block_base"].cast<decltype(block_base)>()),
-          surfaces(model["surfaces"].cast<std::int32_t>()),
-          cells_are_blocks(model["cells_are_blocks"].cast<bool>()) {
-        require_columns(vertices, 3, "vertices");
-        require_columns(face_cells, 2, "face_cells");
-    }
-
-    validation::ComplexView complex() const {
-        return {.vertices = view(vertices),
-                .face_offsets = view(face_offsets),
-                .face_vertices = view(face_vertices),
-                .face_cells = view(face_cells),
-                .face_surface = view(face_surface),
-                .cell_block = view(cell_block),
-                .block_volume = view(block_volume),
-                .block_base = view(block_base),
-                .surfaces = surfaces,
-                .cells_are_blocks = cells_are_blocks};
+    explicit ModelArrays(const py::dict& model) : ComplexArrays(model) {
+        take(model, "block_volume", block_volume, complex.block_volume);
+        take(model, "block_base", block_base, complex.block_base);
+        complex.blocks = complex.block_volume.size();
+        complex.surfaces = model["surfaces"].cast<std::int32_t>();
+        if (model["cells_are_blocks"].cast<bool>()) complex.cell_kind = CellKind::kBlocks;
     }
 };
 
 py::list check_topology(const py::dict& model, int threads, Progress* control) {
-    const ComplexArrays arrays(model);
+    const ModelArrays arrays(model);
     std::vector<validation::TestResult> results;
     {
         const py::gil_scoped_release release;
-        results = validation::check_topology(arrays.complex(), threads, control);
+        results = validation::check_topology(arrays.complex, threads, control);
     }
     return to_list(results);
 }
@@ -98,7 +73,7 @@ py::list check_topology(const py::dict& model, int threads, Progress* control) {
 py::list check_samples(const py::dict& model, const std::vector<RockArrays>& rocks,
                        const Indices& block_of_surface, std::int64_t places, std::uint64_t seed,
                        int threads, Progress* control) {
-    const ComplexArrays arrays(model);
+    const ModelArrays arrays(model);
     std::vector<strata::StackInput> input;
     std::size_t surfaces = 0;
     for (const RockArrays& rock : rocks) {
@@ -106,13 +81,13 @@ py::list check_samples(const py::dict& model, const std::vector<RockArrays>& roc
         surfaces += input.back().surfaces.size();
     }
     const auto block = view(block_of_surface);
-    if (block.size() != surfaces || surfaces != static_cast<std::size_t>(arrays.surfaces)) {
+    if (block.size() != surfaces || surfaces != static_cast<std::size_t>(arrays.complex.surfaces)) {
         throw py::value_error("block_of_surface: one for each surface of the rocks");
     }
     std::vector<validation::TestResult> results;
     {
         const py::gil_scoped_release release;
-        results = validation::check_samples(arrays.complex(), {input, block}, places, seed, threads,
+        results = validation::check_samples(arrays.complex, {input, block}, places, seed, threads,
                                             control);
     }
     return to_list(results);

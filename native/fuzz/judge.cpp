@@ -196,8 +196,8 @@ std::vector<Defect> defects_of(const StackCase& stack, const JudgeOptions& optio
         if (defects.empty()) {
             add(named(surface_defects(columns, stack), "columns"));
             add(named(surface_defects(blocks, stack), "blocks"));
-            add(named(second_opinion(columns, stack, Cells::kColumns), "columns"));
-            add(named(second_opinion(blocks, stack, Cells::kBlocks), "blocks"));
+            add(named(second_opinion(columns, stack), "columns"));
+            add(named(second_opinion(blocks, stack), "blocks"));
             compare_kinds(stack, columns, blocks, defects);
         }
         if (triangle_count(stack) <= options.most_triangles) {

@@ -8,30 +8,14 @@
 
 namespace realmodel::fuzz {
 
-std::vector<Defect> second_opinion(const strata::CellComplex& complex, const StackCase& stack,
-                                   Cells cells) {
+std::vector<Defect> second_opinion(const strata::CellComplex& complex, const StackCase& stack) {
     std::vector<double> base;
     for (const RockCase& rock : stack.rocks) {
         base.insert(base.end(), rock.surfaces.size(),
                     rock.base_elevation.value_or(std::numeric_limits<double>::quiet_NaN()));
     }
-    const auto flat = [](const auto& rows) {
-        using Number = typename std::decay_t<decltype(rows)>::value_type::value_type;
-        const std::size_t width = rows.empty() ? 0 : rows.front().size();
-        return std::span<const Number>(rows.empty() ? nullptr : rows.front().data(),
-                                       rows.size() * width);
-    };
-    validation::ComplexView view;
-    view.vertices = flat(complex.vertices);
-    view.face_offsets = complex.face_offsets;
-    view.face_vertices = complex.face_vertices;
-    view.face_cells = flat(complex.face_cells);
-    view.face_surface = complex.face_surface;
-    view.cell_block = complex.cell_block;
-    view.block_volume = complex.volumes;
+    ComplexView view = complex;
     view.block_base = base;
-    view.surfaces = static_cast<std::int32_t>(complex.volumes.size());
-    view.cells_are_blocks = cells == Cells::kBlocks;
     std::vector<Defect> defects;
     const auto add = [&](const std::vector<validation::TestResult>& tests) {
         for (const validation::TestResult& test : tests) {

@@ -16,7 +16,7 @@
 #include <random>
 #include <vector>
 
-#include "exact/plan_arrangement.hpp"
+#include "exact/local_arrangement.hpp"
 
 namespace {
 

@@ -3,67 +3,49 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "base/parallel_counts.hpp"
+#include "base/counting_sort.hpp"
 #include "base/parallel_sort.hpp"
-#include "realmodel/base/growing_array.hpp"
 
 namespace realmodel {
 
 /// Sorts numbers that are spread more or less evenly, by a total order, in time that is linear
 /// there: they are put into buckets twice, and what is in one at last is a handful. However uneven
 /// they are, it is never much slower than parallel_sort.
-template <class Element, class Share, class Less>
+template <class Element, class Fraction, class Less>
 class BucketSort {
 public:
-    /// @param share  of an element, from 0 to 1: how much of the range lies before it. What is
-    /// before another must not have a larger share.
-    BucketSort(Share share, Less less) : share_(std::move(share)), less_(std::move(less)) {}
+    /// @param fraction  of an element, from 0 to 1: how much of the range lies before it. What is
+    /// before another must not have a larger one.
+    BucketSort(Fraction fraction, Less less)
+        : fraction_(std::move(fraction)), less_(std::move(less)) {}
 
     /// @param produce  produce(chunk, take) calls take(element) for all elements of a chunk; it is
     /// called twice for each
     template <class Produce>
-    GrowingArray<Element> sorted(std::size_t chunks, std::size_t expected, const Produce& produce,
-                                 int threads, const Progress* progress) const {
+    Array<Element> sorted(std::size_t chunks, std::size_t expected, const Produce& produce,
+                          int threads, const Progress* progress) const {
         const std::size_t buckets = std::clamp<std::size_t>(expected / kTogether, 1, kMostBuckets);
-        std::vector<std::vector<std::uint32_t>> filling(chunks);
-        parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
-            filling[chunk].resize(buckets);
-            produce(chunk, [&](const Element& e) { ++filling[chunk][bucket_of(e, buckets)]; });
-        });
-        std::vector<std::size_t> first{0};
-        std::size_t largest = 0;
+        const auto by_bucket = [&](std::size_t chunk, const auto& put) {
+            produce(chunk, [&](const Element& e) { put(bucket_of(e, buckets), e); });
+        };
+        auto made = bucketize_in_order<Element>(buckets, chunks, by_bucket, threads, progress);
         for (std::size_t b = 0; b < buckets; ++b) {
-            std::size_t next = first.back();
-            for (auto& of_chunk : filling) {
-                const std::uint32_t own = of_chunk[b];
-                of_chunk[b] = static_cast<std::uint32_t>(next);
-                next += own;
-            }
-            largest = std::max(largest, next - first.back());
-            first.push_back(next);
-        }
-        GrowingArray<Element> elements(first.back());
-        parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
-            produce(chunk, [&](const Element& e) {
-                elements[filling[chunk][bucket_of(e, buckets)]++] = e;
-            });
-            filling[chunk] = {};
-        });
-        if (largest > kMost) {
-            parallel_sort(elements, less_, threads, progress);
-            return elements;
+            if (made[b].size() <= kMost) continue;
+            parallel_sort(made.values, less_, threads, progress);
+            return std::move(made.values);
         }
         constexpr std::size_t kBuckets = 64;  // sorted at a time
-        parallel_ranges(
-            buckets, kBuckets, threads, progress, [&](std::size_t begin, std::size_t end) {
-                std::vector<Element> scratch;
-                std::vector<std::uint32_t> ends;
-                for (std::size_t b = begin; b < end; ++b)
-                    sort_bucket(elements, first[b], first[b + 1], b, buckets, scratch, ends);
-            });
-        return elements;
+        parallel_ranges(buckets, kBuckets, threads, progress,
+                        [&](std::size_t begin, std::size_t end) {
+                            std::vector<Element> scratch;
+                            std::vector<std::uint32_t> ends;
+                            for (std::size_t b = begin; b < end; ++b)
+                                sort_bucket(made[b], b, buckets, scratch, ends);
+                        });
+        return std::move(made.values);
     }
 
 private:
@@ -71,25 +53,24 @@ private:
                                  kMost = 1 << 18,  // in a bucket that one thread sorts
         kFew = 16;
 
-    double place(const Element& e, std::size_t buckets) const {
-        return share_(e) * static_cast<double>(buckets);
+    double position(const Element& e, std::size_t buckets) const {
+        return fraction_(e) * static_cast<double>(buckets);
     }
     std::size_t bucket_of(const Element& e, std::size_t buckets) const {
-        return std::min(static_cast<std::size_t>(place(e, buckets)), buckets - 1);
+        return std::min(static_cast<std::size_t>(position(e, buckets)), buckets - 1);
     }
 
-    void sort_bucket(GrowingArray<Element>& elements, std::size_t begin, std::size_t end,
-                     std::size_t bucket, std::size_t buckets, std::vector<Element>& scratch,
-                     std::vector<std::uint32_t>& ends) const {
-        Element* const first = elements.data() + begin;
-        const std::size_t count = end - begin;
+    void sort_bucket(std::span<Element> elements, std::size_t bucket, std::size_t buckets,
+                     std::vector<Element>& scratch, std::vector<std::uint32_t>& ends) const {
+        Element* const first = elements.data();
+        const std::size_t count = elements.size();
         if (count <= kFew) {
             std::sort(first, first + count, less_);
             return;
         }
         const double scale = static_cast<double>(count);
         const auto part_of = [&](const Element& e) {
-            const double in_bucket = place(e, buckets) - static_cast<double>(bucket);
+            const double in_bucket = position(e, buckets) - static_cast<double>(bucket);
             return std::min(static_cast<std::size_t>(in_bucket * scale), count - 1);
         };
         scratch.assign(first, first + count);
@@ -106,7 +87,7 @@ private:
         }
     }
 
-    Share share_;
+    Fraction fraction_;
     Less less_;
 };
 

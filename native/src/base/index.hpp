@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cassert>
+#include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -9,10 +11,11 @@
 
 namespace realmodel {
 
-/// A number of something as an index.
-inline std::size_t index(std::int32_t i) {
-    assert(i >= 0);
-    return static_cast<std::size_t>(i);
+/// A number that names something, such as a vertex, as an index into an array.
+template <std::signed_integral Id>
+constexpr std::size_t index(Id id) {
+    assert(id >= 0);
+    return static_cast<std::size_t>(id);
 }
 
 /// The number of the thing that is added to so many others.

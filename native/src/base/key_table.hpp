@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "realmodel/base/growing_array.hpp"
+#include "realmodel/base/array.hpp"
 
 namespace realmodel {
 
@@ -88,7 +88,7 @@ private:
 
     void grow() { resize(slots_.empty() ? 64 : slots_.size() * 2); }
     void resize(std::size_t slots) {
-        GrowingArray<Slot> old(slots, Slot{});
+        Array<Slot> old(slots, Slot{});
         std::swap(old, slots_);
         mask_ = slots - 1;
         for (const Slot& from : old) {
@@ -100,7 +100,7 @@ private:
         }
     }
 
-    GrowingArray<Slot> slots_;
+    Array<Slot> slots_;
     std::size_t mask_ = 0;
     std::int32_t size_ = 0;
 };

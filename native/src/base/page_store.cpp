@@ -2,11 +2,14 @@
 #include "realmodel/base/page_store.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <cassert>
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <mutex>
 #include <new>
+#include <utility>
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -18,30 +21,35 @@ namespace realmodel::page_store {
 
 namespace {
 
-char* advanced(void* place, std::size_t bytes) {
-    return static_cast<char*>(place) + bytes;
+constexpr std::size_t in_blocks(std::size_t bytes) {
+    return (bytes + kBlock - 1) / kBlock * kBlock;
 }
 
-void unmap(void* place, std::size_t bytes) noexcept {
-    if (bytes > 0) munmap(place, bytes);
+void unmap(char* begin, std::size_t bytes) noexcept {
+    if (bytes > 0) munmap(begin, bytes);
 }
 
-/// Untouched pages, at a place if one is given: there nothing may be, or what lies there goes.
+/// Untouched pages, whole blocks: these move by one entry of the page table each.
 /// @return nullptr where the system has none
-void* map(void* place, std::size_t bytes) noexcept {
-    const int fixed = place != nullptr ? MAP_FIXED : 0;
-    void* mapped = mmap(place, bytes, PROT_READ | PROT_WRITE,
-                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | fixed, -1, 0);
-    return mapped == MAP_FAILED ? nullptr : mapped;
+char* map(std::size_t bytes) noexcept {
+    void* const mapped = mmap(nullptr, bytes + kBlock, PROT_READ | PROT_WRITE,
+                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (mapped == MAP_FAILED) return nullptr;
+    const auto address = reinterpret_cast<std::uintptr_t>(mapped);
+    const std::size_t before = in_blocks(address) - address;
+    char* const begin = static_cast<char*>(mapped) + before;
+    unmap(static_cast<char*>(mapped), before);
+    unmap(begin + bytes, kBlock - before);
+    return begin;
 }
 
-/// Moves the pages of one block to another that was reserved. One block at a time, since pages
-/// that came from several places can be moved together by the newest systems only.
-bool move_block(void* from, void* to) noexcept {
-    if (mremap(from, kBlock, kBlock, MREMAP_MAYMOVE | MREMAP_FIXED, to) == to) return true;
-    // It may have gone after it had made room.
-    if (map(to, kBlock) == nullptr) std::abort();
-    return false;
+/// Moves the pages of one block to another one of ours, which is untouched. One block at a time,
+/// since pages that came from several ranges can be moved together by the newest systems only.
+/// Where it fails the system may have unmapped the target first, and another thread of the process
+/// may have mapped something else there since: it is not ours any more, and nothing here reads,
+/// writes, maps or unmaps it again.
+bool move_block(char* from, char* to) noexcept {
+    return mremap(from, kBlock, kBlock, MREMAP_MAYMOVE | MREMAP_FIXED, to) == to;
 }
 
 /// Ranges of kept blocks by their addresses.
@@ -71,26 +79,18 @@ public:
 
     void add(char* begin, std::size_t bytes) {
         if (bytes == 0) return;
-        auto next = ranges_.lower_bound(begin);
-        if (next != ranges_.begin()) {
-            const auto last = std::prev(next);
-            if (last->first + last->second == begin) {
-                begin = last->first;
-                bytes += last->second;
-                ranges_.erase(last);
-            }
-        }
-        if (next != ranges_.end() && begin + bytes == next->first) {
-            bytes += next->second;
-            ranges_.erase(next);
-        }
-        ranges_.emplace(begin, bytes);
+        const auto own = ranges_.emplace(begin, bytes).first;
+        if (const auto next = std::next(own); next != ranges_.end()) join(own, next);
+        if (own != ranges_.begin()) join(std::prev(own), own);
     }
 
-    void unmap_all() noexcept {
+    /// @return bytes that there were
+    std::size_t unmap_all() noexcept {
+        const std::size_t all = bytes();
         for (const auto& [begin, bytes] : ranges_)
             unmap(begin, bytes);
         ranges_.clear();
+        return all;
     }
 
     std::size_t bytes() const {
@@ -103,6 +103,12 @@ public:
 private:
     using Ranges = std::map<char*, std::size_t>;
 
+    /// Makes one range of two where they lie side by side.
+    void join(Ranges::iterator low, Ranges::iterator high) {
+        if (low->first + low->second != high->first) return;
+        low->second += high->second;
+        ranges_.erase(high);
+    }
     char* take_end(Ranges::iterator range, std::size_t bytes) {
         char* const begin = range->first + (range->second - bytes);
         range->second -= bytes;
@@ -113,10 +119,15 @@ private:
     Ranges ranges_;
 };
 
+/// Each moved block may become a mapping of its own, of which a process has 65,530 (Linux,
+/// vm.max_map_count): where more memory than this is held, blocks are neither kept nor moved.
+constexpr std::size_t kMostHeld = 30000 * kBlock;
+
 struct Store {
     std::mutex busy;
     int keepers = 0;
     KeptBlocks kept;
+    std::atomic<std::size_t> held{0};  ///< bytes of large arrays that are ready, and kept ones
 };
 
 /// Never destroyed: arrays may outlive everything else.
@@ -125,77 +136,97 @@ Store& store() {
     return *only;
 }
 
-}  // namespace
-
-void* reserve(std::size_t bytes) {
-    // Whole blocks move by one entry of the page table each.
-    void* const mapped = map(nullptr, bytes + kBlock);
-    if (mapped == nullptr) throw std::bad_alloc();
-    const auto address = reinterpret_cast<std::uintptr_t>(mapped);
-    const std::size_t before = in_blocks(address) - address;
-    char* const begin = advanced(mapped, before);
-    unmap(mapped, before);
-    unmap(begin + bytes, kBlock - before);
-    return begin;
+bool is_large(const Memory& memory) {
+    return memory.reserved >= kLargeArray;
 }
 
-void* take(std::size_t bytes) {
-    {
-        Store& all = store();
-        const std::lock_guard lock(all.busy);
-        if (char* whole = all.kept.take(bytes); whole != nullptr) return whole;
+/// Puts an array together again after a block could not be moved into `target`: what has arrived
+/// before it there and what is left of `memory` are copied to fresh pages.
+void copy_after_failure(Memory& memory, char* target, std::size_t arrived, std::size_t reserved) {
+    char* const fresh = map(reserved);
+    if (fresh != nullptr) {
+        std::memcpy(fresh, target, arrived);
+        if (memory.begin != target)
+            std::memcpy(fresh + arrived, memory.begin + arrived, memory.ready - arrived);
     }
-    void* const begin = reserve(bytes);
-    try {
-        give_blocks(begin, bytes);
-    } catch (...) {
-        unmap(begin, bytes);
-        throw;
+    unmap(target, arrived);
+    unmap(target + arrived + kBlock, reserved - arrived - kBlock);
+    if (memory.begin != target) unmap(memory.begin + arrived, memory.reserved - arrived);
+    if (fresh == nullptr) {
+        store().held -= memory.ready;
+        memory = {};
+        throw std::bad_alloc();
     }
-    return begin;
+    memory.begin = fresh;
+    memory.reserved = reserved;
 }
 
-void give_blocks(void* place, std::size_t bytes) {
+/// Moves kept blocks to where the memory will be ready, as many as there are.
+void move_kept(Memory& memory, std::size_t ready) {
     Store& all = store();
     const std::lock_guard lock(all.busy);
-    for (std::size_t given = 0; given < bytes;) {
-        const auto [range, size] = all.kept.take_some(bytes - given);
-        if (size == 0) return;
-        for (std::size_t at = 0; at < size; at += kBlock) {
-            if (!move_block(range + at, advanced(place, given + at))) {
-                all.kept.add(range + at, size - at);
-                return;
-            }
+    while (memory.ready < ready && all.held < kMostHeld) {
+        const auto [range, size] = all.kept.take_some(ready - memory.ready);
+        if (size == 0) break;
+        for (std::size_t at = 0; at < size; at += kBlock, memory.ready += kBlock) {
+            if (move_block(range + at, memory.begin + memory.ready)) continue;
+            unmap(range + at, size - at);
+            all.held -= size - at + all.kept.unmap_all();
+            copy_after_failure(memory, memory.begin, memory.ready, memory.reserved);
+            break;
         }
-        given += size;
     }
+    all.held += ready - memory.ready;
+    memory.ready = ready;
 }
 
-void move(void* from, std::size_t used, std::size_t reserved, void* to) noexcept {
-    for (std::size_t at = 0; at < used; at += kBlock) {
-        if (move_block(advanced(from, at), advanced(to, at))) continue;
-        std::memcpy(advanced(to, at), advanced(from, at), kBlock);
-        unmap(advanced(from, at), kBlock);
-    }
-    unmap(advanced(from, used), reserved - used);
-}
-
-void drop(void* array, std::size_t used, std::size_t reserved) noexcept {
-    if (array == nullptr) return;
+/// Gives a new array one kept range as it is.
+bool take_kept(Memory& memory, std::size_t bytes) {
     Store& all = store();
-    std::unique_lock lock(all.busy);
-    if (all.keepers > 0) {
-        unmap(advanced(array, used), reserved - used);
-        try {
-            all.kept.add(static_cast<char*>(array), used);
+    const std::lock_guard lock(all.busy);
+    char* const begin = all.kept.take(bytes);
+    if (begin != nullptr) memory = {begin, bytes, bytes};
+    return begin != nullptr;
+}
+
+void reserve_blocks(Memory& memory, std::size_t bytes) {
+    Memory moved{map(bytes), 0, bytes};
+    if (moved.begin == nullptr) throw std::bad_alloc();
+    if (is_large(memory) && store().held < kMostHeld) {
+        for (std::size_t at = 0; at < memory.ready; at += kBlock) {
+            if (move_block(memory.begin + at, moved.begin + at)) continue;
+            copy_after_failure(memory, moved.begin, at, bytes);
             return;
-        } catch (const std::bad_alloc&) {
-            reserved = used;
+        }
+        unmap(memory.begin + memory.ready, memory.reserved - memory.ready);
+        memory.begin = moved.begin;
+        memory.reserved = bytes;
+        return;
+    }
+    if (memory.ready > 0) {
+        make_ready(moved, memory.ready);
+        std::memcpy(moved.begin, memory.begin, memory.ready);
+    }
+    drop(memory);
+    memory = moved;
+}
+
+void drop_blocks(Memory& memory) noexcept {
+    Store& all = store();
+    const std::lock_guard lock(all.busy);
+    unmap(memory.begin + memory.ready, memory.reserved - memory.ready);
+    if (all.keepers > 0 && all.held < kMostHeld) {
+        try {
+            all.kept.add(memory.begin, memory.ready);
+            return;
+        } catch (const std::bad_alloc&) {  // for its entry
         }
     }
-    lock.unlock();
-    unmap(array, reserved);
+    all.held -= memory.ready;
+    unmap(memory.begin, memory.ready);
 }
+
+}  // namespace
 
 std::size_t kept() noexcept {
     Store& all = store();
@@ -212,21 +243,29 @@ Keeper::Keeper() {
 Keeper::~Keeper() {
     Store& all = store();
     const std::lock_guard lock(all.busy);
-    if (--all.keepers == 0) all.kept.unmap_all();
+    if (--all.keepers == 0) all.held -= all.kept.unmap_all();
 }
 
 #else
 
+namespace {
+
 // No array is large there.
-void* reserve(std::size_t) {
-    throw std::bad_alloc();
+bool is_large(const Memory&) {
+    return false;
 }
-void* take(std::size_t) {
-    throw std::bad_alloc();
+std::size_t in_blocks(std::size_t bytes) {
+    return bytes;
 }
-void give_blocks(void*, std::size_t) {}
-void move(void*, std::size_t, std::size_t, void*) noexcept {}
-void drop(void*, std::size_t, std::size_t) noexcept {}
+void reserve_blocks(Memory&, std::size_t) {}
+bool take_kept(Memory&, std::size_t) {
+    return false;
+}
+void move_kept(Memory&, std::size_t) {}
+void drop_blocks(Memory&) noexcept {}
+
+}  // namespace
+
 std::size_t kept() noexcept {
     return 0;
 }
@@ -234,5 +273,38 @@ Keeper::Keeper() = default;
 Keeper::~Keeper() = default;
 
 #endif
+
+void reserve(Memory& memory, std::size_t bytes) {
+    if (bytes <= memory.reserved) return;
+    if (bytes >= kLargeArray) {
+        reserve_blocks(memory, in_blocks(bytes));
+        return;
+    }
+    void* const moved = std::realloc(memory.begin, bytes);
+    if (moved == nullptr) throw std::bad_alloc();
+    memory = {static_cast<char*>(moved), bytes, bytes};
+}
+
+void make_ready(Memory& memory, std::size_t bytes) {
+    constexpr std::size_t kLeast = 64;
+    if (bytes <= memory.ready) return;
+    const bool is_new = memory.begin == nullptr && bytes >= kLargeArray;
+    if (is_new && take_kept(memory, in_blocks(bytes))) return;
+    if (bytes > memory.reserved) reserve(memory, std::max({bytes, memory.reserved * 2, kLeast}));
+    if (is_large(memory)) {
+        const std::size_t stepped = std::min(memory.ready + memory.ready / 16, memory.reserved);
+        move_kept(memory, in_blocks(std::max(bytes, stepped)));
+    }
+    assert(bytes <= memory.ready && memory.ready <= memory.reserved);
+}
+
+void drop(Memory& memory) noexcept {
+    if (is_large(memory)) {
+        drop_blocks(memory);
+    } else {
+        std::free(memory.begin);
+    }
+    memory = {};
+}
 
 }  // namespace realmodel::page_store

@@ -5,8 +5,8 @@
 #include <atomic>
 #include <vector>
 
-#include "base/flat_array.hpp"
 #include "base/parallel.hpp"
+#include "realmodel/base/array.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel {
@@ -35,7 +35,7 @@ inline void check_total(std::size_t vertices, std::uint64_t largest) {
 /// The same for many numbers; the last element becomes the sum of all.
 /// @throws InputError kind too_large, where the sum is more than `largest`
 template <class Number>
-void running_totals(FlatArray<Number>& counts, std::uint64_t largest, int threads,
+void running_totals(Array<Number>& counts, std::uint64_t largest, int threads,
                     const Progress* progress) {
     constexpr std::size_t kChunk = 1 << 16;
     const std::size_t count = counts.size() - 1;
@@ -61,8 +61,8 @@ void running_totals(FlatArray<Number>& counts, std::uint64_t largest, int thread
 
 /// An array of zeros.
 template <class Number>
-FlatArray<Number> zeros(std::size_t size, int threads, const Progress* progress) {
-    FlatArray<Number> array(size);
+Array<Number> zeros(std::size_t size, int threads, const Progress* progress) {
+    Array<Number> array(size);
     parallel_ranges(size, 1 << 18, threads, progress, [&](std::size_t begin, std::size_t end) {
         std::fill(array.begin() + begin, array.begin() + end, Number{});
     });

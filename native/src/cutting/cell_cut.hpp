@@ -70,8 +70,8 @@ private:
                        std::vector<std::int32_t>& root) const;
     std::int8_t side_of(std::size_t local, std::span<const PieceRef> refs) const;
     void add_uses_of_caps(const Polygons& caps, std::int32_t pieces);
-    static void join_at_edge(std::span<const Use> uses, std::int8_t side, std::int32_t pieces,
-                             DisjointSets& sets);
+    void join_at_edge(std::span<const Use> uses, std::int8_t side, std::int32_t pieces,
+                      DisjointSets& sets);
 
     const ComplexView& model_;
     const std::vector<std::int8_t>& sides_;
@@ -80,6 +80,7 @@ private:
     PlanePoints points_;
 
     std::vector<Use> uses_;
+    std::vector<const Use*> faces_at_edge_;
     std::vector<DirectedEdge> open_;
     std::vector<std::array<NodeId, 2>> slits_, dissolved_;
     std::vector<Loop> loops_;

@@ -40,7 +40,8 @@ void CellCutter::add_uses_of_caps(const Polygons& caps, std::int32_t pieces) {
 void CellCutter::join_at_edge(std::span<const Use> uses, std::int8_t side, std::int32_t pieces,
                               DisjointSets& sets) {
     const std::int32_t cap_side = side == kBelow ? 0 : 1;
-    std::vector<const Use*> faces;
+    auto& faces = faces_at_edge_;
+    faces.clear();
     for (const Use& use : uses) {
         if (use.local < pieces && use.side == side) faces.push_back(&use);
     }
@@ -84,7 +85,7 @@ bool CellCutter::find_parts(std::span<const PieceRef> refs, CellCut& result) {
         root[i] = sets.find(static_cast<std::int32_t>(i));
     attach_shells(refs, result, root);
     // a part that rounding has turned inside out may meet the one that it goes to along an edge
-    if (!model_.cells_are_blocks && !use_edges_twice(root, pieces)) return false;
+    if (model_.cell_kind != CellKind::kBlocks && !use_edges_twice(root, pieces)) return false;
 
     result.part.assign(count, -1);
     result.part_side.clear();

@@ -40,8 +40,7 @@ private:
 
 void assemble(const ComplexView& model, const std::vector<Position>& new_positions,
               const Pieces& pieces, const std::vector<HalfCell>& cells, std::int8_t half,
-              strata::CellComplex& complex, std::vector<std::int32_t>& origin,
-              const Progress* progress) {
+              CellComplex& complex, std::vector<std::int32_t>& origin, const Progress* progress) {
     std::vector<std::int32_t> number(cells.size(), -1);
     for (std::size_t i = 0; i < cells.size(); ++i) {
         if (cells[i].side != half) continue;
@@ -68,7 +67,7 @@ void assemble(const ComplexView& model, const std::vector<Position>& new_positio
         complex.face_cells.push_back(reversed ? std::array{own[1], -1} : own);
         const bool is_exposed = (own[0] < 0 || own[1] < 0) && pieces[p].cells[1] >= 0;
         complex.face_surface.push_back(is_exposed || pieces[p].face < 0
-                                           ? strata::kCutFace
+                                           ? kCutFace
                                            : model.face_surface[index(pieces[p].face)]);
     }
 }
@@ -90,8 +89,10 @@ Cut assemble_halves(const ComplexView& model, const std::vector<Position>& new_p
             cut.section = assemble_section(model, new_positions, pieces);
         }
     });
-    for (strata::CellComplex* half : {&cut.below, &cut.above})
+    for (CellComplex* half : {&cut.below, &cut.above}) {
+        half->cell_kind = model.cell_kind;
         half->volumes = strata::block_volumes(*half, model.blocks, threads, progress);
+    }
     return cut;
 }
 

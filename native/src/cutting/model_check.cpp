@@ -27,6 +27,7 @@ void check_model(const ComplexView& model) {
     const std::size_t faces = model.face_count();
     if (model.face_offsets.size() != faces + 1) refuse("face_offsets", "one more than faces");
     if (model.face_cells.size() != 2 * faces) refuse("face_cells", "two for each face");
+    if (model.face_surface.size() != faces) refuse("face_surface", "one for each face");
     if (model.face_offsets.front() != 0 ||
         model.face_offsets.back() != static_cast<std::int64_t>(model.face_vertices.size()))
         refuse("face_offsets", "they must end with face_vertices");

@@ -107,9 +107,9 @@ void PartRounding::glue_doubled() {
 void PartRounding::drop_hollow() {
     bool any = false;
     for (std::size_t part = 0; part < half_cells_.size(); ++part) {
-        if (first_[part + 1] - first_[part] != 2) continue;
-        const auto at = static_cast<std::size_t>(first_[part]);
-        const std::array both{index(pieces_of_[at]), index(pieces_of_[at + 1])};
+        const auto own_pieces = pieces_of_[part];
+        if (own_pieces.size() != 2) continue;
+        const std::array both{index(own_pieces[0]), index(own_pieces[1])};
         const auto number = static_cast<std::int32_t>(part);
         const bool has_both = both[0] != both[1] && std::ranges::all_of(both, [&](std::size_t p) {
                                   return std::ranges::count(pieces_[p].parts, number) == 1;
@@ -216,7 +216,7 @@ NodeId PartRounding::add_middle(std::size_t piece) {
     }
     if (!taken_.insert(middle).second) {
         const std::int32_t face = pieces_[piece].face;
-        const bool on_base = face >= 0 && model_.face_surface[index(face)] == strata::kBase;
+        const bool on_base = face >= 0 && model_.face_surface[index(face)] == kBase;
         middle = free_position_beside(middle, on_base ? Freedom::kLevel : Freedom::kAny, taken_);
     }
     new_positions_.push_back(middle);

@@ -44,7 +44,7 @@ bool PartRounding::is_changed(std::int32_t part) const {
 
 bool PartRounding::is_wall(std::size_t piece) const {
     const std::int32_t face = pieces_[piece].face;
-    return face >= 0 && model_.face_surface[index(face)] == strata::kWall;
+    return face >= 0 && model_.face_surface[index(face)] == kWall;
 }
 
 void PartRounding::run() {
@@ -71,36 +71,28 @@ void PartRounding::find_pieces_of_parts() {
         for (const NodeId node : pieces_.polygons[p])
             is_near_[index(node)] = 1;
     }
-    first_.assign(half_cells_.size() + 1, 0);
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        for (const std::int32_t part : pieces_[p].parts) {
-            if (part >= 0) ++first_[index(part) + 1];
-        }
         const std::int32_t face = pieces_[p].face;
         if (face < 0) continue;
         const std::int32_t surface = model_.face_surface[index(face)];
-        if (surface != strata::kBase && surface != strata::kWall) continue;
+        if (surface != kBase && surface != kWall) continue;
         for (const NodeId node : pieces_.polygons[p])
-            (surface == strata::kBase ? on_base_ : on_wall_)[index(node)] = 1;
+            (surface == kBase ? on_base_ : on_wall_)[index(node)] = 1;
     }
-    for (std::size_t part = 0; part < half_cells_.size(); ++part)
-        first_[part + 1] += first_[part];
-    pieces_of_.resize(static_cast<std::size_t>(first_.back()));
-    std::vector<std::int64_t> next(first_.begin(), first_.end() - 1);
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        for (const std::int32_t part : pieces_[p].parts) {
-            if (part >= 0)
-                pieces_of_[static_cast<std::size_t>(next[index(part)]++)] =
-                    static_cast<std::int32_t>(p);
+    pieces_of_ = grouped<std::int32_t>(half_cells_.size(), [this](const auto& visit) {
+        for (std::size_t p = 0; p < pieces_.size(); ++p) {
+            for (const std::int32_t part : pieces_[p].parts) {
+                if (part >= 0) visit(index(part), static_cast<std::int32_t>(p));
+            }
         }
-    }
+    });
 }
 
 /// A cutter that runs along the base but for rounding is taken to run along it: so do its nodes.
 void PartRounding::level_base() {
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const std::int32_t face = pieces_[p].face;
-        if (face < 0 || model_.face_surface[index(face)] != strata::kBase) continue;
+        if (face < 0 || model_.face_surface[index(face)] != kBase) continue;
         const double height = vertices_[index(model_.face(index(face))[0])][2];
         for (const NodeId node : pieces_.polygons[p]) {
             if (is_new(node)) moving(node)[2] = height;
@@ -132,7 +124,7 @@ bool PartRounding::stays_sound(std::int32_t part) const {
     std::vector<Use> uses;
     std::vector<std::vector<NodeId>> faces;
     Box box;
-    for (const std::int32_t own : pieces_of(index(part))) {
+    for (const std::int32_t own : pieces_of_[index(part)]) {
         const auto piece = index(own);
         std::vector<NodeId> loop = contracted(piece);
         if (loop.empty()) continue;
@@ -152,7 +144,8 @@ bool PartRounding::stays_sound(std::int32_t part) const {
     }
     std::sort(faces.begin(), faces.end());
     if (std::adjacent_find(faces.begin(), faces.end()) != faces.end()) return false;
-    if (model_.cells_are_blocks || touches_[half_cells_[index(part)].side == kAbove ? 1 : 0])
+    if (model_.cell_kind == CellKind::kBlocks ||
+        touches_[half_cells_[index(part)].side == kAbove ? 1 : 0])
         return true;
     std::sort(uses.begin(), uses.end());
     for (std::size_t i = 2; i < uses.size(); ++i) {
@@ -203,7 +196,7 @@ void PartRounding::keep_sound(const std::vector<NodeId>& contracted) {
         }
     }
     const auto each_contracted = [this](std::int32_t part, const auto& visit) {
-        for (const std::int32_t piece : pieces_of(index(part))) {
+        for (const std::int32_t piece : pieces_of_[index(part)]) {
             for (const NodeId node : pieces_.polygons[index(piece)]) {
                 if (becomes_[index(node)] != node) visit(node);
             }
@@ -288,7 +281,7 @@ void PartRounding::give_extents() {
         if (!is_changed(static_cast<std::int32_t>(part))) continue;
         nodes.clear();
         Box box;
-        for (const std::int32_t piece : pieces_of(part)) {
+        for (const std::int32_t piece : pieces_of_[part]) {
             for (const NodeId node : pieces_.polygons[index(piece)]) {
                 nodes.push_back(node);
                 box.include(at(node));

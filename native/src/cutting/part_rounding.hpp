@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/grouped_items.hpp"
 #include "cutting/halves.hpp"
 
 namespace realmodel::cutting {
@@ -31,10 +32,6 @@ private:
     bool is_changed(std::int32_t part) const;
     bool is_wall(std::size_t piece) const;
 
-    std::span<const std::int32_t> pieces_of(std::size_t part) const {
-        return {pieces_of_.data() + first_[part],
-                static_cast<std::size_t>(first_[part + 1] - first_[part])};
-    }
     void find_pieces_of_parts();
     void level_base();
     void contract();
@@ -67,8 +64,7 @@ private:
     std::vector<std::uint8_t> on_base_, on_wall_;  ///< of nodes
     std::vector<std::uint8_t> is_near_;     ///< of nodes: of a part that is less than its cell
     std::vector<std::uint8_t> is_doubled_;  ///< of pieces: another of a half has its nodes
-    std::vector<std::int64_t> first_;       ///< of parts, in pieces_of_
-    std::vector<std::int32_t> pieces_of_;   ///< the pieces around each part
+    GroupedItems<std::int32_t> pieces_of_;  ///< the pieces around each part
     std::set<Position> taken_;              ///< positions of nodes
 };
 

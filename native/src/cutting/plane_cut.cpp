@@ -372,7 +372,7 @@ bool PlaneCutter::straighten_walls() {
     for (std::size_t p = 0; p < first_cap_; ++p) {
         poll(progress_, p);
         const auto face = index(pieces_[p].face);
-        if (face_sides_[face] != kCut || model_.face_surface[face] != strata::kWall) continue;
+        if (face_sides_[face] != kCut || model_.face_surface[face] != kWall) continue;
         near.clear();
         corners.clear();
         for (const NodeId node : pieces_.polygons[p]) {

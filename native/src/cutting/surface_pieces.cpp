@@ -120,7 +120,7 @@ void SurfaceParts::divide(const Patch& patch, Polygons& polygons) {
     std::vector<Position> corners;
     for (const NodeId v : model.face(face))
         corners.push_back(model.vertex(v));
-    const bool is_wall = model.face_surface[face] == strata::kWall;
+    const bool is_wall = model.face_surface[face] == kWall;
     Polygons whole;
     if (!divide_loops(overlay_, polygon_normal(corners), patch.loops, is_wall, whole)) {
         whole.clear();

@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
 namespace realmodel::exact {
-
-// GMP takes whole numbers as long. Where that has 32 bits, as on Windows, they would be cut short
-// here and in short_integer.hpp without a word.
-static_assert(sizeof(long) == 8, "whole numbers have to go into GMP in two halves here");
 
 namespace {
 
@@ -38,7 +36,8 @@ int finest_exponent(double value, int exponent) {
 mpz_class whole_number(double value, int exponent) {
     int own = 0;
     const std::int64_t mantissa = odd_mantissa(value, own);
-    mpz_class result(static_cast<long>(mantissa));
+    mpz_class result = whole_number_of(static_cast<std::uint64_t>(std::abs(mantissa)));
+    if (mantissa < 0) result = -result;
     if (mantissa != 0 && own > exponent) result <<= static_cast<unsigned>(own - exponent);
     return result;
 }
@@ -61,7 +60,9 @@ double nearest_double(mpz_class num, mpz_class den, int exponent) {
     mpz_class quotient, rest;
     mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), num.get_mpz_t(), den.get_mpz_t());
     const int drop = bits(quotient) - 53;
-    auto whole = static_cast<std::uint64_t>(quotient.get_ui());  // at most 57 bits
+    assert(bits(quotient) <= 57);
+    std::uint64_t whole = 0;
+    mpz_export(&whole, nullptr, -1, sizeof whole, 0, 0, quotient.get_mpz_t());
     const std::uint64_t lost = whole & ((std::uint64_t{1} << drop) - 1);
     const std::uint64_t half = std::uint64_t{1} << (drop - 1);
     whole >>= drop;

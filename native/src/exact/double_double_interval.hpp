@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "exact/error_bounds.hpp"
+
 namespace realmodel::exact {
 
 /// A number known to about 32 decimal digits: the unevaluated sum `high + low` of two doubles
@@ -17,8 +19,7 @@ struct DoubleDoubleInterval {
     double error = 0.0;
 
     DoubleDoubleInterval() = default;
-    DoubleDoubleInterval(double value)
-        : high(value) {}  // NOLINT: an exact double is a ball of radius zero
+    DoubleDoubleInterval(double value) : high(value) {}  // NOLINT: an exact double
     DoubleDoubleInterval(double high_part, double low_part, double bound)
         : high(high_part), low(low_part), error(bound) {}
 
@@ -35,14 +36,14 @@ struct DoubleDoubleInterval {
     /// The sign of the true value, or nothing where zero lies within the bound.
     std::optional<int> sign() const {
         if (is_exact_zero()) return 0;
-        const double size = std::abs(high) * (1.0 - 0x1p-50);
+        const double size = std::abs(high) * (1.0 - kNarrowing);
         if (size > error) return high > 0.0 ? 1 : -1;
         return std::nullopt;
     }
 
     /// The double nearest to the true value, or nothing where the bound leaves two to choose from.
     std::optional<double> rounded() const {
-        const double slack = error * (1.0 + 0x1p-40) + std::abs(low) * 0x1p-50;
+        const double slack = error * (kBoundSlack) + std::abs(low) * kNarrowing;
         const double up = high + (low + slack);
         const double down = high + (low - slack);
         if (up == down && std::isfinite(up)) return up;
@@ -59,7 +60,7 @@ struct DoubleDoubleInterval {
         const double tail = ((a.high - (s - bb)) + (b.high - bb)) + (a.low + b.low);
         const double hi = s + tail;
         return {hi, tail - (hi - s),
-                a.error + b.error + kUnit * (std::abs(a.high) + std::abs(b.high))};
+                a.error + b.error + kDoubleDoubleUnit * (std::abs(a.high) + std::abs(b.high))};
     }
     friend DoubleDoubleInterval operator-(const DoubleDoubleInterval& a,
                                           const DoubleDoubleInterval& b) {
@@ -73,8 +74,8 @@ struct DoubleDoubleInterval {
         const double hi = p + tail;
         return {hi, tail - (hi - p),
                 (std::abs(a.high) * b.error + std::abs(b.high) * a.error + a.error * b.error) *
-                        (1.0 + 0x1p-40) +
-                    kUnit * std::abs(p) + kTiny};
+                        (kBoundSlack) +
+                    kDoubleDoubleUnit * std::abs(p) + kDoubleDoubleUnderflow};
     }
     friend DoubleDoubleInterval operator/(const DoubleDoubleInterval& a,
                                           const DoubleDoubleInterval& b) {
@@ -85,20 +86,15 @@ struct DoubleDoubleInterval {
             DoubleDoubleInterval(q) * DoubleDoubleInterval(b.high, b.low, 0.0);
         const double correction = rest.high / b.high;
         const double hi = q + correction;
-        const double divisor = std::abs(b.high) * (1.0 - 0x1p-40) - b.error;
+        const double divisor = std::abs(b.high) * (2.0 - kBoundSlack) - b.error;
         const double bound = divisor > 0.0
-                                 ? ((a.error + std::abs(q) * b.error) / divisor) * (1.0 + 0x1p-40) +
-                                       kUnit * 8 * std::abs(q) + kTiny
+                                 ? ((a.error + std::abs(q) * b.error) / divisor) * (kBoundSlack) +
+                                       kDoubleDoubleUnit * 8 * std::abs(q) + kDoubleDoubleUnderflow
                                  : HUGE_VAL;
         return {hi, correction - (hi - q), bound};
     }
 
 private:
-    // Double-double sums and products err by a few 2^-104 of their operands; 2^-98 is generous.
-    static constexpr double kUnit = 0x1p-98;
-    // Covers what underflow may lose.
-    static constexpr double kTiny = 1e-280;
-
     /// a * b - p exactly, where p is the rounded product (Dekker 1971, without a fused operation so
     /// that every machine gives the same bits).
     static double product_tail(double a, double b, double p) {

@@ -14,13 +14,6 @@ using Extended = long double;
 // What is small is always inlined: to pass extended numbers through memory costs more than to
 // calculate with them.
 
-/// Bound on the relative error of one operation: 2^-64, and a little for what bounds lose to their
-/// own rounding. The exponents of extended numbers are so wide that nothing made of a few doubles
-/// leaves them; where a bound itself overflows nothing is known.
-constexpr double kUnit = 0x1.01p-64;
-/// Covers what the bounds lose where doubles underflow.
-constexpr double kTiny = 0x1p-1000;
-
 /// Whether operations round to 64 bits here, as they may not under an emulator or where another
 /// library changed the precision.
 bool is_extended() {
@@ -39,7 +32,7 @@ const bool kExtended = is_extended();
 [[gnu::always_inline]] inline ExtendedInterval sum(const ExtendedInterval& a,
                                                    const ExtendedInterval& b) {
     const Extended value = a.value + b.value;
-    return {value, a.error + b.error + kUnit * size(value)};
+    return {value, a.error + b.error + kExtendedUnit * size(value)};
 }
 
 [[gnu::always_inline]] inline ExtendedInterval operator-(const ExtendedInterval& a) {
@@ -54,31 +47,34 @@ const bool kExtended = is_extended();
     const Extended st = s.value * t.value, uv = u.value * v.value;
     const double error = size(s.value) * t.error + (size(t.value) + t.error) * s.error +
                          size(u.value) * v.error + (size(v.value) + v.error) * u.error +
-                         3 * kUnit * (size(st) + size(uv));
-    return {st - uv, error == 0 && st == 0 && uv == 0 ? 0 : error + kTiny};
+                         3 * kExtendedUnit * (size(st) + size(uv));
+    return {st - uv, error == 0 && st == 0 && uv == 0 ? 0 : error + kExtendedUnderflow};
 }
 
 /// The same of differences of doubles, each of which errs by one unit: three for a product.
 [[gnu::always_inline]] inline ExtendedInterval determinant(Extended s, Extended t, Extended u,
                                                            Extended v) {
     const Extended st = s * t, uv = u * v;
-    return {st - uv, st == 0 && uv == 0 ? 0 : 5 * kUnit * (size(st) + size(uv)) + kTiny};
+    return {st - uv, st == 0 && uv == 0
+                         ? 0
+                         : 5 * kExtendedUnit * (size(st) + size(uv)) + kExtendedUnderflow};
 }
 
 [[gnu::always_inline]] inline ExtendedInterval quotient(const ExtendedInterval& numerator,
                                                         const ExtendedInterval& denominator) {
-    const double least = size(denominator.value) * (1 - 0x1p-50) - denominator.error;
+    const double least = size(denominator.value) * (1 - kNarrowing) - denominator.error;
     if (!(least > 0)) return {0, HUGE_VAL};
     const Extended value = numerator.value / denominator.value;
     const double error =
-        (numerator.error + size(value) * denominator.error) / least + kUnit * size(value);
-    return {value, error == 0 && value == 0 ? 0 : error + kTiny};
+        (numerator.error + size(value) * denominator.error) / least + kExtendedUnit * size(value);
+    return {value, error == 0 && value == 0 ? 0 : error + kExtendedUnderflow};
 }
 
 /// The double nearest to the true value, or nothing where the bound leaves two to choose from.
 std::optional<double> nearest(Extended value, double error) {
-    const double slack =
-        error == 0 ? 0 : error * (1 + 0x1p-40) + 2 * kUnit * size(value) + 8 * kTiny;
+    const double slack = error == 0 ? 0
+                                    : error * (kBoundSlack) + 2 * kExtendedUnit * size(value) +
+                                          8 * kExtendedUnderflow;
     const auto up = static_cast<double>(value + slack);
     const auto down = static_cast<double>(value - slack);
     if (up == down && std::isfinite(up)) return up + 0.0;  // 0 is not negative
@@ -111,7 +107,7 @@ NearGradient near_gradient(const PlanArrangement& g, PlaneId plane) {
 /// b - a of doubles.
 [[gnu::always_inline]] inline ExtendedInterval difference(double a, double b) {
     const Extended value = Extended(b) - a;
-    return {value, kUnit * size(value)};
+    return {value, kExtendedUnit * size(value)};
 }
 
 /// Which share of the way along the first of two edges lies before their crossing.
@@ -131,9 +127,10 @@ NearGradient near_gradient(const PlanArrangement& g, PlaneId plane) {
                                                        Extended along) {
     const Extended value = share.value * along;
     const bool exact = along == 0 || (share.error == 0 && value == 0);
-    return ExtendedInterval{
-        value,
-        exact ? 0 : size(along) * share.error * (1 + 0x1p-40) + 3 * kUnit * size(value) + kTiny};
+    return ExtendedInterval{value, exact
+                                       ? 0
+                                       : size(along) * share.error * (kBoundSlack) +
+                                             3 * kExtendedUnit * size(value) + kExtendedUnderflow};
 }
 
 /// Where two edges cross, relative to the first one's first vertex.
@@ -170,7 +167,7 @@ std::optional<double> nearest_sum(double from, const ExtendedInterval& value) {
     if (!kExtended) return std::nullopt;
     const Extended whole = from + value.value;
     const bool exact = value.error == 0 && value.value == 0;
-    return nearest(whole, exact ? 0 : value.error + kUnit * size(whole));
+    return nearest(whole, exact ? 0 : value.error + kExtendedUnit * size(whole));
 }
 
 std::optional<double> near_height(const PlanArrangement& g, PlaneId plane, const NearPoint& p) {
@@ -192,10 +189,11 @@ std::optional<double> near_edge_height(const PlanArrangement& g, SpaceId from, S
     const ExtendedInterval rise = difference(s.z, t.z);
     const Extended product = way.value * rise.value;
     const double error = size(way.value) * rise.error +
-                         (size(rise.value) + rise.error) * way.error + kUnit * size(product);
+                         (size(rise.value) + rise.error) * way.error +
+                         kExtendedUnit * size(product);
     const bool exact = error == 0 && product == 0;
-    return nearest_sum(s.z,
-                       quotient({product, exact ? 0 : error + kTiny}, is_x ? along_x : along_y));
+    return nearest_sum(
+        s.z, quotient({product, exact ? 0 : error + kExtendedUnderflow}, is_x ? along_x : along_y));
 }
 
 std::optional<double> near_height_of_crossing(const PlanArrangement& g, SpaceId from, SpaceId to,
@@ -215,7 +213,7 @@ std::optional<double> near_height_of_crossing(const PlanArrangement& g, SpaceId 
 std::optional<std::array<double, 3>> near_line_key(const NearLine& l) {
     if (!kExtended) return std::nullopt;
     const double a = size(l.a.value), b = size(l.b.value);
-    const double either = l.a.error + l.b.error + 0x1p-50 * (a + b);
+    const double either = l.a.error + l.b.error + kNarrowing * (a + b);
     const bool steep = a - b > either;
     if (!steep && !(b - a > either)) return std::nullopt;
     const ExtendedInterval& divisor = steep ? l.a : l.b;

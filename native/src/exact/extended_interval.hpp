@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "exact/plan_arrangement.hpp"
+#include "exact/local_arrangement.hpp"
 
 // Lines, planes and points in extended precision (64 bits of mantissa, as on x86), each with bounds
 // on its errors. Enough to round nearly all coordinates at a fraction of what twice the precision

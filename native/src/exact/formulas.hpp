@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "exact/plan_arrangement.hpp"
+#include "exact/local_arrangement.hpp"
 
 // The formulas of plan lines, crossings and heights, written once for every kind of number. An
 // `Arithmetic` gives differences of input coordinates in its number type: dx(v, o), dy(v, o) of

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "exact/plan_arrangement.hpp"
+#include "exact/local_arrangement.hpp"
 
 namespace realmodel::exact {
 

@@ -14,6 +14,13 @@ namespace realmodel::exact {
 __extension__ typedef __int128 Int128;
 __extension__ typedef unsigned __int128 UInt128;
 
+/// A number of 64 bits as GMP's, whose own constructors take a `long`: on Windows 32 bits.
+inline mpz_class whole_number_of(std::uint64_t number) {
+    mpz_class result;
+    mpz_import(result.get_mpz_t(), 1, -1, sizeof number, 0, 0, &number);
+    return result;
+}
+
 /// A whole number of up to 126 bits, with a bound on how many it has: one that might have more is
 /// not known. Input on a lattice gives small numbers, where every tie is asked exactly; they need
 /// no memory of their own.
@@ -30,9 +37,9 @@ public:
     mpz_class to_mpz() const {
         const UInt128 size =
             value_ < 0 ? -static_cast<UInt128>(value_) : static_cast<UInt128>(value_);
-        mpz_class result(static_cast<unsigned long>(size >> 64));
+        mpz_class result = whole_number_of(static_cast<std::uint64_t>(size >> 64));
         result <<= 64;
-        result += static_cast<unsigned long>(size);
+        result += whole_number_of(static_cast<std::uint64_t>(size));
         return value_ < 0 ? mpz_class(-result) : result;
     }
 

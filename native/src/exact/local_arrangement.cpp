@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "exact/local_arrangement.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -6,7 +8,6 @@
 
 #include "exact/arithmetic.hpp"
 #include "exact/formulas.hpp"
-#include "exact/plan_arrangement.hpp"
 
 namespace realmodel::exact {
 
@@ -36,7 +37,7 @@ bool LocalArrangement::is_right_by(const LineFilter& trace, PointId id, double d
     const Point& p = point(id);
     const double dx = p.x - trace.x0, dy = p.y - trace.y0;
     const double value = trace.a * dx + trace.b * dy + trace.c;
-    return value + difference < -64 * trace.error_at(dx, dy, p.error());
+    return value + difference < -kFarTimes * trace.error_at(dx, dy, p.error());
 }
 
 // Whether an input vertex lies on an input edge because both products of the determinant vanish, as
@@ -168,6 +169,7 @@ bool LocalArrangement::same_line(LineId a, LineId b) {
     if (a == b) return true;
     if (line(a).kind == Line::Kind::kTrace) std::swap(a, b);
     const Line l = line(a), m = line(b);
+    if (l.kind == m.kind && l.first == m.first && l.second == m.second) return true;
     if (l.kind == Line::Kind::kEdge) {
         return side(directed(b, false), l.first) == 0 && side(directed(b, false), l.second) == 0;
     }
@@ -222,15 +224,8 @@ int LocalArrangement::compare(int axis, PointId a, PointId b) {
 }
 
 DirectedLine LocalArrangement::trace(PlaneId upper, PlaneId lower) {
-    const Line l{Line::Kind::kTrace, std::min(upper, lower), std::max(upper, lower)};
-    const auto found = line_table_.insert(line_key_of(l), [&](std::int32_t number) {
-        return line_key_of(lines_[static_cast<std::size_t>(number)]);
-    });
-    if (found.is_new) {
-        lines_.push_back(l);
-        filters_.push_back(shared_.trace_filter(l.first, l.second));
-    }
-    return directed(kLocal + found.number, upper > lower);
+    const LineId id = find_or_add_trace(std::min(upper, lower), std::max(upper, lower));
+    return directed(id, upper > lower);
 }
 
 PointId LocalArrangement::crossing(LineId a, LineId b) {
@@ -273,79 +268,7 @@ PointId LocalArrangement::crossing_between_ends(LineId a, LineId b) {
             p.pierced = one[0] >= 0 ? trace_line.second : trace_line.first;
         }
     }
-    const auto found = point_table_.insert(point_key_of(p), [&](std::int32_t number) {
-        return point_key_of(points_[static_cast<std::size_t>(number)]);
-    });
-    if (found.is_new) {
-        locate(p);
-        points_.push_back(p);
-    }
-    return kLocal + found.number;
-}
-
-void LocalArrangement::ask_for_local_line(LineId id) {
-    const auto local = static_cast<std::size_t>(id - kLocal);
-    if (line_ids_.size() < lines_.size()) line_ids_.resize(lines_.size(), kKept);
-    line_ids_[local] = kAsked;
-    asked_lines_.push_back(static_cast<std::int32_t>(local));
-}
-
-void LocalArrangement::ask_for_local_point(PointId id) {
-    const auto local = static_cast<std::size_t>(id - kLocal);
-    if (point_ids_.size() < points_.size()) point_ids_.resize(points_.size(), kKept);
-    point_ids_[local] = kAsked;
-    asked_points_.push_back(static_cast<std::int32_t>(local));
-    mark_line_used(points_[local].first);
-    mark_line_used(points_[local].second);
-}
-
-void LocalArrangement::commit(PlanArrangement& geometry) {
-    constexpr std::size_t kAhead = 12;
-    receiver_ = &geometry;
-    line_ids_.resize(lines_.size(), kKept);
-    point_ids_.resize(points_.size(), kKept);
-    const auto line_asked = [&](std::size_t i) {
-        return static_cast<std::size_t>(asked_lines_[i]);
-    };
-    for (std::size_t i = 0; i < asked_lines_.size(); ++i) {
-        if (i + kAhead < asked_lines_.size()) geometry.prefetch(lines_[line_asked(i + kAhead)]);
-        shared_line(kLocal + asked_lines_[i]);
-    }
-    // Of some points at a time, all places in the table are fetched before the first is needed:
-    // what takes time is to find their pages of memory, and the machine looks for several at once.
-    std::array<const void*, 64> place;
-    for (std::size_t begin = 0; begin < asked_points_.size(); begin += place.size()) {
-        const std::size_t count = std::min(place.size(), asked_points_.size() - begin);
-        for (std::size_t i = 0; i < count; ++i) {
-            Point& point = points_[static_cast<std::size_t>(asked_points_[begin + i])];
-            point.first = shared_line(point.first);
-            point.second = shared_line(point.second);
-            place[i] = geometry.place_of_name(point);
-        }
-        for (std::size_t i = 0; i < count; ++i)
-            __builtin_prefetch(place[i]);
-        for (std::size_t i = 0; i < count; ++i)
-            shared_point(kLocal + asked_points_[begin + i]);
-    }
-}
-
-LineId LocalArrangement::shared_local_line(LineId id) {
-    const auto local = static_cast<std::size_t>(id - kLocal);
-    LineId& shared = line_ids_[local];
-    if (shared < 0) shared = receiver_->add_line(lines_[local]);
-    return shared;
-}
-
-PointId LocalArrangement::shared_local_point(PointId id) {
-    const auto local = static_cast<std::size_t>(id - kLocal);
-    PointId& shared = point_ids_[local];
-    if (shared < 0) {
-        Point p = points_[local];
-        p.first = shared_line(p.first);
-        p.second = shared_line(p.second);
-        shared = receiver_->add_point(p);
-    }
-    return shared;
+    return find_or_add_point(p, [&](Point& at) { locate(at); });
 }
 
 }  // namespace realmodel::exact

@@ -9,18 +9,12 @@
 
 namespace realmodel::exact {
 
-namespace {
-
-constexpr double kEpsilon = 0x1p-52;  // twice the unit roundoff, so that products of bounds fit in
-
-void check_room(std::size_t count, const char* what) {
-    if (count >= static_cast<std::size_t>(kLocal)) {
-        throw InputError("too_large", std::string("the model needs more than 500 million ") + what +
-                                          "; build it in parts or with a coarser mesh");
-    }
+void check_ids(std::size_t count, const char* what, std::size_t most) {
+    if (count <= most) return;
+    throw InputError("too_large", "the model needs more than " + std::to_string(most / 1000000) +
+                                      " million " + what +
+                                      "; build it in parts or with a coarser mesh");
 }
-
-}  // namespace
 
 void PlanArrangement::expect_vertices(std::size_t count) {
     points_.reserve(count);
@@ -53,7 +47,7 @@ VertexId PlanArrangement::add_vertex(double x, double y) {
         return position_key(vertex.x, vertex.y);
     });
     if (found.is_new) {
-        check_room(points_.size(), "positions");
+        check_ids(points_.size() + 1, "positions");
         Point vertex;
         vertex.x = x == 0.0 ? 0.0 : x;
         vertex.y = y == 0.0 ? 0.0 : y;
@@ -67,7 +61,10 @@ SpaceId PlanArrangement::add_space_vertex(VertexId plan, double z) {
         const SpaceVertex& vertex = space_[static_cast<std::size_t>(number)];
         return height_key(vertex.plan, vertex.z);
     });
-    if (found.is_new) space_.push_back({plan, z == 0.0 ? 0.0 : z});
+    if (found.is_new) {
+        check_ids(space_.size() + 1, "vertices");
+        space_.push_back({plan, z == 0.0 ? 0.0 : z});
+    }
     return found.number;
 }
 
@@ -78,6 +75,7 @@ PlaneId PlanArrangement::add_plane(const std::array<SpaceId, 3>& corner) {
 }
 
 PlaneId PlanArrangement::make_planes(std::size_t count) {
+    check_ids(planes_.size() + count, "triangles");
     const auto first = static_cast<PlaneId>(planes_.size());
     planes_.resize(planes_.size() + count);
     plane_filters_.resize(planes_.size());
@@ -96,20 +94,20 @@ void PlanArrangement::set_plane(PlaneId plane, const std::array<SpaceId, 3>& cor
     const double ux = x1 - x0, uy = y1 - y0, uz = space(corner[1]).z - z0;
     const double vx = x2 - x0, vy = y2 - y0, vz = space(corner[2]).z - z0;
     const double c = ux * vy - uy * vx;
-    const double error_c = 4 * kEpsilon * (std::abs(ux * vy) + std::abs(uy * vx)) + 1e-290;
+    const double error_c = kDeterminant * (std::abs(ux * vy) + std::abs(uy * vx)) + kTermUnderflow;
     const double least = std::abs(c) - error_c;
     PlaneFilter filter;
     filter.gx = -(uy * vz - uz * vy) / c;
     filter.gy = -(uz * vx - ux * vz) / c;
-    const double error_a = 4 * kEpsilon * (std::abs(uy * vz) + std::abs(uz * vy)) + 1e-290;
-    const double error_b = 4 * kEpsilon * (std::abs(uz * vx) + std::abs(ux * vz)) + 1e-290;
-    const bool safe = least > 0.0;
-    filter.error_x = safe ? (error_a + std::abs(filter.gx) * error_c) / least * (1 + 0x1p-40) +
-                                kEpsilon * std::abs(filter.gx)
-                          : HUGE_VAL;
-    filter.error_y = safe ? (error_b + std::abs(filter.gy) * error_c) / least * (1 + 0x1p-40) +
-                                kEpsilon * std::abs(filter.gy)
-                          : HUGE_VAL;
+    const double error_a = kDeterminant * (std::abs(uy * vz) + std::abs(uz * vy)) + kTermUnderflow;
+    const double error_b = kDeterminant * (std::abs(uz * vx) + std::abs(ux * vz)) + kTermUnderflow;
+    const auto error_of = [&](double gradient, double error) {
+        if (!(least > 0.0)) return HUGE_VAL;
+        const double size = std::abs(gradient);
+        return (error + size * error_c) / least * kBoundSlack + kEpsilon * size;
+    };
+    filter.error_x = error_of(filter.gx, error_a);
+    filter.error_y = error_of(filter.gy, error_b);
     planes_[static_cast<std::size_t>(plane)] = {
         corner, {space(corner[0]).plan, space(corner[1]).plan, space(corner[2]).plan}};
     plane_filters_[static_cast<std::size_t>(plane)] = filter;
@@ -134,10 +132,11 @@ void PlanArrangement::freeze_vertices() {
         r.height = (r.high_y - r.low_y) * (1 + kEpsilon);
         const double largest = std::max(
             {std::abs(r.low_x), std::abs(r.high_x), std::abs(r.low_y), std::abs(r.high_y)});
-        r.point_error = largest * 0x1p-53 + 1e-300;
+        r.point_error = rounding_error(largest);
         const auto edge_error = [&](double way) {
-            return ((1 + kEpsilon) * (r.point_error + kEpsilon * way) + 5 * kEpsilon * way) *
-                   (1 + 0x1p-40);
+            return ((1 + kEpsilon) * (r.point_error + kEpsilon * way) +
+                    (kEpsilon + kLineValue) * way) *
+                   kBoundSlack;
         };
         r.edge_x = edge_error(r.width);
         r.edge_y = edge_error(r.height);
@@ -149,9 +148,8 @@ void PlanArrangement::freeze_vertices() {
 }
 
 void PlanArrangement::forget_names() {
-    edges_of_vertex_ = crossings_of_line_ = {};
+    edges_of_vertex_ = {};
     line_table_ = point_table_ = {};
-    names_forgotten_ = true;
 }
 
 void PlanArrangement::forget_all() {
@@ -163,45 +161,15 @@ void PlanArrangement::forget_all() {
     lines_ = {};
 }
 
-void PlanArrangement::remember_names() {
-    names_forgotten_ = false;
-    for (std::size_t l = 0; l < lines_.size(); ++l)
-        find_or_add_line(lines_[l], static_cast<std::int32_t>(l));
-    for (std::size_t p = vertex_count_; p < points_.size(); ++p)
-        find_or_add_crossing(points_[p], static_cast<std::int32_t>(p - vertex_count_));
-}
-
-/// The number of a line with this name, `next` where it is new.
-std::int32_t PlanArrangement::find_or_add_line(const Line& line, std::int32_t next) {
-    const auto line_at = [&](std::int32_t number) -> const Line& {
-        return lines_[static_cast<std::size_t>(number)];
-    };
-    if (line.kind == Line::Kind::kEdge) {
-        const std::int32_t number = edges_of_vertex_.find_or_add(
-            line.first, next, [&](std::int32_t n) { return line_at(n).second == line.second; });
-        if (number != OwnedNames::kElsewhere) return number;
+/// The line with this name, `next` where it is new.
+LineId PlanArrangement::find_or_add_line(const Line& wanted, LineId next) {
+    if (wanted.kind == Line::Kind::kEdge) {
+        const LineId known = edges_of_vertex_.find_or_add(
+            wanted.first, next, [&](LineId id) { return line(id).second == wanted.second; });
+        if (known != OwnedNames::kElsewhere) return known;
     }
     return line_table_
-        .insert(line_key_of(line), next, [&](std::int32_t n) { return line_key_of(line_at(n)); })
-        .number;
-}
-
-/// The number of a crossing with this name, counted from the first, `next` where it is new.
-std::int32_t PlanArrangement::find_or_add_crossing(const Point& point, std::int32_t next) {
-    const auto point_at = [&](std::int32_t number) -> const Point& {
-        return points_[vertex_count_ + static_cast<std::size_t>(number)];
-    };
-    if (point.edge_from < 0) {
-        const LineId older = std::min(point.first, point.second);
-        const std::int32_t number = crossings_of_line_.find_or_add(
-            std::max(point.first, point.second), next, [&](std::int32_t n) {
-                return std::min(point_at(n).first, point_at(n).second) == older;
-            });
-        if (number != OwnedNames::kElsewhere) return number;
-    }
-    return point_table_
-        .insert(point_key_of(point), next,
-                [&](std::int32_t n) { return point_key_of(point_at(n)); })
+        .insert(line_key_of(wanted), next, [&](LineId id) { return line_key_of(line(id)); })
         .number;
 }
 
@@ -212,25 +180,27 @@ DirectedLine PlanArrangement::add_edge(VertexId from, VertexId to) {
 }
 
 LineId PlanArrangement::add_line(const Line& line) {
-    if (names_forgotten_) remember_names();
     const auto next = static_cast<LineId>(lines_.size());
     const LineId id = find_or_add_line(line, next);
-    if (id == next) {
-        check_room(lines_.size(), "lines");
-        lines_.push_back(line);
-    }
+    if (id == next) set_line(append(1, 0).line, line);
     return id;
 }
 
-PointId PlanArrangement::add_point(const Point& point) {
-    if (names_forgotten_) remember_names();
-    const auto next = static_cast<std::int32_t>(points_.size() - vertex_count_);
-    const std::int32_t number = find_or_add_crossing(point, next);
-    if (number == next) {
-        check_room(points_.size(), "points");
-        points_.push_back(point);
-    }
-    return number + static_cast<PointId>(vertex_count_);
+PointId PlanArrangement::add_point(const Point& wanted) {
+    const auto next = static_cast<PointId>(points_.size());
+    const auto found = point_table_.insert(point_key_of(wanted), next,
+                                           [&](PointId id) { return point_key_of(point(id)); });
+    if (found.is_new) set_point(append(0, 1).point, wanted);
+    return found.number;
+}
+
+PlanArrangement::Appended PlanArrangement::append(std::size_t lines, std::size_t points) {
+    check_ids(lines_.size() + lines, "lines");
+    check_ids(points_.size() + points, "points");
+    const Appended first{static_cast<LineId>(lines_.size()), static_cast<PointId>(points_.size())};
+    lines_.resize(lines_.size() + lines);
+    points_.resize(points_.size() + points);
+    return first;
 }
 
 LineFilter PlanArrangement::edge_filter(VertexId from, VertexId to) const {
@@ -264,9 +234,9 @@ LineFilter PlanArrangement::trace_filter(PlaneId first, PlaneId second) const {
     const double rise_x = q.gx * dx, rise_y = q.gy * dy;
     f.c = (sp.z - sq.z) - (rise_x + rise_y);
     f.error_c =
-        q.error_x * std::abs(dx) * (1 + 0x1p-40) + q.error_y * std::abs(dy) * (1 + 0x1p-40) +
-        4 * kEpsilon * (std::abs(sp.z) + std::abs(sq.z) + std::abs(rise_x) + std::abs(rise_y)) +
-        1e-290;
+        (q.error_x * std::abs(dx) + q.error_y * std::abs(dy)) * kBoundSlack +
+        kPlaneHeight * (std::abs(sp.z) + std::abs(sq.z) + std::abs(rise_x) + std::abs(rise_y)) +
+        kTermUnderflow;
     return f;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/key_table.hpp"
+#include "exact/error_bounds.hpp"
 #include "exact/owned_names.hpp"
 #include "realmodel/base/growing_array.hpp"
 
@@ -28,8 +29,15 @@ using LineId = std::int32_t;
 /// Index of a plan point; ids below the number of plan vertices are those vertices.
 using PointId = std::int32_t;
 
-/// First id of lines and points that a LocalArrangement holds for itself.
+/// First id of lines and points that a LocalArrangement holds for itself; of all kinds of things
+/// there may be as many as there are ids below it.
 inline constexpr std::int32_t kLocal = 1 << 29;
+
+/// To be called before there are `count` things of a kind.
+/// @param what  their name, for the user
+/// @throws InputError kind too_large, where there are not so many ids
+void check_ids(std::size_t count, const char* what,
+               std::size_t most = static_cast<std::size_t>(kLocal));
 
 /// A line with a direction: `line * 2 + reversed`. Its left side is positive.
 using DirectedLine = std::int32_t;
@@ -74,15 +82,20 @@ struct LineFilter {
     /// Bound on the error of the value at a point that is up to (dx, dy) from (x0, y0), and whose
     /// coordinates err by up to point_error.
     double error_at(double dx, double dy, double point_error) const {
-        constexpr double kEpsilon = 0x1p-52;
         const double way_x = std::abs(dx), way_y = std::abs(dy);
         const double slope_x = std::abs(a), slope_y = std::abs(b);
-        return (slope_x + error_a) * (point_error + kEpsilon * way_x) +
-               (slope_y + error_b) * (point_error + kEpsilon * way_y) + error_a * way_x +
-               error_b * way_y + error_c +
-               4 * kEpsilon * (slope_x * way_x + slope_y * way_y + std::abs(c)) + 1e-290;
+        return ((slope_x + error_a) * (point_error + kEpsilon * way_x) +
+                (slope_y + error_b) * (point_error + kEpsilon * way_y) + error_a * way_x +
+                error_b * way_y + error_c +
+                kLineValue * (slope_x * way_x + slope_y * way_y + std::abs(c)) + kTermUnderflow) *
+               kBoundSlack;
     }
 };
+
+/// How far a coordinate may be from the double of this size that is nearest to it.
+inline double rounding_error(double size) {
+    return size * kUnitRoundoff + kCoordinateUnderflow;
+}
 
 /// A plan point: an input vertex, or the crossing of two lines.
 struct Point {
@@ -101,7 +114,7 @@ struct Point {
 
     /// Bound on the distance from the true position in x and in y.
     double error() const {
-        return first < 0 ? 0 : std::max(std::abs(x), std::abs(y)) * 0x1p-53 + 1e-300;
+        return first < 0 ? 0 : rounding_error(std::max(std::abs(x), std::abs(y)));
     }
 };
 
@@ -130,26 +143,6 @@ inline KeyTable::Key point_key_of(const Point& point) {
     if (point.edge_from >= 0) return {0, point.edge_from, point.edge_to, point.pierced};
     return {1, std::min(point.first, point.second), std::max(point.first, point.second), 0};
 }
-
-/// A number in extended precision and a bound on its error.
-struct ExtendedInterval {
-    long double value;
-    double error;
-};
-
-/// A plan point relative to a plan vertex.
-struct NearPoint {
-    VertexId origin;
-    ExtendedInterval x, y;
-};
-
-/// What is known of the height of a plane above a point without arithmetic; planes with equal names
-/// are equally high there. A space vertex twice: it stands there; two of them, ascending: an input
-/// edge between the two passes there; -1 and a plane: nothing but that it is as high as that plane.
-struct HeightName {
-    std::int32_t first, second;
-    friend bool operator==(const HeightName&, const HeightName&) = default;
-};
 
 /// A space vertex: a plan vertex and a height.
 struct SpaceVertex {
@@ -181,7 +174,7 @@ struct Plane {
 struct PlanReach {
     double low_x = HUGE_VAL, low_y = HUGE_VAL, high_x = -HUGE_VAL, high_y = -HUGE_VAL;
     double width = 0, height = 0, point_error = 0;
-    /// |a| and |b| of an edge's filter times these, and a trifle for underflow, bound its error at
+    /// |a| and |b| of an edge's filter times these, and what underflow may take, bound its error at
     /// any point in the box: LineFilter::error_at with all that the edges have in common taken out.
     double edge_x = 0, edge_y = 0;
 
@@ -216,8 +209,8 @@ public:
     /// then on none may be added.
     void freeze_vertices();
 
-    /// Gives back the memory that finds lines and points by name, for when hardly any will be asked
-    /// for; it is made again for the first that is.
+    /// Gives back the memory that finds lines and points by name. No edge may be added any more;
+    /// other lines and points become new ones, whatever their names.
     void forget_names();
     /// Gives all memory back, for when nothing but the vertex count and the counts of decisions
     /// will be asked for.
@@ -225,9 +218,23 @@ public:
 
     /// The line through two plan vertices, made where it is new, directed from `from` to `to`.
     DirectedLine add_edge(VertexId from, VertexId to);
+    /// A line, and the crossing of two different lines that are not parallel; found by name where
+    /// it was added by these before.
     LineId add_line(const Line& line);
-    /// The crossing of two different lines that are not parallel, made where it is new.
     PointId add_point(const Point& point);
+    /// The first ids of lines and points that are appended.
+    struct Appended {
+        LineId line;
+        PointId point;
+    };
+    /// Appends so many lines and points that nobody looks for by name. Each has to be set before it
+    /// is used, by any thread.
+    /// @throws InputError kind too_large
+    Appended append(std::size_t lines, std::size_t points);
+    void set_line(LineId id, const Line& line) { lines_[static_cast<std::size_t>(id)] = line; }
+    void set_point(PointId id, const Point& point) {
+        points_[static_cast<std::size_t>(id)] = point;
+    }
     /// Makes room for so many more lines and points than there are. While there is room for what is
     /// added, what was there may be read by other threads.
     void make_room(std::size_t lines, std::size_t points);
@@ -243,16 +250,7 @@ public:
         space_table_.prefetch(height_key(plan, z));
     }
     [[gnu::always_inline]] void prefetch_edge(VertexId from, VertexId to) const {
-        prefetch(Line{Line::Kind::kEdge, std::min(from, to), std::max(from, to)});
-    }
-    [[gnu::always_inline]] void prefetch(const Line& line) const {
-        __builtin_prefetch(line.kind == Line::Kind::kEdge ? edges_of_vertex_.place(line.first)
-                                                          : line_table_.place(line_key_of(line)));
-    }
-    /// What is to be fetched before a point is added.
-    const void* place_of_name(const Point& point) const {
-        return point.edge_from < 0 ? crossings_of_line_.place(std::max(point.first, point.second))
-                                   : point_table_.place(point_key_of(point));
+        __builtin_prefetch(edges_of_vertex_.place(std::min(from, to)));
     }
 
     VertexId vertex_count() const { return static_cast<VertexId>(vertex_count_); }
@@ -281,11 +279,11 @@ public:
 
     const PlanReach& reach() const { return reach_; }
 
-    /// A difference of heights beside which nothing that rounding does shows. Where faces are so
-    /// far apart, they need no vertices at each other's: a wall between them with rounded corners
-    /// on one side only still stands upright to 2^-22.
+    /// A difference of heights beside which all rounding is small. Where faces are so far apart,
+    /// they need no vertices at each other's: a wall between them with rounded corners on one side
+    /// only is still vertical to 2^-22.
     double clear_height(double largest_height) const {
-        return 0x1p-40 * largest_height + 0x1p24 * reach_.point_error;
+        return kClearHeight * largest_height + kClearPositions * reach_.point_error;
     }
 
     /// Binary exponents that make every x and y, and every z, a whole number.
@@ -308,166 +306,17 @@ private:
     GrowingArray<Plane> planes_;
     GrowingArray<PlaneFilter> plane_filters_;
     GrowingArray<Line> lines_;
-    void remember_names();
-    std::int32_t find_or_add_line(const Line& line, std::int32_t next);
-    std::int32_t find_or_add_crossing(const Point& point, std::int32_t next);
+    LineId find_or_add_line(const Line& line, LineId next);
 
     KeyTable vertex_table_, space_table_;
-    /// Edges by their lower vertex and crossings by the younger line. The tables have other lines,
-    /// crossings with other names, and what their owners have too many of.
-    OwnedNames edges_of_vertex_, crossings_of_line_;
+    /// Edges by their lower vertex. The table has the other lines, and edges of which a vertex has
+    /// too many.
+    OwnedNames edges_of_vertex_;
     KeyTable line_table_, point_table_;
-    bool names_forgotten_ = false;
     std::size_t vertex_count_ = 0;
     PlanReach reach_;
     int plan_exponent_ = 0, height_exponent_ = 0;
     mutable std::atomic<std::uint64_t> exact_decisions_{0}, all_decisions_{0};
-};
-
-/// One thread's view of the geometry: everything shared, and the lines and points that this thread
-/// found, under ids from kLocal on until they are handed over. All questions are asked here.
-class LocalArrangement {
-public:
-    explicit LocalArrangement(const PlanArrangement& geometry) : shared_(geometry) {}
-    ~LocalArrangement() { shared_.count_decisions(decisions_, exact_); }
-    LocalArrangement(const LocalArrangement&) = delete;
-    LocalArrangement& operator=(const LocalArrangement&) = delete;
-
-    /// Makes room for so many points that this scope may find, at once.
-    void expect_points(std::size_t count) {
-        points_.reserve(count);
-        point_table_.reserve(count);
-    }
-
-    const PlanArrangement& shared() const { return shared_; }
-    const Line& line(LineId id) const {
-        return id < kLocal ? shared_.line(id) : lines_[static_cast<std::size_t>(id - kLocal)];
-    }
-    LineFilter filter(LineId id) const {
-        return id < kLocal ? shared_.filter(id) : filters_[static_cast<std::size_t>(id - kLocal)];
-    }
-    const Point& point(PointId id) const {
-        return id < kLocal ? shared_.point(id) : points_[static_cast<std::size_t>(id - kLocal)];
-    }
-    bool is_vertex(PointId id) const { return id < shared_.vertex_count(); }
-
-    /// On which side of a directed line a point lies: 1 left, 0 on it, -1 right. The predicate that
-    /// every decision comes down to: the sign of a 3 x 3 determinant of plan lines.
-    int side(DirectedLine line, PointId point);
-    /// The sign of the height of plane `upper` less that of plane `lower` above a point.
-    int compare_heights(PlaneId upper, PlaneId lower, PointId point);
-    /// The same with the filter of their trace at hand; the trace itself need not exist.
-    int compare_heights(PlaneId upper, PlaneId lower, const LineFilter& trace, PointId point);
-    /// Whether a point lies to the left of a line, or a trace, that need not exist; where floating
-    /// point does not tell, it says no.
-    bool is_left_for_certain(const LineFilter& line, PointId id) const {
-        return filtered_side(line, point(id)) == 1;
-    }
-    /// Whether a point lies to the right of a trace by more than a difference of heights and many
-    /// times what rounding makes of it.
-    bool is_right_by(const LineFilter& trace, PointId id, double difference) const;
-    /// Whether two points are in the same place.
-    bool same_place(PointId a, PointId b);
-    /// Whether two lines run through the same places.
-    bool same_line(LineId a, LineId b);
-    /// Signs of the direction (x, y) in which a line runs.
-    std::array<int, 2> direction_signs(LineId line);
-    /// The sign of b - a in x (axis 0) or y (axis 1), exactly.
-    int compare(int axis, PointId a, PointId b);
-
-    /// The point where two lines cross, which must exist. Input vertices and edges that pierce a
-    /// plane are recognised by name.
-    PointId crossing(LineId a, LineId b);
-    /// The same where no input vertex is the crossing: between the ends of an edge on one of them
-    /// and the ends of an edge on the other.
-    PointId crossing_between_ends(LineId a, LineId b);
-    /// Where two planes are equally high; positive where `upper` is above `lower`.
-    DirectedLine trace(PlaneId upper, PlaneId lower);
-
-    /// The doubles nearest to a point's true coordinates: the same for every way to name the place.
-    std::array<double, 2> rounded(PointId point);
-    /// By what the height of a plane above a point is known; planes that are equally high may still
-    /// have different names.
-    HeightName height_name(PlaneId plane, PointId point) const;
-
-    /// Where a point lies, as closely as is cheap to say; for several heights above it.
-    NearPoint near(PointId point) const;
-    /// The double nearest to the height of a plane above a point.
-    double rounded_height(PlaneId plane, PointId point);
-    /// The same where the name says an input edge, and the point is where it crosses another; or
-    /// nothing. The quickest of all.
-    std::optional<double> rounded_height_of_crossing(const HeightName& name, PointId point) const;
-    double rounded_height(PlaneId plane, PointId point, const NearPoint& near);
-    /// The same of a plane whose height there is known by a name.
-    double rounded_height(PlaneId plane, const HeightName& name, PointId point,
-                          const NearPoint& near);
-    /// Slope and offset of a line, rounded: equal for lines that run through the same places.
-    std::array<double, 3> line_key(LineId line);
-
-    /// Counts signs that were told without `side`.
-    void count_decisions(std::size_t count) { decisions_ += count; }
-    /// How many decisions of this scope floating point left to exact arithmetic.
-    std::uint64_t exact_decisions() const { return exact_; }
-
-    /// Asks for a line or point, which may be local, to be handed over.
-    void mark_line_used(LineId id) {
-        if (id >= kLocal && is_kept(line_ids_, id)) ask_for_local_line(id);
-    }
-    void mark_point_used(PointId id) {
-        if (id >= kLocal && is_kept(point_ids_, id)) ask_for_local_point(id);
-    }
-    /// Hands the local lines and points over to the geometry that were asked for; what nobody asks
-    /// for stays behind. Nothing new may be found afterwards.
-    void commit(PlanArrangement& geometry);
-    /// Whether the geometry has room for what was asked for.
-    bool has_room_in(const PlanArrangement& geometry) const {
-        return geometry.has_room(asked_lines_.size(), asked_points_.size());
-    }
-    /// The shared id of a line or point, which may be local; handed over now if nobody asked
-    /// before.
-    LineId shared_line(LineId id) {
-        if (id < kLocal) return id;
-        const LineId shared = line_ids_[static_cast<std::size_t>(id - kLocal)];
-        return shared >= 0 ? shared : shared_local_line(id);
-    }
-    DirectedLine shared_directed(DirectedLine id) {
-        return directed(shared_line(line_of(id)), is_reversed(id));
-    }
-    PointId shared_point(PointId id) {
-        if (id < kLocal) return id;
-        const PointId shared = point_ids_[static_cast<std::size_t>(id - kLocal)];
-        return shared >= 0 ? shared : shared_local_point(id);
-    }
-
-private:
-    /// Instead of a shared id.
-    static constexpr std::int32_t kKept = -1, kAsked = -2;
-    static bool is_kept(const std::vector<std::int32_t>& ids, std::int32_t id) {
-        const auto local = static_cast<std::size_t>(id - kLocal);
-        return local >= ids.size() || ids[local] == kKept;
-    }
-    void ask_for_local_line(LineId id);
-    void ask_for_local_point(PointId id);
-    LineId shared_local_line(LineId id);
-    PointId shared_local_point(PointId id);
-    int filtered_side(const LineFilter& line, const Point& point) const;
-    bool vanishes(const LineFilter& edge, const Point& vertex) const;
-    bool runs_along(const LineFilter& edge, const Point& crossing) const;
-    int exact_side(const Line& line, PointId point);
-    bool on_trace_by_name(PlaneId a, PlaneId b, const Point& point) const;
-    NearPoint near(const Point& point) const;
-    void locate(Point& point);
-
-    const PlanArrangement& shared_;
-    std::vector<Line> lines_;
-    std::vector<LineFilter> filters_;
-    std::vector<Point> points_;
-    KeyTable line_table_, point_table_;
-    PlanArrangement* receiver_ = nullptr;
-    std::vector<LineId> line_ids_;  ///< shared ones, or kKept or kAsked
-    std::vector<PointId> point_ids_;
-    std::vector<std::int32_t> asked_lines_, asked_points_;  ///< local, in order
-    std::uint64_t decisions_ = 0, exact_ = 0;
 };
 
 }  // namespace realmodel::exact

@@ -8,7 +8,7 @@
 #include "exact/arithmetic.hpp"
 #include "exact/extended_interval.hpp"
 #include "exact/formulas.hpp"
-#include "exact/plan_arrangement.hpp"
+#include "exact/local_arrangement.hpp"
 
 namespace realmodel::exact {
 

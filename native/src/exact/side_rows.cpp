@@ -23,9 +23,8 @@ RowFilter row_filter(const LocalArrangement& scope, DirectedLine line) {
     const LineFilter f = scope.filter(line_of(line));
     const double sign = is_reversed(line) ? -1.0 : 1.0;
     const PlanReach& reach = scope.shared().reach();
-    return {sign * f.a, sign * f.b,
-            sign * f.c, f.x0,
-            f.y0,       f.error_at(reach.width, reach.height, reach.point_error) * (1 + 0x1p-40)};
+    return {sign * f.a, sign * f.b, sign * f.c,
+            f.x0,       f.y0,       f.error_at(reach.width, reach.height, reach.point_error)};
 }
 
 Sides complete(LocalArrangement& scope, Sides known, const PointRow& points, DirectedLine line) {

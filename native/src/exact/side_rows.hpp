@@ -11,7 +11,7 @@
 #include <emmintrin.h>
 #endif
 
-#include "exact/plan_arrangement.hpp"
+#include "exact/local_arrangement.hpp"
 
 // Points or lines side by side, so that one question is asked of all of them at once: most are
 // answered by floating point, two at a time; the rest one by one, exactly. These are the questions
@@ -82,8 +82,9 @@ RowFilter row_filter(const LocalArrangement& scope, DirectedLine line);
 /// That of the line through two input vertices, whatever it is made of.
 inline RowFilter row_filter_between(const PlanReach& reach, const Point& from, const Point& to) {
     const double a = from.y - to.y, b = to.x - from.x;
-    return {a,      b,      0,
-            from.x, from.y, std::abs(a) * reach.edge_x + std::abs(b) * reach.edge_y + 2e-290};
+    return {a,      b,
+            0,      from.x,
+            from.y, std::abs(a) * reach.edge_x + std::abs(b) * reach.edge_y + 2 * kTermUnderflow};
 }
 
 inline RowFilter row_filter(const LocalArrangement& scope, const DirectedEdge& edge) {

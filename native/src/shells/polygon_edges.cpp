@@ -3,6 +3,8 @@
 #include <string>
 #include <utility>
 
+#include "base/counting_sort.hpp"
+#include "base/index.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/shells/shells.hpp"
 
@@ -57,26 +59,17 @@ void for_each_side(std::span<const std::int32_t> offsets, std::span<const std::i
 PolygonEdges polygon_edges(std::span<const std::int32_t> offsets,
                            std::span<const std::int32_t> corners, std::size_t vertices) {
     require_in_range(offsets, corners, vertices);
-    std::vector<std::int32_t> begins(vertices + 1, 0);  // of the uses of each lower vertex
-    for_each_side(offsets, corners, [&](std::size_t, std::int32_t lower, std::int32_t) {
-        ++begins[static_cast<std::size_t>(lower) + 1];
+    auto uses = bucketize<Use>(vertices, [&](const auto& put) {  // by the lower vertex
+        for_each_side(offsets, corners,
+                      [&](std::size_t corner, std::int32_t lower, std::int32_t upper) {
+                          put(index(lower), Use{upper, static_cast<std::int32_t>(corner)});
+                      });
     });
-    for (std::size_t v = 0; v < vertices; ++v)
-        begins[v + 1] += begins[v];
-    std::vector<Use> uses(corners.size());
-    {
-        std::vector<std::int32_t> next(begins.begin(), begins.end() - 1);
-        for_each_side(
-            offsets, corners, [&](std::size_t corner, std::int32_t lower, std::int32_t upper) {
-                auto& at = next[static_cast<std::size_t>(lower)];
-                uses[static_cast<std::size_t>(at++)] = {upper, static_cast<std::int32_t>(corner)};
-            });
-    }
     PolygonEdges found;
     found.edges.reserve(corners.size() / 2 + 1);
     found.of_corner.resize(corners.size());
     for (std::size_t v = 0; v < vertices; ++v) {
-        const std::span<Use> some(uses.data() + begins[v], uses.data() + begins[v + 1]);
+        const std::span<Use> some = uses[v];
         const bool sorted = some.size() > kFewUses;
         if (sorted) std::ranges::stable_sort(some, {}, &Use::upper);
         const std::size_t first = found.edges.size();
@@ -87,7 +80,7 @@ PolygonEdges polygon_edges(std::span<const std::int32_t> offsets,
                 ++edge;
             if (edge == found.edges.size())
                 found.edges.push_back({static_cast<std::int32_t>(v), use.upper});
-            found.of_corner[static_cast<std::size_t>(use.corner)] = static_cast<std::int32_t>(edge);
+            found.of_corner[index(use.corner)] = static_cast<std::int32_t>(edge);
         }
     }
     return found;

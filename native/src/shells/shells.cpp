@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -20,61 +21,51 @@ using Position = std::array<double, 3>;
 struct Side {
     std::int32_t face;
     std::int32_t cell;
-    bool turned;  ///< the cell is the face's second
+    bool reversed;  ///< the cell is the face's second
 };
 
-std::span<const std::int32_t> corners_of(const Complex& complex, std::int32_t face) {
-    const auto f = static_cast<std::size_t>(face);
-    const auto begin = static_cast<std::size_t>(complex.face_offsets[f]);
-    return complex.face_vertices.subspan(
-        begin, static_cast<std::size_t>(complex.face_offsets[f + 1]) - begin);
-}
-
-void require_in_range(const Complex& complex, std::size_t blocks, const Progress* progress) {
+void require_in_range(const ComplexView& complex, const Progress* progress) {
     const auto refuse = [](std::size_t face, const char* what) {
         throw InputError("bad_index", "face " + std::to_string(face) + " " + what, -1,
                          {static_cast<std::int64_t>(face)});
     };
-    const std::size_t faces = complex.face_cells.size();
+    const std::size_t faces = complex.face_count();
     if (complex.face_offsets.size() != faces + 1) refuse(faces, "has no offset, or one too many");
     for (std::size_t f = 0; f < faces; ++f) {
         poll(progress, f);
         const auto begin = complex.face_offsets[f], end = complex.face_offsets[f + 1];
         if (begin < 0 || begin > end || std::cmp_greater(end, complex.face_vertices.size()))
             refuse(f, "has corners that are not there");
-        for (const std::int32_t v : corners_of(complex, static_cast<std::int32_t>(f))) {
-            if (v < 0 || std::cmp_greater_equal(v, complex.vertices.size()))
+        for (const std::int32_t v : complex.face(f)) {
+            if (v < 0 || std::cmp_greater_equal(v, complex.vertex_count()))
                 refuse(f, "names a vertex that is not there");
         }
-        const auto [first, second] = complex.face_cells[f];
-        for (const std::int32_t cell : {first, second}) {
-            if (cell < -1 || std::cmp_greater_equal(cell, complex.cell_block.size()))
+        for (const std::int32_t cell : {complex.cell(f, 0), complex.cell(f, 1)}) {
+            if (cell < -1 || std::cmp_greater_equal(cell, complex.cell_count()))
                 refuse(f, "names a cell that is not there");
         }
     }
     for (const std::int32_t block : complex.cell_block) {
-        if (block < 0 || std::cmp_greater_equal(block, blocks))
+        if (block < 0 || std::cmp_greater_equal(block, complex.blocks))
             throw InputError("bad_index", "a cell names a block that is not there", -1, {});
     }
 }
 
 /// The sides of all faces by the block of their cell, in the order of the faces.
 /// @param between_blocks  leave out faces that have one block on both sides
-std::vector<std::vector<Side>> sides_by_block(const Complex& complex, std::size_t blocks,
-                                              bool between_blocks, const Progress* progress) {
-    std::vector<std::vector<Side>> found(blocks);
-    const auto block_of = [&](std::int32_t cell) {
-        return cell < 0 ? -1 : complex.cell_block[static_cast<std::size_t>(cell)];
-    };
-    for (std::size_t f = 0; f < complex.face_cells.size(); ++f) {
+std::vector<std::vector<Side>> sides_by_block(const ComplexView& complex, bool between_blocks,
+                                              const Progress* progress) {
+    std::vector<std::vector<Side>> found(complex.blocks);
+    for (std::size_t f = 0; f < complex.face_count(); ++f) {
         poll(progress, f);
-        const auto& cells = complex.face_cells[f];
-        if (between_blocks && block_of(cells[0]) == block_of(cells[1])) continue;
-        for (const bool turned : {false, true}) {
-            const std::int32_t cell = cells[turned ? 1 : 0];
+        if (between_blocks &&
+            complex.block(complex.cell(f, 0)) == complex.block(complex.cell(f, 1)))
+            continue;
+        for (const bool reversed : {false, true}) {
+            const std::int32_t cell = complex.cell(f, reversed ? 1 : 0);
             if (cell < 0) continue;
-            found[static_cast<std::size_t>(block_of(cell))].push_back(
-                {static_cast<std::int32_t>(f), cell, turned});
+            found[index(complex.block(cell))].push_back(
+                {static_cast<std::int32_t>(f), cell, reversed});
         }
     }
     return found;
@@ -110,9 +101,9 @@ private:
 };
 
 /// Adds a face's corners, as numbers of the complex, and its row.
-void add_polygon(const Complex& complex, const Side& side, Shell& shell) {
-    const auto corners = corners_of(complex, side.face);
-    if (side.turned) {
+void add_polygon(const ComplexView& complex, const Side& side, Shell& shell) {
+    const auto corners = complex.face(index(side.face));
+    if (side.reversed) {
         shell.corners.insert(shell.corners.end(), corners.rbegin(), corners.rend());
     } else {
         shell.corners.insert(shell.corners.end(), corners.begin(), corners.end());
@@ -121,10 +112,10 @@ void add_polygon(const Complex& complex, const Side& side, Shell& shell) {
     shell.faces.push_back(side.face);
 }
 
-Shell begun(const Complex& complex, std::span<const Side> sides) {
+Shell begun(const ComplexView& complex, std::span<const Side> sides) {
     std::size_t corners = 0;
     for (const Side& side : sides)
-        corners += corners_of(complex, side.face).size();
+        corners += complex.face(index(side.face)).size();
     if (std::cmp_greater(corners, std::numeric_limits<std::int32_t>::max()))
         throw InputError("too_large", "a block has more than 2^31 corners of faces", -1, {});
     Shell shell;
@@ -140,28 +131,27 @@ std::array<float, 3> offset_from(const Position& origin, const Position& at) {
             static_cast<float>(at[2] - origin[2])};
 }
 
-Shell block_shell(const Complex& complex, std::span<const Side> sides, const Position& origin) {
+Shell block_shell(const ComplexView& complex, std::span<const Side> sides, const Position& origin) {
     Shell shell = begun(complex, sides);
     if (sides.empty()) return shell;
-    Numbering number(complex.vertices.size());
+    Numbering number(complex.vertex_count());
     for (const Side& side : sides) {
         add_polygon(complex, side, shell);
-        for (const std::int32_t v : corners_of(complex, side.face))
+        for (const std::int32_t v : complex.face(index(side.face)))
             number.use(v);
     }
     shell.coordinates.resize(number.count());
     for (std::int32_t& corner : shell.corners) {
         const std::int32_t vertex = corner;
         corner = number(vertex);
-        shell.coordinates[static_cast<std::size_t>(corner)] =
-            offset_from(origin, complex.vertices[static_cast<std::size_t>(vertex)]);
+        shell.coordinates[index(corner)] = offset_from(origin, complex.vertex(vertex));
     }
     shell.edges = polygon_edges(shell.offsets, shell.corners, shell.coordinates.size());
     return shell;
 }
 
 /// Gives the corners of a cell, from `begin` on, vertices of their own.
-void separate(const Complex& complex, std::size_t begin, double shrink, const Position& origin,
+void separate(const ComplexView& complex, std::size_t begin, double shrink, const Position& origin,
               std::vector<std::int32_t>& used, Shell& shell) {
     const std::span<std::int32_t> corners(
         shell.corners.begin() + static_cast<std::ptrdiff_t>(begin), shell.corners.end());
@@ -171,15 +161,15 @@ void separate(const Complex& complex, std::size_t begin, double shrink, const Po
     Position mean{};
     for (const std::int32_t v : used) {
         for (std::size_t axis = 0; axis < 3; ++axis)
-            mean[axis] += complex.vertices[static_cast<std::size_t>(v)][axis] - origin[axis];
+            mean[axis] += complex.vertex(v)[axis] - origin[axis];
     }
     const auto first = static_cast<std::int32_t>(shell.coordinates.size());
     for (const std::int32_t v : used) {
         std::array<float, 3> at{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double centre = mean[axis] / static_cast<double>(used.size());
-            const double here = complex.vertices[static_cast<std::size_t>(v)][axis] - origin[axis];
-            at[axis] = static_cast<float>(centre + shrink * (here - centre));
+            const double center = mean[axis] / static_cast<double>(used.size());
+            const double here = complex.vertex(v)[axis] - origin[axis];
+            at[axis] = static_cast<float>(center + shrink * (here - center));
         }
         shell.coordinates.push_back(at);
     }
@@ -188,7 +178,7 @@ void separate(const Complex& complex, std::size_t begin, double shrink, const Po
                  static_cast<std::int32_t>(std::ranges::lower_bound(used, corner) - used.begin());
 }
 
-Shell shell_of_cells(const Complex& complex, std::vector<Side>& sides, double shrink,
+Shell shell_of_cells(const ComplexView& complex, std::vector<Side>& sides, double shrink,
                      const Position& origin, const Progress* progress) {
     std::ranges::stable_sort(sides, {}, &Side::cell);
     Shell shell = begun(complex, sides);
@@ -209,23 +199,23 @@ Shell shell_of_cells(const Complex& complex, std::vector<Side>& sides, double sh
 
 }  // namespace
 
-std::vector<Shell> block_shells(const Complex& complex, std::size_t blocks, const Position& origin,
-                                int threads, const Progress* progress) {
-    require_in_range(complex, blocks, progress);
-    const auto sides = sides_by_block(complex, blocks, true, progress);
-    std::vector<Shell> shells(blocks);
-    parallel_chunks(blocks, threads, progress, [&](std::size_t block) {
+std::vector<Shell> block_shells(const ComplexView& complex, const Position& origin, int threads,
+                                const Progress* progress) {
+    require_in_range(complex, progress);
+    const auto sides = sides_by_block(complex, true, progress);
+    std::vector<Shell> shells(complex.blocks);
+    parallel_chunks(complex.blocks, threads, progress, [&](std::size_t block) {
         shells[block] = block_shell(complex, sides[block], origin);
     });
     return shells;
 }
 
-std::vector<Shell> cell_shells(const Complex& complex, std::size_t blocks, double shrink,
-                               const Position& origin, int threads, const Progress* progress) {
-    require_in_range(complex, blocks, progress);
-    auto sides = sides_by_block(complex, blocks, false, progress);
-    std::vector<Shell> shells(blocks);
-    parallel_chunks(blocks, threads, progress, [&](std::size_t block) {
+std::vector<Shell> cell_shells(const ComplexView& complex, double shrink, const Position& origin,
+                               int threads, const Progress* progress) {
+    require_in_range(complex, progress);
+    auto sides = sides_by_block(complex, false, progress);
+    std::vector<Shell> shells(complex.blocks);
+    parallel_chunks(complex.blocks, threads, progress, [&](std::size_t block) {
         shells[block] = shell_of_cells(complex, sides[block], shrink, origin, progress);
         sides[block] = {};
     });

@@ -54,6 +54,7 @@ CellComplex build_rock_masses(std::span<const StackInput> rocks, int threads, Pr
         result = cells == CellKind::kBlocks ? build_blocks(site, threads, progress)
                                             : build_columns(site, threads, progress);
     }
+    result.cell_kind = cells;
     result.volumes =
         block_volumes(result, static_cast<std::size_t>(site.surfaces), threads, progress);
     result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());

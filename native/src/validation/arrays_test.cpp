@@ -22,7 +22,8 @@ Findings check_lengths(const ComplexView& m) {
     constexpr auto kLargest = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
     const std::size_t faces = m.face_count();
     if (m.vertices.size() % 3 != 0) fail("the coordinates are not in threes");
-    if (m.face_cells.size() != 2 * faces) fail("face_cells has not two cells for each face");
+    if (m.face_cells.size() != 2 * faces || m.face_surface.size() != faces)
+        fail("face_cells has not two cells for each face, or face_surface not one surface");
     if (m.face_offsets.size() != faces + 1) {
         fail("face_offsets has " + std::to_string(m.face_offsets.size()) + " entries for " +
              std::to_string(faces) + " faces");
@@ -30,7 +31,9 @@ Findings check_lengths(const ComplexView& m) {
                m.face_offsets.back() != static_cast<std::int64_t>(m.face_vertices.size())) {
         fail("face_offsets does not run from 0 to the number of corners");
     }
-    if (m.block_base.size() != m.block_volume.size()) fail("blocks without a volume or base");
+    if (m.block_volume.size() != m.blocks ||
+        (!m.block_base.empty() && m.block_base.size() != m.blocks))
+        fail("blocks without a volume or base");
     if (2 * faces > kLargest || m.vertex_count() > kLargest || m.cell_count() > kLargest)
         fail("there are more faces, vertices or cells than 32-bit numbers can name");
     return found;
@@ -48,7 +51,7 @@ void check_face(const ComplexView& m, std::size_t f, std::vector<std::uint8_t>& 
         fail([&] { return "face " + number(face) + " has " + number(end - begin) + " corners"; });
         return;
     }
-    for (const std::int32_t v : m.corners(f)) {
+    for (const std::int32_t v : m.face(f)) {
         if (v >= 0 && static_cast<std::size_t>(v) < m.vertex_count()) continue;
         fail([&] { return "face " + number(face) + " names vertex " + number(v); });
         return;
@@ -68,7 +71,7 @@ void check_face(const ComplexView& m, std::size_t f, std::vector<std::uint8_t>& 
         std::atomic_ref<std::uint8_t>(has_face[static_cast<std::size_t>(cell)])
             .store(1, std::memory_order_relaxed);
     }
-    if (m.face_surface[f] < strata::kCutFace || m.face_surface[f] >= m.surfaces) {
+    if (m.face_surface[f] < kCutFace || m.face_surface[f] >= m.surfaces) {
         fail(
             [&] { return "face " + number(face) + " names surface " + number(m.face_surface[f]); });
     }
@@ -78,7 +81,7 @@ void check_cell(const ComplexView& m, std::size_t c, const std::vector<std::uint
                 Findings& found) {
     const auto cell = static_cast<std::int64_t>(c);
     const std::int32_t block = m.cell_block[c];
-    if (block < 0 || static_cast<std::size_t>(block) >= m.block_volume.size()) {
+    if (block < 0 || static_cast<std::size_t>(block) >= m.blocks) {
         found.fail([&] {
             return Offender{.text = "cell " + number(cell) + " names block " + number(block),
                             .cell = cell};
@@ -91,7 +94,7 @@ void check_cell(const ComplexView& m, std::size_t c, const std::vector<std::uint
 }
 
 void check_vertex(const ComplexView& m, std::size_t v, Findings& found) {
-    const auto position = m.position(static_cast<std::int32_t>(v));
+    const auto position = m.vertex(static_cast<std::int32_t>(v));
     if (std::isfinite(position[0]) && std::isfinite(position[1]) && std::isfinite(position[2]))
         return;
     const auto vertex = static_cast<std::int64_t>(v);

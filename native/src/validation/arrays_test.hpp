@@ -2,7 +2,7 @@
 #pragma once
 
 #include "realmodel/base/progress.hpp"
-#include "realmodel/validation/complex_view.hpp"
+#include "realmodel/complex.hpp"
 #include "realmodel/validation/findings.hpp"
 
 namespace realmodel::validation {

@@ -12,8 +12,8 @@ CellExtent::CellExtent(const ComplexView& model, std::span<const Side> sides) {
     low_.fill(HUGE_VAL);
     high_.fill(-HUGE_VAL);
     for (const Side side : sides) {
-        for (const std::int32_t v : model.corners(face_of(side))) {
-            const auto p = model.position(v);
+        for (const std::int32_t v : model.face(face_of(side))) {
+            const auto p = model.vertex(v);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 low_[axis] = std::min(low_[axis], p[axis]);
                 high_[axis] = std::max(high_[axis], p[axis]);

@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "realmodel/validation/complex_view.hpp"
+#include "realmodel/complex.hpp"
 #include "validation/cell_sides.hpp"
 
 namespace realmodel::validation {

@@ -1,47 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "validation/cell_sides.hpp"
 
-#include "base/parallel.hpp"
+#include <algorithm>
+
+#include "base/index.hpp"
+#include "validation/chunked.hpp"
 
 namespace realmodel::validation {
 
-namespace {
-
-/// Calls visit(cell, side) for the sides of the cells first .. end, ascending.
-template <class Visit>
-void for_each_side(const ComplexView& model, std::int32_t first, std::int32_t end,
-                   const Progress* progress, const Visit& visit) {
-    for (std::size_t i = 0; i < model.face_cells.size(); ++i) {
-        if (progress != nullptr && (i & 0x3fff) == 0 && progress->cancelled()) return;
-        const std::int32_t cell = model.face_cells[i];
-        if (cell >= first && cell < end) visit(static_cast<std::size_t>(cell), i);
-    }
-}
-
-}  // namespace
-
-// A counting sort. Every thread reads all faces and takes the sides of its own range of cells:
-// reading is quick, and nothing is written by two.
-CellSides::CellSides(const ComplexView& model, int threads, const Progress* progress)
-    : begin_(model.cell_count() + 1, 0) {
-    const auto ranges = static_cast<std::size_t>(thread_count(threads));
-    const auto bound = [&](std::size_t range) {
-        return static_cast<std::int32_t>(model.cell_count() * range / ranges);
+CellSides::CellSides(const ComplexView& model, int threads, const Progress* progress) {
+    const std::size_t sides = model.face_cells.size(), cells = model.cell_count();
+    const auto produce = [&](std::size_t chunk, const auto& put) {
+        for (std::size_t i = chunk * kItemsOfChunk, end = std::min(sides, i + kItemsOfChunk);
+             i < end; ++i) {
+            const std::int32_t cell = model.face_cells[i];
+            if (cell >= 0) put(index(cell), static_cast<Side>(i));
+        }
     };
-    parallel_chunks(ranges, threads, progress, [&](std::size_t range) {
-        for_each_side(model, bound(range), bound(range + 1), progress,
-                      [&](std::size_t cell, std::size_t) { ++begin_[cell + 1]; });
-    });
-    for (std::size_t c = 1; c < begin_.size(); ++c)
-        begin_[c] += begin_[c - 1];
-    sides_.resize(static_cast<std::size_t>(begin_.back()));
-    std::vector<std::int64_t> next(begin_.begin(), begin_.end() - 1);
-    parallel_chunks(ranges, threads, progress, [&](std::size_t range) {
-        for_each_side(model, bound(range), bound(range + 1), progress,
-                      [&](std::size_t cell, std::size_t side) {
-                          sides_[static_cast<std::size_t>(next[cell]++)] = static_cast<Side>(side);
-                      });
-    });
+    const std::size_t chunks = (sides + kItemsOfChunk - 1) / kItemsOfChunk;
+    sides_ = bucketize_in_any_order<Side>(cells, chunks, produce, threads, progress);
+    parallel_ranges(cells, kItemsOfChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t c = begin; c < end; ++c)
+                            std::ranges::sort(sides_[c]);
+                    });
 }
 
 }  // namespace realmodel::validation

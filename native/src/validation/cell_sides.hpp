@@ -3,10 +3,10 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "base/counting_sort.hpp"
 #include "realmodel/base/progress.hpp"
-#include "realmodel/validation/complex_view.hpp"
+#include "realmodel/complex.hpp"
 
 namespace realmodel::validation {
 
@@ -16,7 +16,7 @@ using Side = std::uint32_t;
 inline std::size_t face_of(Side side) {
     return side >> 1;
 }
-inline bool is_turned(Side side) {
+inline bool is_reversed(Side side) {
     return (side & 1) != 0;
 }
 
@@ -25,17 +25,13 @@ class CellSides {
 public:
     CellSides(const ComplexView& model, int threads, const Progress* progress);
 
-    std::span<const Side> operator[](std::size_t cell) const {
-        return {sides_.data() + begin_[cell],
-                static_cast<std::size_t>(begin_[cell + 1] - begin_[cell])};
-    }
+    std::span<const Side> operator[](std::size_t cell) const { return sides_[cell]; }
 
     /// Behind the last side of the last cell.
-    const Side* end() const { return sides_.data() + sides_.size(); }
+    const Side* end() const { return sides_.values.end(); }
 
 private:
-    std::vector<std::int64_t> begin_;
-    std::vector<Side> sides_;
+    Buckets<Side> sides_;
 };
 
 }  // namespace realmodel::validation

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "realmodel/base/progress.hpp"
-#include "realmodel/validation/complex_view.hpp"
+#include "realmodel/complex.hpp"
 #include "validation/cell_sides.hpp"
 #include "validation/edge_table.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "exact/orient2d.hpp"
-#include "exact/plan_arrangement.hpp"
+#include "exact/local_arrangement.hpp"
 
 namespace realmodel::validation {
 

@@ -18,7 +18,7 @@ std::vector<std::int32_t> cell_origins(const ComplexView& model, const CellSides
     std::vector<std::int32_t> origin(model.cell_count());
     in_chunks(origin.size(), threads, progress, [&](std::size_t begin, std::size_t end, Findings&) {
         for (std::size_t c = begin; c < end; ++c)
-            origin[c] = model.corners(face_of(sides[c].front())).front();
+            origin[c] = model.face(face_of(sides[c].front())).front();
     });
     return origin;
 }
@@ -52,7 +52,7 @@ FaceMeasures::FaceMeasures(const ComplexView& model, const CellSides& sides, int
                 for (std::size_t side = 0; side < 2; ++side) {
                     const std::int32_t cell = model.cell(f, side);
                     if (cell < 0) continue;
-                    const Position o = model.position(origin[static_cast<std::size_t>(cell)]);
+                    const Position o = model.vertex(origin[static_cast<std::size_t>(cell)]);
                     const double volume =
                         ((first[0] - o[0]) * area[0] + (first[1] - o[1]) * area[1] +
                          (first[2] - o[2]) * area[2]) /

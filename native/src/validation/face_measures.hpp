@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "realmodel/base/progress.hpp"
-#include "realmodel/validation/complex_view.hpp"
+#include "realmodel/complex.hpp"
 #include "realmodel/validation/findings.hpp"
 #include "validation/cell_sides.hpp"
 

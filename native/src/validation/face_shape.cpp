@@ -34,14 +34,14 @@ std::array<double, 2> minus(const std::array<double, 2>& a, const std::array<dou
 
 std::optional<std::string> FaceShape::fault() {
     const std::int32_t surface = model_.face_surface[face_];
-    if (surface == strata::kWall) {
+    if (surface == kWall) {
         const PlanPosition way = way_of_wall();
         if (way == PlanPosition{0, 0}) return "is a wall, but has no extent in plan";
         if (!is_upright(way)) return "is a wall, but does not stand upright";
         project(std::abs(way[0]) >= std::abs(way[1]) ? 0 : 1, 2);
         return crosses_itself() ? std::optional<std::string>("crosses itself") : std::nullopt;
     }
-    if (surface == strata::kBase) {
+    if (surface == kBase) {
         if (auto text = fault_of_base()) return text;
     }
     if (!is_flat()) return "is bent: its corners lie in no plane";
@@ -50,7 +50,7 @@ std::optional<std::string> FaceShape::fault() {
         std::max_element(area_.begin(), area_.end(),
                          [](double a, double b) { return std::abs(a) < std::abs(b); }) -
         area_.begin());
-    const std::size_t across = surface == strata::kCutFace ? steepest : 2;
+    const std::size_t across = surface == kCutFace ? steepest : 2;
     project((across + 1) % 3, (across + 2) % 3);
     if (is_convex()) return std::nullopt;
     return crosses_itself() ? "crosses itself" : "is not convex";
@@ -58,7 +58,7 @@ std::optional<std::string> FaceShape::fault() {
 
 void FaceShape::load(std::size_t face) {
     face_ = face;
-    const auto loop = model_.corners(face);
+    const auto loop = model_.face(face);
     corners_.resize(loop.size());
     Position largest{0, 0, 0};
     // vertices lie all over the memory: those of some faces ahead are sent for
@@ -69,7 +69,7 @@ void FaceShape::load(std::size_t face) {
         const std::size_t ahead = std::min(begin + i + kAhead, corners - 1);
         __builtin_prefetch(
             &model_.vertices[static_cast<std::size_t>(model_.face_vertices[ahead]) * 3]);
-        corners_[i] = model_.position(loop[i]);
+        corners_[i] = model_.vertex(loop[i]);
         for (std::size_t axis = 0; axis < 3; ++axis)
             largest[axis] = std::max(largest[axis], std::abs(corners_[i][axis]));
     }
@@ -91,7 +91,9 @@ void FaceShape::load(std::size_t face) {
 
 std::optional<std::string> FaceShape::fault_of_base() const {
     const std::int32_t block = model_.block(model_.cell(face_, 0));
-    const double base = model_.block_base[static_cast<std::size_t>(block)];
+    const double base = model_.block_base.empty()
+                            ? corners_.front()[2]  // not known: level at least
+                            : model_.block_base[static_cast<std::size_t>(block)];
     if (std::isnan(base)) return "names the flat base, but its block stands on none";
     if (model_.cell(face_, 1) >= 0) return "names the flat base, but lies between two cells";
     const bool level = std::all_of(corners_.begin(), corners_.end(),

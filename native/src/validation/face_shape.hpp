@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "realmodel/validation/complex_view.hpp"
+#include "realmodel/complex.hpp"
 
 namespace realmodel::validation {
 

@@ -5,9 +5,9 @@
 #include <atomic>
 
 #include "exact/orient2d.hpp"
+#include "spatial/point_bins.hpp"
 #include "validation/chunked.hpp"
 #include "validation/plan_tests.hpp"
-#include "validation/probe_bins.hpp"
 
 namespace realmodel::validation {
 
@@ -39,7 +39,7 @@ InputColumns::InputColumns(const ModelInput& input, const Probes& probes,
     std::vector<PlanPosition> places;
     for (const Probe& probe : probes.probes)
         places.push_back(probe.place);
-    const ProbeBins bins(places);
+    const spatial::PointBins bins(places);
     for (const strata::StackInput& rock : input.rocks)
         surfaces_ += rock.surfaces.size();
     triangle_.assign(places.size() * surfaces_, -1);
@@ -62,11 +62,10 @@ InputColumns::InputColumns(const ModelInput& input, const Probes& probes,
                         low[axis] = std::min({p[0][axis], p[1][axis], p[2][axis]}) - rounding.near;
                         high[axis] = std::max({p[0][axis], p[1][axis], p[2][axis]}) + rounding.near;
                     }
-                    bins.within(low, high, [&](std::size_t i) {
+                    bins.within(low, high, [&](std::size_t i, const PlanPosition&) {
                         for (std::size_t e = 0; e < 3; ++e) {
                             if (!passes(p[e], p[(e + 1) % 3], places[i], rounding.near)) continue;
-                            std::atomic_ref<std::uint8_t>(near_edge_[i])
-                                .store(1, std::memory_order_relaxed);
+                            mark(near_edge_[i]);
                         }
                         if (contains(p, places[i])) visit(i, static_cast<std::int32_t>(t));
                     });

@@ -2,14 +2,14 @@
 #include "validation/model_columns.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "exact/double_double_interval.hpp"
 #include "exact/orient2d.hpp"
+#include "spatial/point_bins.hpp"
 #include "validation/chunked.hpp"
 #include "validation/plan_tests.hpp"
-#include "validation/probe_bins.hpp"
 
 namespace realmodel::validation {
 
@@ -17,24 +17,19 @@ using exact::DoubleDoubleInterval;
 
 namespace {
 
-void mark(std::vector<std::uint8_t>& flags, std::size_t i) {
-    // threads may say so at once; they all write the same
-    std::atomic_ref<std::uint8_t>(flags[i]).store(1, std::memory_order_relaxed);
-}
-
 /// A face's corners, and its loop seen from above.
 class FaceInPlan {
 public:
     explicit FaceInPlan(const ComplexView& model) : model_(model) {}
 
     void load(std::size_t face) {
-        const auto loop = model_.corners(face);
+        const auto loop = model_.face(face);
         corners.resize(loop.size());
         plan.resize(loop.size());
         low = {HUGE_VAL, HUGE_VAL};
         high = {-HUGE_VAL, -HUGE_VAL};
         for (std::size_t i = 0; i < loop.size(); ++i) {
-            corners[i] = model_.position(loop[i]);
+            corners[i] = model_.vertex(loop[i]);
             for (std::size_t axis = 0; axis < 2; ++axis) {
                 plan[i][axis] = corners[i][axis];
                 low[axis] = std::min(low[axis], plan[i][axis]);
@@ -84,14 +79,14 @@ bool same_stretch(const WallSample& wall, const PlanPosition& p, const PlanPosit
 
 ModelColumns::ModelColumns(const ComplexView& model, const Probes& probes,
                            const PlanRounding& rounding, int threads, const Progress* progress)
-    : near_edge_(probes.probes.size(), 0), crowded_(probes.walls.size(), 0) {
+    : near_edge_(probes.probes.size(), 0), coincident_(probes.walls.size(), 0) {
     const std::size_t count = probes.probes.size();
     std::vector<PlanPosition> places;
     for (const Probe& probe : probes.probes)
         places.push_back(probe.place);
     for (const WallSample& wall : probes.walls)
         places.push_back(wall.middle);
-    const ProbeBins bins(places);
+    const spatial::PointBins bins(places);
     const double beside = rounding.step + rounding.near;
     std::vector<std::vector<Crossing>> found((model.face_count() + kItemsOfChunk - 1) /
                                              kItemsOfChunk);
@@ -112,17 +107,17 @@ ModelColumns::ModelColumns(const ComplexView& model, const Probes& probes,
                       face.load(f);
                       const PlanPosition low{face.low[0] - beside, face.low[1] - beside};
                       const PlanPosition high{face.high[0] + beside, face.high[1] + beside};
-                      bins.within(low, high, [&](std::size_t i) {
+                      bins.within(low, high, [&](std::size_t i, const PlanPosition&) {
                           if (i >= count) {
                               const WallSample& wall = probes.walls[i - count];
                               const auto its_own = [&](const auto& p, const auto& q) {
                                   return same_stretch(wall, p, q);
                               };
-                              if (edge_passes(i, beside, its_own)) mark(crowded_, i - count);
+                              if (edge_passes(i, beside, its_own)) mark(coincident_[i - count]);
                               return;
                           }
                           const auto none = [](const auto&, const auto&) { return false; };
-                          if (edge_passes(i, rounding.near, none)) mark(near_edge_, i);
+                          if (edge_passes(i, rounding.near, none)) mark(near_edge_[i]);
                           const int turns = winding(face.plan, places[i]);
                           if (turns == 0) return;
                           const bool up = turns > 0;
@@ -132,15 +127,12 @@ ModelColumns::ModelColumns(const ComplexView& model, const Probes& probes,
                       });
                   }
               });
-    for (const auto& part : found)
-        crossings_.insert(crossings_.end(), part.begin(), part.end());
-    std::stable_sort(crossings_.begin(), crossings_.end(),
-                     [](const Crossing& a, const Crossing& b) { return a.probe < b.probe; });
-    begin_.assign(count + 1, 0);
-    for (const Crossing& c : crossings_)
-        ++begin_[static_cast<std::size_t>(c.probe) + 1];
-    for (std::size_t i = 1; i < begin_.size(); ++i)
-        begin_[i] += begin_[i - 1];
+    crossings_ = bucketize<Crossing>(count, [&](const auto& put) {
+        for (const auto& part : found) {
+            for (const Crossing& c : part)
+                put(index(c.probe), c);
+        }
+    });
 }
 
 }  // namespace realmodel::validation

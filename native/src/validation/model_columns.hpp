@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/counting_sort.hpp"
 #include "validation/probes.hpp"
 
 namespace realmodel::validation {
@@ -23,18 +24,15 @@ public:
                  int threads, const Progress* progress);
 
     /// In the order of their faces.
-    std::span<const Crossing> of_probe(std::size_t probe) const {
-        return {crossings_.data() + begin_[probe], begin_[probe + 1] - begin_[probe]};
-    }
+    std::span<const Crossing> of_probe(std::size_t probe) const { return crossings_[probe]; }
     /// Whether an edge of the model passes too close to a probe to be sure on which side it lies.
     bool near_edge(std::size_t probe) const { return near_edge_[probe] != 0; }
     /// Whether another edge passes so close to a wall that the probes beside it may lie beyond.
-    bool coincident(std::size_t wall) const { return crowded_[wall] != 0; }
+    bool coincident(std::size_t wall) const { return coincident_[wall] != 0; }
 
 private:
-    std::vector<Crossing> crossings_;
-    std::vector<std::size_t> begin_;
-    std::vector<std::uint8_t> near_edge_, crowded_;
+    Buckets<Crossing> crossings_;
+    std::vector<std::uint8_t> near_edge_, coincident_;
 };
 
 }  // namespace realmodel::validation

@@ -43,7 +43,7 @@ Findings check_outside(const ComplexView& model, int threads, const Progress* pr
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(progress, f);
         if (model.cell(f, 1) < 0)
-            outer.push_back({corners_in_any_order(model.corners(f)), static_cast<std::int32_t>(f)});
+            outer.push_back({corners_in_any_order(model.face(f)), static_cast<std::int32_t>(f)});
     }
     parallel_sort(outer, std::less<>(), threads, progress);
     Findings found;
@@ -52,14 +52,14 @@ Findings check_outside(const ComplexView& model, int threads, const Progress* pr
         if (outer[i].corners != outer[i - 1].corners) continue;
         const auto one = static_cast<std::size_t>(outer[i - 1].face);
         const auto other = static_cast<std::size_t>(outer[i].face);
-        if (!same_corners(model.corners(one), model.corners(other))) continue;
+        if (!same_corners(model.face(one), model.face(other))) continue;
         found.fail([&] {
             return Offender{.text = "face " + std::to_string(other) + " has one cell, but face " +
                                     std::to_string(one) + " of cell " +
                                     std::to_string(model.cell(one, 0)) + " lies in its place",
                             .cell = model.cell(other, 0),
                             .face = static_cast<std::int64_t>(other),
-                            .place = model.position(model.corners(other)[0])};
+                            .place = model.vertex(model.face(other)[0])};
         });
     }
     return found;

@@ -78,13 +78,13 @@ PlanPosition place_in_triangle(const std::array<PlanPosition, 3>& p, double s, d
 }
 
 PlanPosition plan(const ComplexView& model, std::int32_t vertex) {
-    const auto p = model.position(vertex);
+    const auto p = model.vertex(vertex);
     return {p[0], p[1]};
 }
 
 /// In the middle of the largest triangle of a face's fan: away from its edges as far as may be.
 PlanPosition place_on_face(const ComplexView& model, std::size_t face) {
-    const auto loop = model.corners(face);
+    const auto loop = model.face(face);
     std::array<PlanPosition, 3> largest{};
     double largest_area = -1;
     for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
@@ -105,8 +105,8 @@ PlanPosition place_on_face(const ComplexView& model, std::size_t face) {
 std::optional<WallSample> point_in_wall(const ComplexView& model, std::size_t face,
                                         const PlanRounding& rounding) {
     std::vector<std::array<double, 3>> corners;
-    for (const std::int32_t v : model.corners(face))
-        corners.push_back(model.position(v));
+    for (const std::int32_t v : model.face(face))
+        corners.push_back(model.vertex(v));
     std::array<double, 2> extent;
     for (std::size_t axis = 0; axis < 2; ++axis) {
         const auto [low, high] =
@@ -157,11 +157,11 @@ std::optional<WallSample> point_in_wall(const ComplexView& model, std::size_t fa
 /// The way out of a wall's first cell, a unit vector.
 PlanPosition outward(const ComplexView& model, const WallSample& wall) {
     const double dx = wall.to[0] - wall.from[0], dy = wall.to[1] - wall.from[1];
-    const auto loop = model.corners(static_cast<std::size_t>(wall.face));
-    const auto o = model.position(loop[0]);
+    const auto loop = model.face(static_cast<std::size_t>(wall.face));
+    const auto o = model.vertex(loop[0]);
     double area_x = 0, area_y = 0;
     for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
-        const auto p = model.position(loop[i]), q = model.position(loop[i + 1]);
+        const auto p = model.vertex(loop[i]), q = model.vertex(loop[i + 1]);
         area_x += (p[1] - o[1]) * (q[2] - o[2]) - (p[2] - o[2]) * (q[1] - o[1]);
         area_y += (p[2] - o[2]) * (q[0] - o[0]) - (p[0] - o[0]) * (q[2] - o[2]);
     }
@@ -280,8 +280,7 @@ Probes choose_probes(const ComplexView& model, const ModelInput& input, std::int
     std::vector<std::int32_t> walls, others;
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(progress, f);
-        (model.face_surface[f] == strata::kWall ? walls : others)
-            .push_back(static_cast<std::int32_t>(f));
+        (model.face_surface[f] == kWall ? walls : others).push_back(static_cast<std::int32_t>(f));
     }
     const auto count = static_cast<std::size_t>(std::max<std::int64_t>(places, 0));
     Choice choice(model, input, seed, rounding);

@@ -107,7 +107,7 @@ private:
                 __builtin_prefetch(&faces_[face_of(ahead[kFar])]);
             }
             if (end - ahead > static_cast<std::ptrdiff_t>(kNear)) {
-                const auto corners = model_.corners(face_of(ahead[kNear]));
+                const auto corners = model_.face(face_of(ahead[kNear]));
                 __builtin_prefetch(corners.data());
                 __builtin_prefetch(corners.data() + corners.size() - 1);
             }
@@ -127,7 +127,7 @@ private:
                             .cell = static_cast<std::int64_t>(c),
                             .vertex = open->low,
                             .block = model_.cell_block[c],
-                            .place = model_.position(open->low)};
+                            .place = model_.vertex(open->low)};
         });
     }
 
@@ -135,7 +135,7 @@ private:
         double sum = 0, rounding = 0;
         for (const Side side : sides_[c]) {
             const FaceMeasure& face = faces_[face_of(side)];
-            sum += face.volume[is_turned(side) ? 1 : 0];
+            sum += face.volume[is_reversed(side) ? 1 : 0];
             rounding += face.rounding;
         }
         volume_[c] = sum;

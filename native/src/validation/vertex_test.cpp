@@ -4,22 +4,25 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <compare>
 #include <utility>
 #include <vector>
 
+#include "base/counting_sort.hpp"
+#include "base/index.hpp"
 #include "validation/chunked.hpp"
 
 namespace realmodel::validation {
 
 namespace {
 
-/// (vertex, an earlier one in the same place).
+/// (vertex, an earlier one at the same position).
 using EqualPair = std::pair<std::int32_t, std::int32_t>;
 
 std::uint64_t position_hash(const ComplexView& model, std::int32_t vertex) {
     std::uint64_t hash = 0;
-    for (const double coordinate : model.position(vertex)) {
-        // -0 and 0 are one place
+    for (const double coordinate : model.vertex(vertex)) {
+        // -0 and 0 are equal
         hash += std::bit_cast<std::uint64_t>(coordinate == 0.0 ? 0.0 : coordinate);
         hash *= 0x9E3779B97F4A7C15u;
         hash ^= hash >> 32;
@@ -27,16 +30,16 @@ std::uint64_t position_hash(const ComplexView& model, std::int32_t vertex) {
     return hash * 0xBF58476D1CE4E5B9u;
 }
 
-/// The builder's own vertices ascend, which says all; others are dealt out by a hash of their
-/// place.
+/// The builder's own vertices ascend, and so are distinct; others are compared by a hash of their
+/// positions.
 bool ascends(const ComplexView& model, int threads, const Progress* progress) {
     std::atomic<bool> broken{false};
     in_chunks(model.vertex_count(), threads, progress,
               [&](std::size_t begin, std::size_t end, Findings&) {
                   if (broken.load(std::memory_order_relaxed)) return;
                   for (std::size_t v = std::max<std::size_t>(begin, 1); v < end; ++v) {
-                      if (model.position(static_cast<std::int32_t>(v - 1)) <
-                          model.position(static_cast<std::int32_t>(v)))
+                      if (model.vertex(static_cast<std::int32_t>(v - 1)) <
+                          model.vertex(static_cast<std::int32_t>(v)))
                           continue;
                       broken.store(true, std::memory_order_relaxed);
                       return;
@@ -45,77 +48,53 @@ bool ascends(const ComplexView& model, int threads, const Progress* progress) {
     return !broken;
 }
 
-/// Vertices dealt out by a hash of their place; those in one place are in one bucket.
-class PlaceBuckets {
-public:
-    PlaceBuckets(const ComplexView& model, int threads, const Progress* progress) {
-        const std::size_t count = model.vertex_count();
-        while (bits_ < 16 && (kVerticesOfBucket << bits_) < count)
-            ++bits_;
-        const std::size_t chunks = (count + kItemsOfChunk - 1) / kItemsOfChunk;
-        std::vector<std::size_t> next(chunks << bits_, 0);
-        const auto in_chunk = [&](std::size_t chunk, const auto& visit) {
-            const std::size_t end = std::min(count, (chunk + 1) * kItemsOfChunk);
-            for (std::size_t v = chunk * kItemsOfChunk; v < end; ++v) {
-                const std::uint64_t hash = position_hash(model, static_cast<std::int32_t>(v));
-                visit(static_cast<std::int32_t>(v), (chunk << bits_) + bucket(hash),
-                      static_cast<std::uint32_t>(hash >> 32));
-            }
-        };
-        parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
-            in_chunk(chunk, [&](std::int32_t, std::size_t at, std::uint32_t) { ++next[at]; });
-        });
-        std::size_t total = 0;
-        for (std::size_t b = 0; b < size(); ++b) {
-            for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
-                total += std::exchange(next[(chunk << bits_) + b], total);
-            }
-            end_.push_back(total);
-        }
-        entries_.resize(total);
-        parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
-            in_chunk(chunk, [&](std::int32_t v, std::size_t at, std::uint32_t hash) {
-                entries_[next[at]++] = {hash, v};
-            });
-        });
-    }
-
-    std::size_t size() const { return std::size_t{1} << bits_; }
-
-    /// Of each place in a bucket that has several vertices, the later ones with the first.
-    std::vector<EqualPair> equal_pairs(const ComplexView& model, std::size_t b) {
-        const auto at = [&](std::size_t i) {
-            return entries_.begin() + static_cast<std::ptrdiff_t>(i);
-        };
-        const std::size_t begin = b == 0 ? 0 : end_[b - 1], end = end_[b];
-        std::sort(at(begin), at(end));
-        std::vector<EqualPair> pairs;
-        for (std::size_t i = begin; i < end; ++i) {
-            for (std::size_t j = i; j > begin && entries_[j - 1].first == entries_[i].first; --j) {
-                const std::int32_t earlier = entries_[j - 1].second, v = entries_[i].second;
-                if (model.position(earlier) != model.position(v)) continue;
-                pairs.emplace_back(v, earlier);
-                break;
-            }
-        }
-        return pairs;
-    }
-
-private:
-    static constexpr std::size_t kVerticesOfBucket = 4096;
-    std::size_t bucket(std::uint64_t hash) const { return hash & (size() - 1); }
-
-    int bits_ = 0;
-    std::vector<std::size_t> end_;
-    std::vector<std::pair<std::uint32_t, std::int32_t>> entries_;  ///< hash and vertex
+/// A vertex with the hash of its position.
+struct HashedVertex {
+    std::uint32_t hash;
+    std::int32_t vertex;
+    friend auto operator<=>(const HashedVertex&, const HashedVertex&) = default;
 };
+
+/// Vertices in buckets by a hash of their positions; equal ones are in one bucket.
+Buckets<HashedVertex> position_buckets(const ComplexView& model, int threads,
+                                       const Progress* progress) {
+    constexpr std::size_t kVerticesOfBucket = 4096, kMost = std::size_t{1} << 16;
+    const std::size_t count = model.vertex_count();
+    const std::size_t buckets = std::min(kMost, std::bit_ceil(count / kVerticesOfBucket + 1));
+    const auto produce = [&](std::size_t chunk, const auto& put) {
+        const std::size_t end = std::min(count, (chunk + 1) * kItemsOfChunk);
+        for (std::size_t i = chunk * kItemsOfChunk; i < end; ++i) {
+            const auto v = static_cast<std::int32_t>(i);
+            const std::uint64_t hash = position_hash(model, v);
+            put(hash & (buckets - 1), HashedVertex{static_cast<std::uint32_t>(hash >> 32), v});
+        }
+    };
+    const std::size_t chunks = (count + kItemsOfChunk - 1) / kItemsOfChunk;
+    return bucketize_in_order<HashedVertex>(buckets, chunks, produce, threads, progress);
+}
+
+/// Of each position that several vertices of a bucket have, the later ones with the first.
+std::vector<EqualPair> equal_pairs(const ComplexView& model, std::span<HashedVertex> bucket) {
+    std::sort(bucket.begin(), bucket.end());
+    std::vector<EqualPair> pairs;
+    for (std::size_t i = 0; i < bucket.size(); ++i) {
+        const auto [hash, v] = bucket[i];
+        for (std::size_t j = i; j > 0 && bucket[j - 1].hash == hash; --j) {
+            const std::int32_t earlier = bucket[j - 1].vertex;
+            if (model.vertex(earlier) != model.vertex(v)) continue;
+            pairs.emplace_back(v, earlier);
+            break;
+        }
+    }
+    return pairs;
+}
 
 Findings check_distinct(const ComplexView& model, int threads, const Progress* progress) {
     if (ascends(model, threads, progress)) return {};
-    PlaceBuckets buckets(model, threads, progress);
+    auto buckets = position_buckets(model, threads, progress);
     std::vector<std::vector<EqualPair>> pairs(buckets.size());
     parallel_chunks(buckets.size(), threads, progress,
-                    [&](std::size_t b) { pairs[b] = buckets.equal_pairs(model, b); });
+                    [&](std::size_t b) { pairs[b] = equal_pairs(model, buckets[b]); });
     std::vector<EqualPair> all;
     for (const auto& part : pairs)
         all.insert(all.end(), part.begin(), part.end());
@@ -126,7 +105,7 @@ Findings check_distinct(const ComplexView& model, int threads, const Progress* p
             return Offender{.text = "vertex " + std::to_string(v) + " is in the place of vertex " +
                                     std::to_string(earlier),
                             .vertex = v,
-                            .place = model.position(v)};
+                            .place = model.vertex(v)};
         });
     }
     return found;
@@ -136,12 +115,8 @@ Findings check_used(const ComplexView& model, int threads, const Progress* progr
     std::vector<std::uint8_t> used(model.vertex_count(), 0);
     in_chunks(model.face_vertices.size(), threads, progress,
               [&](std::size_t begin, std::size_t end, Findings&) {
-                  // threads may say so at once; they all write the same
-                  for (std::size_t i = begin; i < end; ++i) {
-                      std::atomic_ref<std::uint8_t>(
-                          used[static_cast<std::size_t>(model.face_vertices[i])])
-                          .store(1, std::memory_order_relaxed);
-                  }
+                  for (std::size_t i = begin; i < end; ++i)
+                      mark(used[index(model.face_vertices[i])]);
               });
     Findings found;
     for (std::size_t v = 0; v < used.size(); ++v) {
@@ -150,7 +125,7 @@ Findings check_used(const ComplexView& model, int threads, const Progress* progr
         found.fail([&] {
             return Offender{.text = "vertex " + std::to_string(v) + " belongs to no face",
                             .vertex = vertex,
-                            .place = model.position(vertex)};
+                            .place = model.vertex(vertex)};
         });
     }
     return found;
@@ -189,7 +164,7 @@ Findings check_loops(const ComplexView& model, int threads, const Progress* prog
         [&](std::size_t begin, std::size_t end, Findings& own) {
             std::vector<std::int32_t> sorted;
             for (std::size_t f = begin; f < end; ++f) {
-                const std::int32_t v = repeated_vertex(model.corners(f), sorted);
+                const std::int32_t v = repeated_vertex(model.face(f), sorted);
                 if (v < 0) continue;
                 own.fail([&] {
                     return Offender{.text = "face " + std::to_string(f) + " passes vertex " +
@@ -197,7 +172,7 @@ Findings check_loops(const ComplexView& model, int threads, const Progress* prog
                                     .cell = model.cell(f, 0),
                                     .face = static_cast<std::int64_t>(f),
                                     .vertex = v,
-                                    .place = model.position(v)};
+                                    .place = model.vertex(v)};
                 });
             }
         });

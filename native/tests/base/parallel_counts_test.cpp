@@ -11,7 +11,7 @@ namespace {
 TEST(ParallelCounts, RunningTotalsAreThoseOfASimpleLoop) {
     std::mt19937 random(1);
     for (const std::size_t count : {0, 1, 65535, 65536, 65537, 300001}) {
-        FlatArray<std::uint32_t> counts(count + 1);
+        Array<std::uint32_t> counts(count + 1);
         std::vector<std::uint32_t> expected;
         std::uint32_t sum = 0;
         for (std::size_t i = 0; i < count; ++i) {
@@ -26,7 +26,7 @@ TEST(ParallelCounts, RunningTotalsAreThoseOfASimpleLoop) {
 }
 
 TEST(ParallelCounts, TotalsThatAreTooLargeAreRefused) {
-    FlatArray<std::int32_t> counts(3);
+    Array<std::int32_t> counts(3);
     counts[0] = INT32_MAX;
     counts[1] = 1;
     try {

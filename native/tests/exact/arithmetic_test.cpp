@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 
@@ -38,6 +39,26 @@ TEST(Arithmetic, WholeNumbersAreTheDoublesInUnitsOfTheFinest) {
         EXPECT_EQ(std::ldexp(whole.get_d(), unit), value);
         EXPECT_EQ(mpz_odd_p(whole.get_mpz_t()) != 0, value != 0);
     }
+}
+
+TEST(Arithmetic, WholeNumbersOf64BitsAreWhole) {
+    EXPECT_EQ(whole_number_of(0), 0);
+    EXPECT_EQ(whole_number_of(UINT64_MAX).get_str(), "18446744073709551615");
+    EXPECT_EQ(whole_number_of(std::uint64_t{1} << 32).get_str(), "4294967296");
+    // more than 32 bits of mantissa, and a negative one
+    EXPECT_EQ(whole_number(0x1.fffffffffffffp52, 0).get_str(), "9007199254740991");
+    EXPECT_EQ(whole_number(-0x1.0000000000001p52, 0).get_str(), "-4503599627370497");
+    EXPECT_EQ(whole_number(-0x1p40, 0).get_str(), "-1099511627776");
+}
+
+TEST(Arithmetic, NearestDoubleTiesToEven) {
+    const mpz_class one = 1, even = (one << 53), odd = even + 1;
+    EXPECT_EQ(nearest_double(odd, 1, 0), 0x1p53);              // a tie: down to even
+    EXPECT_EQ(nearest_double(even + 3, 1, 0), 0x1p53 + 4);     // a tie: up to even
+    EXPECT_EQ(nearest_double(2 * odd + 1, 2, 0), 0x1p53 + 2);  // a half more than the tie
+    EXPECT_EQ(nearest_double(-1, 3, 0), -1.0 / 3.0);
+    EXPECT_EQ(nearest_double(5, -4, 3), -10.0);
+    EXPECT_EQ(nearest_double(0, 7, 5), 0.0);
 }
 
 }  // namespace

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "exact/plan_arrangement.hpp"
-
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -10,7 +8,9 @@
 #include <random>
 
 #include "exact/arithmetic.hpp"
+#include "exact/local_arrangement.hpp"
 #include "exact/orient2d.hpp"
+#include "realmodel/base/errors.hpp"
 
 namespace realmodel::exact {
 namespace {
@@ -271,9 +271,56 @@ TEST(PlanArrangement, LocalNamesBecomeSharedOnes) {
     EXPECT_EQ(first.crossing(ab, bc), b);  // an input vertex keeps its name
     first.commit(g);
     second.commit(g);
-    EXPECT_EQ(first.shared_point(p), second.shared_point(r));
+    EXPECT_EQ(first.shared_point(p), second.shared_point(r));  // not marked: found by name
     EXPECT_EQ(g.point_count(), 5u);
     EXPECT_DOUBLE_EQ(g.point(first.shared_point(p)).x, 16.0 / 7.0);
+}
+
+TEST(LocalIds, WhatIsMarkedGetsARangeOfIdsInTheOrderOfMarking) {
+    PlanArrangement g;
+    const VertexId a = g.add_vertex(0, 0), b = g.add_vertex(8, 1), c = g.add_vertex(1, 8),
+                   d = g.add_vertex(2, -4), e = g.add_vertex(3, 9), f = g.add_vertex(5, -3),
+                   h = g.add_vertex(6, 7);
+    g.freeze_vertices();
+    const LineId ab = line_of(g.add_edge(a, b)), ac = line_of(g.add_edge(a, c)),
+                 de = line_of(g.add_edge(d, e)), fh = line_of(g.add_edge(f, h));
+    LocalArrangement first(g), second(g);
+    const PointId with_de = first.crossing(ab, de), with_fh = first.crossing(ab, fh);
+    const PointId again = second.crossing(ab, de);
+    first.mark_point_used(with_fh);
+    first.mark_point_used(with_de);
+    first.mark_point_used(with_fh);  // counts once
+    first.mark_point_used(a);        // is shared already
+    second.mark_point_used(again);
+    first.commit(g);
+    second.commit(g);
+    EXPECT_EQ(first.shared_point(a), a);
+    EXPECT_EQ(first.shared_point(with_fh), 7);
+    EXPECT_EQ(first.shared_point(with_de), 8);
+    EXPECT_EQ(second.shared_point(again), 9);  // nobody looks for the one of the first
+    EXPECT_EQ(g.line_count(), 4u);
+    EXPECT_EQ(first.shared_line(ac), ac);
+    LocalArrangement reader(g);
+    EXPECT_TRUE(reader.same_place(8, 9));
+    EXPECT_FALSE(reader.same_place(7, 9));
+    EXPECT_EQ(reader.exact_decisions(), 0u);
+}
+
+TEST(PlanArrangement, RefusesMoreThingsThanItHasIdsFor) {
+    EXPECT_NO_THROW(check_ids(4, "triangles", 4));
+    EXPECT_NO_THROW(check_ids(std::size_t{1} << 29, "triangles"));
+    try {
+        check_ids((std::size_t{1} << 29) + 1, "triangles");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.kind, "too_large");
+        EXPECT_NE(std::string(error.what()).find("536 million triangles"), std::string::npos);
+    }
+    PlanArrangement g;
+    EXPECT_THROW(g.make_planes(std::size_t{1} << 30), InputError);
+    EXPECT_THROW(g.append(std::size_t{1} << 30, 0), InputError);
+    EXPECT_THROW(g.append(0, std::size_t{1} << 30), InputError);
+    EXPECT_EQ(g.plane_count(), 0u);
 }
 
 /// Two surfaces on the plan mesh of two triangles that share the plan edge of vertices 1 and 2, and

@@ -50,6 +50,7 @@ inline CellComplex merge_columns(const CellComplex& columns) {
              cells[1] < 0 ? -1 : part_of[static_cast<std::size_t>(cells[1])]});
         merged.face_surface.push_back(columns.face_surface[f]);
     }
+    merged.cell_kind = CellKind::kBlocks;
     merged.volumes = columns.volumes;
     merged.warnings = columns.warnings;
     merged.decisions = columns.decisions;

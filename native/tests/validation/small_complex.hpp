@@ -46,10 +46,11 @@ struct OwnedComplex {
                 .face_cells = flat_cells,
                 .face_surface = surface,
                 .cell_block = block,
-                .block_volume = volume,
-                .block_base = base,
+                .blocks = volume.size(),
                 .surfaces = surfaces,
-                .cells_are_blocks = blocks};
+                .cell_kind = blocks ? CellKind::kBlocks : CellKind::kColumns,
+                .block_volume = volume,
+                .block_base = base};
     }
 
     void add_face(std::vector<std::int32_t> loop, std::int32_t owner, std::int32_t other,

@@ -4,10 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 
-/// The memory of large arrays, in blocks of pages. A build makes and drops arrays many times as
-/// large as what it holds at once, and to a system that hands out pages one by one, cleared, that
-/// is a third of the build's time: so while somebody keeps pages, the blocks of arrays that are
-/// done with stay in the process and are moved, not copied, to where the next array is.
+/// The memory of arrays. That of large ones comes in blocks of pages: a build makes and drops
+/// arrays many times as large as what it holds at once, and a system hands out pages one by one,
+/// cleared, which takes an eighth of the build's time. So while a Keeper lives, the blocks of
+/// dropped arrays stay in the process and are moved, not copied, to where the next array needs
+/// them (Linux; elsewhere all memory comes from malloc).
 namespace realmodel::page_store {
 
 inline constexpr std::size_t kBlock = std::size_t{2} << 20;  ///< bytes
@@ -28,31 +29,25 @@ inline constexpr bool kIsThere = true;
 /// Arrays of at least so many bytes have blocks of their own; smaller ones come from malloc.
 inline constexpr std::size_t kLargeArray = kIsThere ? 2 * kBlock : SIZE_MAX;
 
-constexpr std::size_t in_blocks(std::size_t bytes) {
-    return (bytes + kBlock - 1) / kBlock * kBlock;
-}
+/// The memory of one array, in bytes.
+struct Memory {
+    char* begin = nullptr;
+    std::size_t ready = 0;     ///< up to where there are pages: all of this moves with the array
+    std::size_t reserved = 0;  ///< up to where it can be made ready without moving
+};
 
-// All sizes below are whole numbers of blocks.
+/// Reserves at least so many bytes. They take no memory before they are made ready.
+/// @throws std::bad_alloc; the memory is then as it was or, where the system has failed while it
+///         was moved, empty
+void reserve(Memory& memory, std::size_t bytes);
 
-/// Room in the address space, for reading and writing. It takes no memory before it is touched or
-/// given blocks.
-/// @throws std::bad_alloc
-void* reserve(std::size_t bytes);
+/// Makes at least so many bytes ready to be written, from kept blocks first. What was ready keeps
+/// its contents. Where more than what is reserved is asked for, twice as much is reserved.
+/// @throws std::bad_alloc, as reserve()
+void make_ready(Memory& memory, std::size_t bytes);
 
-/// Room all of which is about to be filled: as many blocks as can be had are ones that are kept.
-/// @throws std::bad_alloc
-void* take(std::size_t bytes);
-
-/// Puts kept blocks to a place that was reserved and not touched yet, as many as there are.
-/// @throws std::bad_alloc
-void give_blocks(void* place, std::size_t bytes);
-
-/// Moves the first `used` bytes of an array to room that was reserved and not touched yet, and
-/// drops the array, of `reserved` bytes. What lies in it is not copied.
-void move(void* from, std::size_t used, std::size_t reserved, void* to) noexcept;
-
-/// Drops an array. Its `used` bytes are kept while somebody keeps blocks.
-void drop(void* array, std::size_t used, std::size_t reserved) noexcept;
+/// Drops the memory. Its blocks are kept while there is a Keeper.
+void drop(Memory& memory) noexcept;
 
 /// Bytes that are kept for later.
 std::size_t kept() noexcept;

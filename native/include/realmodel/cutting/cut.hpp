@@ -8,50 +8,9 @@
 #include <vector>
 
 #include "realmodel/base/progress.hpp"
-#include "realmodel/strata/stack.hpp"
+#include "realmodel/complex.hpp"
 
 namespace realmodel::cutting {
-
-/// A finished model: the arrays of docs/geometry.md, wherever they come from.
-struct ComplexView {
-    std::span<const double> vertices;             ///< 3 V numbers
-    std::span<const std::int64_t> face_offsets;   ///< F + 1
-    std::span<const std::int32_t> face_vertices;  ///< counter-clockwise from outside the first cell
-    std::span<const std::int32_t> face_cells;     ///< 2 F; -1 is outside
-    std::span<const std::int32_t> face_surface;   ///< F
-    std::span<const std::int32_t> cell_block;     ///< C
-    std::size_t blocks = 0;                       ///< cell_block counts below this
-    bool cells_are_blocks = false;  ///< a cell may use an edge more than twice, as often either way
-
-    std::size_t vertex_count() const { return vertices.size() / 3; }
-    std::size_t face_count() const { return face_surface.size(); }
-    std::array<double, 3> vertex(std::int32_t v) const {
-        const auto i = 3 * static_cast<std::size_t>(v);
-        return {vertices[i], vertices[i + 1], vertices[i + 2]};
-    }
-    std::span<const std::int32_t> face(std::size_t f) const {
-        const auto begin = static_cast<std::size_t>(face_offsets[f]);
-        return face_vertices.subspan(begin, static_cast<std::size_t>(face_offsets[f + 1]) - begin);
-    }
-    std::int32_t cell(std::size_t f, std::size_t side) const { return face_cells[2 * f + side]; }
-    std::int32_t block(std::int32_t cell_number) const {
-        return cell_number < 0 ? -1 : cell_block[static_cast<std::size_t>(cell_number)];
-    }
-};
-
-/// A built complex as the cutting takes it.
-inline ComplexView view(const strata::CellComplex& c, bool blocks = false) {
-    ComplexView v;
-    v.vertices = {c.vertices.data()->data(), 3 * c.vertices.size()};
-    v.face_offsets = c.face_offsets;
-    v.face_vertices = c.face_vertices;
-    v.face_cells = {c.face_cells.data()->data(), 2 * c.face_cells.size()};
-    v.face_surface = c.face_surface;
-    v.cell_block = c.cell_block;
-    v.blocks = c.volumes.size();
-    v.cells_are_blocks = blocks;
-    return v;
-}
 
 /// A plane through `point`; "above" is where `normal` points. The normal may have any length.
 struct Plane {
@@ -60,7 +19,7 @@ struct Plane {
 
 /// What lies on the cutter: convex polygons, counter-clockwise seen from above (or outside).
 struct Section {
-    GrowingArray<std::array<double, 3>> vertices;
+    Array<std::array<double, 3>> vertices;
     std::vector<std::int64_t> offsets{0};
     std::vector<std::int32_t> polygon_vertices;
     /// The model's cells below (inside) and above (outside): twice the same where a cell is cut,
@@ -71,7 +30,7 @@ struct Section {
 /// Both halves of a model, and what lies between them. Their caps are the section's polygons, the
 /// half above has them turned over. Cells that fall apart become several.
 struct Cut {
-    strata::CellComplex below, above;
+    CellComplex below, above;
     /// The model's cell that each cell of a half is, or is part of.
     std::vector<std::int32_t> below_cells, above_cells;
     /// Whether cells of a half use an edge more than twice, though the model's do not: a surface

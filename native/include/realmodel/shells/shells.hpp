@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "realmodel/base/progress.hpp"
+#include "realmodel/complex.hpp"
 
 namespace realmodel::shells {
 
@@ -34,26 +35,16 @@ struct Shell {
     PolygonEdges edges;
 };
 
-/// A cell complex with shared faces (docs/geometry.md).
-struct Complex {
-    std::span<const std::array<double, 3>> vertices;
-    std::span<const std::int64_t> face_offsets;
-    std::span<const std::int32_t> face_vertices;
-    std::span<const std::array<std::int32_t, 2>> face_cells;
-    std::span<const std::int32_t> cell_block;
-};
-
 /// The closed boundary of each block, all its parts together; one without cells has an empty one.
 /// Vertices and faces are in the order of the complex. The same for any number of threads.
 /// @throws InputError kind bad_index (items: the face) where the numbers are out of range
 /// @throws Cancelled
-std::vector<Shell> block_shells(const Complex& complex, std::size_t blocks,
-                                const std::array<double, 3>& origin, int threads,
-                                const Progress* progress = nullptr);
+std::vector<Shell> block_shells(const ComplexView& complex, const std::array<double, 3>& origin,
+                                int threads, const Progress* progress = nullptr);
 
 /// For each block the boundaries of all its cells, cell after cell; every cell has vertices of its
 /// own, drawn towards their mean by the factor `shrink`. Otherwise as block_shells.
-std::vector<Shell> cell_shells(const Complex& complex, std::size_t blocks, double shrink,
+std::vector<Shell> cell_shells(const ComplexView& complex, double shrink,
                                const std::array<double, 3>& origin, int threads,
                                const Progress* progress = nullptr);
 

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "realmodel/base/growing_array.hpp"
 #include "realmodel/base/progress.hpp"
+#include "realmodel/complex.hpp"
 
 namespace realmodel::strata {
 
@@ -66,41 +66,12 @@ struct StackInput {
     std::optional<double> base_elevation;
 };
 
-/// What was left out of the input, and why.
-struct Warning {
-    std::string kind;
-    int surface = -1;
-    std::vector<std::int64_t> items;
-    std::string text;
-};
-
-/// Polyhedral cells that share faces exactly (the layout that OpenFOAM calls owner / neighbour).
-struct CellComplex {
-    GrowingArray<std::array<double, 3>> vertices;
-    GrowingArray<std::int64_t> face_offsets;
-    GrowingArray<std::int32_t>
-        face_vertices;  ///< counter-clockwise seen from outside the first cell
-    GrowingArray<std::array<std::int32_t, 2>> face_cells;  ///< -1 is outside; the first never is
-    GrowingArray<std::int32_t> face_surface;               ///< -1 a vertical wall, -2 the flat base
-    /// The surface that the cell's block lies beneath; of the oldest surface of a rock mass: the
-    /// block between it and the base. Surfaces are counted through all rock masses.
-    GrowingArray<std::int32_t> cell_block;
-    std::vector<double> volumes;  ///< of the block beneath each surface
-    std::vector<Warning> warnings;
-    std::uint64_t decisions = 0;        ///< how many signs were asked
-    std::uint64_t exact_decisions = 0;  ///< how many of them needed exact arithmetic
-};
-
-/// What a cell is.
-enum class CellKind {
-    kColumns,  ///< what lies under one facet of the surface above it
-    kBlocks    ///< a connected part of a block
-};
-
-inline constexpr std::int32_t kWall = -1;
-inline constexpr std::int32_t kBase = -2;
-/// What a cut laid bare (realmodel/cutting): it lies between the two halves.
-inline constexpr std::int32_t kCutFace = -3;
+using realmodel::CellComplex;
+using realmodel::CellKind;
+using realmodel::kBase;
+using realmodel::kCutFace;
+using realmodel::kWall;
+using realmodel::Warning;
 
 /// Replays deposition and erosion: all blocks of rock masses, cell by cell, going down from the
 /// youngest surface of each (docs/architecture.md). Where rock masses share a stretch of border the

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "realmodel/base/progress.hpp"
+#include "realmodel/complex.hpp"
 #include "realmodel/strata/stack.hpp"
-#include "realmodel/validation/complex_view.hpp"
 #include "realmodel/validation/findings.hpp"
 
 namespace realmodel::validation {

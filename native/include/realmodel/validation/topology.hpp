@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "realmodel/base/progress.hpp"
-#include "realmodel/validation/complex_view.hpp"
+#include "realmodel/complex.hpp"
 #include "realmodel/validation/findings.hpp"
 
 namespace realmodel::validation {

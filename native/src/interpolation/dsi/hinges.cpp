@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/grouped_items.hpp"
+#include "base/counting_sort.hpp"
 
 namespace realmodel::interpolation {
 
@@ -61,7 +61,7 @@ Hinge hinge(std::span<const Position> nodes, const std::array<std::int32_t, 4>& 
 }  // namespace
 
 std::vector<Hinge> hinges(std::span<const Position> nodes, std::span<const Triangle> triangles) {
-    auto by_low_end = grouped<Side>(nodes.size(), [&](const auto& visit) {
+    auto by_low_end = bucketize<Side>(nodes.size(), [&](const auto& visit) {
         for (std::size_t number = 0; number < triangles.size(); ++number) {
             const Triangle& t = triangles[number];
             if (!has_area(nodes[t[0]], nodes[t[1]], nodes[t[2]])) continue;
@@ -72,7 +72,7 @@ std::vector<Hinge> hinges(std::span<const Position> nodes, std::span<const Trian
         }
     });
     std::vector<Hinge> out;
-    out.reserve(by_low_end.items.size() / 2);
+    out.reserve(by_low_end.values.size() / 2);
     std::vector<char> hinged(triangles.size(), 0);
     for (std::size_t v = 0; v < nodes.size(); ++v) {
         const std::span<Side> sides = by_low_end[v];

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/grouped_items.hpp"
+#include "base/counting_sort.hpp"
 
 namespace realmodel::interpolation {
 
@@ -44,11 +44,16 @@ OrderedMesh ordered_mesh(std::span<const Position> nodes,
     const auto to_mesh = [&](const Position& p) {
         return Position{(p[0] - box.low[0]) / unit, (p[1] - box.low[1]) / unit};
     };
-    auto by_cell = grouped<std::int32_t>(grid.cells(), [&](const auto& visit) {
+    const auto by_cell = bucketize<std::int32_t>(grid.cells(), [&](const auto& visit) {
         for (std::size_t i = 0; i < nodes.size(); ++i)
             visit(grid.cell_of(to_mesh(nodes[i])), static_cast<std::int32_t>(i));
     });
-    OrderedMesh mesh{grid, std::move(by_cell.first), std::move(by_cell.items), {}, {}, {}};
+    OrderedMesh mesh{grid,
+                     {by_cell.offsets.begin(), by_cell.offsets.end()},
+                     {by_cell.values.begin(), by_cell.values.end()},
+                     {},
+                     {},
+                     {}};
     mesh.new_number.resize(nodes.size());
     for (const std::int32_t old : mesh.old_number) {
         mesh.new_number[old] = static_cast<std::int32_t>(mesh.nodes.size());

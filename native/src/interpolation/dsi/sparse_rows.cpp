@@ -37,7 +37,7 @@ SparseRows::SparseRows(std::size_t nodes, std::span<const Hinge> hinges, int thr
       first_((nodes + kSideBySide - 1) / kSideBySide + 1, 0),
       diagonal_(nodes),
       rough_diagonal_(nodes) {
-    const auto of = grouped<std::int32_t>(nodes, [&](const auto& visit) {
+    const auto of = bucketize<std::int32_t>(nodes, [&](const auto& visit) {
         for (std::size_t h = 0; h < hinges.size(); ++h) {
             for (const std::int32_t v : hinges[h].nodes)
                 visit(v, static_cast<std::int32_t>(h));

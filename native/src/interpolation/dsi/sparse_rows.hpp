@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "base/grouped_items.hpp"
+#include "base/counting_sort.hpp"
 #include "interpolation/dsi/hinges.hpp"
 #include "interpolation/dsi/staged_sweep.hpp"
 #include "interpolation/dsi/vectors.hpp"
@@ -81,7 +81,7 @@ private:
         std::size_t entry;
         double before;
     };
-    using HingesOfNodes = GroupedItems<std::int32_t>;
+    using HingesOfNodes = Buckets<std::int32_t>;
     static void find_row(std::size_t row, std::span<const Hinge> hinges, const HingesOfNodes& of,
                          std::vector<Entry>& entries);
     void fill_slice(std::size_t slice, std::span<const Hinge> hinges, const HingesOfNodes& of,

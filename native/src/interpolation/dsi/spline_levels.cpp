@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/grouped_items.hpp"
+#include "base/counting_sort.hpp"
 
 namespace realmodel::interpolation {
 
@@ -63,7 +63,7 @@ SplineLevels::SplineLevels(const SplineGrid& grid, std::span<const Position> nod
                            const std::function<void()>& check)
     : threads_(threads), check_(check), rough_(grid.cells()) {
     // Hinges by cells, so that each cell sums its own in their order.
-    const auto in_cell = grouped<std::int32_t>(grid.cells(), [&](const auto& visit) {
+    const auto in_cell = bucketize<std::int32_t>(grid.cells(), [&](const auto& visit) {
         for (std::size_t h = 0; h < hinges.size(); ++h)
             visit(grid.cell_of(hinges[h].middle), static_cast<std::int32_t>(h));
     });

@@ -70,7 +70,7 @@ CurveFit fit_sill(const ExperimentalVariogram& e, const Curve& curve, double nug
     return fit;
 }
 
-/// The best range: tried on a geometric scale, then narrowed by kGolden sections.
+/// The best range: tried on a geometric scale, then narrowed by golden sections.
 CurveFit fit_curve(const ExperimentalVariogram& e, VariogramModel model, bool with_nugget) {
     const double shortest = 0.5 * e.lags.front(), longest = 4 * e.lags.back();
     const double step = std::pow(longest / shortest, 1.0 / kRangesTried);

@@ -44,7 +44,7 @@ public:
                     const auto face = next;
                     for (auto e = loops_.face_offsets[f]; e < loops_.face_offsets[f + 1]; ++e) {
                         if (loops_.vertices[e] >= 0) *next++ = loops_.vertices[e];
-                        for (; late != loops_.late.end() && late->entry == e; ++late)
+                        for (; late != loops_.inserted.end() && late->entry == e; ++late)
                             *next++ = late->vertex;
                     }
                     complex.face_offsets[f] = face - start;
@@ -64,7 +64,7 @@ private:
     /// The first late vertex of an entry, or of one after it.
     std::vector<InsertedVertex>::const_iterator late_from(std::uint32_t entry) const {
         return std::lower_bound(
-            loops_.late.begin(), loops_.late.end(), entry,
+            loops_.inserted.begin(), loops_.inserted.end(), entry,
             [](const InsertedVertex& late, std::uint32_t e) { return late.entry < e; });
     }
 

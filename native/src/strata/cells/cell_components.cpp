@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <string>
 
+#include "base/counting_sort.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "realmodel/base/errors.hpp"
 
@@ -32,46 +34,32 @@ std::vector<std::int32_t> cell_components(std::span<const std::array<std::int32_
         const auto [first, second] = face_cells[f];
         check_cells(face_cells[f], f, cell_block.size());
         if (first < 0 || second < 0) continue;
-        if (cell_block[static_cast<std::size_t>(first)] ==
-            cell_block[static_cast<std::size_t>(second)]) {
+        if (cell_block[index(first)] == cell_block[index(second)]) {
             parts.join(first, second);
         }
     }
     std::vector<std::int32_t> component(cell_block.size());
     for (std::int32_t c = 0; c < cells; ++c) {
         poll(progress, static_cast<std::size_t>(c));
-        component[static_cast<std::size_t>(c)] = parts.find(c);
+        component[index(c)] = parts.find(c);
     }
     return component;
 }
 
 CellSides cell_sides(std::span<const std::array<std::int32_t, 2>> face_cells, std::size_t cells,
                      const Progress* progress) {
-    CellSides result;
-    result.offsets.assign(cells + 1, 0);
-    for (std::size_t f = 0; f < face_cells.size(); ++f) {
-        poll(progress, f);
-        check_cells(face_cells[f], f, cells);
-        for (const std::int32_t cell : face_cells[f]) {
-            if (cell >= 0) ++result.offsets[static_cast<std::size_t>(cell) + 1];
+    const auto sides = bucketize<std::int64_t>(cells, [&](const auto& put) {
+        for (std::size_t f = 0; f < face_cells.size(); ++f) {
+            poll(progress, f);
+            check_cells(face_cells[f], f, cells);
+            for (std::size_t second = 0; second < 2; ++second) {
+                const std::int32_t cell = face_cells[f][second];
+                if (cell >= 0) put(index(cell), static_cast<std::int64_t>(2 * f + second));
+            }
         }
-    }
-    for (std::size_t c = 0; c < cells; ++c) {
-        poll(progress, c);
-        result.offsets[c + 1] += result.offsets[c];
-    }
-    result.sides.resize(static_cast<std::size_t>(result.offsets.back()));
-    std::vector<std::int64_t> next(result.offsets.begin(), result.offsets.end() - 1);
-    for (std::size_t f = 0; f < face_cells.size(); ++f) {
-        poll(progress, f);
-        for (std::size_t second = 0; second < 2; ++second) {
-            const std::int32_t cell = face_cells[f][second];
-            if (cell < 0) continue;
-            const auto side = static_cast<std::int64_t>(2 * f + second);
-            result.sides[static_cast<std::size_t>(next[static_cast<std::size_t>(cell)]++)] = side;
-        }
-    }
-    return result;
+    });
+    return {{sides.offsets.begin(), sides.offsets.end()},
+            {sides.values.begin(), sides.values.end()}};
 }
 
 }  // namespace realmodel::strata

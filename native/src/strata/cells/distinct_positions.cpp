@@ -241,7 +241,7 @@ std::vector<FlatCell> make_distinct(const exact::PlanArrangement& geometry, cons
         break;
     }
     for (const auto& [place, position] : spreader.moved()) {
-        for (auto v = loops.place_offsets[place]; v < loops.place_offsets[place + 1]; ++v) {
+        for (auto v = loops.vertex_offsets[place]; v < loops.vertex_offsets[place + 1]; ++v) {
             auto& vertex = loops.positions[static_cast<std::size_t>(v)];
             vertex[0] = position[0];
             vertex[1] = position[1];

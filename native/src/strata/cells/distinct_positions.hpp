@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "strata/conform/conforming.hpp"
+#include "strata/conform/conformed_faces.hpp"
 
 namespace realmodel::strata {
 

@@ -127,8 +127,8 @@ WallBatch join_stretches(std::span<const WallStretch> stretches,
     for (const ExtraPoint& e : crossings) {
         const auto place =
             static_cast<std::size_t>(places.of_point[static_cast<std::size_t>(e.point)]);
-        std::fill(may_bend.begin() + loops.place_offsets[place],
-                  may_bend.begin() + loops.place_offsets[place + 1], std::uint8_t{1});
+        std::fill(may_bend.begin() + loops.vertex_offsets[place],
+                  may_bend.begin() + loops.vertex_offsets[place + 1], std::uint8_t{1});
     }
     for (const WallStretch& s : stretches) {
         for (const std::int32_t v : {s.lower[0], s.lower[1], s.upper[0], s.upper[1]})

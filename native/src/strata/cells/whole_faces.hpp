@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "realmodel/strata/stack.hpp"
-#include "strata/conform/conforming.hpp"
+#include "strata/conform/conformed_faces.hpp"
 #include "strata/overlay/sheet_links.hpp"
 
 namespace realmodel::strata {

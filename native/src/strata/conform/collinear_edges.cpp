@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/conform/collinear_edges.hpp"
+
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 #include "base/parallel_counts.hpp"
 #include "strata/conform/collinear_lines.hpp"
-#include "strata/conform/conforming.hpp"
 #include "strata/conform/line_buckets.hpp"
 
 namespace realmodel::strata {
@@ -13,35 +15,35 @@ using exact::PlanArrangement;
 
 namespace {
 
-/// The places on one track, put in order. Rounded coordinates keep the order of places along a
-/// line, and exact ones decide where they are equal.
-class PlacesOnTrack {
+/// The plan vertices on one line, put in order. Rounded coordinates keep the order of plan vertices
+/// along a line, and exact ones decide where they are equal.
+class VerticesOnLine {
 public:
-    PlacesOnTrack(const PlanArrangement& geometry, const PlanVertices& places)
-        : scope_(geometry), places_(places) {}
+    VerticesOnLine(const PlanArrangement& geometry, const PlanVertices& plan_vertices)
+        : scope_(geometry), plan_vertices_(plan_vertices) {}
 
     void clear() {
         added_.clear();
         known_.clear();
     }
 
-    /// Adds a place, which may be there already.
+    /// Adds a plan vertex, which may be there already.
     /// @return a number to ask rank() with
-    std::int32_t add(PlanVertexId place) {
-        // Most tracks have a handful of places, each the end of several edges, and the last ones
-        // are met again soonest.
+    std::int32_t add(PlanVertexId plan_vertex) {
+        // Most lines have a handful of plan vertices, each the end of several edges, and the last
+        // ones are met again soonest.
         for (std::size_t i = added_.size(), least = i > kFew ? i - kFew : 0; i > least; --i) {
-            if (added_[i - 1] == place) return static_cast<std::int32_t>(i - 1);
+            if (added_[i - 1] == plan_vertex) return static_cast<std::int32_t>(i - 1);
         }
-        added_.push_back(place);
+        added_.push_back(plan_vertex);
         return static_cast<std::int32_t>(added_.size()) - 1;
     }
 
-    /// To be called when all are there, with a line of the track.
+    /// To be called when all are there, with one of the lines that run through them.
     void sort(LineId line) {
         order_.resize(added_.size());
         std::iota(order_.begin(), order_.end(), 0);
-        // places are in order of x, so only where two have the same x more is to be asked
+        // plan vertices are in order of x, so only where two have the same x more is to be asked
         std::sort(order_.begin(), order_.end(),
                   [&](std::int32_t a, std::int32_t b) { return added(a) < added(b); });
         if (same_x()) {
@@ -56,180 +58,193 @@ public:
             if (known_.empty() || known_.back() != added(i)) known_.push_back(added(i));
             rank_[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(known_.size()) - 1;
         }
+        assert(are_sorted(line));
     }
 
-    /// The places in order along the track, each once.
+    /// The plan vertices in order along the line, each once.
     const std::vector<PlanVertexId>& in_order() const { return known_; }
     /// Which of them was added under a number.
     std::int32_t rank(std::int32_t number) const { return rank_[static_cast<std::size_t>(number)]; }
-    /// Which of them a place is, where no two have the same x.
-    std::int32_t number_of(PlanVertexId place) const {
-        return static_cast<std::int32_t>(std::lower_bound(known_.begin(), known_.end(), place) -
-                                         known_.begin());
+    /// Which of them a plan vertex is, where no two have the same x.
+    std::int32_t number_of(PlanVertexId plan_vertex) const {
+        return static_cast<std::int32_t>(
+            std::lower_bound(known_.begin(), known_.end(), plan_vertex) - known_.begin());
     }
 
 private:
     static constexpr std::size_t kFew = 16;
 
     PlanVertexId added(std::int32_t i) const { return added_[static_cast<std::size_t>(i)]; }
-    const PlanPosition& position(PlanVertexId place) const {
-        return places_.position[static_cast<std::size_t>(place)];
+    const PlanPosition& position(PlanVertexId plan_vertex) const {
+        return plan_vertices_.position[static_cast<std::size_t>(plan_vertex)];
     }
 
-    /// Whether two different places have the same x.
+    /// Whether two different plan vertices have the same x.
     bool same_x() const {
         for (std::size_t i = 1; i < order_.size(); ++i) {
             const PlanVertexId a = added(order_[i - 1]), b = added(order_[i]);
-            if (places_.has_same_x_next(a) && a != b && position(a)[0] == position(b)[0])
+            if (plan_vertices_.has_same_x_next(a) && a != b && position(a)[0] == position(b)[0])
                 return true;
         }
         return false;
     }
 
-    /// Whether place a comes before place b along a track that runs to rising x (and rising or
-    /// falling y).
+    /// Whether the vertices are in order along a line, exactly.
+    bool are_sorted(LineId line) {
+        const int axis = scope_.direction_signs(line)[0] != 0 ? 0 : 1;
+        const auto point = [&](PlanVertexId v) {
+            return plan_vertices_.representative[static_cast<std::size_t>(v)];
+        };
+        return std::is_sorted(known_.begin(), known_.end(), [&](PlanVertexId a, PlanVertexId b) {
+            return scope_.compare(axis, point(a), point(b)) > 0;
+        });
+    }
+
+    /// Whether plan vertex a comes before plan vertex b along a line that runs to rising x (and
+    /// rising or falling y).
     bool before(int rise, PlanVertexId a, PlanVertexId b) {
         const PlanPosition &p = position(a), &q = position(b);
         if (p[0] != q[0]) return p[0] < q[0];
         if (p[1] != q[1] && rise != 0) return (p[1] < q[1]) == (rise > 0);
-        const PointId from = places_.representative[static_cast<std::size_t>(a)];
-        const PointId to = places_.representative[static_cast<std::size_t>(b)];
+        const PointId from = plan_vertices_.representative[static_cast<std::size_t>(a)];
+        const PointId to = plan_vertices_.representative[static_cast<std::size_t>(b)];
         const int x = scope_.compare(0, from, to);
         if (x != 0) return x > 0;
         return scope_.compare(1, from, to) * rise > 0;
     }
 
     LocalArrangement scope_;
-    const PlanVertices& places_;
+    const PlanVertices& plan_vertices_;
     std::vector<PlanVertexId> added_;  ///< some of them twice, where there are many
-    std::vector<PlanVertexId> known_;  ///< along the track
+    std::vector<PlanVertexId> known_;  ///< along the line
     std::vector<std::int32_t> order_, rank_;
 };
 
-/// Lines that are not paired.
-struct KeptTracks {
+/// Supporting lines whose edges do not all match.
+struct UnmatchedLines {
     std::vector<LineId> representative;
     std::vector<std::uint32_t> edge_counts;
     GrowingArray<LineEdge> edges;
 
-    void add(LineId line, std::span<const LineEdge> of_track) {
+    void add(LineId line, std::span<const LineEdge> of_line) {
         representative.push_back(line);
-        edge_counts.push_back(static_cast<std::uint32_t>(of_track.size()));
-        edges.append(of_track.begin(), of_track.end());
+        edge_counts.push_back(static_cast<std::uint32_t>(of_line.size()));
+        edges.append(of_line.begin(), of_line.end());
     }
 };
 
-/// Puts the tracks that are left together, which are given back on the way.
-void join_kept(std::vector<KeptTracks> kept, CollinearEdges& tracks, int threads,
-               const Progress* progress) {
-    std::vector<std::size_t> first_track, first_edge;
-    for (const KeptTracks& some : kept) {
-        first_track.push_back(some.representative.size());
+/// Puts the lines that are left together, which are given back on the way.
+void join_unmatched(std::vector<UnmatchedLines> kept, CollinearEdges& result, int threads,
+                    const Progress* progress) {
+    std::vector<std::size_t> first_line, first_edge;
+    for (const UnmatchedLines& some : kept) {
+        first_line.push_back(some.representative.size());
         first_edge.push_back(some.edges.size());
     }
-    tracks.representative = FlatArray<LineId>(count_before(first_track));
-    tracks.edge_offsets = FlatArray<std::uint32_t>(tracks.size() + 1);
-    tracks.edges = FlatArray<LineEdge>(count_before(first_edge));
-    tracks.edge_offsets[tracks.size()] = static_cast<std::uint32_t>(tracks.edges.size());
+    result.representative = FlatArray<LineId>(count_before(first_line));
+    result.edge_offsets = FlatArray<std::uint32_t>(result.size() + 1);
+    result.edges = FlatArray<LineEdge>(count_before(first_edge));
+    result.edge_offsets[result.size()] = static_cast<std::uint32_t>(result.edges.size());
     parallel_chunks(kept.size(), threads, progress, [&](std::size_t i) {
-        std::size_t track = first_track[i], edge = first_edge[i];
-        std::copy(kept[i].edges.begin(), kept[i].edges.end(), tracks.edges.begin() + edge);
-        for (std::size_t t = 0; t < kept[i].representative.size(); ++t, ++track) {
-            tracks.representative[track] = kept[i].representative[t];
-            tracks.edge_offsets[track] = static_cast<std::uint32_t>(edge);
+        std::size_t line = first_line[i], edge = first_edge[i];
+        std::copy(kept[i].edges.begin(), kept[i].edges.end(), result.edges.begin() + edge);
+        for (std::size_t t = 0; t < kept[i].representative.size(); ++t, ++line) {
+            result.representative[line] = kept[i].representative[t];
+            result.edge_offsets[line] = static_cast<std::uint32_t>(edge);
             edge += kept[i].edge_counts[t];
         }
         kept[i] = {};
     });
 }
 
-/// Pairs the edges of some tracks, or puts their places in order, and finds which of them edges
-/// pass.
-class TrackChunk {
+/// Matches the edges of some lines, or puts their plan vertices in order, and finds which of them
+/// edges pass.
+class LineChunk {
 public:
-    TrackChunk(const PlanArrangement& geometry, const FaceList& faces, const PlanVertices& places,
-               PassedVertices& passed)
+    LineChunk(const PlanArrangement& geometry, const FaceList& faces,
+              const PlanVertices& plan_vertices, PassedVertices& passed)
         : faces_(faces),
-          places_(places),
+          plan_vertices_(plan_vertices),
           passed_(passed),
-          on_track_(geometry, places),
-          pairing_(geometry, faces) {}
+          on_line_(geometry, plan_vertices),
+          matching_(geometry, faces) {}
 
-    /// Begins with a track.
-    /// @param edges  its edges, whose ends are places
+    /// Begins with a line.
+    /// @param edges  its edges, whose ends are plan vertices
     void begin(std::span<LineEdge> edges, LineId line) {
         edges_ = edges;
         line_ = line;
         is_ranked_ = false;
     }
 
-    /// Numbers the ends of the edges along the track; an edge passes all places between its ends.
-    /// @param extra  places that the track must pass besides the ends of its edges
+    /// Numbers the ends of the edges along the line; an edge passes all plan vertices between its
+    /// ends.
+    /// @param extra  plan vertices that the line must pass besides the ends of its edges
     void pass_all(std::span<const std::pair<std::int32_t, PlanVertexId>> extra) {
         if (!is_ranked_) put_in_order(extra);
         for (const LineEdge& edge : edges_)
-            pass(edge, edge.from, edge.to, 1);
+            pass(edge, edge.from, edge.to, false);
     }
 
     /// Where the cells on both sides of a pair are thick, no other face is as high as the pair
-    /// where it passes a place: around it all columns have one of its two faces.
-    /// @return whether all edges of the track are pairs; if not, nothing was passed
-    bool pass_in_pairs(const GrowingArray<std::uint8_t>& cell_is_thick, MatchedEdges& paired) {
+    /// where it passes a plan vertex: around it all columns have one of its two faces.
+    /// @return whether all edges of the line match; if not, nothing was passed
+    bool pass_matched(const GrowingArray<std::uint8_t>& cell_is_thick, MatchedEdges& matched) {
         // Plan vertices have numbers in order of x, and hardly ever the same x. Each end of a pair
         // is where an edge begins.
         bool same_x = false;
         for (const LineEdge& edge : edges_)
-            same_x |= places_.has_same_x_next(edge.from);
+            same_x |= plan_vertices_.has_same_x_next(edge.from);
         if (same_x) put_in_order({});
-        if (!pairing_.pair(edges_, line_)) return false;
-        pairing_.add_walls(paired);
+        if (!matching_.match_all(edges_, line_)) return false;
+        matching_.add_walls(matched);
         bool all_known = is_ranked_;
-        for (const auto& [left, right] : pairing_.pairs()) {
+        for (const auto& [left, right] : matching_.matches()) {
             if (is_between(*left, cell_is_thick) && is_between(*right, cell_is_thick)) continue;
-            if (!all_known) find_places_of_pairs();
+            if (!all_known) sort_ends_of_matches();
             all_known = true;
-            const std::int32_t from = is_ranked_ ? left->from : on_track_.number_of(left->from);
-            const std::int32_t to = is_ranked_ ? left->to : on_track_.number_of(left->to);
+            const std::int32_t from = is_ranked_ ? left->from : on_line_.number_of(left->from);
+            const std::int32_t to = is_ranked_ ? left->to : on_line_.number_of(left->to);
             if (to - from == 1) continue;
-            pass(*left, from, to, -1);
-            paired.passing.push_back({left->begin, right->begin});
+            pass(*left, from, to, true);
+            matched.passing.push_back({left->begin, right->begin});
         }
         return true;
     }
 
 private:
     void put_in_order(std::span<const std::pair<std::int32_t, PlanVertexId>> extra) {
-        on_track_.clear();
-        for (const auto& [_, place] : extra)
-            on_track_.add(place);
+        on_line_.clear();
+        for (const auto& [_, plan_vertex] : extra)
+            on_line_.add(plan_vertex);
         for (LineEdge& edge : edges_) {
-            edge.from = on_track_.add(edge.from);
-            edge.to = on_track_.add(edge.to);
+            edge.from = on_line_.add(edge.from);
+            edge.to = on_line_.add(edge.to);
         }
-        on_track_.sort(line_);
+        on_line_.sort(line_);
         for (LineEdge& edge : edges_) {
-            edge.from = on_track_.rank(edge.from);
-            edge.to = on_track_.rank(edge.to);
+            edge.from = on_line_.rank(edge.from);
+            edge.to = on_line_.rank(edge.to);
         }
         is_ranked_ = true;
     }
-    void find_places_of_pairs() {
-        on_track_.clear();
+    void sort_ends_of_matches() {
+        on_line_.clear();
         for (const LineEdge& edge : edges_)
-            on_track_.add(edge.from);
-        on_track_.sort(line_);
+            on_line_.add(edge.from);
+        on_line_.sort(line_);
     }
 
-    /// @param from, to  the ends of the edge, counted along the track
-    /// @param sign  that of the count of the places between them
-    void pass(const LineEdge& edge, std::int32_t from, std::int32_t to, std::int32_t sign) {
+    /// @param from, to  the ends of the edge, counted along the line
+    void pass(const LineEdge& edge, std::int32_t from, std::int32_t to, bool is_tentative) {
+        assert(from != to && std::max(from, to) < static_cast<int>(on_line_.in_order().size()));
         const std::int32_t between = std::abs(to - from) - 1;
         if (between == 0) return;
-        passed_.push_back(static_cast<std::int32_t>(edge.begin));
-        passed_.push_back(sign * between);
-        const PlanVertexId* place = on_track_.in_order().data() + from;
+        passed_.edges.push_back(
+            {edge.begin, static_cast<std::uint32_t>(between), is_tentative ? 1U : 0U});
+        const PlanVertexId* vertex = on_line_.in_order().data() + from;
         for (std::int32_t i = 0, step = from < to ? 1 : -1; i < between; ++i)
-            passed_.push_back(*(place += step));
+            passed_.vertices.push_back(*(vertex += step));
     }
 
     /// Whether a face lies between thick cells, or those and the outside.
@@ -242,68 +257,69 @@ private:
     }
 
     const FaceList& faces_;
-    const PlanVertices& places_;
+    const PlanVertices& plan_vertices_;
     PassedVertices& passed_;
-    PlacesOnTrack on_track_;
-    TrackPairing pairing_;
+    VerticesOnLine on_line_;
+    EdgeMatching matching_;
     std::span<LineEdge> edges_;
     LineId line_ = -1;
-    bool is_ranked_ = false;  ///< whether ends of edges are counted along the track
+    bool is_ranked_ = false;  ///< whether ends of edges are counted along the line
 };
 
 }  // namespace
 
 CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceList& faces,
-                                    const PlanVertices& places,
+                                    const PlanVertices& plan_vertices,
                                     const std::vector<ExtraPoint>& extra,
                                     const GrowingArray<std::uint8_t>* cell_is_thick, int threads,
                                     const Progress* progress) {
     const CollinearLines lines = join_lines(geometry, faces, threads, progress);
-    std::vector<std::pair<std::int32_t, PlanVertexId>> extra_places;  // track and place, ascending
+    std::vector<std::pair<std::int32_t, PlanVertexId>>
+        extra_vertices;  // line and plan vertex, ascending
     for (const ExtraPoint& e : extra) {
-        extra_places.emplace_back(lines.of_line[static_cast<std::size_t>(e.line)],
-                                  places.of_point[static_cast<std::size_t>(e.point)]);
+        extra_vertices.emplace_back(lines.of_line[static_cast<std::size_t>(e.line)],
+                                    plan_vertices.of_point[static_cast<std::size_t>(e.point)]);
     }
-    std::sort(extra_places.begin(), extra_places.end());
-    const auto extra_from = [&](std::size_t track) {
-        const auto first = std::pair(static_cast<std::int32_t>(track), PlanVertexId{-1});
+    std::sort(extra_vertices.begin(), extra_vertices.end());
+    const auto extra_from = [&](std::size_t line) {
+        const auto first = std::pair(static_cast<std::int32_t>(line), PlanVertexId{-1});
         return static_cast<std::size_t>(
-            std::lower_bound(extra_places.begin(), extra_places.end(), first) -
-            extra_places.begin());
+            std::lower_bound(extra_vertices.begin(), extra_vertices.end(), first) -
+            extra_vertices.begin());
     };
-    CollinearEdges tracks;
+    CollinearEdges result;
     const LineBuckets buckets(faces, lines, threads, progress);
-    tracks.passed.resize(buckets.size());
-    tracks.paired.resize(buckets.size());
-    std::vector<KeptTracks> kept(buckets.size());
+    result.passed.resize(buckets.size());
+    result.matched.resize(buckets.size());
+    std::vector<UnmatchedLines> kept(buckets.size());
     parallel_chunks(
         buckets.size(), threads, progress,
         [&](std::size_t bucket) {
             BucketEdges edges;
-            buckets.collect(bucket, places, edges);
-            TrackChunk chunk(geometry, faces, places, tracks.passed[bucket]);
-            MatchedEdges paired;
-            const std::size_t begin = buckets.first_track(bucket);
+            buckets.collect(bucket, plan_vertices, edges);
+            LineChunk chunk(geometry, faces, plan_vertices, result.passed[bucket]);
+            MatchedEdges matched;
+            const std::size_t begin = buckets.first_line(bucket);
             std::size_t next_extra = extra_from(begin);
-            for (std::size_t t = begin; t < buckets.first_track(bucket + 1); ++t) {
+            for (std::size_t t = begin; t < buckets.first_line(bucket + 1); ++t) {
                 const std::size_t first_extra = next_extra;
-                while (next_extra < extra_places.size() &&
-                       extra_places[next_extra].first == static_cast<std::int32_t>(t))
+                while (next_extra < extra_vertices.size() &&
+                       extra_vertices[next_extra].first == static_cast<std::int32_t>(t))
                     ++next_extra;
-                const std::span<LineEdge> of_track = edges[t - begin];
-                chunk.begin(of_track, lines.representative[t]);
+                const std::span<LineEdge> of_line = edges[t - begin];
+                chunk.begin(of_line, lines.representative[t]);
                 if (cell_is_thick != nullptr && first_extra == next_extra &&
-                    chunk.pass_in_pairs(*cell_is_thick, paired))
+                    chunk.pass_matched(*cell_is_thick, matched))
                     continue;
                 chunk.pass_all(
-                    {extra_places.begin() + first_extra, extra_places.begin() + next_extra});
-                kept[bucket].add(lines.representative[t], of_track);
+                    {extra_vertices.begin() + first_extra, extra_vertices.begin() + next_extra});
+                kept[bucket].add(lines.representative[t], of_line);
             }
-            tracks.paired[bucket] = paired;  // without room for more
+            result.matched[bucket] = matched;  // without room for more
         },
         0.5);
-    join_kept(std::move(kept), tracks, threads, progress);
-    return tracks;
+    join_unmatched(std::move(kept), result, threads, progress);
+    return result;
 }
 
 }  // namespace realmodel::strata

@@ -15,14 +15,14 @@ namespace {
 
 constexpr std::size_t kChunk = 1 << 13, kMostChunks = 64;
 
-/// A line with a number that is equal for lines that run through the same places, and hardly ever
-/// for others.
+/// A line with a number that is equal for lines that run through the same plan vertices, and hardly
+/// ever for others.
 struct Keyed {
     std::uint64_t key;
     LineId line;
 };
 
-/// A line and the lowest one that runs through the same places.
+/// A line and the lowest one that runs through the same plan vertices.
 struct Follower {
     LineId line, leader;
 };
@@ -117,36 +117,36 @@ std::vector<Follower> find_followers(const PlanArrangement& geometry, GrowingArr
 CollinearLines join_lines(const PlanArrangement& geometry, const FaceList& faces, int threads,
                           const Progress* progress) {
     GrowingArray<Keyed> lines = lines_in_use(geometry, faces, threads, progress);
-    CollinearLines tracks;
-    tracks.of_line = FlatArray<std::int32_t>(geometry.line_count());
-    std::fill(tracks.of_line.begin(), tracks.of_line.end(), -1);
+    CollinearLines joined;
+    joined.of_line = FlatArray<std::int32_t>(geometry.line_count());
+    std::fill(joined.of_line.begin(), joined.of_line.end(), -1);
     for (const Keyed& line : lines)
-        tracks.of_line[static_cast<std::size_t>(line.line)] = 0;
+        joined.of_line[static_cast<std::size_t>(line.line)] = 0;
     const auto followers = find_followers(geometry, std::move(lines), threads, progress);
     for (const Follower& follower : followers)
-        tracks.of_line[static_cast<std::size_t>(follower.line)] = -1;
+        joined.of_line[static_cast<std::size_t>(follower.line)] = -1;
 
-    std::vector<std::size_t> before((tracks.of_line.size() + kChunk - 1) / kChunk);
+    std::vector<std::size_t> before((joined.of_line.size() + kChunk - 1) / kChunk);
     parallel_ranges(
-        tracks.of_line.size(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
+        joined.of_line.size(), kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
             before[begin / kChunk] = static_cast<std::size_t>(
-                std::count(tracks.of_line.begin() + begin, tracks.of_line.begin() + end, 0));
+                std::count(joined.of_line.begin() + begin, joined.of_line.begin() + end, 0));
         });
-    tracks.representative = FlatArray<LineId>(count_before(before));
-    parallel_ranges(tracks.of_line.size(), kChunk, threads, progress,
+    joined.representative = FlatArray<LineId>(count_before(before));
+    parallel_ranges(joined.of_line.size(), kChunk, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         std::size_t next = before[begin / kChunk];
                         for (std::size_t l = begin; l < end; ++l) {
-                            if (tracks.of_line[l] < 0) continue;
-                            tracks.of_line[l] = static_cast<std::int32_t>(next);
-                            tracks.representative[next++] = static_cast<LineId>(l);
+                            if (joined.of_line[l] < 0) continue;
+                            joined.of_line[l] = static_cast<std::int32_t>(next);
+                            joined.representative[next++] = static_cast<LineId>(l);
                         }
                     });
     for (const Follower& follower : followers) {
-        tracks.of_line[static_cast<std::size_t>(follower.line)] =
-            tracks.of_line[static_cast<std::size_t>(follower.leader)];
+        joined.of_line[static_cast<std::size_t>(follower.line)] =
+            joined.of_line[static_cast<std::size_t>(follower.leader)];
     }
-    return tracks;
+    return joined;
 }
 
 }  // namespace realmodel::strata

@@ -2,23 +2,9 @@
 #include "strata/conform/corner_offsets.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+#include <cassert>
 
 namespace realmodel::strata {
-
-namespace {
-
-/// Calls visit(corner, number of places) for all edges of some passed places.
-template <class Visit>
-void for_each_edge(const PassedVertices& passed, const Visit& visit) {
-    for (std::size_t i = 0; i < passed.size();) {
-        const auto places = static_cast<std::uint32_t>(std::abs(passed[i + 1]));
-        visit(static_cast<std::uint32_t>(passed[i]), places);
-        i += 2 + places;
-    }
-}
-
-}  // namespace
 
 CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::size_t corners,
                              int threads, const Progress* progress)
@@ -27,17 +13,19 @@ CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::siz
     passing_of_block_ = zeros<std::uint32_t>(blocks + 1, threads, progress);
     std::vector<std::vector<std::uint32_t>> number(passed.size());  // of each edge in its block
     parallel_chunks(passed.size(), threads, progress, [&](std::size_t chunk) {
-        for_each_edge(passed[chunk], [&](std::uint32_t corner, std::uint32_t) {
-            number[chunk].push_back(count_one(passing_of_block_[corner / kBlock]));
-        });
+        for (const PassedVertices::Edge& edge : passed[chunk].edges) {
+            assert(edge.corner < corners);
+            number[chunk].push_back(count_one(passing_of_block_[edge.corner / kBlock]));
+        }
     });
     running_totals(passing_of_block_, UINT32_MAX, threads, progress);
     passing_ = FlatArray<Passing>(passing_of_block_[blocks]);
     parallel_chunks(passed.size(), threads, progress, [&](std::size_t chunk) {
         auto next = number[chunk].begin();
-        for_each_edge(passed[chunk], [&](std::uint32_t corner, std::uint32_t places) {
-            passing_[passing_of_block_[corner / kBlock] + *next++] = {corner, places};
-        });
+        for (const PassedVertices::Edge& edge : passed[chunk].edges) {
+            const std::uint32_t first = passing_of_block_[edge.corner / kBlock];
+            passing_[first + *next++] = {edge.corner, edge.count};
+        }
     });
     entry_of_block_ = FlatArray<std::uint32_t>(blocks + 1);
     parallel_ranges(blocks, 1 << 12, threads, progress, [&](std::size_t begin, std::size_t end) {
@@ -48,7 +36,7 @@ CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::siz
                       [](const Passing& a, const Passing& b) { return a.corner < b.corner; });
             std::size_t entries = std::min(kBlock, corners - block * kBlock);
             for (auto passing = first; passing != last; ++passing)
-                entries += passing->places;
+                entries += passing->vertices;
             entry_of_block_[block] = static_cast<std::uint32_t>(entries);
         }
     });

@@ -8,14 +8,20 @@
 
 namespace realmodel::strata {
 
-/// The places that face edges pass between their ends, one edge after another: the corner that it
-/// leaves, how many there are, and they themselves in its order. Where a count is negative, they
-/// are taken up only if something else needs a vertex there.
-using PassedVertices = std::vector<std::int32_t>;
+/// The plan vertices that face edges pass between their ends, one edge after another.
+struct PassedVertices {
+    struct Edge {
+        std::uint32_t corner;  ///< that the edge leaves
+        std::uint32_t count : 31;
+        std::uint32_t is_tentative : 1;  ///< inserted only where something else needs a vertex
+    };
+    std::vector<Edge> edges;
+    std::vector<std::int32_t> vertices;  ///< `count` for each edge, in its direction
+};
 
-/// Which entries of the loops are whose. Each corner of a face has one, and behind it there is one
-/// for each place that the edge passes which leaves the corner. Few edges pass any, so only these
-/// are kept: a number is found within a short block of corners.
+/// Where the entries of each corner are. Each corner of a face has one, and behind it there is one
+/// for each plan vertex that the edge passes which leaves the corner. Few edges pass any, so only
+/// these are stored: an offset is found within a short block of corners.
 class CornerOffsets {
 public:
     CornerOffsets() = default;
@@ -30,7 +36,7 @@ public:
         const std::uint32_t end = passing_of_block_[block + 1];
         for (std::uint32_t i = passing_of_block_[block]; i < end && passing_[i].corner < corner;
              ++i)
-            entry += passing_[i].places;
+            entry += passing_[i].vertices;
         return entry;
     }
     /// Calls visit(corner, first entry) for a range of corners.
@@ -43,10 +49,10 @@ public:
         for (std::size_t corner = begin; corner < end; ++corner) {
             visit(corner, entry++);
             if (next < passing_.size() && passing_[next].corner == corner)
-                entry += passing_[next++].places;
+                entry += passing_[next++].vertices;
         }
     }
-    /// To be called some time before first(), as memory takes its time.
+    /// To be called some time before first(): the memory is fetched meanwhile.
     [[gnu::always_inline]] void prefetch(std::size_t corner) const {
         realmodel::prefetch(&entry_of_block_[corner / kBlock]);
         realmodel::prefetch(&passing_of_block_[corner / kBlock]);
@@ -55,9 +61,9 @@ public:
 
 private:
     static constexpr std::size_t kBlock = 32;  // corners
-    /// An edge that passes places.
+    /// An edge that passes plan vertices.
     struct Passing {
-        std::uint32_t corner, places;
+        std::uint32_t corner, vertices;
     };
 
     std::size_t corners_ = 0;

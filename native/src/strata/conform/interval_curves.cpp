@@ -2,6 +2,7 @@
 #include "strata/conform/interval_curves.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "base/parallel_counts.hpp"
@@ -10,7 +11,7 @@ namespace realmodel::strata {
 
 /// Asks for what is known of the edges after one.
 [[gnu::always_inline]] inline void IntervalCurves::prefetch_edge(const LineEdge* edge) const {
-    const std::ptrdiff_t left = tracks_.edges.end() - 1 - edge;
+    const std::ptrdiff_t left = collinear_.edges.end() - 1 - edge;
     const LineEdge& far = edge[std::min<std::ptrdiff_t>(24, left)];
     const auto face = static_cast<std::size_t>(far.face);
     prefetch(&loops_.face_offsets[face]);
@@ -32,9 +33,9 @@ bool IntervalCurves::before(const Curve& a, const Curve& b) const {
     return std::pair(layer(a), a.face) < std::pair(layer(b), b.face);
 }
 
-void IntervalCurves::collect(std::size_t track) {
-    const auto first = tracks_.edges.begin() + tracks_.edge_offsets[track];
-    const auto last = tracks_.edges.begin() + tracks_.edge_offsets[track + 1];
+void IntervalCurves::collect(std::size_t number) {
+    const auto first = collinear_.edges.begin() + collinear_.edge_offsets[number];
+    const auto last = collinear_.edges.begin() + collinear_.edge_offsets[number + 1];
     begins_.clear();
     for (auto edge = first; edge != last; ++edge) {
         const auto [low, high] = std::minmax(edge->from, edge->to);
@@ -79,6 +80,7 @@ void IntervalCurves::add_curves(const LineEdge& edge) {
         const std::int32_t next = loops_.vertices[entry];
         curve.start = left ? vertex : next;
         curve.end = left ? next : vertex;
+        assert(curve.start >= 0 && curve.end >= 0);
         curves_[free_[static_cast<std::size_t>(interval)]++] = curve;
         vertex = next;
         interval += left ? 1 : -1;
@@ -91,7 +93,7 @@ std::int32_t below_all(std::span<const Curve> curves, bool left) {
     return lowest == curves.end() ? kOutsideCell : lowest->below;
 }
 
-void IntervalCurves::find_crossings(std::size_t track, std::span<const Curve> curves,
+void IntervalCurves::find_crossings(std::size_t number, std::span<const Curve> curves,
                                     LocalArrangement& scope,
                                     std::vector<ExtraPoint>& missing) const {
     const auto plane = [&](const Curve& curve) {
@@ -101,7 +103,7 @@ void IntervalCurves::find_crossings(std::size_t track, std::span<const Curve> cu
         for (std::size_t j = i + 1; j < curves.size(); ++j) {
             const Curve &a = curves[i], &b = curves[j];
             if (a.start >= b.start || a.end <= b.end) continue;
-            const LineId line = tracks_.representative[track];
+            const LineId line = collinear_.representative[number];
             const LineId trace = exact::line_of(scope.trace(plane(a), plane(b)));
             missing.push_back({line, scope.crossing(line, trace)});
         }

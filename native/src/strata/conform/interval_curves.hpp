@@ -5,35 +5,36 @@
 #include <span>
 #include <vector>
 
-#include "strata/conform/conforming.hpp"
+#include "strata/conform/conformed_faces.hpp"
 
 namespace realmodel::strata {
 
-/// A face edge over one interval of a track: a straight line in height between two verticals.
+/// A face edge over one interval of a line: a straight line in height between two verticals.
 struct Curve {
     std::int32_t start, end;  ///< vertices on the two verticals; ascending means rising
     std::int32_t face;
     std::int32_t above, below;  ///< what the face lies between: cells, or nodes
-    bool left;                  ///< the face lies left of the track
+    bool left;                  ///< the face lies left of the line
 
     bool as_high_as(const Curve& other) const { return start == other.start && end == other.end; }
 };
 
-/// The face edges of one track after another: what stands on its two sides.
+/// The face edges of one line after another: what stands on its two sides.
 class IntervalCurves {
 public:
-    IntervalCurves(const FaceList& faces, const CollinearEdges& tracks, const ConformedFaces& loops)
-        : faces_(faces), tracks_(tracks), loops_(loops) {}
+    IntervalCurves(const FaceList& faces, const CollinearEdges& collinear,
+                   const ConformedFaces& loops)
+        : faces_(faces), collinear_(collinear), loops_(loops) {}
 
-    /// Puts the curves of a track in order of intervals, and those of each in order of height.
-    void collect(std::size_t track);
+    /// Puts the curves of a line in order of intervals, and those of each in order of height.
+    void collect(std::size_t number);
     std::size_t intervals() const { return begins_.empty() ? 0 : begins_.size() - 1; }
     std::span<const Curve> of_interval(std::size_t i) const {
         return {curves_.data() + begins_[i], begins_[i + 1] - begins_[i]};
     }
 
-    /// The points where curves of an interval cross in height, which the track must pass first.
-    void find_crossings(std::size_t track, std::span<const Curve> curves, LocalArrangement& scope,
+    /// The points where curves of an interval cross in height, which the line must pass first.
+    void find_crossings(std::size_t number, std::span<const Curve> curves, LocalArrangement& scope,
                         std::vector<ExtraPoint>& missing) const;
 
 private:
@@ -42,7 +43,7 @@ private:
     void prefetch_edge(const LineEdge* edge) const;
 
     const FaceList& faces_;
-    const CollinearEdges& tracks_;
+    const CollinearEdges& collinear_;
     const ConformedFaces& loops_;
     std::vector<Curve> curves_;
     std::vector<std::uint32_t> begins_, free_;  ///< curves of each interval, and where more go
@@ -52,7 +53,7 @@ private:
 std::int32_t below_all(std::span<const Curve> curves, bool left);
 
 /// Calls visit(low, high, left, right) for each two neighbouring heights of an interval: a curve at
-/// either, and what lies between the two left and right of the track.
+/// either, and what lies between the two left and right of the line.
 template <class Visit>
 void for_each_gap(std::span<const Curve> curves, const Visit& visit) {
     std::int32_t left = below_all(curves, true), right = below_all(curves, false);

@@ -11,7 +11,7 @@ namespace realmodel::strata {
 namespace {
 
 constexpr std::size_t kEdges = 1 << 14;         // in a bucket: they fit the cache of a core
-constexpr std::size_t kMostEdges = 2000000000;  // so that places on tracks can be numbered
+constexpr std::size_t kMostEdges = 2000000000;  // so that plan vertices on lines can be numbered
 constexpr std::size_t kCorners = 1 << 17, kMostChunks = 64;  // sorted into buckets at a time
 
 /// How many faces of a chunk are in a bucket, or where the next of them goes.
@@ -24,13 +24,13 @@ struct Filling {
 
 LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines, int threads,
                          const Progress* progress)
-    : faces_(faces), lines_(lines), tracks_(lines.representative.size()) {
+    : faces_(faces), lines_(lines), line_count_(lines.representative.size()) {
     const auto& corners = faces.polygons.corners;
     check_total(corners.size(), kMostEdges);
-    const std::size_t edges_of_track = corners.size() / std::max<std::size_t>(tracks_, 1) + 1;
-    tracks_together_ = std::bit_floor(std::max<std::size_t>(kEdges / edges_of_track, 1));
-    const std::size_t buckets = (tracks_ + tracks_together_ - 1) / tracks_together_;
-    const int shift = std::countr_zero(tracks_together_);
+    const std::size_t edges_of_line = corners.size() / std::max<std::size_t>(line_count_, 1) + 1;
+    lines_together_ = std::bit_floor(std::max<std::size_t>(kEdges / edges_of_line, 1));
+    const std::size_t buckets = (line_count_ + lines_together_ - 1) / lines_together_;
+    const int shift = std::countr_zero(lines_together_);
 
     const std::size_t chunks = std::clamp<std::size_t>(corners.size() / kCorners, 1, kMostChunks);
     std::vector<std::vector<Filling>> filling(chunks);
@@ -39,7 +39,7 @@ LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines, int
         for (std::size_t f = faces.size() * chunk / chunks; f < end; ++f) {
             const auto face = static_cast<std::int32_t>(f);
             for (const Corner& corner : faces.polygons[f]) {
-                Filling& bucket = filling[chunk][track_of(corner) >> shift];
+                Filling& bucket = filling[chunk][joined_line(corner) >> shift];
                 if (bucket.last_face == face) continue;
                 bucket.last_face = face;
                 visit(bucket, face);
@@ -81,17 +81,18 @@ LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines, int
     prefetch(&faces_.polygons.corners[static_cast<std::size_t>(faces_.polygons.offsets[near])]);
 }
 
-void LineBuckets::collect(std::size_t bucket, const PlanVertices& places, BucketEdges& into) const {
-    const std::size_t first = first_track(bucket), tracks = first_track(bucket + 1) - first;
+void LineBuckets::collect(std::size_t bucket, const PlanVertices& plan_vertices,
+                          BucketEdges& into) const {
+    const std::size_t first = first_line(bucket), count_of_lines = first_line(bucket + 1) - first;
     const Corner* const corners = faces_.polygons.corners.data();
-    const PlanVertexId* const of_point = places.of_point.begin();
-    const auto place_of = [&](std::size_t corner) {
+    const PlanVertexId* const of_point = plan_vertices.of_point.begin();
+    const auto vertex_of = [&](std::size_t corner) {
         return of_point[static_cast<std::size_t>(corners[corner].point)];
     };
     // Counted two further on, these become the ends, and filled up to their ends the beginnings.
-    // About every other edge is on a track of another bucket: it is put down, too, and the next one
-    // in its place.
-    into.offsets_.assign(tracks + 3, 0);
+    // About every other edge is on a line of another bucket: it is put down, too, and the next one
+    // in its stead.
+    into.offsets_.assign(count_of_lines + 3, 0);
     std::uint32_t* const next = into.offsets_.data();
     std::size_t count = 0;
     for (std::size_t i = first_[bucket]; i < first_[bucket + 1]; ++i) {
@@ -104,25 +105,25 @@ void LineBuckets::collect(std::size_t bucket, const PlanVertices& places, Bucket
         if (count + (end - begin) > into.found_.size())
             into.found_.resize(2 * into.found_.size() + (end - begin) + kEdges);
         Found* const found = into.found_.data();
-        PlanVertexId from = place_of(end - 1);
+        PlanVertexId from = vertex_of(end - 1);
         std::size_t leaving = end - 1;
         for (std::size_t c = begin; c < end; ++c) {
-            const PlanVertexId to = place_of(c);
-            const std::size_t track = track_of(corners[leaving]) - first;  // huge, where before
-            const std::size_t known = std::min(track, tracks);
+            const PlanVertexId to = vertex_of(c);
+            const std::size_t line = joined_line(corners[leaving]) - first;  // huge, where before
+            const std::size_t known = std::min(line, count_of_lines);
             ++next[known + 2];
             found[count] = {{from, to, static_cast<std::uint32_t>(leaving), face},
                             static_cast<std::uint32_t>(known)};
-            count += known < tracks ? 1 : 0;
+            count += known < count_of_lines ? 1 : 0;
             from = to;
             leaving = c;
         }
     }
-    for (std::size_t t = 2; t < tracks + 2; ++t)
+    for (std::size_t t = 2; t < count_of_lines + 2; ++t)
         next[t] += next[t - 1];
     into.edges_.resize(count);
     for (std::size_t i = 0; i < count; ++i)
-        into.edges_[next[into.found_[i].track + 1]++] = into.found_[i].edge;
+        into.edges_[next[into.found_[i].line + 1]++] = into.found_[i].edge;
 }
 
 }  // namespace realmodel::strata

@@ -6,31 +6,31 @@
 #include <vector>
 
 #include "strata/conform/collinear_lines.hpp"
-#include "strata/conform/conforming.hpp"
+#include "strata/conform/matched_edges.hpp"
 
 namespace realmodel::strata {
 
-/// The face edges of some tracks, track by track.
+/// The face edges of some lines, line by line.
 class BucketEdges {
 public:
-    std::span<LineEdge> operator[](std::size_t track) {
-        return {edges_.data() + offsets_[track], edges_.data() + offsets_[track + 1]};
+    std::span<LineEdge> operator[](std::size_t line) {
+        return {edges_.data() + offsets_[line], edges_.data() + offsets_[line + 1]};
     }
 
 private:
     friend class LineBuckets;
-    /// An edge as it is found, and its track.
+    /// An edge as it is found, and its line.
     struct Found {
         LineEdge edge;
-        std::uint32_t track;
+        std::uint32_t line;
     };
     std::vector<std::uint32_t> offsets_;
     GrowingArray<LineEdge> edges_;
     GrowingArray<Found> found_;
 };
 
-/// All tracks in buckets of about as many edges each. Of a bucket only the faces are kept that have
-/// edges on its tracks: the edges themselves are put together when it is their turn, so that they
+/// All lines in buckets of about as many edges each. Of a bucket only the faces are kept that have
+/// edges on its lines: the edges themselves are put together when it is their turn, so that they
 /// are never all there at once.
 class LineBuckets {
 public:
@@ -39,15 +39,15 @@ public:
                 const Progress* progress);
 
     std::size_t size() const { return first_.size() - 1; }
-    std::size_t first_track(std::size_t bucket) const {
-        return std::min(bucket * tracks_together_, tracks_);
+    std::size_t first_line(std::size_t bucket) const {
+        return std::min(bucket * lines_together_, line_count_);
     }
-    /// Puts the edges of a bucket's tracks together; their ends are places.
-    void collect(std::size_t bucket, const PlanVertices& places, BucketEdges& into) const;
+    /// Puts the edges of a bucket's lines together; their ends are plan vertices.
+    void collect(std::size_t bucket, const PlanVertices& plan_vertices, BucketEdges& into) const;
 
 private:
     using Found = BucketEdges::Found;
-    std::size_t track_of(const Corner& corner) const {
+    std::size_t joined_line(const Corner& corner) const {
         const auto line = static_cast<std::size_t>(exact::line_of(corner.line));
         return static_cast<std::size_t>(lines_.of_line[line]);
     }
@@ -55,7 +55,7 @@ private:
 
     const FaceList& faces_;
     const CollinearLines& lines_;
-    std::size_t tracks_, tracks_together_;
+    std::size_t line_count_, lines_together_;
     std::vector<std::size_t> first_;           ///< of each bucket among the faces
     FlatArray<std::int32_t> faces_of_bucket_;  ///< ascending within each
 };

@@ -2,6 +2,7 @@
 #include "strata/conform/matched_edges.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace realmodel::strata {
 
@@ -13,41 +14,41 @@ std::uint64_t packed(std::int32_t high, std::int32_t low) {
 
 }  // namespace
 
-TrackPairing::Name TrackPairing::over(PlaneId plane, const exact::Line& line) const {
+EdgeMatching::Name EdgeMatching::over(PlaneId plane, const exact::Line& line) const {
     if (line.kind != exact::Line::Kind::kEdge) return {-1, -1};
     const exact::Plane& triangle = geometry_.plane(plane);
     const exact::SpaceId s = triangle.above(line.first);
     return {s, s < 0 ? -1 : triangle.above(line.second)};
 }
 
-TrackPairing::Name TrackPairing::name(const LineEdge& edge, const exact::Line& line) const {
+EdgeMatching::Name EdgeMatching::name(const LineEdge& edge, const exact::Line& line) const {
     const PlaneId plane = plane_of(edge);
     const Name first = over(plane, line);
     if (first[1] >= 0) return first;
-    // several edges in a row are one track, each on a line of its own
+    // several edges in a row are one line, each on a line of its own
     const auto own = exact::line_of(faces_.polygons.corners[edge.begin].line);
     const Name second = over(plane, geometry_.line(own));
     return second[1] >= 0 ? second : Name{-1, plane};
 }
 
-/// Whether two edges of the same ends are one stretch of line in space.
-bool TrackPairing::are_one_line(const LineEdge& left, const LineEdge& right,
+/// Whether two edges of the same ends are one segment in space.
+bool EdgeMatching::are_one_line(const LineEdge& left, const LineEdge& right,
                                 const exact::Line& line) {
     const std::array planes{plane_of(left), plane_of(right)};
     if (planes[0] == planes[1] || planes == same_) return true;
     const Name of_left = name(left, line);
     if (of_left != name(right, line)) return false;
-    // Stretches that follow each other mostly lie between the same two triangles.
+    // Segments that follow each other mostly lie between the same two triangles.
     if (of_left == over(planes[0], line)) same_ = planes;
     return true;
 }
 
-/// Pairs several edges of the same ends.
-bool TrackPairing::match(std::span<Stretch> left, std::span<Stretch> right,
+/// Matches several edges of the same ends.
+bool EdgeMatching::match(std::span<Segment> left, std::span<Segment> right,
                          const exact::Line& line) {
-    const auto find_names = [&](std::span<Stretch> stretches, auto& names) {
+    const auto find_names = [&](std::span<Segment> segments, auto& names) {
         names.clear();
-        for (const Stretch& s : stretches)
+        for (const Segment& s : segments)
             names.emplace_back(name(*s.edge, line), s.edge);
         std::sort(names.begin(), names.end(),
                   [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -58,46 +59,46 @@ bool TrackPairing::match(std::span<Stretch> left, std::span<Stretch> right,
         const Name& known = left_names_[i].first;
         if (known != right_names_[i].first) return false;
         if (i > 0 && known == left_names_[i - 1].first) return false;  // which is whose?
-        pairs_.push_back({left_names_[i].second, right_names_[i].second});
+        matches_.push_back({left_names_[i].second, right_names_[i].second});
     }
     return true;
 }
 
-bool TrackPairing::find_pairs(std::span<const LineEdge> edges, LineId line_id) {
+bool EdgeMatching::find_matches(std::span<const LineEdge> edges, LineId line_id) {
     if (edges.size() % 2 != 0) return false;
-    stretches_.clear();
+    segments_.clear();
     for (const LineEdge& edge : edges) {
         const bool is_right = edge.from > edge.to;
         const auto [low, high] = std::minmax(edge.from, edge.to);
-        stretches_.push_back({packed(low, high) << 1 | (is_right ? 1 : 0), &edge});
+        segments_.push_back({packed(low, high) << 1 | (is_right ? 1 : 0), &edge});
     }
-    std::sort(stretches_.begin(), stretches_.end(),
-              [](const Stretch& a, const Stretch& b) { return a.ends_and_side < b.ends_and_side; });
+    std::sort(segments_.begin(), segments_.end(),
+              [](const Segment& a, const Segment& b) { return a.ends_and_side < b.ends_and_side; });
     const exact::Line& line = geometry_.line(line_id);
-    pairs_.clear();
+    matches_.clear();
     same_ = {-1, -1};
-    for (std::size_t begin = 0, end = 0; begin < stretches_.size(); begin = end) {
+    for (std::size_t begin = 0, end = 0; begin < segments_.size(); begin = end) {
         std::size_t right = begin;
         for (end = begin;
-             end < stretches_.size() && stretches_[end].ends() == stretches_[begin].ends(); ++end)
-            right += stretches_[end].is_right() ? 0 : 1;
+             end < segments_.size() && segments_[end].ends() == segments_[begin].ends(); ++end)
+            right += segments_[end].is_right() ? 0 : 1;
         if (end - right != right - begin) return false;
         if (end - right > 1) {
-            if (!match({&stretches_[begin], end - right}, {&stretches_[right], end - right}, line))
+            if (!match({&segments_[begin], end - right}, {&segments_[right], end - right}, line))
                 return false;
             continue;
         }
-        pairs_.push_back({stretches_[begin].edge, stretches_[right].edge});
-        if (!are_one_line(*pairs_.back().left, *pairs_.back().right, line)) return false;
+        matches_.push_back({segments_[begin].edge, segments_[right].edge});
+        if (!are_one_line(*matches_.back().left, *matches_.back().right, line)) return false;
     }
     return true;
 }
 
-void TrackPairing::find_bounds() {
+void EdgeMatching::find_bounds() {
     bounds_.clear();
     beneath_.clear();
     bool one_wall = true;
-    for (const Pair& pair : pairs_) {
+    for (const Pair& pair : matches_) {
         const auto left = static_cast<std::size_t>(pair.left->face);
         const auto right = static_cast<std::size_t>(pair.right->face);
         const auto add = [&](std::int32_t l, std::int32_t r, std::int32_t is_beneath, auto& to) {
@@ -110,17 +111,17 @@ void TrackPairing::find_bounds() {
         add(faces_.below[left], faces_.below[right], 0, bounds_);
     }
     bounds_.insert(bounds_.end(), beneath_.begin(), beneath_.end());
-    if (one_wall) return;  // pairs are in order along the track
+    if (one_wall) return;  // matches are in order along the line
     std::sort(bounds_.begin(), bounds_.end(), [](const Bound& a, const Bound& b) {
-        return a.cells != b.cells ? a.cells < b.cells : a.place < b.place;
+        return a.cells != b.cells ? a.cells < b.cells : a.plan_vertex < b.plan_vertex;
     });
 }
 
 /// Bounds that follow each other without a gap are those of one wall; above and beneath there must
-/// be the same stretches.
-bool TrackPairing::find_walls() {
+/// be the same segments.
+bool EdgeMatching::find_walls() {
     walls_.clear();
-    const auto end_of_stretch = [&](std::size_t i, std::size_t end) {
+    const auto end_of_segments = [&](std::size_t i, std::size_t end) {
         for (++i; i < end && bounds_[i].edge->from == bounds_[i - 1].edge->to;)
             ++i;
         return i;
@@ -132,8 +133,8 @@ bool TrackPairing::find_walls() {
         const std::size_t last_above = beneath;
         for (std::size_t above = begin; above < last_above || beneath < end;) {
             if (above == last_above || beneath == end) return false;
-            const Wall wall{above, beneath, end_of_stretch(above, last_above),
-                            end_of_stretch(beneath, end)};
+            const Wall wall{above, beneath, end_of_segments(above, last_above),
+                            end_of_segments(beneath, end)};
             if (bounds_[wall.above].edge->from != bounds_[wall.beneath].edge->from ||
                 bounds_[wall.above_end - 1].edge->to != bounds_[wall.beneath_end - 1].edge->to)
                 return false;
@@ -145,41 +146,35 @@ bool TrackPairing::find_walls() {
     return true;
 }
 
-bool TrackPairing::pair(std::span<const LineEdge> edges, LineId line) {
-    if (!find_pairs(edges, line)) return false;
+bool EdgeMatching::match_all(std::span<const LineEdge> edges, LineId line) {
+    if (!find_matches(edges, line)) return false;
     find_bounds();
     return find_walls();
 }
 
-std::int32_t TrackPairing::end_corner(const LineEdge& edge) const {
+std::uint32_t EdgeMatching::end_corner(const LineEdge& edge) const {
     const auto& offsets = faces_.polygons.offsets;
     const auto face = static_cast<std::size_t>(edge.face);
     const auto next = static_cast<std::int64_t>(edge.begin) + 1;
-    return static_cast<std::int32_t>(next < offsets[face + 1] ? next : offsets[face]);
+    return static_cast<std::uint32_t>(next < offsets[face + 1] ? next : offsets[face]);
 }
 
-void TrackPairing::add_walls(MatchedEdges& to) const {
-    std::size_t size = to.walls.size();
-    for (const Wall& wall : walls_)
-        size += 6 + (wall.above_end - wall.above) + (wall.beneath_end - wall.beneath);
-    std::size_t next = to.walls.size();
-    to.walls.resize(size);
-    const auto add = [&](std::int32_t number) { to.walls[next++] = number; };
+void EdgeMatching::add_walls(MatchedEdges& to) const {
     for (const Wall& wall : walls_) {
         const std::uint64_t cells = bounds_[wall.above].cells;
-        add(static_cast<std::int32_t>(cells >> 32));
-        add(static_cast<std::int32_t>(cells & 0xffffffff));
-        add(static_cast<std::int32_t>(wall.above_end - wall.above));
-        add(static_cast<std::int32_t>(wall.beneath_end - wall.beneath));
+        to.walls.push_back({{static_cast<std::int32_t>(cells >> 32),
+                             static_cast<std::int32_t>(cells & 0xffffffff)},
+                            static_cast<std::uint32_t>(wall.above_end - wall.above),
+                            static_cast<std::uint32_t>(wall.beneath_end - wall.beneath)});
         const auto add_corners = [&](std::size_t begin, std::size_t end) {
+            assert(begin < end);
             for (std::size_t i = begin; i < end; ++i)
-                add(static_cast<std::int32_t>(bounds_[i].edge->begin));
-            add(end_corner(*bounds_[end - 1].edge));
+                to.corners.push_back(bounds_[i].edge->begin);
+            to.corners.push_back(end_corner(*bounds_[end - 1].edge));
         };
         add_corners(wall.above, wall.above_end);
         add_corners(wall.beneath, wall.beneath_end);
     }
-    to.wall_count += walls_.size();
 }
 
 }  // namespace realmodel::strata

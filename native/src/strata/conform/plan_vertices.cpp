@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "strata/conform/plan_vertices.hpp"
+
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <tuple>
 
 #include "base/bucket_sort.hpp"
 #include "base/parallel_counts.hpp"
-#include "strata/conform/conforming.hpp"
 
 namespace realmodel::strata {
 
@@ -105,79 +107,99 @@ void for_each_position(const GrowingArray<Rounded>& points, std::size_t begin, s
     }
 }
 
+/// Finds which points are in the same position. Rounded coordinates are the same for every way to
+/// name a point, so only points with equal ones can be; among those the exact test decides.
+/// @param before  how many positions begin in each range of kChunk points
+/// @return for each point, the first one in its position
+FlatArray<std::uint32_t> find_first_there(const PlanArrangement& geometry,
+                                          const GrowingArray<Rounded>& points,
+                                          std::vector<std::size_t>& before, int threads,
+                                          const Progress* progress) {
+    FlatArray<std::uint32_t> first_there(points.size());
+    before.assign((points.size() + kChunk - 1) / kChunk, 0);
+    const auto find_among = [&](LocalArrangement& scope, std::size_t begin, std::size_t end) {
+        std::size_t positions = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+            first_there[i] = static_cast<std::uint32_t>(i);
+            for (std::size_t j = begin; j < i; ++j) {
+                if (first_there[j] == j && scope.same_place(points[i].point, points[j].point)) {
+                    first_there[i] = static_cast<std::uint32_t>(j);
+                    break;
+                }
+            }
+            positions += first_there[i] == i;
+        }
+        return positions;
+    };
+    parallel_ranges(points.size(), kChunk, threads, progress,
+                    [&](std::size_t range_begin, std::size_t range_end) {
+                        LocalArrangement scope(geometry);
+                        for_each_position(points, range_begin, range_end,
+                                          [&](std::size_t begin, std::size_t end) {
+                                              before[range_begin / kChunk] +=
+                                                  find_among(scope, begin, end);
+                                          });
+                    });
+    return first_there;
+}
+
+/// Room for so many plan vertices, none of which is set.
+PlanVertices empty_vertices(std::size_t count, std::size_t points, int threads,
+                            const Progress* progress) {
+    PlanVertices vertices;
+    vertices.representative = FlatArray<PointId>(count);
+    vertices.position = FlatArray<PlanPosition>(count);
+    vertices.same_x_bits = zeros<std::uint64_t>(count / 64 + 1, threads, progress);
+    vertices.of_point = FlatArray<PlanVertexId>(points);
+    parallel_ranges(points, 1 << 18, threads, progress, [&](std::size_t begin, std::size_t end) {
+        std::fill(vertices.of_point.begin() + begin, vertices.of_point.begin() + end, -1);
+    });
+    return vertices;
+}
+
 }  // namespace
 
-// Rounded coordinates are the same for every way to name a place, so only points with equal ones
-// can be in the same place; among those the exact test decides.
 PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList& faces,
                                 const std::vector<ExtraPoint>& extra, int threads,
                                 const Progress* progress) {
     const GrowingArray<Rounded> points = points_in_use(geometry, faces, extra, threads, progress);
-    FlatArray<std::uint32_t> first_there(points.size());  // the first point in the place of each
-    std::vector<std::size_t> before((points.size() + kChunk - 1) / kChunk);
+    std::vector<std::size_t> before;
+    const auto first_there = find_first_there(geometry, points, before, threads, progress);
+    const std::size_t count = count_before(before);
+    PlanVertices vertices = empty_vertices(count, geometry.point_count(), threads, progress);
+    std::vector<std::vector<PlanVertexId>> coincident(before.size());
+    const auto of_point = [&](std::size_t i) -> PlanVertexId& {
+        return vertices.of_point[static_cast<std::size_t>(points[i].point)];
+    };
     parallel_ranges(points.size(), kChunk, threads, progress,
                     [&](std::size_t range_begin, std::size_t range_end) {
-                        LocalArrangement scope(geometry);
-                        std::size_t places = 0;
+                        const std::size_t chunk = range_begin / kChunk;
+                        std::size_t next = before[chunk];
                         for_each_position(
                             points, range_begin, range_end,
                             [&](std::size_t begin, std::size_t end) {
                                 for (std::size_t i = begin; i < end; ++i) {
-                                    first_there[i] = static_cast<std::uint32_t>(i);
-                                    for (std::size_t j = begin; j < i; ++j) {
-                                        if (first_there[j] == j &&
-                                            scope.same_place(points[i].point, points[j].point)) {
-                                            first_there[i] = static_cast<std::uint32_t>(j);
-                                            break;
-                                        }
+                                    if (first_there[i] != i) {
+                                        of_point(i) = of_point(first_there[i]);
+                                        continue;
                                     }
-                                    places += first_there[i] == i;
+                                    of_point(i) = static_cast<PlanVertexId>(next);
+                                    vertices.representative[next] = points[i].point;
+                                    vertices.position[next] = {points[i].x, points[i].y};
+                                    if (next > 0 && points[i - 1].x == points[i].x) {
+                                        std::atomic_ref(vertices.same_x_bits[(next - 1) / 64])
+                                            .fetch_or(std::uint64_t{1} << (next - 1) % 64,
+                                                      std::memory_order_relaxed);
+                                    }
+                                    if (i > begin) coincident[chunk].push_back(of_point(i));
+                                    ++next;
                                 }
                             });
-                        before[range_begin / kChunk] = places;
+                        assert(next == (chunk + 1 < before.size() ? before[chunk + 1] : count));
                     });
-
-    PlanVertices places;
-    const std::size_t count = count_before(before);
-    places.representative = FlatArray<PointId>(count);
-    places.position = FlatArray<PlanPosition>(count);
-    places.same_x_bits = zeros<std::uint64_t>(count / 64 + 1, threads, progress);
-    places.of_point = FlatArray<PlanVertexId>(geometry.point_count());
-    parallel_ranges(places.of_point.size(), 1 << 18, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        std::fill(places.of_point.begin() + begin, places.of_point.begin() + end,
-                                  -1);
-                    });
-    std::vector<std::vector<PlanVertexId>> coincident(before.size());
-    parallel_ranges(
-        points.size(), kChunk, threads, progress,
-        [&](std::size_t range_begin, std::size_t range_end) {
-            std::size_t next = before[range_begin / kChunk];
-            for_each_position(
-                points, range_begin, range_end, [&](std::size_t begin, std::size_t end) {
-                    for (std::size_t i = begin; i < end; ++i) {
-                        auto& place = places.of_point[static_cast<std::size_t>(points[i].point)];
-                        if (first_there[i] != i) {
-                            place = places.of_point[static_cast<std::size_t>(
-                                points[first_there[i]].point)];
-                            continue;
-                        }
-                        place = static_cast<PlanVertexId>(next);
-                        places.representative[next] = points[i].point;
-                        places.position[next] = {points[i].x, points[i].y};
-                        if (next > 0 && points[i - 1].x == points[i].x) {
-                            std::atomic_ref(places.same_x_bits[(next - 1) / 64])
-                                .fetch_or(std::uint64_t{1} << (next - 1) % 64,
-                                          std::memory_order_relaxed);
-                        }
-                        if (i > begin) coincident[range_begin / kChunk].push_back(place);
-                        ++next;
-                    }
-                });
-        });
     for (const auto& some : coincident)
-        places.coincident.insert(places.coincident.end(), some.begin(), some.end());
-    return places;
+        vertices.coincident.insert(vertices.coincident.end(), some.begin(), some.end());
+    return vertices;
 }
 
 }  // namespace realmodel::strata

@@ -14,7 +14,7 @@ constexpr std::size_t kFew = 24;  // up to here looking through all is quickest
 
 }  // namespace
 
-void PlaceHeights::find(PointId point, std::span<std::int32_t> planes) {
+void VertexHeights::find(PointId point, std::span<std::int32_t> planes) {
     if (find_single(point, planes)) return;
     find_distinct(point, planes);
     rank_levels(point);
@@ -31,10 +31,10 @@ void PlaceHeights::find(PointId point, std::span<std::int32_t> planes) {
     }
 }
 
-/// Where what the place is made of tells that all planes are equally high, as on most places, there
-/// is nothing to put in order.
+/// Where what the plan vertex is made of tells that all planes are equally high, as on most plan
+/// vertices, there is nothing to put in order.
 /// @return whether that is so, and all is done
-bool PlaceHeights::find_single(PointId point, std::span<std::int32_t> planes) {
+bool VertexHeights::find_single(PointId point, std::span<std::int32_t> planes) {
     if (planes.empty() || planes[0] < 0) return false;
     Level level{scope_.height_name(planes[0], point), planes[0], 0.0, 0};
     std::array known{planes[0], planes[0]};
@@ -50,7 +50,7 @@ bool PlaceHeights::find_single(PointId point, std::span<std::int32_t> planes) {
     return true;
 }
 
-std::int32_t PlaceHeights::rank_of(PlaneId plane) const {
+std::int32_t VertexHeights::rank_of(PlaneId plane) const {
     const auto at = planes_.size() <= kFew
                         ? std::find_if(planes_.begin(), planes_.end(),
                                        [&](const Plane& p) { return p.plane == plane; })
@@ -59,7 +59,7 @@ std::int32_t PlaceHeights::rank_of(PlaneId plane) const {
     return levels_[static_cast<std::size_t>(at->level)].rank;
 }
 
-void PlaceHeights::find_distinct(PointId point, std::span<const std::int32_t> planes) {
+void VertexHeights::find_distinct(PointId point, std::span<const std::int32_t> planes) {
     planes_.clear();
     tentative_.clear();
     levels_.clear();
@@ -86,7 +86,7 @@ void PlaceHeights::find_distinct(PointId point, std::span<const std::int32_t> pl
 
 /// Whether a plane is as high as one of some levels, or so near that this would have to be asked
 /// exactly. There is room between what takes up a vertex here and what passes by.
-bool PlaceHeights::is_near(PointId id, PlaneId plane, std::span<const Level> levels) const {
+bool VertexHeights::is_near(PointId id, PlaneId plane, std::span<const Level> levels) const {
     const exact::PlanArrangement& geometry = scope_.shared();
     const exact::SpaceVertex& corner = geometry.space(geometry.plane(plane).corner[0]);
     const exact::Point &from = geometry.point(corner.plan), &to = geometry.point(id);
@@ -97,16 +97,17 @@ bool PlaceHeights::is_near(PointId id, PlaneId plane, std::span<const Level> lev
     const double size = std::abs(corner.z) + std::abs(rise_x) + std::abs(rise_y);
     const double error = gradient.error_x * std::abs(dx) + gradient.error_y * std::abs(dy) +
                          (std::abs(gradient.gx) + std::abs(gradient.gy)) * to.error() +
-                         0x1p-50 * size + 1e-290;
+                         exact::kPlaneHeight * size + exact::kTermUnderflow;
     return std::any_of(levels.begin(), levels.end(), [&](const Level& level) {
-        const double margin = 64 * error + geometry.clear_height(size + std::abs(level.z));
+        const double margin =
+            exact::kFarTimes * error + geometry.clear_height(size + std::abs(level.z));
         return !(std::abs(z - level.z) > margin);
     });
 }
 
 /// Gives tentative planes the level that they take up, if there is one. A plane that counts after
 /// all may be near to the next, so they are asked until none is.
-void PlaceHeights::settle_tentative(PointId point) {
+void VertexHeights::settle_tentative(PointId point) {
     for (bool again = true; again;) {
         again = false;
         const std::size_t known = levels_.size();
@@ -119,7 +120,7 @@ void PlaceHeights::settle_tentative(PointId point) {
     }
 }
 
-std::int32_t PlaceHeights::level_of(PointId point, PlaneId plane) {
+std::int32_t VertexHeights::level_of(PointId point, PlaneId plane) {
     const auto name = scope_.height_name(plane, point);
     for (std::size_t i = 0; i < std::min(levels_.size(), kFew); ++i) {
         if (levels_[i].name == name) return static_cast<std::int32_t>(i);
@@ -129,8 +130,8 @@ std::int32_t PlaceHeights::level_of(PointId point, PlaneId plane) {
 }
 
 /// @param near  where the point lies, found for the first level that asks for it
-double PlaceHeights::rounded(const Level& level, PointId point,
-                             std::optional<exact::NearPoint>& near) {
+double VertexHeights::rounded(const Level& level, PointId point,
+                              std::optional<exact::NearPoint>& near) {
     if (level.name.first >= 0 && level.name.first == level.name.second)
         return scope_.shared().space(level.name.first).z;
     if (const auto z = scope_.rounded_height_of_crossing(level.name, point)) return *z;
@@ -138,7 +139,7 @@ double PlaceHeights::rounded(const Level& level, PointId point,
     return scope_.rounded_height(level.plane, level.name, point, *near);
 }
 
-void PlaceHeights::rank_levels(PointId point) {
+void VertexHeights::rank_levels(PointId point) {
     std::optional<exact::NearPoint> near;
     for (Level& level : levels_)
         level.z = rounded(level, point, near);
@@ -161,7 +162,7 @@ void PlaceHeights::rank_levels(PointId point) {
 }
 
 /// Whether a height is known to be a double: that of an input vertex, of a level edge or plane.
-bool PlaceHeights::is_double(std::size_t rank) const {
+bool VertexHeights::is_double(std::size_t rank) const {
     const auto& geometry = scope_.shared();
     const auto z = [&](exact::SpaceId s) { return geometry.space(s).z; };
     return std::any_of(levels_.begin(), levels_.end(), [&](const Level& level) {
@@ -172,7 +173,7 @@ bool PlaceHeights::is_double(std::size_t rank) const {
     });
 }
 
-void PlaceHeights::separate() {
+void VertexHeights::separate() {
     for (std::size_t i = 1; i < heights_.size(); ++i) {
         if (heights_[i] > heights_[i - 1]) continue;
         std::size_t low = i;  // from here to i all are different

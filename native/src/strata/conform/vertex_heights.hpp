@@ -9,15 +9,15 @@
 
 namespace realmodel::strata {
 
-/// The different heights of planes at one place, ascending. Planes that are known to be equally
-/// high there by what the place is made of share a name and are asked once; rounded heights keep
-/// the order of the others, and where they are equal, the exact test decides.
-class PlaceHeights {
+/// The different heights of planes at one plan vertex, ascending. Planes that are known to be
+/// equally high there by what the plan vertex is made of share a name and are asked once; rounded
+/// heights keep the order of the others, and where they are equal, the exact test decides.
+class VertexHeights {
 public:
-    explicit PlaceHeights(const exact::PlanArrangement& geometry) : scope_(geometry) {}
+    explicit VertexHeights(const exact::PlanArrangement& geometry) : scope_(geometry) {}
 
     /// Finds the heights of planes above a point.
-    /// @param planes  of each of them; in its place comes which of the heights it has. Those given
+    /// @param planes  of each of them; in its stead comes which of the heights it has. Those given
     /// by
     ///     their complement are tentative: they make no height, but take up that of another plane
     ///     which is as high, and where they are so near to one that rounding could make a

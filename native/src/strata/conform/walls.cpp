@@ -109,7 +109,7 @@ private:
                                             places.representative[to], span);
     }
     std::size_t place_of(std::int32_t vertex) const {
-        const auto& first = loops_.place_offsets;
+        const auto& first = loops_.vertex_offsets;
         return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), vertex) -
                                         first.begin()) -
                1;
@@ -145,46 +145,36 @@ class PlannedWalls {
 public:
     PlannedWalls(const ConformedFaces& loops, WallBatch& walls) : loops_(loops), walls_(walls) {}
 
-    void add(const MatchedEdges& paired) {
-        const std::int32_t* next = paired.walls.data();
-        const std::int32_t* const end = next + paired.walls.size();
-        while (next < end) {
-            for (std::ptrdiff_t ahead = 0; ahead < 8; ++ahead) {
+    void add(const MatchedEdges& matched) {
+        const std::uint32_t *next = matched.corners.begin(), *const end = matched.corners.end();
+        for (const MatchedEdges::Wall& wall : matched.walls) {
+            for (std::ptrdiff_t ahead = 0; ahead < 6; ++ahead) {
                 const auto corner = [&](std::ptrdiff_t further) {
-                    return corner_of(next[std::min(further + ahead, end - 1 - next)]);
+                    return next[std::min(further + ahead, end - 1 - next)];
                 };
-                loops_.entries.prefetch(corner(96));
-                prefetch(&loops_.vertices[loops_.entries.first(corner(48))]);
+                loops_.entries.prefetch(corner(64));
+                prefetch(&loops_.vertices[loops_.entries.first(corner(32))]);
             }
-            const std::array cells{next[0], next[1]};
-            const std::int32_t above = next[2], beneath = next[3];
-            next = collect(next + 4, above, upper_);
-            next = collect(next, beneath, lower_);
-            add_parts(cells);
+            next = collect(next, wall.above, upper_);
+            next = collect(next, wall.beneath, lower_);
+            add_parts(wall.cells);
         }
+        assert(next == end);
     }
 
 private:
-    /// A number of the plan as that of a corner: counts and cells are those of some corner, too.
-    std::size_t corner_of(std::int32_t number) const {
-        const auto corner = static_cast<std::size_t>(std::max(number, 0));
-        return std::min(corner, loops_.entries.corners() - 1);
-    }
-
     /// The vertices along some edges that follow each other.
-    /// @return what comes after them in the plan
-    const std::int32_t* collect(const std::int32_t* corner, std::int32_t count,
-                                std::vector<std::int32_t>& vertices) const {
+    /// @return the corner after theirs
+    const std::uint32_t* collect(const std::uint32_t* corner, std::uint32_t count,
+                                 std::vector<std::int32_t>& vertices) const {
         vertices.clear();
-        for (std::int32_t i = 0; i < count; ++i, ++corner) {
-            const auto c = static_cast<std::size_t>(*corner);
-            const std::uint32_t end = loops_.entries.first(c + 1);
-            for (std::uint32_t e = loops_.entries.first(c); e < end; ++e) {
+        for (std::uint32_t i = 0; i < count; ++i, ++corner) {
+            const std::uint32_t end = loops_.entries.first(*corner + 1);
+            for (std::uint32_t e = loops_.entries.first(*corner); e < end; ++e) {
                 if (loops_.vertices[e] >= 0) vertices.push_back(loops_.vertices[e]);
             }
         }
-        const auto end = static_cast<std::size_t>(*corner);
-        vertices.push_back(loops_.vertices[loops_.entries.first(end)]);
+        vertices.push_back(loops_.vertices[loops_.entries.first(*corner)]);
         return corner + 1;
     }
 
@@ -253,13 +243,13 @@ FoundWalls find_walls(PlanArrangement& geometry, const FaceList& faces, Collinea
         found.stretches.insert(found.stretches.end(), own.stretches.begin(), own.stretches.end());
     }
     if (!found.missing.empty()) return {std::move(found.missing), {}, {}, {}};
-    found.walls.resize(chunks + tracks.paired.size());
-    parallel_chunks(tracks.paired.size(), threads, progress, [&](std::size_t chunk) {
-        const MatchedEdges paired = std::move(tracks.paired[chunk]);
+    found.walls.resize(chunks + tracks.matched.size());
+    parallel_chunks(tracks.matched.size(), threads, progress, [&](std::size_t chunk) {
+        const MatchedEdges matched = std::move(tracks.matched[chunk]);
         WallBatch& batch = found.walls[chunks + chunk];
-        batch.sizes.reserve(paired.wall_count);
-        batch.cells.reserve(paired.wall_count);
-        PlannedWalls(loops, batch).add(paired);
+        batch.sizes.reserve(matched.walls.size());
+        batch.cells.reserve(matched.walls.size());
+        PlannedWalls(loops, batch).add(matched);
     });
     return found;
 }

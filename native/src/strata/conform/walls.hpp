@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "strata/conform/conforming.hpp"
+#include "strata/conform/conformed_faces.hpp"
 #include "strata/conform/wall_joining.hpp"
 #include "strata/overlay/border_edges.hpp"
 

@@ -27,7 +27,7 @@ BlockEnvelope::BlockEnvelope(PlanArrangement& geometry, const TriangleLinks& lin
 
 void BlockEnvelope::add_sky(const PlanTriangle& triangle, PlaneId plane, Cover cover) {
     parts_.add_facet(triangle_outline(geometry_, triangle), plane, -1, kSkyBlock);
-    tiles().for_each_centre_in(corners_of(geometry_, triangle),
+    tiles().for_each_center_in(corners_of(geometry_, triangle),
                                [&](std::size_t tile) { cover_[tile] = cover; });
 }
 
@@ -175,7 +175,7 @@ SealedFacets BlockEnvelope::sort_facets(std::int32_t number) {
 }
 
 /// Of each triangle in the exact part, whether it stays whole: it touches the facets nowhere, has
-/// one block above it, and no border divides it. What stands on a divided one has its foot there.
+/// one block above it, and no border divides it. Walls end on divided ones.
 std::vector<std::uint8_t> BlockEnvelope::find_whole(const SurfaceTiling& part,
                                                     const PiecesOfPolygons& pieces,
                                                     const Overlaid& overlaid,

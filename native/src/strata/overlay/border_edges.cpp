@@ -46,7 +46,7 @@ bool BorderEdges::any_in(const TileSpan& span, const Holds& holds) const {
     });
 }
 
-/// Whether a segment has a place inside a convex polygon. What is convex lies apart where a line
+/// Whether a segment has a point inside a convex polygon. What is convex lies apart where a line
 /// along an edge of either separates the two.
 /// @param side_of_segment  side_of_segment(i): on which side of the segment corner i lies
 /// @param side_of_edge     side_of_edge(i, end): on which side of the edge from there the end lies

@@ -5,11 +5,15 @@
 #include <utility>
 #include <vector>
 
+#include "spatial/plan_tiles.hpp"
 #include "strata/overlay/polygon.hpp"
-#include "strata/plan_tiles.hpp"
 #include "strata/tiling/plan_links.hpp"
 
 namespace realmodel::strata {
+
+using spatial::PlanBox;
+using spatial::PlanTiles;
+using spatial::TileSpan;
 
 /// Where walls may stand: the borders of surfaces and of the region, and edges where a surface
 /// jumps, by the tiles that they run through.
@@ -26,7 +30,7 @@ public:
     bool near(const TileSpan& span) const {
         return tiles_.any(span, [&](std::size_t tile) { return in_tile(tile); });
     }
-    /// Whether one has a place inside a convex polygon, whose tiles these are. Along its edges one
+    /// Whether one has a point inside a convex polygon, whose tiles these are. Along its edges one
     /// may run.
     bool divide(LocalArrangement& scope, PolygonView polygon, const TileSpan& span) const;
     /// The same of a triangle, whose lines need not exist.

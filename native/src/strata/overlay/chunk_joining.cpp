@@ -64,7 +64,7 @@ void put(GrowingArray<Element>& to, std::size_t at, const From& from) {
     std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-/// Puts polygons of a scope that was handed over.
+/// Puts polygons of a scope that was committed.
 void put(PolygonPool& to, const PoolStart& at, const PolygonPool& from, LocalArrangement& scope) {
     share(scope, from, to.corners.begin() + static_cast<std::ptrdiff_t>(at.corner));
     for (std::size_t i = 1; i < from.offsets.size(); ++i)

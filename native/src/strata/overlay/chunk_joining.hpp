@@ -51,7 +51,7 @@ struct ChunkStart {
 };
 
 /// Puts what the chunks became behind what is there already, in order of chunks. A chunk is put
-/// there as soon as it was handed over, by any thread, and its memory is the next one's; what there
+/// there as soon as it was committed, by any thread, and its memory is the next one's; what there
 /// is no room for waits until all are done.
 class ChunkJoining {
 public:

@@ -92,7 +92,7 @@ bool FacetClipper::compare(PolygonView window) {
 PointId FacetClipper::crossing(std::size_t i, std::size_t j, PolygonView window) {
     KnownLine& known = *edges_[j].known;
     const LineId line = exact::line_of(window[j].line);
-    // two lines of the window may have the same place
+    // two lines of the window may have the same slot
     if (known.line != line)
         return scope_.crossing_between_ends(exact::line_of(facet_[i].line), line);
     if (!bit(known.crossings, i)) {

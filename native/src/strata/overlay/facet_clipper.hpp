@@ -30,7 +30,7 @@ private:
         return facet_.size() <= exact::kRowLength && window.size() <= exact::kRowLength;
     }
     bool compare(PolygonView window);
-    /// Known things are looked up in the place that their number gives; who comes later stays.
+    /// Known things are looked up in the slot that their number gives; who comes later stays.
     static constexpr std::size_t kKnown = 64;
     struct KnownPoint {
         PointId point = -1;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <mutex>
 #include <vector>
@@ -10,9 +9,9 @@
 
 namespace realmodel::strata {
 
-/// Hands what the scopes of many chunks found over to the geometry, in the order of the chunks
-/// whichever comes first, by whatever thread is free while others still work: the ids do not depend
-/// on threads, and nobody waits.
+/// Commits the local lines and points of many chunks in the order of the chunks, whichever is
+/// finished first, by whatever thread is free while others still work: the ids do not depend on
+/// threads, and nobody waits for more than the counting of ids.
 class OrderedCommit {
 public:
     /// `facets`: those of all chunks.
@@ -27,53 +26,51 @@ public:
     struct Chunks {
         std::size_t first = 0, last = 0;
     };
-
-    /// For callers whom it is all one when a chunk is handed over.
     struct Nothing {
         void operator()(std::size_t) const {}
     };
 
-    /// To be called when nothing more will be asked of the scope of a chunk. `passed` is called
-    /// with each chunk that is handed over, in order.
-    /// @return the chunks that this call handed over, which may be none or other ones: their scopes
-    /// are the caller's again
+    /// To be called when nothing more will be found in the local arrangement of a chunk. `passed`
+    /// is called with each chunk that has its ids, in order, by one thread at a time.
+    /// @return the chunks that this call committed, which may be none or other ones
     template <class Passed = Nothing>
-    Chunks finished(std::size_t chunk, LocalArrangement& scope, const Passed& passed = {}) {
-        finished_[chunk].store(&scope, std::memory_order_release);
-        const std::unique_lock lock(busy_, std::try_to_lock);
-        if (!lock) return {};  // another thread goes on, now or with its next chunk
-        const std::size_t first = next_;
-        for (LocalArrangement* next = finished_scope();
-             next != nullptr && next->has_room_in(geometry_); next = finished_scope())
-            commit(*next, passed);
-        return {first, next_};
+    Chunks finished(std::size_t chunk, LocalArrangement& local, const Passed& passed = {}) {
+        return commit([&] { finished_[chunk] = &local; },
+                      [&](const LocalArrangement& next) { return next.has_room_in(geometry_); },
+                      passed);
     }
 
-    /// To be called when all chunks are finished: hands over what is left, and returns it.
+    /// To be called when all chunks are finished: commits what is left, and returns it.
     template <class Passed = Nothing>
     Chunks finish(const Passed& passed = {}) {
-        const std::size_t first = next_;
-        for (LocalArrangement* next = finished_scope(); next != nullptr; next = finished_scope())
-            commit(*next, passed);
-        return {first, next_};
+        return commit([] {}, [](const LocalArrangement&) { return true; }, passed);
     }
 
 private:
-    LocalArrangement* finished_scope() const {
-        return next_ < finished_.size() ? finished_[next_].load(std::memory_order_acquire)
-                                        : nullptr;
-    }
-    template <class Passed>
-    void commit(LocalArrangement& scope, const Passed& passed) {
-        scope.commit(geometry_);
-        passed(next_);
-        ++next_;
+    template <class Begin, class MayCommit, class Passed>
+    Chunks commit(const Begin& begin, const MayCommit& may_commit, const Passed& passed) {
+        Chunks chunks;
+        {
+            const std::lock_guard lock(busy_);
+            begin();
+            chunks.first = next_;
+            for (; next_ < finished_.size() && finished_[next_] != nullptr &&
+                   may_commit(*finished_[next_]);
+                 ++next_) {
+                finished_[next_]->reserve_ids(geometry_);
+                passed(next_);
+            }
+            chunks.last = next_;
+        }
+        for (std::size_t c = chunks.first; c < chunks.last; ++c)
+            finished_[c]->write_marked();
+        return chunks;
     }
 
     exact::PlanArrangement& geometry_;
-    std::vector<std::atomic<LocalArrangement*>> finished_;
+    std::vector<LocalArrangement*> finished_;  ///< of each chunk that is; with busy_
     std::mutex busy_;
-    std::size_t next_ = 0;  ///< chunk to be handed over; with busy_
+    std::size_t next_ = 0;  ///< chunk to be committed; with busy_
 };
 
 }  // namespace realmodel::strata

@@ -155,7 +155,7 @@ void PieceFinder::add_common(std::int32_t polygon, PolygonView common, const Fac
     } else if (facet.plane < 0) {
         add(polygon, facet.plane == kSky ? Side::kBelow : Side::kNotBelow, common);
     } else {
-        // both are parts of triangles, so most are told apart by the heights of the corners
+        // both are parts of triangles, so most are sorted by the heights of the corners
         const HeightRange heights = layer_.heights[static_cast<std::size_t>(polygon)];
         if (heights.high < facet.heights.low) {
             add(polygon, Side::kBelow, common);

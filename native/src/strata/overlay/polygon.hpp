@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "exact/plan_arrangement.hpp"
+#include "exact/local_arrangement.hpp"
 #include "realmodel/base/growing_array.hpp"
 
 namespace realmodel::strata {

@@ -5,7 +5,7 @@
 
 namespace realmodel::strata {
 
-/// Asks for all lines and points of polygons that a scope found.
+/// Marks all lines and points of polygons as used.
 inline void mark_used(LocalArrangement& scope, const PolygonPool& pool) {
     for (const Corner& corner : pool.corners) {
         scope.mark_point_used(corner.point);
@@ -13,8 +13,7 @@ inline void mark_used(LocalArrangement& scope, const PolygonPool& pool) {
     }
 }
 
-/// Puts the corners of polygons somewhere, with the shared lines and points, which the scope has
-/// handed over.
+/// Writes the corners of polygons with their shared lines and points, which are committed.
 inline void share(LocalArrangement& scope, const PolygonPool& pool, Corner* shared) {
     for (const Corner& corner : pool.corners)
         *shared++ = {scope.shared_point(corner.point), scope.shared_directed(corner.line)};

@@ -27,8 +27,8 @@ Comparison compare_at(const PlanArrangement& geometry, const exact::LineFilter& 
     return above ? Comparison::kAbove : Comparison::kUnclear;
 }
 
-/// Whether an edge of one triangle has all of the other beyond it, for certain: they share no place
-/// in plan, not even a corner.
+/// Whether an edge of one triangle has all of the other beyond it, for certain: they share no
+/// position in plan, not even a corner.
 bool is_beyond(const PlanArrangement& geometry, const PlanTriangle& triangle,
                const PlanTriangle& other) {
     for (std::size_t i = 0; i < 3; ++i) {

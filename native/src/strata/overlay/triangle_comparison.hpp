@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "strata/plan_tiles.hpp"
+#include "spatial/plan_tiles.hpp"
 #include "strata/tiling/surface_tiling.hpp"
 
 namespace realmodel::strata {

@@ -4,7 +4,6 @@
 #include <cassert>
 
 #include "base/parallel_counts.hpp"
-#include "strata/tile_bins.hpp"
 #include "strata/tiling/triangle_outlines.hpp"
 
 namespace realmodel::strata {
@@ -27,8 +26,8 @@ void WholeTriangleFilter::begin(const BlockTiling& tiling) {
     surface_tiles_ = {};
 }
 
-/// Finds where everything is.
-void WholeTriangleFilter::locate(const FacetView& facets) {
+/// Finds where everything is, and if it is asked for the heights of facets in tiles.
+void WholeTriangleFilter::locate(const FacetView& facets, bool with_heights) {
     const BlockTiling& tiling = *tiling_;
     const bool is_new = surface_tiles_.low.empty();
     if (is_new) surface_at.resize(tiling.size());
@@ -55,7 +54,7 @@ void WholeTriangleFilter::locate(const FacetView& facets) {
                     });
     parallel_chunks(2, threads_, progress_, [&](std::size_t which) {
         if (which == 0 && is_new) measure_surface();
-        if (which == 1) measure_facets(facets);
+        if (which == 1 && with_heights) measure_facets(facets);
     });
 }
 
@@ -67,7 +66,7 @@ void WholeTriangleFilter::measure_surface() {
         surface_tiles_.include(tiles(), surface_at[t]);
     }
     for (const PlanTriangle& t : tiling_->empty) {
-        tiles().for_each_centre_in(corners_of(geometry_, t),
+        tiles().for_each_center_in(corners_of(geometry_, t),
                                    [&](std::size_t tile) { is_empty[tile] = 1; });
     }
     for (std::size_t tile = 0; tile < is_empty.size(); ++tile) {
@@ -95,7 +94,7 @@ void WholeTriangleFilter::mark_tiles(const TileSpan& span, std::vector<std::uint
 
 void WholeTriangleFilter::compare(const FacetView& facets) {
     assert(tiling_ != nullptr && facets.cover.size() == tiles().size());
-    locate(facets);
+    locate(facets, true);
     is_same_.clear();
     if (tiling_->is_raised) {
         is_same_.resize(static_cast<std::size_t>(geometry_.plane_count()));
@@ -159,7 +158,7 @@ void WholeTriangleFilter::classify_surface(const FacetView& facets) {
 /// Compares triangles that heights alone do not sort with the facets near them, plane by plane.
 void WholeTriangleFilter::compare_surface(const FacetView& facets,
                                           const std::vector<std::uint8_t>& is_wanted) {
-    const TileBins bins(
+    const spatial::TileBins bins(
         tiles(), is_wanted, facets.size(),
         [&](std::size_t f) { return facets.plane(f) < 0 ? nullptr : &facet_at[f].span; }, threads_,
         progress_);
@@ -174,7 +173,7 @@ void WholeTriangleFilter::compare_surface(const FacetView& facets,
                     });
 }
 
-void WholeTriangleFilter::compare_triangle(const FacetView& facets, const TileBins& bins,
+void WholeTriangleFilter::compare_triangle(const FacetView& facets, const spatial::TileBins& bins,
                                            std::size_t t) {
     const PlaneId plane = tiling_->whole[t];
     const auto& [bounds, span] = surface_at[t];
@@ -257,7 +256,7 @@ void WholeTriangleFilter::classify_facets(const FacetView& facets) {
 /// exact where a triangle is, for the triangle's parts to be complete.
 void WholeTriangleFilter::compare_facets(const FacetView& facets,
                                          const std::vector<std::uint8_t>& is_wanted) {
-    const TileBins bins(
+    const spatial::TileBins bins(
         tiles(), is_wanted, tiling_->size(), [&](std::size_t t) { return &surface_at[t].span; },
         threads_, progress_);
     parallel_ranges(facets.size(), kChunk, threads_, progress_,
@@ -270,7 +269,7 @@ void WholeTriangleFilter::compare_facets(const FacetView& facets,
 }
 
 Standing WholeTriangleFilter::compare_facet(PlaneId plane, const TileBounds& at,
-                                            const TileBins& bins) const {
+                                            const spatial::TileBins& bins) const {
     const PlanBox& box = at.bounds.box;
     // No border divides a facet beside one: there is a surface under all of it if there is under
     // its middle.
@@ -295,7 +294,7 @@ Standing WholeTriangleFilter::compare_facet(PlaneId plane, const TileBounds& at,
 }
 
 void WholeTriangleFilter::cover(const FacetView& facets) {
-    locate(facets);
+    locate(facets, false);
     surface.assign(tiling_->size(), Standing::kBelow);
     facet.assign(facets.size(), Standing::kExact);
     parallel_ranges(facets.size(), kChunk, threads_, progress_,

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "spatial/tile_bins.hpp"
 #include "strata/overlay/border_edges.hpp"
 #include "strata/overlay/triangle_comparison.hpp"
 #include "strata/tiling/block_tiling.hpp"
@@ -96,7 +97,7 @@ public:
     /// own, then parts, then where there is no surface at all.
     SurfaceTiling exact_part(exact::PlanArrangement& geometry, const TriangleLinks& links,
                              const FacetView& facets);
-    /// The outlines of exact facets that lie on surfaces or not, in order, and their numbers.
+    /// The numbers of exact facets, in order.
     std::vector<std::size_t> exact_facets() const;
 
     const PlanTiles& tiles() const { return borders_.tiles(); }
@@ -119,16 +120,17 @@ public:
     std::vector<Standing> facet;
 
 private:
-    void locate(const FacetView& facets);
+    void locate(const FacetView& facets, bool with_heights);
     void measure_surface();
     void measure_facets(const FacetView& facets);
     void classify_surface(const FacetView& facets);
     void compare_surface(const FacetView& facets, const std::vector<std::uint8_t>& is_wanted);
-    void compare_triangle(const FacetView& facets, const class TileBins& bins, std::size_t t);
+    void compare_triangle(const FacetView& facets, const spatial::TileBins& bins, std::size_t t);
     Standing bounds_decide(const TileBounds& at) const;
     void classify_facets(const FacetView& facets);
     void compare_facets(const FacetView& facets, const std::vector<std::uint8_t>& is_wanted);
-    Standing compare_facet(PlaneId facet, const TileBounds& at, const class TileBins& bins) const;
+    Standing compare_facet(PlaneId facet, const TileBounds& at,
+                           const spatial::TileBins& bins) const;
     bool is_to_compare(std::size_t triangle) const {
         return surface[triangle] == Standing::kExact &&
                (block[triangle] >= 0 || block[triangle] == kBesideBorder);

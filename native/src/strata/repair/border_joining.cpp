@@ -9,9 +9,12 @@
 #include <string>
 #include <utility>
 
+#include "base/counting_sort.hpp"
+#include "base/index.hpp"
 #include "base/keep_single.hpp"
 #include "base/parallel.hpp"
 #include "exact/orient2d.hpp"
+#include "spatial/point_bins.hpp"
 #include "strata/limits.hpp"
 
 namespace realmodel::strata {
@@ -58,34 +61,25 @@ std::vector<std::array<std::int32_t, 2>> single_edges(const Mesh& mesh, const Pr
     check_triangle_count(mesh.size());
     std::vector<std::array<std::int32_t, 3>> triangles;
     triangles.reserve(mesh.size());
-    std::vector<std::uint32_t> offsets(mesh.vertices.size() / mesh.columns + 1, 0);
-    const auto lower = [](const std::array<std::int32_t, 3>& v, std::size_t i) {
-        return static_cast<std::size_t>(std::min(v[i], v[(i + 1) % 3]));
-    };
     for (std::size_t t = 0; t < mesh.size(); ++t) {
         poll(progress, t);
-        const auto v = mesh.corners(t);
-        if (!v) continue;
-        triangles.push_back(*v);
-        for (std::size_t i = 0; i < 3; ++i)
-            ++offsets[lower(*v, i) + 1];
+        if (const auto v = mesh.corners(t)) triangles.push_back(*v);
     }
-    for (std::size_t i = 1; i < offsets.size(); ++i)
-        offsets[i] += offsets[i - 1];
-    std::vector<std::int32_t> higher(3 * triangles.size());
-    std::vector<std::uint32_t> free(offsets.begin(), offsets.end() - 1);
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        poll(progress, t);
-        for (std::size_t i = 0; i < 3; ++i) {
-            const auto& v = triangles[t];
-            higher[free[lower(v, i)]++] = std::max(v[i], v[(i + 1) % 3]);
+    const std::size_t vertices = mesh.vertices.size() / mesh.columns;
+    const auto higher = bucketize<std::int32_t>(vertices, [&](const auto& put) {
+        for (std::size_t t = 0; t < triangles.size(); ++t) {
+            poll(progress, t);
+            for (std::size_t i = 0; i < 3; ++i) {
+                const auto [low, high] = std::minmax({triangles[t][i], triangles[t][(i + 1) % 3]});
+                put(index(low), high);
+            }
         }
-    }
+    });
     std::vector<std::array<std::int32_t, 2>> single;
     std::vector<std::int32_t> of_vertex;
-    for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
+    for (std::size_t i = 0; i < vertices; ++i) {
         poll(progress, i);
-        of_vertex.assign(higher.begin() + offsets[i], higher.begin() + offsets[i + 1]);
+        of_vertex.assign(higher[i].begin(), higher[i].end());
         std::sort(of_vertex.begin(), of_vertex.end());
         keep_single(of_vertex);
         for (const std::int32_t other : of_vertex)
@@ -106,82 +100,37 @@ std::vector<PlanEdge> border_of(const Mesh& mesh, const Progress* progress) {
     return edges;
 }
 
-/// Border vertices in square bins.
-class VertexBins {
-public:
-    VertexBins(std::vector<PlanPosition> vertices, double reach)
-        : vertices_(std::move(vertices)), reach_(reach) {
-        low_ = high_ = vertices_.front();
-        for (const PlanPosition& p : vertices_) {
-            for (std::size_t i = 0; i < 2; ++i) {
-                low_[i] = std::min(low_[i], p[i]);
-                high_[i] = std::max(high_[i], p[i]);
-            }
-        }
-        side_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::sqrt(vertices_.size())));
-        std::vector<std::pair<std::size_t, PlanPosition>> keyed;
-        for (const PlanPosition& p : vertices_)
-            keyed.emplace_back(bin(p[0], 0) * side_ + bin(p[1], 1), p);
-        std::sort(keyed.begin(), keyed.end());
-        start_.assign(side_ * side_ + 1, 0);
-        for (std::size_t i = 0; i < keyed.size(); ++i) {
-            ++start_[keyed[i].first + 1];
-            vertices_[i] = keyed[i].second;
-        }
-        for (std::size_t i = 1; i < start_.size(); ++i)
-            start_[i] += start_[i - 1];
+/// The vertices within rounding of the inside of an edge, from its first end; none where all of
+/// them lie exactly on its line.
+/// @param reach  what rounding is taken for
+std::vector<PlanPosition> vertices_along(const PlanEdge& edge, const spatial::PointBins& vertices,
+                                         double reach) {
+    const auto& [p, q] = edge;
+    const double dx = q[0] - p[0], dy = q[1] - p[1], length = std::hypot(dx, dy);
+    std::vector<std::pair<double, PlanPosition>> found;
+    bool beside = false;
+    const PlanPosition low{p[0] - 2 * reach, std::min(p[1], q[1]) - 2 * reach};
+    const PlanPosition high{q[0] + 2 * reach, std::max(p[1], q[1]) + 2 * reach};
+    vertices.within(low, high, [&](std::size_t, const PlanPosition& v) {
+        const double vx = v[0] - p[0], vy = v[1] - p[1];
+        if (std::abs(vx * dy - vy * dx) > reach * length) return;
+        const double along = (vx * dx + vy * dy) / length;
+        if (along <= 2 * reach || along >= length - 2 * reach) return;
+        found.emplace_back(along, v);
+        beside |= exact::orient2d(p, q, v) != 0;
+    });
+    // An edge that is bent anywhere has to run through those on its line by name, too.
+    if (!beside) return {};
+    std::sort(found.begin(), found.end());
+    std::vector<PlanPosition> chain;
+    double last = 0;
+    for (const auto& [along, v] : found) {
+        if (!chain.empty() && along - last <= 2 * reach) continue;
+        chain.push_back(v);
+        last = along;
     }
-
-    /// The vertices within rounding of the inside of an edge, from its first end; none where all of
-    /// them lie exactly on its line.
-    std::vector<PlanPosition> along(const PlanEdge& edge) const {
-        const auto& [p, q] = edge;
-        const double dx = q[0] - p[0], dy = q[1] - p[1], length = std::hypot(dx, dy);
-        std::vector<std::pair<double, PlanPosition>> found;
-        bool beside = false;
-        const double x0 = p[0] - reach_, x1 = q[0] + reach_;
-        const double y0 = std::min(p[1], q[1]) - reach_, y1 = std::max(p[1], q[1]) + reach_;
-        for (std::size_t column = bin(x0, 0); column <= bin(x1, 0); ++column) {
-            for (std::size_t row = bin(y0, 1); row <= bin(y1, 1); ++row) {
-                const std::size_t b = column * side_ + row;
-                for (std::size_t i = start_[b]; i < start_[b + 1]; ++i) {
-                    const PlanPosition& v = vertices_[i];
-                    const double vx = v[0] - p[0], vy = v[1] - p[1];
-                    if (std::abs(vx * dy - vy * dx) > reach_ * length) continue;
-                    const double way = (vx * dx + vy * dy) / length;
-                    if (way <= 2 * reach_ || way >= length - 2 * reach_) continue;
-                    found.emplace_back(way, v);
-                    beside |= exact::orient2d(p, q, v) != 0;
-                }
-            }
-        }
-        // An edge that is bent anywhere has to run through those on its line by name, too.
-        if (!beside) return {};
-        std::sort(found.begin(), found.end());
-        std::vector<PlanPosition> chain;
-        double last = 0;
-        for (const auto& [way, v] : found) {
-            if (!chain.empty() && way - last <= 2 * reach_) continue;
-            chain.push_back(v);
-            last = way;
-        }
-        return chain;
-    }
-
-private:
-    std::size_t bin(double value, std::size_t axis) const {
-        const double extent = high_[axis] - low_[axis];
-        if (!(extent > 0)) return 0;
-        const double at = (value - low_[axis]) / extent * static_cast<double>(side_);
-        return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(side_) - 0.5));
-    }
-
-    std::vector<PlanPosition> vertices_;
-    double reach_;
-    PlanPosition low_{}, high_{};
-    std::size_t side_ = 1;
-    std::vector<std::size_t> start_;
-};
+    return chain;
+}
 
 using Chains = std::map<PlanEdge, std::vector<PlanPosition>>;
 
@@ -319,12 +268,12 @@ JoinedBorders join_borders(std::span<const StackInput> rocks, const PlanSnapping
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
 
-    const VertexBins bins(std::move(ends),
-                          largest * 0x1p-50);  // four to eight units in the last place
+    const double reach = largest * 0x1p-50;  // four to eight units in the last place
+    const spatial::PointBins vertices(ends);
     Chains chains;
     for (std::size_t i = 0; i < edges.size(); ++i) {
         poll(progress, i);
-        auto chain = bins.along(edges[i]);
+        auto chain = vertices_along(edges[i], vertices, reach);
         if (!chain.empty()) chains.emplace(edges[i], std::move(chain));
     }
     JoinedBorders joined;

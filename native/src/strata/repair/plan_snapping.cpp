@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/sort/spreadsort/float_sort.hpp>
 #include <cmath>
 #include <set>
 
 #include "base/parallel.hpp"
-#include "base/sort_doubles.hpp"
 #include "exact/orient2d.hpp"
 #include "strata/repair/surface_input.hpp"
 
@@ -163,7 +163,9 @@ PlanSnapping find_snapping(std::span<const StackInput> rocks, int threads,
     });
     std::array<double, 2> reach;
     parallel_chunks(2, threads, progress, [&](std::size_t axis) {
-        sort_doubles(values[axis], progress);
+        for (double& value : values[axis])
+            value += 0.0;  // -0 becomes 0
+        boost::sort::spreadsort::float_sort(values[axis].begin(), values[axis].end());
         reach[axis] = largest[axis] * 0x1p-51;  // two to four units in the last place
     });
     // Values whose joining would turn a triangle are left alone, until none is turned. Input so

@@ -5,9 +5,8 @@
 #include <limits>
 #include <tuple>
 
-#include "base/flat_array.hpp"
+#include "base/counting_sort.hpp"
 #include "base/parallel.hpp"
-#include "base/sort_few.hpp"
 #include "exact/orient2d.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/meshing/triangulation.hpp"
@@ -61,31 +60,20 @@ PlanLinks link_triangles(std::span<const PlanTriangle> triangles, const Progress
         }
     }
     const auto row = [&](VertexId v) { return static_cast<std::size_t>(v - range.first); };
-    // Calls visit(row of the lower vertex, pass) for every pass, in order.
-    const auto for_all = [&](const auto& visit) {
+    auto passes = bucketize<Pass>(range.size(), [&](const auto& put) {  // by the lower vertex
         for (std::size_t t = 0; t < count; ++t) {
             poll(progress, t);
             const PlanTriangle& v = triangles[t];
             for (std::size_t i = 0; i < 3; ++i) {
                 const VertexId from = v[i], to = v[i < 2 ? i + 1 : 0];
-                visit(row(std::min(from, to)), pass_of(std::max(from, to), 3 * t + i, from < to));
+                put(row(std::min(from, to)), pass_of(std::max(from, to), 3 * t + i, from < to));
             }
         }
-    };
-    std::vector<std::uint32_t> offsets(range.size() + 1, 0);
-    for_all([&](std::size_t lower, Pass) { ++offsets[lower + 1]; });
-    for (std::size_t r = 1; r < offsets.size(); ++r)
-        offsets[r] += offsets[r - 1];
-    FlatArray<Pass> passes(3 * count);
-    {
-        std::vector<std::uint32_t> free(offsets.begin(), offsets.end() - 1);
-        for_all([&](std::size_t lower, Pass pass) { passes[free[lower]++] = pass; });
-    }
-    for (std::size_t r = 0; r + 1 < offsets.size(); ++r) {
+    });
+    for (std::size_t r = 0; r < passes.size(); ++r) {
         poll(progress, r);
-        Pass *const begin = passes.begin() + offsets[r], *const end =
-                                                             passes.begin() + offsets[r + 1];
-        sort_few(begin, end);
+        Pass *const begin = passes[r].data(), *const end = begin + passes[r].size();
+        std::sort(begin, end);
         for (Pass* first = begin; first != end;) {
             Pass* last = first;
             std::int32_t net = 0;

@@ -7,8 +7,8 @@
 
 #include "base/flat_array.hpp"
 #include "realmodel/strata/stack.hpp"
+#include "strata/overlay/plan_grid.hpp"
 #include "strata/overlay/polygon.hpp"
-#include "strata/plan_grid.hpp"
 #include "strata/tiling/plan_links.hpp"
 
 namespace realmodel::strata {

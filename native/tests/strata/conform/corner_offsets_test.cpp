@@ -8,14 +8,14 @@
 namespace realmodel::strata {
 namespace {
 
-/// Corners whose edges pass places, given in any order, one after another as tracks are dealt with.
+/// Corners whose edges pass plan vertices, given in any order, as lines are dealt with.
 struct Case {
     std::vector<PassedVertices> passed;
     std::vector<std::uint32_t> expected;  ///< first entry of each corner, and the total
 };
 
 Case make_case(std::size_t corners, int one_of, std::mt19937& random) {
-    std::vector<std::uint32_t> places(corners, 0);
+    std::vector<std::uint32_t> plan_vertices(corners, 0);
     Case made;
     made.passed.resize(5);
     std::vector<std::size_t> order(corners);
@@ -24,17 +24,16 @@ Case make_case(std::size_t corners, int one_of, std::mt19937& random) {
     std::shuffle(order.begin(), order.end(), random);
     for (const std::size_t c : order) {
         if (static_cast<int>(random() % 1000) >= 1000 / one_of) continue;
-        places[c] = 1 + static_cast<std::uint32_t>(random() % 4);
+        plan_vertices[c] = 1 + static_cast<std::uint32_t>(random() % 4);
         PassedVertices& list = made.passed[random() % made.passed.size()];
-        const auto count = static_cast<std::int32_t>(places[c]);
-        list.push_back(static_cast<std::int32_t>(c));
-        list.push_back(random() % 2 == 0 ? count : -count);
-        list.insert(list.end(), places[c], 17);
+        list.edges.push_back(
+            {static_cast<std::uint32_t>(c), plan_vertices[c], random() % 2 == 0 ? 1U : 0U});
+        list.vertices.insert(list.vertices.end(), plan_vertices[c], 17);
     }
     std::uint32_t next = 0;
     for (std::size_t c = 0; c < corners; ++c) {
         made.expected.push_back(next);
-        next += 1 + places[c];
+        next += 1 + plan_vertices[c];
     }
     made.expected.push_back(next);
     return made;

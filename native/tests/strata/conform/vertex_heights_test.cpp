@@ -41,10 +41,10 @@ std::vector<PlaneId> random_planes(PlanArrangement& geometry, std::mt19937& rand
 /// Compares ranks and heights with what LocalArrangement says of each pair of planes.
 void check(const PlanArrangement& geometry, LocalArrangement& scope, PointId point,
            const std::vector<PlaneId>& planes) {
-    PlaceHeights of_place(geometry);
+    VertexHeights heights_there(geometry);
     std::vector<std::int32_t> ranks = planes;
-    of_place.find(point, ranks);
-    const auto& heights = of_place.heights();
+    heights_there.find(point, ranks);
+    const auto& heights = heights_there.heights();
     EXPECT_TRUE(std::is_sorted(heights.begin(), heights.end()));
     EXPECT_EQ(static_cast<std::size_t>(*std::max_element(ranks.begin(), ranks.end())) + 1,
               heights.size());
@@ -61,12 +61,12 @@ void check(const PlanArrangement& geometry, LocalArrangement& scope, PointId poi
 /// The same with every other plane tentative: those take up heights that are there.
 void check_tentative(const PlanArrangement& geometry, LocalArrangement& scope, PointId point,
                      const std::vector<PlaneId>& planes) {
-    PlaceHeights of_place(geometry);
+    VertexHeights heights_there(geometry);
     std::vector<std::int32_t> ranks = planes;
     for (std::size_t i = 1; i < ranks.size(); i += 2)
         ranks[i] = ~ranks[i];
-    of_place.find(point, ranks);
-    const auto& heights = of_place.heights();
+    heights_there.find(point, ranks);
+    const auto& heights = heights_there.heights();
     EXPECT_TRUE(std::is_sorted(heights.begin(), heights.end()));
     for (std::size_t i = 0; i < planes.size(); ++i) {
         bool is_taken = i % 2 == 0;
@@ -79,10 +79,10 @@ void check_tentative(const PlanArrangement& geometry, LocalArrangement& scope, P
     }
 }
 
-class PlaceHeightsOf : public testing::TestWithParam<int> {};
+class VertexHeightsOf : public testing::TestWithParam<int> {};
 
 // Few planes are looked through, many are sorted; whole heights make ties, others hardly any.
-TEST_P(PlaceHeightsOf, AgreesWithEachPairOfPlanes) {
+TEST_P(VertexHeightsOf, AgreesWithEachPairOfPlanes) {
     for (const bool whole : {true, false}) {
         std::mt19937 random(7);
         PlanArrangement geometry;
@@ -128,11 +128,11 @@ TEST_P(PlaceHeightsOf, AgreesWithEachPairOfPlanes) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Numbers, PlaceHeightsOf, testing::Values(4, 12, 60));
+INSTANTIATE_TEST_SUITE_P(Numbers, VertexHeightsOf, testing::Values(4, 12, 60));
 
 // Where rounding could make a difference a tentative plane counts like the others, and then what is
 // near to it does, too.
-TEST(PlaceHeights, WhatIsNearCounts) {
+TEST(VertexHeights, WhatIsNearCounts) {
     PlanArrangement geometry;
     const auto level = [&](double z) {
         std::array<SpaceId, 3> corner;
@@ -150,14 +150,14 @@ TEST(PlaceHeights, WhatIsNearCounts) {
     ranks[0] = ~ranks[0];
     ASSERT_LT(0x1p-30, geometry.clear_height(0));
     ASSERT_GT(0x1.8p-29, geometry.clear_height(1));
-    PlaceHeights of_place(geometry);
-    of_place.find(0, ranks);
+    VertexHeights heights_there(geometry);
+    heights_there.find(0, ranks);
     EXPECT_EQ(ranks, (std::vector<std::int32_t>{0, 1, 2, -1}));
-    EXPECT_EQ(of_place.heights(), (std::vector<double>{0, 0x1p-30, 0x1.8p-29}));
+    EXPECT_EQ(heights_there.heights(), (std::vector<double>{0, 0x1p-30, 0x1.8p-29}));
 }
 
 // Heights that round to that of a flat base leave it where it is.
-TEST(PlaceHeights, LevelPlanesKeepTheirHeight) {
+TEST(VertexHeights, LevelPlanesKeepTheirHeight) {
     PlanArrangement geometry;
     const VertexId o = geometry.add_vertex(0, 0), x = geometry.add_vertex(3, 0),
                    y = geometry.add_vertex(0, 3), at = geometry.add_vertex(1, 1);
@@ -170,10 +170,10 @@ TEST(PlaceHeights, LevelPlanesKeepTheirHeight) {
     geometry.freeze_vertices();
     std::vector<std::int32_t> planes{geometry.add_plane(level), geometry.add_plane(rising),
                                      geometry.add_plane(falling)};
-    PlaceHeights of_place(geometry);
-    of_place.find(at, planes);
+    VertexHeights heights_there(geometry);
+    heights_there.find(at, planes);
     EXPECT_EQ(planes, (std::vector<std::int32_t>{1, 2, 0}));
-    EXPECT_EQ(of_place.heights(), (std::vector<double>{down, 1, up}));
+    EXPECT_EQ(heights_there.heights(), (std::vector<double>{down, 1, up}));
 }
 
 }  // namespace

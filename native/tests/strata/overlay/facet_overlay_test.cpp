@@ -60,7 +60,7 @@ TEST(FacetOverlay, WhatWasErodedLeavesTheFacetOverItsBlock) {
     EXPECT_TRUE(c.made.faces.size() == 0);
     EXPECT_EQ(c.blocks_beneath(), (std::vector<std::int32_t>{0, 0}));
     for (std::size_t f = 0; f < c.envelope.size(); ++f) {
-        if (c.envelope.plane[f] >= 0) EXPECT_EQ(c.envelope.layer[f], 1);
+        EXPECT_EQ(c.envelope.layer[f], c.envelope.plane[f] >= 0 ? 1 : -1);
     }
 }
 

@@ -35,10 +35,10 @@ public:
         }
     }
 
-    /// Hands over in this order of finishing; the crossings by number.
+    /// Commits in this order of finishing; the crossings by number.
     std::vector<std::array<LineId, 2>> commit(const std::vector<std::size_t>& order,
                                               std::size_t facets) {
-        OrderedCommit handing(geometry, order.size(), facets);
+        OrderedCommit committing(geometry, order.size(), facets);
         std::vector<std::unique_ptr<LocalArrangement>> scopes(order.size());
         for (const std::size_t chunk : order) {
             scopes[chunk] = std::make_unique<LocalArrangement>(geometry);
@@ -46,9 +46,9 @@ public:
                 const PointId at = scopes[chunk]->crossing(upright_[chunk], other);
                 scopes[chunk]->mark_point_used(at);
             }
-            handing.finished(chunk, *scopes[chunk]);
+            committing.finished(chunk, *scopes[chunk]);
         }
-        handing.finish();
+        committing.finish();
         std::vector<std::array<LineId, 2>> crossings;
         for (auto p = geometry.vertex_count(); p < static_cast<PointId>(geometry.point_count());
              ++p)
@@ -78,17 +78,17 @@ TEST(OrderedCommit, NumbersDoNotDependOnWhoIsFirst) {
     EXPECT_EQ(Comb().commit(order, 1000), expected);
 }
 
-TEST(OrderedCommit, TellsWhichChunksACallHandedOver) {
+TEST(OrderedCommit, ReturnsTheChunksThatACallCommitted) {
     PlanArrangement geometry;
     geometry.freeze_vertices();
-    OrderedCommit handing(geometry, 4, 4);
+    OrderedCommit committing(geometry, 4, 4);
     std::vector<std::unique_ptr<LocalArrangement>> owned;
     for (int i = 0; i < 4; ++i)
         owned.push_back(std::make_unique<LocalArrangement>(geometry));
     std::vector<std::size_t> passed;
     const auto pass = [&](std::size_t chunk) { passed.push_back(chunk); };
     const auto finished = [&](std::size_t chunk) {
-        const auto [first, last] = handing.finished(chunk, *owned[chunk], pass);
+        const auto [first, last] = committing.finished(chunk, *owned[chunk], pass);
         return std::array{first, last};
     };
     const auto none = finished(1);
@@ -98,15 +98,8 @@ TEST(OrderedCommit, TellsWhichChunksACallHandedOver) {
     EXPECT_EQ(still_none[0], still_none[1]);
     EXPECT_EQ(finished(2), (std::array<std::size_t, 2>{2, 4}));
     EXPECT_EQ(passed, (std::vector<std::size_t>{0, 1, 2, 3}));
-    const auto rest = handing.finish(pass);
+    const auto rest = committing.finish(pass);
     EXPECT_EQ(rest.first, rest.last);
-}
-
-TEST(PlanArrangement, FindsByNameAgainWhatItHasForgotten) {
-    Comb comb;
-    const auto first = comb.commit(in_order(), 1000);
-    comb.geometry.forget_names();
-    EXPECT_EQ(comb.commit(in_order(), 1000), first);  // nothing came twice
 }
 
 TEST(PlanArrangement, HasTheRoomThatWasMade) {

@@ -7,17 +7,27 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "strata/plan_grid.hpp"
+namespace realmodel::spatial {
 
-namespace realmodel::strata {
+/// An axis-parallel box in plan.
+struct PlanBox {
+    double low_x = 0, low_y = 0, high_x = 0, high_y = 0;
+    /// Whether the boxes share at least a point. Coordinates are rounded monotonically, so boxes of
+    /// polygons that share an area always meet.
+    bool meets(const PlanBox& other) const {
+        return low_x <= other.high_x && other.low_x <= high_x && low_y <= other.high_y &&
+               other.low_y <= high_y;
+    }
+};
 
 /// Tiles from column `left` to `right` and row `low` to `high`, both included.
 struct TileSpan {
     std::int32_t left, right, low, high;
 };
 
-/// A uniform grid of tiles over all surfaces. A place lies in the tiles of every box around it: the
-/// way to columns and rows is monotone, whatever it rounds.
+/// A uniform grid of tiles over a frame; what lies beside the frame belongs to the nearest tile. A
+/// point lies in the tiles of every box around it: columns and rows are monotone in x and y,
+/// whatever is rounded.
 class PlanTiles {
 public:
     PlanTiles() = default;
@@ -27,6 +37,9 @@ public:
     std::size_t size() const { return static_cast<std::size_t>(columns_) * rows(); }
     std::size_t columns() const { return static_cast<std::size_t>(columns_); }
     std::size_t rows() const { return static_cast<std::size_t>(rows_); }
+    const PlanBox& frame() const { return frame_; }
+    double step_x() const { return step_x_; }
+    double step_y() const { return step_y_; }
     TileSpan span(const PlanBox& box) const {
         return {column(box.low_x), column(box.high_x), row(box.low_y), row(box.high_y)};
     }
@@ -51,15 +64,19 @@ public:
         }
         return false;
     }
-    /// Calls visit(tile) for every tile whose centre lies in a triangle, or as good as on its edge.
+    /// Calls visit(tile) for every tile whose center lies in a triangle, or as good as on its edge.
     template <class Visit>
-    void for_each_centre_in(const std::array<std::array<double, 2>, 3>& triangle,
+    void for_each_center_in(const std::array<std::array<double, 2>, 3>& triangle,
                             const Visit& visit) const;
 
+    std::int32_t column(double x) const { return nearest_column((x - frame_.low_x) / step_x_); }
+    std::int32_t row(double y) const { return nearest_row((y - frame_.low_y) / step_y_); }
+    /// The same of coordinates that are counted in tiles already.
+    std::int32_t nearest_column(double at) const { return nearest(at, columns_); }
+    std::int32_t nearest_row(double at) const { return nearest(at, rows_); }
+
 private:
-    std::int32_t column(double x) const { return index((x - frame_.low_x) / step_x_, columns_); }
-    std::int32_t row(double y) const { return index((y - frame_.low_y) / step_y_, rows_); }
-    static std::int32_t index(double at, std::int32_t count) {
+    static std::int32_t nearest(double at, std::int32_t count) {
         if (!(at > 0.0)) return 0;
         return at >= static_cast<double>(count) ? count - 1 : static_cast<std::int32_t>(at);
     }
@@ -70,7 +87,7 @@ private:
 };
 
 template <class Visit>
-void PlanTiles::for_each_centre_in(const std::array<std::array<double, 2>, 3>& triangle,
+void PlanTiles::for_each_center_in(const std::array<std::array<double, 2>, 3>& triangle,
                                    const Visit& visit) const {
     PlanBox box{triangle[0][0], triangle[0][1], triangle[0][0], triangle[0][1]};
     for (const auto& p : triangle) {
@@ -102,4 +119,4 @@ void PlanTiles::for_each_centre_in(const std::array<std::array<double, 2>, 3>& t
     }
 }
 
-}  // namespace realmodel::strata
+}  // namespace realmodel::spatial

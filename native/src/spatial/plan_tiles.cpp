@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/plan_tiles.hpp"
+#include "spatial/plan_tiles.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace realmodel::strata {
+namespace realmodel::spatial {
 
 PlanTiles::PlanTiles(const PlanBox& frame, std::size_t count) : frame_(frame) {
     const double width = frame.high_x - frame.low_x, height = frame.high_y - frame.low_y;
@@ -16,4 +16,4 @@ PlanTiles::PlanTiles(const PlanBox& frame, std::size_t count) : frame_(frame) {
     step_y_ = std::max(height / rows_, 1e-300);
 }
 
-}  // namespace realmodel::strata
+}  // namespace realmodel::spatial

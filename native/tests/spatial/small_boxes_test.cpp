@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/small_boxes.hpp"
+#include "spatial/small_boxes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-namespace realmodel::strata {
+namespace realmodel::spatial {
 namespace {
 
 /// Boxes with corners on a lattice, where many only touch, or anywhere; some are long.
@@ -41,7 +41,7 @@ TEST(SmallBoxes, AllThatMeetABoxAreFoundOnceOrLeftOut) {
                 EXPECT_TRUE(cells > 1 || others.empty());
                 EXPECT_TRUE(cells > 200 || others.size() < boxes.size() / 2);
                 for (const PlanBox& box : draw_boxes(100, on_lattice, offset, random)) {
-                    GrowingArray<std::int32_t> found;
+                    Array<std::int32_t> found;
                     small.append(box, found);
                     std::sort(found.begin(), found.end());
                     EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
@@ -64,7 +64,7 @@ TEST(SmallBoxes, FewOfThoseFarAwayAreFound) {
     SmallBoxes small;
     small.fill(boxes, chosen, boxes.size() / 2, 1, nullptr);
     for (const PlanBox& box : draw_boxes(100, false, 0, random)) {
-        GrowingArray<std::int32_t> found;
+        Array<std::int32_t> found;
         small.append(box, found);
         for (const std::int32_t i : found) {
             const PlanBox& b = boxes[static_cast<std::size_t>(i)];
@@ -72,10 +72,10 @@ TEST(SmallBoxes, FewOfThoseFarAwayAreFound) {
             EXPECT_TRUE(b.low_y - 1e-3 <= box.high_y && b.high_y + 1e-3 >= box.low_y);
         }
     }
-    GrowingArray<std::int32_t> found;
+    Array<std::int32_t> found;
     small.append({100, 100, 200, 200}, found);
     EXPECT_TRUE(found.empty());
 }
 
 }  // namespace
-}  // namespace realmodel::strata
+}  // namespace realmodel::spatial

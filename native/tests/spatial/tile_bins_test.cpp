@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "strata/tile_bins.hpp"
+#include "spatial/tile_bins.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-namespace realmodel::strata {
+namespace realmodel::spatial {
 namespace {
 
 bool meet(const TileSpan& a, const TileSpan& b) {
@@ -84,4 +84,4 @@ TEST(TileBins, StopsWhereTheTestFails) {
 }
 
 }  // namespace
-}  // namespace realmodel::strata
+}  // namespace realmodel::spatial

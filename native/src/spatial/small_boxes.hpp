@@ -5,35 +5,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/flat_array.hpp"
+#include "base/counting_sort.hpp"
 #include "realmodel/base/progress.hpp"
-#include "strata/overlay/polygon.hpp"
+#include "spatial/plan_tiles.hpp"
 
-namespace realmodel::strata {
-
-/// An axis-parallel box in plan.
-struct PlanBox {
-    double low_x = 0, low_y = 0, high_x = 0, high_y = 0;
-    /// Whether the boxes share at least a point. Coordinates are rounded monotonically, so boxes of
-    /// polygons that share an area always meet.
-    bool meets(const PlanBox& other) const {
-        return low_x <= other.high_x && other.low_x <= high_x && low_y <= other.high_y &&
-               other.low_y <= high_y;
-    }
-};
+namespace realmodel::spatial {
 
 /// The box around all of these, which must be some.
 PlanBox box_around(const std::vector<PlanBox>& boxes, const std::vector<std::int32_t>& chosen);
-
-/// A uniform grid of cells over a box: so many of them, as square as the box allows.
-struct CellGrid {
-    PlanBox frame;
-    double step_x = 1, step_y = 1;
-    std::int64_t columns = 0, rows = 0;
-
-    CellGrid() = default;
-    CellGrid(const PlanBox& frame, std::size_t cells);
-};
 
 /// Boxes that are hardly larger than a cell of a grid, such as those of a mesh's triangles. Each is
 /// kept in one cell, that of its lower left corner, with its box beside it: who looks for boxes
@@ -45,7 +24,7 @@ public:
                                    const std::vector<std::int32_t>& chosen, std::size_t cells,
                                    int threads, const Progress* progress);
     /// Appends the numbers of all that meet a box; of those that all but meet it, some.
-    void append(const PlanBox& box, GrowingArray<std::int32_t>& found) const;
+    void append(const PlanBox& box, Array<std::int32_t>& found) const;
 
 private:
     /// A box in units of cells. All coordinates come here in the same way, which never changes
@@ -63,12 +42,10 @@ private:
     /// Whether an item meets a box, 1 or 0, without branches.
     static std::uint32_t meets(const Item& item, const Limits& limits);
     CellBox in_cells(const PlanBox& box) const;
-    std::size_t cell_of(const CellBox& box) const;
 
-    CellGrid grid_;
+    PlanTiles cells_;
     double reach_x_ = 0, reach_y_ = 0;  ///< width and height of the largest, in cells
-    FlatArray<std::uint32_t> offsets_;
-    FlatArray<Item> items_;  ///< of one cell in any order
+    Buckets<Item> items_;               ///< of each cell
 };
 
-}  // namespace realmodel::strata
+}  // namespace realmodel::spatial

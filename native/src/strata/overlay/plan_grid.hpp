@@ -6,10 +6,14 @@
 
 #include "base/flat_array.hpp"
 #include "realmodel/base/progress.hpp"
+#include "spatial/small_boxes.hpp"
 #include "strata/overlay/polygon.hpp"
-#include "strata/small_boxes.hpp"
 
 namespace realmodel::strata {
+
+using spatial::PlanBox;
+using spatial::PlanTiles;
+using spatial::TileSpan;
 
 PlanBox box_of(const LocalArrangement& scope, PolygonView polygon);
 
@@ -24,14 +28,9 @@ public:
     /// Appends the polygons whose cells and boxes meet those of `polygon`; whether none of them
     /// comes repeatedly.
     bool append(const LocalArrangement& scope, PolygonView polygon, const PlanBox& box,
-                const std::vector<PlanBox>& boxes, GrowingArray<std::int32_t>& found) const;
+                const std::vector<PlanBox>& boxes, Array<std::int32_t>& found) const;
 
 private:
-    /// Columns and rows that a box meets.
-    struct CellSpan {
-        std::int64_t left, right, low, high;
-        bool is_narrow() const { return right - left <= 1 || high - low <= 1; }
-    };
     /// A polygon in a cell. Of those entered in all cells of a box, the first column and row: two
     /// such polygons meet for the first time in a cell that follows from them.
     struct Item {
@@ -39,18 +38,14 @@ private:
     };
     static constexpr std::int32_t kScattered = -1;
 
-    CellSpan span_of(const PlanBox& box) const;
     bool is_inside(const PlanBox& box) const;
-    std::int64_t column(double x) const;
-    std::int64_t row(double y) const;
     /// Calls visit(cell) for each cell that the polygon crosses.
     template <class Visit>
     void for_each_cell(const LocalArrangement& scope, PolygonView polygon, const PlanBox& box,
                        const Visit& visit) const;
 
-    CellGrid grid_;
-    FlatArray<std::uint32_t> offsets_;
-    FlatArray<Item> items_;  ///< of one cell in any order
+    PlanTiles cells_;
+    Buckets<Item> items_;  ///< of each cell
 };
 
 /// Finds the polygons of a set that may share an area with another polygon. Most of a surface's are
@@ -66,11 +61,11 @@ public:
 
     /// Numbers of all polygons whose cells and boxes meet those of `polygon`, ascending.
     void candidates(const LocalArrangement& scope, PolygonView polygon,
-                    GrowingArray<std::int32_t>& found) const;
+                    Array<std::int32_t>& found) const;
 
 private:
     std::vector<PlanBox> boxes_;
-    SmallBoxes small_;
+    spatial::SmallBoxes small_;
     PolygonCells large_, outer_;
 };
 

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "exact/local_ids.hpp"
+
+namespace realmodel::exact {
+
+/// A number in extended precision and a bound on its error.
+struct ExtendedInterval {
+    long double value;
+    double error;
+};
+
+/// A plan point relative to a plan vertex.
+struct NearPoint {
+    VertexId origin;
+    ExtendedInterval x, y;
+};
+
+/// What is known of the height of a plane above a point without arithmetic; planes with equal names
+/// are equally high there. A space vertex twice: it stands there; two of them, ascending: an input
+/// edge between the two passes there; -1 and a plane: nothing but that it is as high as that plane.
+struct HeightName {
+    std::int32_t first, second;
+    friend bool operator==(const HeightName&, const HeightName&) = default;
+};
+
+/// One thread's view of the arrangement: all questions are asked here, and answered exactly. What
+/// is shared is only read; lines and points that answers need are this thread's own (LocalIds).
+class LocalArrangement : public LocalIds {
+public:
+    explicit LocalArrangement(const PlanArrangement& shared) : LocalIds(shared) {}
+    ~LocalArrangement() { shared_.count_decisions(decisions_, exact_); }
+
+    /// On which side of a directed line a point lies: 1 left, 0 on it, -1 right. The predicate that
+    /// every decision comes down to: the sign of a 3 x 3 determinant of plan lines.
+    int side(DirectedLine line, PointId point);
+    /// The sign of the height of plane `upper` less that of plane `lower` above a point.
+    int compare_heights(PlaneId upper, PlaneId lower, PointId point);
+    /// The same with the filter of their trace at hand; the trace itself need not exist.
+    int compare_heights(PlaneId upper, PlaneId lower, const LineFilter& trace, PointId point);
+    /// Whether a point lies to the left of a line, or a trace, that need not exist; where floating
+    /// point does not tell, it says no.
+    bool is_left_for_certain(const LineFilter& line, PointId id) const {
+        return filtered_side(line, point(id)) == 1;
+    }
+    /// Whether a point lies to the right of a trace by more than a difference of heights and many
+    /// times what rounding makes of it.
+    bool is_right_by(const LineFilter& trace, PointId id, double difference) const;
+    /// Whether two points are in the same place.
+    bool same_place(PointId a, PointId b);
+    /// Whether two lines run through the same places.
+    bool same_line(LineId a, LineId b);
+    /// Signs of the direction (x, y) in which a line runs.
+    std::array<int, 2> direction_signs(LineId line);
+    /// The sign of b - a in x (axis 0) or y (axis 1), exactly.
+    int compare(int axis, PointId a, PointId b);
+
+    /// The point where two lines cross, which must exist. Input vertices and edges that pierce a
+    /// plane are recognised by name.
+    PointId crossing(LineId a, LineId b);
+    /// The same where no input vertex is the crossing: between the ends of an edge on one of them
+    /// and the ends of an edge on the other.
+    PointId crossing_between_ends(LineId a, LineId b);
+    /// Where two planes are equally high; positive where `upper` is above `lower`.
+    DirectedLine trace(PlaneId upper, PlaneId lower);
+
+    /// The doubles nearest to a point's true coordinates: the same for every way to name the place.
+    std::array<double, 2> rounded(PointId point);
+    /// By what the height of a plane above a point is known; planes that are equally high may still
+    /// have different names.
+    HeightName height_name(PlaneId plane, PointId point) const;
+
+    /// Where a point lies, as closely as is cheap to say; for several heights above it.
+    NearPoint near(PointId point) const;
+    /// The double nearest to the height of a plane above a point.
+    double rounded_height(PlaneId plane, PointId point);
+    /// The same where the name says an input edge, and the point is where it crosses another; or
+    /// nothing. The quickest of all.
+    std::optional<double> rounded_height_of_crossing(const HeightName& name, PointId point) const;
+    double rounded_height(PlaneId plane, PointId point, const NearPoint& near);
+    /// The same of a plane whose height there is known by a name.
+    double rounded_height(PlaneId plane, const HeightName& name, PointId point,
+                          const NearPoint& near);
+    /// Slope and offset of a line, rounded: equal for lines that run through the same places.
+    std::array<double, 3> line_key(LineId line);
+
+    /// Counts signs that were found without `side`.
+    void count_decisions(std::size_t count) { decisions_ += count; }
+    /// How many decisions floating point left to exact arithmetic here.
+    std::uint64_t exact_decisions() const { return exact_; }
+
+private:
+    int filtered_side(const LineFilter& line, const Point& point) const;
+    bool vanishes(const LineFilter& edge, const Point& vertex) const;
+    bool runs_along(const LineFilter& edge, const Point& crossing) const;
+    int exact_side(const Line& line, PointId point);
+    bool on_trace_by_name(PlaneId a, PlaneId b, const Point& point) const;
+    NearPoint near(const Point& point) const;
+    void locate(Point& point);
+
+    std::uint64_t decisions_ = 0, exact_ = 0;
+};
+
+}  // namespace realmodel::exact

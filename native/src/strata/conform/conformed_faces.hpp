@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "strata/conform/collinear_edges.hpp"
+
+namespace realmodel::strata {
+
+/// A vertex on an edge that has no entry for it: it follows a given entry.
+struct InsertedVertex {
+    std::uint32_t entry;
+    std::int32_t vertex;
+};
+
+/// The faces with every vertex that lies on their edges put in, and all vertices: on each plan
+/// vertex one for each height that a corner or an edge needs there, ascending.
+struct ConformedFaces {
+    FlatArray<std::uint32_t> face_offsets;  ///< entries of each face
+    CornerOffsets entries;                  ///< of each corner
+    /// Of each entry, counter-clockwise in plan; -1 where an edge passes a plan vertex tentatively
+    /// and nothing else is as high there.
+    FlatArray<std::int32_t> vertices;
+    std::vector<InsertedVertex> inserted;    ///< in order of entries
+    FlatArray<std::int32_t> vertex_offsets;  ///< first vertex of each plan vertex
+    /// Of the vertices, for so many plan vertices each: rounded, those of a plan vertex all
+    /// different.
+    std::vector<std::vector<double>> heights;
+    static constexpr std::size_t kVerticesTogether = 1 << 11;
+    GrowingArray<std::array<double, 3>> positions;  ///< empty until set_vertex_positions
+};
+/// Takes what it needs of the lines: what they have `passed` is given back, and their edges name
+/// the first of their entries from here on.
+ConformedFaces conform_faces(const exact::PlanArrangement& geometry, const FaceList& faces,
+                             const PlanVertices& plan_vertices, CollinearEdges& collinear,
+                             int threads, const Progress* progress);
+
+/// Gives the vertices their positions, which takes the heights.
+void set_vertex_positions(const PlanVertices& plan_vertices, ConformedFaces& loops, int threads,
+                          const Progress* progress);
+
+}  // namespace realmodel::strata

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "base/flat_array.hpp"
+#include "realmodel/base/progress.hpp"
+#include "strata/overlay/envelope.hpp"
+
+namespace realmodel::strata {
+
+/// Index of a plan vertex: one position in plan, however many points are named there.
+using PlanVertexId = std::int32_t;
+
+using PlanPosition = std::array<double, 2>;
+
+/// A point that a line must pass, though no edge ends there: where heights of the columns on its
+/// two sides cross.
+struct ExtraPoint {
+    LineId line;
+    PointId point;
+};
+
+/// The points in use, those in the same position taken together, in order of rounded x, then y.
+struct PlanVertices {
+    FlatArray<PlanVertexId> of_point;      ///< -1 for points that no face uses
+    FlatArray<PointId> representative;     ///< an input vertex where one is there
+    FlatArray<PlanPosition> position;      ///< rounded
+    FlatArray<std::uint64_t> same_x_bits;  ///< of 64 plan vertices each: see has_same_x_next
+    std::vector<PlanVertexId>
+        coincident;  ///< those that round to the position of the plan vertex before them
+
+    std::size_t size() const { return representative.size(); }
+    /// Whether the next plan vertex rounds to the same x.
+    bool has_same_x_next(PlanVertexId plan_vertex) const {
+        const auto p = static_cast<std::size_t>(plan_vertex);
+        return (same_x_bits[p / 64] >> (p % 64) & 1) != 0;
+    }
+};
+PlanVertices find_plan_vertices(const exact::PlanArrangement& geometry, const FaceList& faces,
+                                const std::vector<ExtraPoint>& extra, int threads,
+                                const Progress* progress);
+
+}  // namespace realmodel::strata

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is in the add-on's registries is there: functions of methods, rules and meshers of the native part."""
+
+from importlib import import_module
+
+import numpy as np
+import pytest
+from realmodel.core import Project, Rock, Surface, build, mesh_region
+from realmodel.core.meshers import MESHERS
+from realmodel.core.methods import METHODS, OPTIONS
+from realmodel.core.readers.mesh_file import read_mesh
+from realmodel.core.rules import RULES
+
+PLAN = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]])
+TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]])
+
+
+@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if method.run])
+def test_a_method_has_its_function(method):
+    module, _, function = METHODS[method].run.rpartition(".")
+    assert callable(getattr(import_module(f"realmodel.core.heights.{module}"), function))
+
+
+def test_options_of_one_name_look_alike():
+    for method in METHODS.values():
+        for name, option in method.options.items():
+            shown = OPTIONS[name]
+            assert (option.kind, option.label, option.tip) == (shown.kind, shown.label, shown.tip), name
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_the_native_part_knows_a_rule(rule):
+    """A level at 1, then a surface at 2 with the rule, then an erosional one at 1.5 over both."""
+
+    def surface(name, height, its_rule="erosional"):
+        return Surface(name, np.column_stack([PLAN, np.full(4, height)]), TRIANGLES, rule=its_rule)
+
+    surfaces = [surface("bottom", 1.0), surface("ruled", 2.0, rule), surface("top", 1.5)]
+    model = build(Project("p", [Rock("r", surfaces)]))
+    assert model.volume == pytest.approx(16.0 if RULES[rule].protects else 8.0)
+
+
+@pytest.mark.parametrize("mesher", MESHERS)
+def test_the_native_part_knows_a_mesher(mesher):
+    _, triangles = mesh_region(PLAN, edge_length=1.0, mesher=mesher)
+    assert len(triangles) >= 32
+
+
+def test_the_content_says_the_format_of_a_mesh(tmp_path):
+    file = tmp_path / "mesh.dat"
+    file.write_text("# a comment\nOFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+    assert read_mesh(file).triangles.tolist() == [[0, 1, 2]]
