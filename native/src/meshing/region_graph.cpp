@@ -230,7 +230,7 @@ private:
             const auto item = static_cast<std::int64_t>(i);
             throw InputError("constraint_outside",
                              "constraint point " + std::to_string(i) + " at " + text_of(p) +
-                                 " is outside the region; leave it out",
+                                 " lies outside the region; leave it out",
                              -1, {item}, std::array{p[0], p[1], 0.0});
         }
     }
