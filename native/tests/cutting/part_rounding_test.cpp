@@ -54,7 +54,7 @@ protected:
         PartRounding(model_, new_, pieces_, parts_, {false, false}).run();
         return assemble_halves(model_, new_, pieces_, parts_, 1, nullptr);
     }
-    static void expect_distinct(const strata::CellComplex& half) {
+    static void expect_distinct(const CellComplex& half) {
         const std::set<Position> found(half.vertices.begin(), half.vertices.end());
         EXPECT_EQ(found.size(), half.vertices.size());
     }
@@ -81,7 +81,7 @@ TEST_F(AHalvedBox, StaysAsItIsWhereNothingCoincides) {
     EXPECT_EQ(cut.below_cells, std::vector<std::int32_t>{0});
     // what the cut laid open belongs to no surface
     EXPECT_EQ(
-        std::count(cut.below.face_surface.begin(), cut.below.face_surface.end(), strata::kCutFace),
+        std::count(cut.below.face_surface.begin(), cut.below.face_surface.end(), kCutFace),
         1);
 }
 

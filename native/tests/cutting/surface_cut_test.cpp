@@ -10,7 +10,6 @@
 namespace realmodel::cutting {
 namespace {
 
-using cutting::view;
 using strata::CellComplex;
 using strata::grid;
 using strata::OwnedSurface;
