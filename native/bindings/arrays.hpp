@@ -80,7 +80,7 @@ pybind11::capsule owner_of(Values&& values, Values*& kept) {
     return owner;
 }
 
-/// Hands the memory of a vector (std::vector or GrowingArray) to NumPy: an array of shape
+/// Hands the memory of a vector (std::vector or Array) to NumPy: an array of shape
 /// (values.size() / columns, columns), or one-dimensional where columns is 0; of rows of N numbers
 /// one of shape (rows.size(), N). The array owns the memory; nothing is copied.
 template <template <class...> class Vector, class T, class... More>

@@ -68,7 +68,7 @@ private:
     /// Nodes of polygons that merely touch the plane.
     void drop_unused() {
         std::vector<NodeId> renumbered(result_.vertices.size(), -1);
-        GrowingArray<Position> used;
+        Array<Position> used;
         for (NodeId& v : result_.polygon_vertices) {
             NodeId& number = renumbered[index(v)];
             if (number < 0) {

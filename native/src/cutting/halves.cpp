@@ -14,7 +14,7 @@ namespace {
 class Renumbering {
 public:
     Renumbering(const ComplexView& model, const std::vector<Position>& new_positions,
-                GrowingArray<Position>& vertices)
+                Array<Position>& vertices)
         : model_(model),
           new_positions_(new_positions),
           vertices_(vertices),
@@ -34,7 +34,7 @@ public:
 private:
     const ComplexView& model_;
     const std::vector<Position>& new_positions_;
-    GrowingArray<Position>& vertices_;
+    Array<Position>& vertices_;
     std::vector<std::int32_t> number_;
 };
 

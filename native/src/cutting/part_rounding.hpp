@@ -64,7 +64,7 @@ private:
     std::vector<std::uint8_t> on_base_, on_wall_;  ///< of nodes
     std::vector<std::uint8_t> is_near_;     ///< of nodes: of a part that is less than its cell
     std::vector<std::uint8_t> is_doubled_;  ///< of pieces: another of a half has its nodes
-    Buckets<std::int32_t> pieces_of_;  ///< the pieces around each part
+    Buckets<std::int32_t> pieces_of_;       ///< the pieces around each part
     std::set<Position> taken_;              ///< positions of nodes
 };
 

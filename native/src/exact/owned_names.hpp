@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "realmodel/base/growing_array.hpp"
+#include "realmodel/base/array.hpp"
 
 namespace realmodel::exact {
 
@@ -47,8 +47,8 @@ private:
     static constexpr std::int32_t kNone = -1;
     static constexpr int kMost = 8;
 
-    GrowingArray<std::int32_t> last_;    ///< of each owner
-    GrowingArray<std::int32_t> before_;  ///< of each thing, the owner's last one before it
+    Array<std::int32_t> last_;    ///< of each owner
+    Array<std::int32_t> before_;  ///< of each thing, the owner's last one before it
 };
 
 }  // namespace realmodel::exact

@@ -14,7 +14,7 @@
 #include "base/key_table.hpp"
 #include "exact/error_bounds.hpp"
 #include "exact/owned_names.hpp"
-#include "realmodel/base/growing_array.hpp"
+#include "realmodel/base/array.hpp"
 
 namespace realmodel::exact {
 
@@ -301,11 +301,11 @@ public:
     }
 
 private:
-    GrowingArray<Point> points_;
-    GrowingArray<SpaceVertex> space_;
-    GrowingArray<Plane> planes_;
-    GrowingArray<PlaneFilter> plane_filters_;
-    GrowingArray<Line> lines_;
+    Array<Point> points_;
+    Array<SpaceVertex> space_;
+    Array<Plane> planes_;
+    Array<PlaneFilter> plane_filters_;
+    Array<Line> lines_;
     LineId find_or_add_line(const Line& line, LineId next);
 
     KeyTable vertex_table_, space_table_;

@@ -63,7 +63,7 @@ std::string group_name(std::int32_t surface) {
 
 /// Polygons of a pool, each in its plane, in groups by surface.
 void dump_polygons(const PlanArrangement& geometry, const PolygonPool& polygons,
-                   const GrowingArray<PlaneId>& plane, const GrowingArray<std::int32_t>& surface,
+                   const Array<PlaneId>& plane, const Array<std::int32_t>& surface,
                    const char* path) {
     std::map<std::int32_t, std::vector<std::size_t>> of_surface;
     for (std::size_t p = 0; p < plane.size(); ++p) {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exact/orient2d.hpp"
 #include "exact/local_arrangement.hpp"
+#include "exact/orient2d.hpp"
 
 namespace realmodel::validation {
 

@@ -80,9 +80,8 @@ TEST_F(AHalvedBox, StaysAsItIsWhereNothingCoincides) {
     EXPECT_EQ(cut.section.cells, (std::vector<std::array<std::int32_t, 2>>{{0, 0}}));
     EXPECT_EQ(cut.below_cells, std::vector<std::int32_t>{0});
     // what the cut laid open belongs to no surface
-    EXPECT_EQ(
-        std::count(cut.below.face_surface.begin(), cut.below.face_surface.end(), kCutFace),
-        1);
+    EXPECT_EQ(std::count(cut.below.face_surface.begin(), cut.below.face_surface.end(), kCutFace),
+              1);
 }
 
 TEST_F(AHalvedBox, APartWithoutThicknessIsGivenOne) {

@@ -137,9 +137,4 @@ private:
     std::size_t size_ = 0;
 };
 
-template <class Element>
-using GrowingArray = Array<Element>;
-template <class Element>
-using FlatArray = Array<Element>;
-
 }  // namespace realmodel

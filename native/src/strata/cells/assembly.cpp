@@ -102,7 +102,7 @@ void copy_walls(const WallBatch& walls, std::size_t face, std::size_t corner,
 
 CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
                      ConformedFaces loops, std::vector<WallBatch> walls,
-                     GrowingArray<std::int32_t> cell_block, int threads, const Progress* progress) {
+                     Array<std::int32_t> cell_block, int threads, const Progress* progress) {
     CellComplex complex;
     complex.vertices = std::move(loops.positions);
     complex.cell_block = std::move(cell_block);

@@ -12,6 +12,6 @@ namespace realmodel::strata {
 /// back as they are used.
 CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
                      ConformedFaces loops, std::vector<WallBatch> walls,
-                     GrowingArray<std::int32_t> cell_block, int threads, const Progress* progress);
+                     Array<std::int32_t> cell_block, int threads, const Progress* progress);
 
 }  // namespace realmodel::strata

@@ -92,7 +92,7 @@ CellComplex build_cells(exact::PlanArrangement& geometry, Construction& construc
     }
     begin_step(progress, c.done, 1.0 - c.done, "putting the cells together");
     set_vertex_positions(c.places, c.loops, threads, progress);
-    GrowingArray<std::int32_t> cell_block;
+    Array<std::int32_t> cell_block;
     std::vector<std::int32_t> cell_of_node;
     if (blocks == nullptr) {
         cell_block = std::move(construction.node_block);

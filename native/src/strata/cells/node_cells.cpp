@@ -73,7 +73,7 @@ std::vector<std::int32_t> keep_vertices(const std::vector<std::uint8_t>& is_need
 
 std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
                                          const TriangleLinks& links, const WholeTriangles& wholes,
-                                         GrowingArray<std::int32_t>& cell_block, int threads,
+                                         Array<std::int32_t>& cell_block, int threads,
                                          const Progress* progress) {
     const auto block = [&](std::int32_t node) {
         return construction.node_block[static_cast<std::size_t>(node)];

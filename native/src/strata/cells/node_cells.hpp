@@ -17,7 +17,7 @@ namespace realmodel::strata {
 /// @return the cell of each node
 std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
                                          const TriangleLinks& links, const WholeTriangles& wholes,
-                                         GrowingArray<std::int32_t>& cell_block, int threads,
+                                         Array<std::int32_t>& cell_block, int threads,
                                          const Progress* progress);
 
 /// Walls between cells from their stretches: those that go on without a change are joined, and only

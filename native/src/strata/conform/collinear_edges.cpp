@@ -124,7 +124,7 @@ private:
 struct UnmatchedLines {
     std::vector<LineId> representative;
     std::vector<std::uint32_t> edge_counts;
-    GrowingArray<LineEdge> edges;
+    Array<LineEdge> edges;
 
     void add(LineId line, std::span<const LineEdge> of_line) {
         representative.push_back(line);
@@ -141,9 +141,9 @@ void join_unmatched(std::vector<UnmatchedLines> kept, CollinearEdges& result, in
         first_line.push_back(some.representative.size());
         first_edge.push_back(some.edges.size());
     }
-    result.representative = FlatArray<LineId>(count_before(first_line));
-    result.edge_offsets = FlatArray<std::uint32_t>(result.size() + 1);
-    result.edges = FlatArray<LineEdge>(count_before(first_edge));
+    result.representative = Array<LineId>(count_before(first_line));
+    result.edge_offsets = Array<std::uint32_t>(result.size() + 1);
+    result.edges = Array<LineEdge>(count_before(first_edge));
     result.edge_offsets[result.size()] = static_cast<std::uint32_t>(result.edges.size());
     parallel_chunks(kept.size(), threads, progress, [&](std::size_t i) {
         std::size_t line = first_line[i], edge = first_edge[i];
@@ -189,7 +189,7 @@ public:
     /// Where the cells on both sides of a pair are thick, no other face is as high as the pair
     /// where it passes a plan vertex: around it all columns have one of its two faces.
     /// @return whether all edges of the line match; if not, nothing was passed
-    bool pass_matched(const GrowingArray<std::uint8_t>& cell_is_thick, MatchedEdges& matched) {
+    bool pass_matched(const Array<std::uint8_t>& cell_is_thick, MatchedEdges& matched) {
         // Plan vertices have numbers in order of x, and hardly ever the same x. Each end of a pair
         // is where an edge begins.
         bool same_x = false;
@@ -248,7 +248,7 @@ private:
     }
 
     /// Whether a face lies between thick cells, or those and the outside.
-    bool is_between(const LineEdge& edge, const GrowingArray<std::uint8_t>& cell_is_thick) const {
+    bool is_between(const LineEdge& edge, const Array<std::uint8_t>& cell_is_thick) const {
         const auto face = static_cast<std::size_t>(edge.face);
         const auto is_thick = [&](std::int32_t cell) {
             return cell == kOutsideCell || cell_is_thick[static_cast<std::size_t>(cell)] != 0;
@@ -271,7 +271,7 @@ private:
 CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceList& faces,
                                     const PlanVertices& plan_vertices,
                                     const std::vector<ExtraPoint>& extra,
-                                    const GrowingArray<std::uint8_t>* cell_is_thick, int threads,
+                                    const Array<std::uint8_t>* cell_is_thick, int threads,
                                     const Progress* progress) {
     const CollinearLines lines = join_lines(geometry, faces, threads, progress);
     std::vector<std::pair<std::int32_t, PlanVertexId>>

@@ -13,10 +13,9 @@ namespace realmodel::strata {
 /// The supporting lines of face edges, each with the edges on it. Lines that run through the same
 /// points are one supporting line; it runs to rising x, or to rising y where x does not change.
 struct CollinearEdges {
-    FlatArray<LineId>
-        representative;  ///< the lowest of its lines; supporting lines have this order
-    FlatArray<std::uint32_t> edge_offsets;
-    FlatArray<LineEdge> edges;
+    Array<LineId> representative;  ///< the lowest of its lines; supporting lines have this order
+    Array<std::uint32_t> edge_offsets;
+    Array<LineEdge> edges;
     std::vector<PassedVertices> passed;  ///< by the edges of so many lines each
     std::vector<MatchedEdges> matched;   ///< of the lines that are left out above
 
@@ -28,7 +27,7 @@ struct CollinearEdges {
 CollinearEdges find_collinear_edges(const exact::PlanArrangement& geometry, const FaceList& faces,
                                     const PlanVertices& plan_vertices,
                                     const std::vector<ExtraPoint>& extra,
-                                    const GrowingArray<std::uint8_t>* cell_is_thick, int threads,
+                                    const Array<std::uint8_t>* cell_is_thick, int threads,
                                     const Progress* progress);
 
 }  // namespace realmodel::strata

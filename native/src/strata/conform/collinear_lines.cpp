@@ -36,8 +36,8 @@ std::uint64_t mixed(const std::array<double, 3>& key) {
     return h * 0xBF58476D1CE4E5B9u;
 }
 
-GrowingArray<Keyed> lines_in_use(const PlanArrangement& geometry, const FaceList& faces,
-                                 int threads, const Progress* progress) {
+Array<Keyed> lines_in_use(const PlanArrangement& geometry, const FaceList& faces, int threads,
+                          const Progress* progress) {
     auto used = zeros<std::uint8_t>(geometry.line_count(), threads, progress);
     const auto& corners = faces.polygons.corners;
     parallel_ranges(corners.size(), kChunk, threads, progress,
@@ -51,7 +51,7 @@ GrowingArray<Keyed> lines_in_use(const PlanArrangement& geometry, const FaceList
             before[begin / kChunk] =
                 static_cast<std::size_t>(std::count(used.begin() + begin, used.begin() + end, 1));
         });
-    GrowingArray<Keyed> lines(count_before(before));
+    Array<Keyed> lines(count_before(before));
     parallel_ranges(used.size(), kChunk, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         LocalArrangement scope(geometry);
@@ -67,7 +67,7 @@ GrowingArray<Keyed> lines_in_use(const PlanArrangement& geometry, const FaceList
 
 /// The lines that run where a lower one does; rounded slope and offset are equal for them, and
 /// among lines with equal ones the exact test decides.
-std::vector<Follower> find_followers(const PlanArrangement& geometry, GrowingArray<Keyed> lines,
+std::vector<Follower> find_followers(const PlanArrangement& geometry, Array<Keyed> lines,
                                      int threads, const Progress* progress) {
     const auto in_order = [](const Keyed& a, const Keyed& b) {
         return std::tie(a.key, a.line) < std::tie(b.key, b.line);
@@ -116,9 +116,9 @@ std::vector<Follower> find_followers(const PlanArrangement& geometry, GrowingArr
 
 CollinearLines join_lines(const PlanArrangement& geometry, const FaceList& faces, int threads,
                           const Progress* progress) {
-    GrowingArray<Keyed> lines = lines_in_use(geometry, faces, threads, progress);
+    Array<Keyed> lines = lines_in_use(geometry, faces, threads, progress);
     CollinearLines joined;
-    joined.of_line = FlatArray<std::int32_t>(geometry.line_count());
+    joined.of_line = Array<std::int32_t>(geometry.line_count());
     std::fill(joined.of_line.begin(), joined.of_line.end(), -1);
     for (const Keyed& line : lines)
         joined.of_line[static_cast<std::size_t>(line.line)] = 0;
@@ -132,7 +132,7 @@ CollinearLines join_lines(const PlanArrangement& geometry, const FaceList& faces
             before[begin / kChunk] = static_cast<std::size_t>(
                 std::count(joined.of_line.begin() + begin, joined.of_line.begin() + end, 0));
         });
-    joined.representative = FlatArray<LineId>(count_before(before));
+    joined.representative = Array<LineId>(count_before(before));
     parallel_ranges(joined.of_line.size(), kChunk, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         std::size_t next = before[begin / kChunk];

@@ -8,8 +8,8 @@ namespace realmodel::strata {
 /// The supporting lines: lines in use that run through the same points are one. They have the order
 /// of their lowest lines.
 struct CollinearLines {
-    FlatArray<std::int32_t> of_line;   ///< -1 for lines that no face edge is on
-    FlatArray<LineId> representative;  ///< the lowest of its lines
+    Array<std::int32_t> of_line;   ///< -1 for lines that no face edge is on
+    Array<LineId> representative;  ///< the lowest of its lines
 };
 CollinearLines join_lines(const exact::PlanArrangement& geometry, const FaceList& faces,
                           int threads, const Progress* progress);

@@ -19,21 +19,20 @@ constexpr std::size_t kFaces = 1 << 12, kEntries = 1 << 15,
 
 /// What faces have on plan vertices, sorted by plan vertex.
 struct FacesAtVertices {
-    FlatArray<std::uint32_t> offsets;  ///< of each plan vertex
+    Array<std::uint32_t> offsets;  ///< of each plan vertex
     /// First the planes of the faces (complements of those that pass tentatively), then which of
     /// the heights there those have, at last vertices; -1 for what takes up none.
-    FlatArray<std::int32_t> values;
+    Array<std::int32_t> values;
 };
 
 /// The plan vertices that faces pass, entry by entry; their complement where they are passed
 /// tentatively.
-FlatArray<PlanVertexId> vertices_of_entries(const FaceList& faces,
-                                            const PlanVertices& plan_vertices,
-                                            const CollinearEdges& collinear,
-                                            const ConformedFaces& loops, int threads,
-                                            const Progress* progress) {
+Array<PlanVertexId> vertices_of_entries(const FaceList& faces, const PlanVertices& plan_vertices,
+                                        const CollinearEdges& collinear,
+                                        const ConformedFaces& loops, int threads,
+                                        const Progress* progress) {
     const auto& corners = faces.polygons.corners;
-    FlatArray<PlanVertexId> plan_vertex(loops.entries.first(corners.size()));
+    Array<PlanVertexId> plan_vertex(loops.entries.first(corners.size()));
     parallel_ranges(corners.size(), 4 * kFaces, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         loops.entries.for_each(begin, end, [&](std::size_t c, std::size_t entry) {
@@ -81,19 +80,19 @@ public:
         const auto& more = more_[entry / kEntries];
         return std::lower_bound(more.begin(), more.end(), std::pair(entry, 0U))->second;
     }
-    FlatArray<std::uint32_t>& counts() { return counts_; }
+    Array<std::uint32_t>& counts() { return counts_; }
 
 private:
     static constexpr std::uint32_t kMore = 255;
 
-    FlatArray<std::uint32_t> counts_;
-    FlatArray<std::uint8_t> number_;
+    Array<std::uint32_t> counts_;
+    Array<std::uint8_t> number_;
     std::vector<std::vector<std::pair<std::size_t, std::uint32_t>>> more_;
 };
 
 /// Sorts the entries by plan vertex.
 /// @param plan_vertex  of each entry; replaced by its index among the sorted ones
-FacesAtVertices sort_by_vertex(const FaceList& faces, FlatArray<PlanVertexId>& plan_vertex,
+FacesAtVertices sort_by_vertex(const FaceList& faces, Array<PlanVertexId>& plan_vertex,
                                std::size_t plan_vertices, const ConformedFaces& loops, int threads,
                                const Progress* progress) {
     VertexCounts counts(plan_vertices, plan_vertex.size(), threads, progress);
@@ -110,7 +109,7 @@ FacesAtVertices sort_by_vertex(const FaceList& faces, FlatArray<PlanVertexId>& p
                     });
     running_totals(counts.counts(), UINT32_MAX, threads, progress);
     FacesAtVertices on;
-    on.values = FlatArray<std::int32_t>(plan_vertex.size());
+    on.values = Array<std::int32_t>(plan_vertex.size());
     parallel_ranges(
         faces.size(), kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
             std::size_t i = first_entry(faces, loops, begin);
@@ -155,7 +154,7 @@ FacesAtVertices sort_by_vertex(const FaceList& faces, FlatArray<PlanVertexId>& p
 void find_heights(const PlanArrangement& geometry, const PlanVertices& plan_vertices,
                   FacesAtVertices& on, ConformedFaces& loops, int threads,
                   const Progress* progress) {
-    loops.vertex_offsets = FlatArray<std::int32_t>(plan_vertices.size() + 1);
+    loops.vertex_offsets = Array<std::int32_t>(plan_vertices.size() + 1);
     loops.heights.resize((plan_vertices.size() + kTogether - 1) / kTogether);
     parallel_ranges(plan_vertices.size(), kTogether, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
@@ -180,7 +179,7 @@ void find_heights(const PlanArrangement& geometry, const PlanVertices& plan_vert
 /// What follows asks for faces, not for their corners.
 void number_faces(const FaceList& faces, ConformedFaces& loops, int threads,
                   const Progress* progress) {
-    loops.face_offsets = FlatArray<std::uint32_t>(faces.size() + 1);
+    loops.face_offsets = Array<std::uint32_t>(faces.size() + 1);
     parallel_ranges(faces.size() + 1, kFaces, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t f = begin; f < end; ++f)

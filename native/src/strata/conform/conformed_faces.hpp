@@ -18,18 +18,18 @@ struct InsertedVertex {
 /// The faces with every vertex that lies on their edges put in, and all vertices: on each plan
 /// vertex one for each height that a corner or an edge needs there, ascending.
 struct ConformedFaces {
-    FlatArray<std::uint32_t> face_offsets;  ///< entries of each face
-    CornerOffsets entries;                  ///< of each corner
+    Array<std::uint32_t> face_offsets;  ///< entries of each face
+    CornerOffsets entries;              ///< of each corner
     /// Of each entry, counter-clockwise in plan; -1 where an edge passes a plan vertex tentatively
     /// and nothing else is as high there.
-    FlatArray<std::int32_t> vertices;
-    std::vector<InsertedVertex> inserted;    ///< in order of entries
-    FlatArray<std::int32_t> vertex_offsets;  ///< first vertex of each plan vertex
+    Array<std::int32_t> vertices;
+    std::vector<InsertedVertex> inserted;  ///< in order of entries
+    Array<std::int32_t> vertex_offsets;    ///< first vertex of each plan vertex
     /// Of the vertices, for so many plan vertices each: rounded, those of a plan vertex all
     /// different.
     std::vector<std::vector<double>> heights;
     static constexpr std::size_t kVerticesTogether = 1 << 11;
-    GrowingArray<std::array<double, 3>> positions;  ///< empty until set_vertex_positions
+    Array<std::array<double, 3>> positions;  ///< empty until set_vertex_positions
 };
 /// Takes what it needs of the lines: what they have `passed` is given back, and their edges name
 /// the first of their entries from here on.

@@ -19,7 +19,7 @@ CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::siz
         }
     });
     running_totals(passing_of_block_, UINT32_MAX, threads, progress);
-    passing_ = FlatArray<Passing>(passing_of_block_[blocks]);
+    passing_ = Array<Passing>(passing_of_block_[blocks]);
     parallel_chunks(passed.size(), threads, progress, [&](std::size_t chunk) {
         auto next = number[chunk].begin();
         for (const PassedVertices::Edge& edge : passed[chunk].edges) {
@@ -27,7 +27,7 @@ CornerOffsets::CornerOffsets(const std::vector<PassedVertices>& passed, std::siz
             passing_[first + *next++] = {edge.corner, edge.count};
         }
     });
-    entry_of_block_ = FlatArray<std::uint32_t>(blocks + 1);
+    entry_of_block_ = Array<std::uint32_t>(blocks + 1);
     parallel_ranges(blocks, 1 << 12, threads, progress, [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block) {
             const auto first = passing_.begin() + passing_of_block_[block];

@@ -67,8 +67,8 @@ private:
     };
 
     std::size_t corners_ = 0;
-    FlatArray<std::uint32_t> entry_of_block_, passing_of_block_;  ///< the first of each block
-    FlatArray<Passing> passing_;                                  ///< in order of corners
+    Array<std::uint32_t> entry_of_block_, passing_of_block_;  ///< the first of each block
+    Array<Passing> passing_;                                  ///< in order of corners
 };
 
 }  // namespace realmodel::strata

@@ -60,7 +60,7 @@ LineBuckets::LineBuckets(const FaceList& faces, const CollinearLines& lines, int
         }
     }
     first_.push_back(total);
-    faces_of_bucket_ = FlatArray<std::int32_t>(total);
+    faces_of_bucket_ = Array<std::int32_t>(total);
     parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
         for_each_once(chunk, [&](Filling& bucket, std::int32_t face) {
             faces_of_bucket_[bucket.count++] = face;

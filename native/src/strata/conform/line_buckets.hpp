@@ -25,8 +25,8 @@ private:
         std::uint32_t line;
     };
     std::vector<std::uint32_t> offsets_;
-    GrowingArray<LineEdge> edges_;
-    GrowingArray<Found> found_;
+    Array<LineEdge> edges_;
+    Array<Found> found_;
 };
 
 /// All lines in buckets of about as many edges each. Of a bucket only the faces are kept that have
@@ -56,8 +56,8 @@ private:
     const FaceList& faces_;
     const CollinearLines& lines_;
     std::size_t line_count_, lines_together_;
-    std::vector<std::size_t> first_;           ///< of each bucket among the faces
-    FlatArray<std::int32_t> faces_of_bucket_;  ///< ascending within each
+    std::vector<std::size_t> first_;       ///< of each bucket among the faces
+    Array<std::int32_t> faces_of_bucket_;  ///< ascending within each
 };
 
 }  // namespace realmodel::strata

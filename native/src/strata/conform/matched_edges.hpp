@@ -33,10 +33,10 @@ struct MatchedEdges {
         std::array<std::int32_t, 2> cells;  ///< left and right of the line
         std::uint32_t above, beneath;       ///< how many edges bound it there
     };
-    GrowingArray<Wall> walls;
+    Array<Wall> walls;
     /// Of each wall: the corners that the edges above it leave, on the left and along the line, and
     /// the corner where they end; the same for those beneath.
-    GrowingArray<std::uint32_t> corners;
+    Array<std::uint32_t> corners;
     std::vector<MatchedPair> passing;  ///< edges that pass plan vertices tentatively
 };
 

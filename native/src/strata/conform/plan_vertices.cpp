@@ -39,7 +39,7 @@ struct XRange {
 };
 
 /// Where the vertices in use are, and nearly all points with them.
-XRange range_of_vertices(const PlanArrangement& geometry, const FlatArray<std::uint8_t>& used,
+XRange range_of_vertices(const PlanArrangement& geometry, const Array<std::uint8_t>& used,
                          int threads, const Progress* progress) {
     const auto vertices = static_cast<std::size_t>(geometry.vertex_count());
     std::vector<XRange> ranges((vertices + kChunk - 1) / kChunk);
@@ -61,9 +61,9 @@ XRange range_of_vertices(const PlanArrangement& geometry, const FlatArray<std::u
 }
 
 /// The points that faces use and the extra ones, in order of position.
-GrowingArray<Rounded> points_in_use(const PlanArrangement& geometry, const FaceList& faces,
-                                    const std::vector<ExtraPoint>& extra, int threads,
-                                    const Progress* progress) {
+Array<Rounded> points_in_use(const PlanArrangement& geometry, const FaceList& faces,
+                             const std::vector<ExtraPoint>& extra, int threads,
+                             const Progress* progress) {
     auto used = zeros<std::uint8_t>(geometry.point_count(), threads, progress);
     const auto& corners = faces.polygons.corners;
     parallel_ranges(corners.size(), kChunk, threads, progress,
@@ -94,7 +94,7 @@ GrowingArray<Rounded> points_in_use(const PlanArrangement& geometry, const FaceL
 
 /// Calls visit(begin, end) for the groups of points in equal positions that begin in a range.
 template <class Visit>
-void for_each_position(const GrowingArray<Rounded>& points, std::size_t begin, std::size_t end,
+void for_each_position(const Array<Rounded>& points, std::size_t begin, std::size_t end,
                        const Visit& visit) {
     while (begin < end && begin > 0 && points[begin].in_position_of(points[begin - 1]))
         ++begin;
@@ -111,11 +111,10 @@ void for_each_position(const GrowingArray<Rounded>& points, std::size_t begin, s
 /// name a point, so only points with equal ones can be; among those the exact test decides.
 /// @param before  how many positions begin in each range of kChunk points
 /// @return for each point, the first one in its position
-FlatArray<std::uint32_t> find_first_there(const PlanArrangement& geometry,
-                                          const GrowingArray<Rounded>& points,
-                                          std::vector<std::size_t>& before, int threads,
-                                          const Progress* progress) {
-    FlatArray<std::uint32_t> first_there(points.size());
+Array<std::uint32_t> find_first_there(const PlanArrangement& geometry, const Array<Rounded>& points,
+                                      std::vector<std::size_t>& before, int threads,
+                                      const Progress* progress) {
+    Array<std::uint32_t> first_there(points.size());
     before.assign((points.size() + kChunk - 1) / kChunk, 0);
     const auto find_among = [&](LocalArrangement& scope, std::size_t begin, std::size_t end) {
         std::size_t positions = 0;
@@ -147,10 +146,10 @@ FlatArray<std::uint32_t> find_first_there(const PlanArrangement& geometry,
 PlanVertices empty_vertices(std::size_t count, std::size_t points, int threads,
                             const Progress* progress) {
     PlanVertices vertices;
-    vertices.representative = FlatArray<PointId>(count);
-    vertices.position = FlatArray<PlanPosition>(count);
+    vertices.representative = Array<PointId>(count);
+    vertices.position = Array<PlanPosition>(count);
     vertices.same_x_bits = zeros<std::uint64_t>(count / 64 + 1, threads, progress);
-    vertices.of_point = FlatArray<PlanVertexId>(points);
+    vertices.of_point = Array<PlanVertexId>(points);
     parallel_ranges(points, 1 << 18, threads, progress, [&](std::size_t begin, std::size_t end) {
         std::fill(vertices.of_point.begin() + begin, vertices.of_point.begin() + end, -1);
     });
@@ -162,7 +161,7 @@ PlanVertices empty_vertices(std::size_t count, std::size_t points, int threads,
 PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList& faces,
                                 const std::vector<ExtraPoint>& extra, int threads,
                                 const Progress* progress) {
-    const GrowingArray<Rounded> points = points_in_use(geometry, faces, extra, threads, progress);
+    const Array<Rounded> points = points_in_use(geometry, faces, extra, threads, progress);
     std::vector<std::size_t> before;
     const auto first_there = find_first_there(geometry, points, before, threads, progress);
     const std::size_t count = count_before(before);

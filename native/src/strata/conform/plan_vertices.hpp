@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/flat_array.hpp"
+#include "realmodel/base/array.hpp"
 #include "realmodel/base/progress.hpp"
 #include "strata/overlay/envelope.hpp"
 
@@ -25,10 +25,10 @@ struct ExtraPoint {
 
 /// The points in use, those in the same position taken together, in order of rounded x, then y.
 struct PlanVertices {
-    FlatArray<PlanVertexId> of_point;      ///< -1 for points that no face uses
-    FlatArray<PointId> representative;     ///< an input vertex where one is there
-    FlatArray<PlanPosition> position;      ///< rounded
-    FlatArray<std::uint64_t> same_x_bits;  ///< of 64 plan vertices each: see has_same_x_next
+    Array<PlanVertexId> of_point;      ///< -1 for points that no face uses
+    Array<PointId> representative;     ///< an input vertex where one is there
+    Array<PlanPosition> position;      ///< rounded
+    Array<std::uint64_t> same_x_bits;  ///< of 64 plan vertices each: see has_same_x_next
     std::vector<PlanVertexId>
         coincident;  ///< those that round to the position of the plan vertex before them
 

@@ -21,7 +21,7 @@ struct WallStretch {
 
 /// What is asked besides where nodes become the cells of blocks.
 struct BlockLines {
-    const GrowingArray<std::int32_t>& node_block;
+    const Array<std::int32_t>& node_block;
     const PlanVertices& places;
     const BorderEdges& borders;
 };

@@ -60,7 +60,7 @@ void resize(PolygonPool& pool, const PoolStart& end) {
 }
 
 template <class Element, class From>
-void put(GrowingArray<Element>& to, std::size_t at, const From& from) {
+void put(Array<Element>& to, std::size_t at, const From& from) {
     std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(at));
 }
 

@@ -25,11 +25,11 @@ struct ChunkResult {
     ChunkResult(const exact::PlanArrangement& geometry, std::size_t facets);
 
     std::unique_ptr<LocalArrangement> scope;
-    GrowingArray<std::int32_t> node_block;
-    GrowingArray<std::uint8_t> node_is_thick;
+    Array<std::int32_t> node_block;
+    Array<std::uint8_t> node_is_thick;
     FaceList faces;  ///< finished; above is a shared node, below one of the chunk's
     PolygonPool below_outlines;
-    GrowingArray<PieceBelow> below;
+    Array<PieceBelow> below;
     Envelope kept;
 
     std::array<PolygonPool*, 4> pools() {

@@ -19,10 +19,10 @@ inline constexpr std::int32_t kOutsideCell = -1;
 /// nodes.
 struct FaceList {
     PolygonPool polygons;
-    GrowingArray<PlaneId> plane;
-    GrowingArray<std::int32_t> layer;  ///< number of the surface that the face lies on, -1 the base
-    GrowingArray<std::int32_t> above;  ///< node, or kOutsideCell
-    GrowingArray<std::int32_t> below;
+    Array<PlaneId> plane;
+    Array<std::int32_t> layer;  ///< number of the surface that the face lies on, -1 the base
+    Array<std::int32_t> above;  ///< node, or kOutsideCell
+    Array<std::int32_t> below;
 
     std::size_t size() const { return plane.size(); }
     void add(PolygonView polygon, PlaneId in_plane, std::int32_t in_layer, std::int32_t node_above,
@@ -40,12 +40,12 @@ struct FaceList {
 /// it already have there; they tile the facet.
 struct Envelope {
     PolygonPool outlines;
-    GrowingArray<PlaneId> plane;               ///< kSky, kOutside, or the plane of a triangle
-    GrowingArray<std::int32_t> layer;          ///< surface of the facet, -1 for the sky
-    GrowingArray<std::int32_t> block_beneath;  ///< the last surface seen here, -1 the sky
-    GrowingArray<std::int64_t> face_offsets{0};
+    Array<PlaneId> plane;               ///< kSky, kOutside, or the plane of a triangle
+    Array<std::int32_t> layer;          ///< surface of the facet, -1 for the sky
+    Array<std::int32_t> block_beneath;  ///< the last surface seen here, -1 the sky
+    Array<std::int64_t> face_offsets{0};
     PolygonPool face_polygons;
-    GrowingArray<std::int32_t> face_above;  ///< node above each face, or kOutsideCell
+    Array<std::int32_t> face_above;  ///< node above each face, or kOutsideCell
 
     std::size_t size() const { return plane.size(); }
     std::pair<std::size_t, std::size_t> faces_of(std::size_t facet) const {
@@ -79,10 +79,10 @@ struct Envelope {
 /// cell of a whole block.
 struct Construction {
     FaceList faces;
-    GrowingArray<std::int32_t> node_block;
+    Array<std::int32_t> node_block;
     /// Of each node: 1 where its top is above its bottom everywhere, its border included, by far
     /// more than rounding moves heights.
-    GrowingArray<std::uint8_t> node_is_thick;
+    Array<std::uint8_t> node_is_thick;
     std::vector<std::pair<std::int32_t, std::int32_t>> links;  ///< nodes of one block that touch
 
     /// @throws InputError kind too_large, where there are more nodes than numbers for them

@@ -28,10 +28,9 @@ struct Piece {
 
 /// The overlay of one facet with the layer: convex pieces that tile the facet.
 struct Pieces {
-    GrowingArray<Piece> list;
-    GrowingArray<Corner> corners;
-    GrowingArray<std::uint8_t>
-        touches;           ///< for each corner: 1 where facet and surface are equally high
+    Array<Piece> list;
+    Array<Corner> corners;
+    Array<std::uint8_t> touches;  ///< for each corner: 1 where facet and surface are equally high
     bool is_clear = true;  ///< all lie below the facet by far more than rounding moves heights
 
     void clear() {
@@ -90,7 +89,7 @@ private:
     const SurfaceTiling& layer_;
     Pieces pieces_;
     std::vector<std::int8_t> signs_;  ///< of surface less facet at the corners of a piece
-    GrowingArray<std::int32_t> candidates_, overlapping_, higher_;
+    Array<std::int32_t> candidates_, overlapping_, higher_;
     std::size_t expected_ = 0;  ///< polygon after the last that was a facet: the next one's, often
 };
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/flat_array.hpp"
+#include "realmodel/base/array.hpp"
 #include "realmodel/base/progress.hpp"
 #include "spatial/small_boxes.hpp"
 #include "strata/overlay/polygon.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "exact/local_arrangement.hpp"
-#include "realmodel/base/growing_array.hpp"
+#include "realmodel/base/array.hpp"
 
 namespace realmodel::strata {
 
@@ -49,8 +49,8 @@ inline void copy_corners(PolygonView from, Corner* to) {
 
 /// Many polygons in one array.
 struct PolygonPool {
-    GrowingArray<std::int64_t> offsets{0};
-    GrowingArray<Corner> corners;
+    Array<std::int64_t> offsets{0};
+    Array<Corner> corners;
 
     std::size_t size() const { return offsets.size() - 1; }
     PolygonView operator[](std::size_t i) const {

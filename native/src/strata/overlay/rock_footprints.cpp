@@ -18,7 +18,7 @@ void RockFootprints::add(const exact::PlanArrangement& geometry, const FaceList&
     LocalArrangement scope(geometry);
     Clipper clipper(scope);
     const PlanGrid grid(geometry, own, std::vector<std::uint8_t>(own.size(), 1), 0, 1, progress);
-    GrowingArray<std::int32_t> candidates;
+    Array<std::int32_t> candidates;
     for (std::size_t r = 0; r < rocks_.size(); ++r) {
         for (std::size_t i = 0; i < rocks_[r].size(); ++i) {
             poll(progress, i);

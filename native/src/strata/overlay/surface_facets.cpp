@@ -83,7 +83,7 @@ PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
     const std::size_t count = below.polygon.size();
     PiecesOfPolygons of;
     of.offsets = zeros<std::uint32_t>(polygons + 1, threads, progress);
-    FlatArray<std::uint32_t> number(count);
+    Array<std::uint32_t> number(count);
     const auto for_all = [&](const auto& visit) {
         parallel_ranges(count, kPieces, threads, progress, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
@@ -92,7 +92,7 @@ PiecesOfPolygons sort_by_polygon(const PiecesBelow& below, std::size_t polygons,
     };
     for_all([&](std::size_t i, std::size_t p) { number[i] = count_one(of.offsets[p]); });
     running_totals(of.offsets, UINT32_MAX, threads, progress);
-    of.pieces = FlatArray<std::uint32_t>(count);
+    of.pieces = Array<std::uint32_t>(count);
     for_all([&](std::size_t i, std::size_t p) {
         of.pieces[of.offsets[p] + number[i]] = static_cast<std::uint32_t>(i);
     });

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "base/flat_array.hpp"
+#include "realmodel/base/array.hpp"
 #include "strata/overlay/envelope.hpp"
 
 namespace realmodel::strata {
@@ -13,14 +13,14 @@ namespace realmodel::strata {
 /// Pieces of a surface that lie below the envelope.
 struct PiecesBelow {
     PolygonPool outlines;
-    GrowingArray<std::int32_t> polygon;     ///< of the tiling
-    GrowingArray<std::int32_t> node_above;  ///< or kOutsideCell
+    Array<std::int32_t> polygon;     ///< of the tiling
+    Array<std::int32_t> node_above;  ///< or kOutsideCell
 };
 
 /// The pieces of each polygon.
 struct PiecesOfPolygons {
-    FlatArray<std::uint32_t> offsets;
-    FlatArray<std::uint32_t> pieces;  ///< ascending for each polygon
+    Array<std::uint32_t> offsets;
+    Array<std::uint32_t> pieces;  ///< ascending for each polygon
 
     std::span<const std::uint32_t> operator[](std::size_t polygon) const {
         return {pieces.begin() + offsets[polygon], pieces.begin() + offsets[polygon + 1]};

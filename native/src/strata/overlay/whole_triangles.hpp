@@ -110,13 +110,13 @@ public:
     }
 
     // Of the triangles and parts of the surface:
-    GrowingArray<TileBounds> surface_at;
+    Array<TileBounds> surface_at;
     std::vector<Standing> surface;
     std::vector<std::int32_t> block;     ///< above, of each that is below
     std::vector<std::int32_t> polygon;   ///< in the exact part, or -1
     std::vector<std::uint8_t> is_empty;  ///< of each tile without a border: no surface there
     // Of the facets:
-    GrowingArray<TileBounds> facet_at;
+    Array<TileBounds> facet_at;
     std::vector<Standing> facet;
 
 private:

@@ -5,9 +5,9 @@
 #include <iterator>
 #include <string>
 
-#include "base/flat_array.hpp"
 #include "base/parallel_counts.hpp"
 #include "exact/orient2d.hpp"
+#include "realmodel/base/array.hpp"
 #include "realmodel/base/errors.hpp"
 #include "strata/limits.hpp"
 
@@ -223,7 +223,7 @@ private:
         }
     }
     void link(const Progress* progress) {
-        FlatArray<PlanTriangle> corners(result_.triangles.size());
+        Array<PlanTriangle> corners(result_.triangles.size());
         PlanTriangle* next = corners.begin();
         for (const RangeOfTriangles& range : ranges_) {
             for (const UsedTriangle& triangle : range.used) {

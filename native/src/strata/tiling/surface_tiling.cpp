@@ -71,7 +71,7 @@ void add_empty(PlanArrangement& geometry, SurfaceTiling& layer, const FrameTrian
         (triangles.size() + kChunk - 1) / kChunk, threads, progress, [&](std::size_t chunk) {
             LocalArrangement scope(geometry);
             Clipper clipper(scope);
-            GrowingArray<std::int32_t> candidates;
+            Array<std::int32_t> candidates;
             const std::size_t end = std::min(triangles.size(), (chunk + 1) * kChunk);
             for (std::size_t t = chunk * kChunk; t < end; ++t) {
                 layer.grid.candidates(scope, layer.polygons[t], candidates);
@@ -121,7 +121,7 @@ void SurfaceTiling::index(const PlanArrangement& geometry, int threads, const Pr
                    [](PlaneId p) { return static_cast<std::uint8_t>(p == kVoid ? 0 : 1); });
     runs_on.assign(plane.size(), 0);
     grid = PlanGrid(geometry, polygons, is_surface, cells, threads, progress);
-    heights = FlatArray<HeightRange>(plane.size());
+    heights = Array<HeightRange>(plane.size());
     parallel_ranges(
         plane.size(), kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p)

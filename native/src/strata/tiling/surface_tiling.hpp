@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/flat_array.hpp"
+#include "realmodel/base/array.hpp"
 #include "realmodel/strata/stack.hpp"
 #include "strata/overlay/plan_grid.hpp"
 #include "strata/overlay/polygon.hpp"
@@ -34,7 +34,7 @@ struct SurfaceTiling {
     /// Of each polygon: 1 where the surface is known to go on at the same heights across all of its
     /// edges, with one polygon beyond each.
     std::vector<std::uint8_t> runs_on;
-    FlatArray<HeightRange> heights;  ///< of each polygon's plane, where it has one
+    Array<HeightRange> heights;  ///< of each polygon's plane, where it has one
     PlanGrid grid;
 
     /// Makes the grid of the polygons as they are now, and finds their heights; nothing more is

@@ -17,10 +17,10 @@ protected:
         for (int i = 0; i < inputs; ++i)
             geometry_.add_vertex(at[static_cast<std::size_t>(i)][0] + 10 * (i + 1), i);
         geometry_.freeze_vertices();
-        places_.of_point = FlatArray<PlanVertexId>(3);
-        places_.representative = FlatArray<PointId>(3);
-        places_.position = FlatArray<PlanPosition>(3);
-        loops_.vertex_offsets = FlatArray<std::int32_t>(4);
+        places_.of_point = Array<PlanVertexId>(3);
+        places_.representative = Array<PointId>(3);
+        places_.position = Array<PlanPosition>(3);
+        loops_.vertex_offsets = Array<std::int32_t>(4);
         std::array<Corner, 3> corners;
         for (std::int32_t i = 0; i < 3; ++i) {
             const auto p = static_cast<std::size_t>(i);

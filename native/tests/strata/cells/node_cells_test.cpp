@@ -11,10 +11,10 @@ TEST(NodeCells, AreTheUnionsOfLinkedNodesInOrderOfTheFirst) {
     for (const std::int32_t block : {2, 1, 2, 1, 2})
         made.add_node(block, true);
     made.links = {{4, 0}, {3, 1}};
-    GrowingArray<std::int32_t> cell_block;
+    Array<std::int32_t> cell_block;
     const auto cells = cells_of_nodes(made, {}, WholeTriangles(0), cell_block, 2, nullptr);
     EXPECT_EQ(cells, (std::vector<std::int32_t>{0, 1, 2, 1, 0}));
-    EXPECT_EQ(cell_block, (GrowingArray<std::int32_t>{2, 1, 2}));
+    EXPECT_EQ(cell_block, (Array<std::int32_t>{2, 1, 2}));
 }
 
 TEST(NodeCells, AreJoinedAcrossEdgesOfWholeTriangles) {
@@ -27,10 +27,10 @@ TEST(NodeCells, AreJoinedAcrossEdgesOfWholeTriangles) {
     WholeTriangles wholes(3);
     wholes.face[0] = {0, 2, 1};
     wholes.face[1] = {1, 3, 1};
-    GrowingArray<std::int32_t> cell_block;
+    Array<std::int32_t> cell_block;
     const auto cells = cells_of_nodes(made, links, wholes, cell_block, 1, nullptr);
     EXPECT_EQ(cells, (std::vector<std::int32_t>{0, 0, 1, 1}));
-    EXPECT_EQ(cell_block, (GrowingArray<std::int32_t>{1, 0}));
+    EXPECT_EQ(cell_block, (Array<std::int32_t>{1, 0}));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 /// All stages up to the curves.
 struct Conformed {
     explicit Conformed(SmallFaces& small, const std::vector<ExtraPoint>& extra = {},
-                       const GrowingArray<std::uint8_t>* cell_is_thick = nullptr)
+                       const Array<std::uint8_t>* cell_is_thick = nullptr)
         : vertices(find_plan_vertices(small.geometry, small.faces, extra, 1, nullptr)),
           lines(find_collinear_edges(small.geometry, small.faces, vertices, extra, cell_is_thick, 1,
                                      nullptr)) {}
@@ -181,7 +181,7 @@ TEST(IntervalCurves, AreTheEdgesOverEachInterval) {
 TEST(MatchedEdges, WallsFollowFromTheCellsAlone) {
     SmallFaces small({0, 1});
     small.add_two_columns();
-    GrowingArray<std::uint8_t> is_thick(2, 1);
+    Array<std::uint8_t> is_thick(2, 1);
     const Conformed conformed(small, {}, &is_thick);
     std::size_t walls = 0;
     for (const MatchedEdges& matched : conformed.lines.matched) {
@@ -207,7 +207,7 @@ TEST(Walls, StandBetweenTwoColumnsWhetherTheirEdgesMatchOrNot) {
     for (const bool matched : {true, false}) {
         SmallFaces small({0, 1});
         small.add_two_columns();
-        const GrowingArray<std::uint8_t> is_thick(2, 1);
+        const Array<std::uint8_t> is_thick(2, 1);
         Conformed conformed(small, {}, matched ? &is_thick : nullptr);
         const ConformedFaces faces = conform_faces(small.geometry, small.faces, conformed.vertices,
                                                    conformed.lines, 1, nullptr);
@@ -241,7 +241,7 @@ TEST(Walls, StandBetweenTwoColumnsWhetherTheirEdgesMatchOrNot) {
 TEST(MatchedEdges, EdgesThatDoNotMatchStay) {
     SmallFaces small({0});
     small.add_t_junction();
-    GrowingArray<std::uint8_t> is_thick(2, 1);
+    Array<std::uint8_t> is_thick(2, 1);
     const Conformed conformed(small, {}, &is_thick);
     EXPECT_LT(conformed.number_of(small.line(0, 2)), conformed.lines.size());
 }

@@ -29,8 +29,8 @@ struct Columns {
 
 TEST(FacetOverlay, ClosesAColumnUnderEachFacet) {
     const Columns c(square(0), square(1));
-    EXPECT_EQ(c.made.node_block, (GrowingArray<std::int32_t>{1, 1}));
-    EXPECT_EQ(c.made.node_is_thick, (GrowingArray<std::uint8_t>{1, 1}));
+    EXPECT_EQ(c.made.node_block, (Array<std::int32_t>{1, 1}));
+    EXPECT_EQ(c.made.node_is_thick, (Array<std::uint8_t>{1, 1}));
     ASSERT_EQ(c.made.faces.size(), 2u);
     for (std::size_t f = 0; f < 2; ++f) {
         EXPECT_EQ(c.made.faces.above[f], kOutsideCell);
@@ -96,7 +96,7 @@ TEST(FacetOverlay, FinishClosesBlockZeroDownToTheBase) {
     const Envelope envelope = initial_envelope(scene.tiling(0), 0);
     EXPECT_EQ(lowest_position(scene.geometry(), envelope)[2], 1.0);
     finish(envelope, PlaneId{0}, true, made);
-    EXPECT_EQ(made.node_block, (GrowingArray<std::int32_t>{0, 0}));
+    EXPECT_EQ(made.node_block, (Array<std::int32_t>{0, 0}));
     EXPECT_EQ(made.faces.size(), 4u);  // a base and a top for each
     made = {};
     finish(envelope, std::nullopt, false, made);
