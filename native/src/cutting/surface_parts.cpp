@@ -231,9 +231,10 @@ void SurfaceParts::attach_hollows() {
     for (const auto& [cell, of_cell] : shells) {
         for (const auto& [root, hollow] : of_cell) {
             if (hollow.sixfold_volume > 0) continue;
-            const auto rank = [&hollow](const Shell& shell) {  // a box around it, then the smallest
-                return std::pair(!shell.box.contains(hollow.box), shell.sixfold_volume);
-            };
+            const auto rank =
+                [&inner = hollow](const Shell& shell) {  // a box around it, then the smallest
+                    return std::pair(!shell.box.contains(inner.box), shell.sixfold_volume);
+                };
             const std::pair<const std::int32_t, Shell>* around = nullptr;
             for (const auto& other : of_cell) {
                 if (other.first == root || other.second.sixfold_volume <= -hollow.sixfold_volume)
