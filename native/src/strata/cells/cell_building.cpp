@@ -53,7 +53,7 @@ Conformed conform(exact::PlanArrangement& geometry, const Construction& construc
         next(0.1, "building walls");
         std::optional<BlockLines> of_blocks;
         if (blocks != nullptr)
-            of_blocks.emplace(construction.node_block, c.places, blocks->borders);
+            of_blocks.emplace(BlockLines{construction.node_block, c.places, blocks->borders});
         c.walls = find_walls(geometry, faces, lines, c.loops, of_blocks ? &*of_blocks : nullptr,
                              threads, progress);
         if (c.walls.missing.empty()) return c;

@@ -176,7 +176,8 @@ void WholeTriangleFilter::compare_surface(const FacetView& facets,
 void WholeTriangleFilter::compare_triangle(const FacetView& facets, const spatial::TileBins& bins,
                                            std::size_t t) {
     const PlaneId plane = tiling_->whole[t];
-    const auto& [bounds, span] = surface_at[t];
+    const TriangleBounds& bounds = surface_at[t].bounds;
+    const auto& span = surface_at[t].span;
     // No border divides a triangle beside one: there are facets over all of it if there is one over
     // its middle.
     const bool beside = block[t] == kBesideBorder;

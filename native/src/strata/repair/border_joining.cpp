@@ -105,7 +105,7 @@ std::vector<PlanEdge> border_of(const Mesh& mesh, const Progress* progress) {
 /// @param reach  what rounding is taken for
 std::vector<PlanPosition> vertices_along(const PlanEdge& edge, const spatial::PointBins& vertices,
                                          double reach) {
-    const auto& [p, q] = edge;
+    const PlanPosition &p = edge.first, &q = edge.second;
     const double dx = q[0] - p[0], dy = q[1] - p[1], length = std::hypot(dx, dy);
     std::vector<std::pair<double, PlanPosition>> found;
     bool beside = false;
