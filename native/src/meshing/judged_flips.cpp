@@ -111,7 +111,7 @@ void JudgedFlips::sort_candidates(std::size_t begin) {
 /// Adds a flip to the way where there can be one.
 bool JudgedFlips::try_flip(const Ends& ends) {
     const HalfEdge edge = edge_between(ends);
-    if (!valences_.can_flip(edge)) return false;
+    if (edge.is_none() || !valences_.can_flip(edge)) return false;
     const HalfEdge diagonal = valences_.flip(edge);
     const FlatMesh& mesh = valences_.mesh();
     const auto [c, d] = std::minmax({mesh.from(diagonal), mesh.to(diagonal)});
@@ -171,10 +171,16 @@ double JudgedFlips::badness() {
     return sum;
 }
 
+/// Looks around both ends: where outlines touch in a vertex, only one of its fans is known.
 HalfEdge JudgedFlips::edge_between(const Ends& ends) const {
+    const FlatMesh& mesh = valences_.mesh();
     HalfEdge found = HalfEdge::none();
     valences_.around(ends[0], [&](HalfEdge edge) {
-        if (valences_.mesh().to(edge) == ends[1]) found = edge;
+        if (mesh.to(edge) == ends[1]) found = edge;
+    });
+    if (!found.is_none()) return found;
+    valences_.around(ends[1], [&](HalfEdge edge) {
+        if (mesh.to(edge) == ends[0]) found = mesh.twin(edge);
     });
     return found;
 }
