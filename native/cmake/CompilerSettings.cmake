@@ -31,6 +31,9 @@ if(REALMODEL_SANITIZE)
     target_compile_options(realmodel_settings INTERFACE
         -fsanitize=${REALMODEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(realmodel_settings INTERFACE -fsanitize=${REALMODEL_SANITIZE})
+    if(REALMODEL_SANITIZE MATCHES "address")
+        target_sources(realmodel_settings INTERFACE "${CMAKE_CURRENT_LIST_DIR}/leak_suppressions.cpp")
+    endif()
 endif()
 
 # What goes into a module that is loaded into a running process: its own thread-local variables (a few bytes;

@@ -136,7 +136,7 @@ void lose_pages(const void* begin, std::size_t bytes) {
 }
 
 TEST(PageStore, AnArrayWhoseKeptBlocksCannotBeMovedIsCopiedToFreshPages) {
-    if (!page_store::kIsThere) GTEST_SKIP();
+    if (!page_store::kIsThere) GTEST_SKIP() << "arrays are malloc's here";
     const page_store::Keeper keeper;
     Array<std::uint64_t> growing(kLarge);
     growing.reserve(3 * kLarge);
@@ -158,13 +158,13 @@ TEST(PageStore, AnArrayWhoseKeptBlocksCannotBeMovedIsCopiedToFreshPages) {
 }
 
 TEST(PageStore, AnArrayThatCannotBeMovedIsCopied) {
-    if (!page_store::kIsThere) GTEST_SKIP();
+    if (!page_store::kIsThere) GTEST_SKIP() << "arrays are malloc's here";
     Array<std::uint64_t> array(kLarge);
     fill(array, 5);
     const auto* const there = array.data();
     constexpr long kSeal = 462;  // system call mseal: what is sealed can neither move nor go
     const char* const third = reinterpret_cast<const char*>(there) + 2 * kBlock;
-    if (syscall(kSeal, third, kBlock, 0UL) != 0) GTEST_SKIP();
+    if (syscall(kSeal, third, kBlock, 0UL) != 0) GTEST_SKIP() << "mseal needs Linux 6.10";
     array.reserve(3 * kLarge);
     EXPECT_NE(array.data(), there);
     array.resize(2 * kLarge);
