@@ -29,7 +29,7 @@ void WholeTriangleFilter::begin(const BlockTiling& tiling) {
 /// Finds where everything is, and if it is asked for the heights of facets in tiles.
 void WholeTriangleFilter::locate(const FacetView& facets, bool with_heights) {
     const BlockTiling& tiling = *tiling_;
-    const bool is_new = surface_tiles_.low.empty();
+    const bool is_new = surface_tiles_.empty();
     if (is_new) surface_at.resize(tiling.size());
     facet_at.resize(facets.size());
     const std::size_t own = is_new ? tiling.size() : 0;
@@ -59,30 +59,33 @@ void WholeTriangleFilter::locate(const FacetView& facets, bool with_heights) {
 }
 
 void WholeTriangleFilter::measure_surface() {
-    surface_tiles_ = TileHeights(tiles().size());
+    surface_tiles_.resize(tiles().size());
     is_empty.assign(tiles().size(), 0);
     for (std::size_t t = 0; t < tiling_->size(); ++t) {
         poll(progress_, t);
-        surface_tiles_.include(tiles(), surface_at[t]);
+        const TileBounds& at = surface_at[t];
+        tiles().for_each(at.span,
+                         [&](std::size_t tile) { surface_tiles_[tile].include(at.bounds); });
     }
     for (const PlanTriangle& t : tiling_->empty) {
         tiles().for_each_center_in(corners_of(geometry_, t),
                                    [&](std::size_t tile) { is_empty[tile] = 1; });
     }
     for (std::size_t tile = 0; tile < is_empty.size(); ++tile) {
-        if (surface_tiles_.low[tile] > surface_tiles_.high[tile]) is_empty[tile] = 1;
+        if (surface_tiles_[tile].low > surface_tiles_[tile].high) is_empty[tile] = 1;
     }
 }
 
 void WholeTriangleFilter::measure_facets(const FacetView& facets) {
-    facet_tiles_ = TileHeights(tiles().size());
-    block_tiles_.assign(tiles().size(), kNoBlock);
+    facet_tiles_.assign(tiles().size(), {});
     for (std::size_t f = 0; f < facets.size(); ++f) {
         poll(progress_, f);
         if (facets.plane(f) < 0) continue;
-        facet_tiles_.include(tiles(), facet_at[f]);
-        tiles().for_each(facet_at[f].span, [&](std::size_t tile) {
-            block_tiles_[tile] = merged(block_tiles_[tile], facets.block(f));
+        const auto& at = facet_at[f];
+        const std::int32_t block_beneath = facets.block(f);
+        tiles().for_each(at.span, [&](std::size_t tile) {
+            facet_tiles_[tile].include(at.bounds);
+            facet_tiles_[tile].block = merged(facet_tiles_[tile].block, block_beneath);
         });
     }
 }
@@ -130,9 +133,10 @@ void WholeTriangleFilter::classify_surface(const FacetView& facets) {
                 high = HUGE_VAL;
                 over = merged(over, kSkyBlock);
             } else {
-                low = std::min(low, facet_tiles_.low[tile]);
-                high = std::max(high, facet_tiles_.high[tile]);
-                over = merged(over, block_tiles_[tile]);
+                const TileContent& content = facet_tiles_[tile];
+                low = std::min(low, content.low);
+                high = std::max(high, content.high);
+                over = merged(over, content.block);
             }
             return over == kSeveral;
         });
@@ -218,8 +222,8 @@ void WholeTriangleFilter::classify_facets(const FacetView& facets) {
                 any_empty = true;
             } else {
                 any_surface = true;
-                low = std::min(low, surface_tiles_.low[tile]);
-                high = std::max(high, surface_tiles_.high[tile]);
+                low = std::min(low, surface_tiles_[tile].low);
+                high = std::max(high, surface_tiles_[tile].high);
             }
             return any_empty && any_surface;
         });

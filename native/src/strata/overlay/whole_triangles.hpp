@@ -20,26 +20,23 @@ struct TileBounds {
     TileSpan span;
 };
 
-/// Between which heights things lie in each tile.
-struct TileHeights {
-    std::vector<double> low, high;
-
-    TileHeights() = default;
-    explicit TileHeights(std::size_t tiles) : low(tiles, HUGE_VAL), high(tiles, -HUGE_VAL) {}
-    void include(const PlanTiles& tiles, const TileBounds& at) {
-        tiles.for_each(at.span, [&](std::size_t tile) {
-            low[tile] = std::min(low[tile], at.bounds.low);
-            high[tile] = std::max(high[tile], at.bounds.high);
-        });
-    }
-};
-
 /// What there is all over a tile that no border crosses: facets, the sky above all, nothing.
 enum class Cover : std::uint8_t { kFacets, kSkyOnly, kNothing };
 
 /// Instead of a block: not known beside a border, none yet, several, the outside, the sky.
 inline constexpr std::int32_t kBesideBorder = -5, kNoBlock = -4, kSeveral = -3, kOutsideBlock = -2,
                               kSkyBlock = -1;
+
+/// Between which heights things lie in a tile, and which block is beneath them.
+struct TileContent {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    std::int32_t block = kNoBlock;
+
+    void include(const TriangleBounds& bounds) {
+        low = std::min(low, bounds.low);
+        high = std::max(high, bounds.high);
+    }
+};
 
 /// What the filter compares a surface with: facets that are whole triangles, then parts.
 struct FacetView {
@@ -143,8 +140,7 @@ private:
     int threads_;
     const Progress* progress_;
     const BlockTiling* tiling_ = nullptr;
-    TileHeights surface_tiles_, facet_tiles_;
-    std::vector<std::int32_t> block_tiles_;  ///< beneath the facets in each tile, or kSeveral
+    std::vector<TileContent> surface_tiles_, facet_tiles_;
     std::vector<std::uint8_t> is_unclear_;   ///< of each tile: exact triangles or parts meet it
     std::vector<std::uint8_t>
         is_same_;  ///< of each plane, for raised surfaces: a facet, a triangle
