@@ -52,7 +52,7 @@ private:
 /// What is below the lowest curve on one side; kOutsideCell where that has none.
 std::int32_t below_all(std::span<const Curve> curves, bool left);
 
-/// Calls visit(low, high, left, right) for each two neighbouring heights of an interval: a curve at
+/// Calls visit(low, high, left, right) for each two neighboring heights of an interval: a curve at
 /// either, and what lies between the two left and right of the line.
 template <class Visit>
 void for_each_gap(std::span<const Curve> curves, const Visit& visit) {

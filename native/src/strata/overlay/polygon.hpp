@@ -19,7 +19,7 @@ using exact::PlaneId;
 using exact::PointId;
 
 /// A corner of a convex plan polygon and the line of the edge that leaves it; the polygon lies to
-/// the left of all its edges, and no two neighbouring edges lie on one line.
+/// the left of all its edges, and no two neighboring edges lie on one line.
 struct Corner {
     PointId point;
     DirectedLine line;

@@ -35,10 +35,10 @@ BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedT
     if (!plan.filling)
         make_surface_tiling(geometry, triangles, plan, {}, number, threads, progress);  // refuses
     const PlaneId first = make_planes(geometry, triangles, threads, progress);
-    assert(plan.links.neighbour.size() == triangles.size());
+    assert(plan.links.neighbor.size() == triangles.size());
     links.neighbor.resize(static_cast<std::size_t>(first), {-1, -1, -1});  // planes of bases
-    links.neighbor.insert(links.neighbor.end(), plan.links.neighbour.begin(),
-                          plan.links.neighbour.end());
+    links.neighbor.insert(links.neighbor.end(), plan.links.neighbor.begin(),
+                          plan.links.neighbor.end());
     BlockTiling tiling;
     tiling.whole.resize(triangles.size());
     std::iota(tiling.whole.begin(), tiling.whole.end(), first);

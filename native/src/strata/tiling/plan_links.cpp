@@ -50,7 +50,7 @@ PlanLinks link_triangles(std::span<const PlanTriangle> triangles, const Progress
     const std::size_t count = triangles.size();
     check_triangle_count(count);
     PlanLinks links;
-    links.neighbour.assign(count, {-1, -1, -1});
+    links.neighbor.assign(count, {-1, -1, -1});
     VertexRange range;
     for (std::size_t t = 0; t < count; ++t) {
         poll(progress, t);
@@ -81,8 +81,8 @@ PlanLinks link_triangles(std::span<const PlanTriangle> triangles, const Progress
                 net += is_upward(*last) ? 1 : -1;
             if (last - first == 2 && net == 0) {
                 const std::size_t a = half_edge_of(first[0]), b = half_edge_of(first[1]);
-                links.neighbour[a / 3][a % 3] = static_cast<std::int32_t>(b / 3);
-                links.neighbour[b / 3][b % 3] = static_cast<std::int32_t>(a / 3);
+                links.neighbor[a / 3][a % 3] = static_cast<std::int32_t>(b / 3);
+                links.neighbor[b / 3][b % 3] = static_cast<std::int32_t>(a / 3);
             } else if (net != 0) {
                 links.border.push_back(
                     {range.first + static_cast<VertexId>(r), high_of(*first), net});

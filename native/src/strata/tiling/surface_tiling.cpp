@@ -170,7 +170,7 @@ SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
     add_outlines(
         geometry, triangles.size(), [&](std::size_t t) { return plan_of(geometry, triangles[t]); },
         [&](std::size_t t, std::size_t i) {
-            const std::int32_t n = plan.links.neighbour[t][i];
+            const std::int32_t n = plan.links.neighbor[t][i];
             return n >= 0 && static_cast<std::size_t>(n) < t ? n : kNoOutline;
         },
         [&](std::size_t t) { return t < similar.size() ? similar[t] : PolygonView(); },
@@ -186,7 +186,7 @@ SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
             for (std::size_t t = begin; t < end; ++t) {
                 bool runs_on = true;
                 for (std::size_t i = 0; i < 3 && runs_on; ++i) {
-                    const std::int32_t n = plan.links.neighbour[t][i];
+                    const std::int32_t n = plan.links.neighbor[t][i];
                     runs_on = n >= 0 && meet_in_height(geometry, layer.plane[t], i,
                                                        layer.plane[static_cast<std::size_t>(n)]);
                 }
