@@ -119,8 +119,8 @@ Answers ask_ours(const std::vector<Triangle>& triangles, const std::vector<Quest
     std::vector<PointId> points;
     auto start = Clock::now();
     for (const Question& q : questions) {
-        const PointId point = local.crossing(line_of(local.trace(planes[q.a], planes[q.b])),
-                                             line_of(local.trace(planes[q.a], planes[q.c])));
+        const PointId point = local.crossing(local.trace(planes[q.a], planes[q.b]).id(),
+                                             local.trace(planes[q.a], planes[q.c]).id());
         points.push_back(point);
         answers.positions.push_back(local.rounded(point));
     }

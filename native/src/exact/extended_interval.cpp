@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "exact/formulas.hpp"
+
 namespace realmodel::exact {
 
 namespace {
@@ -113,8 +115,8 @@ NearGradient near_gradient(const PlanArrangement& g, PlaneId plane) {
 /// Which share of the way along the first of two edges lies before their crossing.
 [[gnu::always_inline]] inline ExtendedInterval share_of_way(const PlanArrangement& g, const Line& l,
                                                             const Line& m) {
-    const Point &o = g.point(l.first), &p = g.point(l.second);
-    const Point &s = g.point(m.first), &t = g.point(m.second);
+    const Point &o = g.point(l.ends()[0]), &p = g.point(l.ends()[1]);
+    const Point &s = g.point(m.ends()[0]), &t = g.point(m.ends()[1]);
     const Extended along_x = Extended(p.x) - o.x, along_y = Extended(p.y) - o.y;
     const Extended other_x = Extended(t.x) - s.x, other_y = Extended(t.y) - s.y;
     const Extended way_x = Extended(s.x) - o.x, way_y = Extended(s.y) - o.y;
@@ -135,25 +137,27 @@ NearGradient near_gradient(const PlanArrangement& g, PlaneId plane) {
 
 /// Where two edges cross, relative to the first one's first vertex.
 NearPoint near_crossing(const PlanArrangement& g, const Line& l, const Line& m) {
-    const Point &o = g.point(l.first), &p = g.point(l.second);
+    const Point &o = g.point(l.ends()[0]), &p = g.point(l.ends()[1]);
     const ExtendedInterval share = share_of_way(g, l, m);
-    return {l.first, part_of(share, Extended(p.x) - o.x), part_of(share, Extended(p.y) - o.y)};
+    return {l.ends()[0], part_of(share, Extended(p.x) - o.x), part_of(share, Extended(p.y) - o.y)};
 }
 
 }  // namespace
 
 NearLine near_line(const PlanArrangement& g, const Line& line, VertexId origin) {
     const Point& o = g.point(origin);
-    if (line.kind == Line::Kind::kEdge) {
-        const Point &p = g.point(line.first), &q = g.point(line.second);
+    if (line.is_edge()) {
+        const auto [from, to] = line.ends();
+        const Point &p = g.point(from), &q = g.point(to);
         const ExtendedInterval a = difference(q.y, p.y), b = difference(p.x, q.x);
-        if (line.first == origin) return {a, b, {0, 0}};
+        if (from == origin) return {a, b, {0, 0}};
         // a (x - px) + b (y - py) at the origin
         return {a, b, determinant(a, difference(p.x, o.x), -b, difference(p.y, o.y))};
     }
-    const NearGradient p = near_gradient(g, line.first), q = near_gradient(g, line.second);
-    const SpaceVertex& sp = g.space(g.plane(line.first).corner[0]);
-    const SpaceVertex& sq = g.space(g.plane(line.second).corner[0]);
+    const auto [first, second] = line.planes();
+    const NearGradient p = near_gradient(g, first), q = near_gradient(g, second);
+    const SpaceVertex& sp = g.space(g.plane(first).corner[0]);
+    const SpaceVertex& sq = g.space(g.plane(second).corner[0]);
     const Point &vp = g.point(sp.plan), &vq = g.point(sq.plan);
     const ExtendedInterval p_rise =
         determinant(p.x, difference(vp.x, o.x), -p.y, difference(vp.y, o.y));
@@ -199,12 +203,12 @@ std::optional<double> near_edge_height(const PlanArrangement& g, SpaceId from, S
 std::optional<double> near_height_of_crossing(const PlanArrangement& g, SpaceId from, SpaceId to,
                                               const Line& l, const Line& m) {
     const SpaceVertex &s = g.space(from), &t = g.space(to);
-    const bool is_first = s.plan == l.first || s.plan == l.second;
+    if (!l.is_edge() || !m.is_edge()) return std::nullopt;
+    const bool is_first = s.plan == l.ends()[0] || s.plan == l.ends()[1];
     const Line &edge = is_first ? l : m, &other = is_first ? m : l;
-    const bool is_forward = s.plan == edge.first;
-    if (edge.kind != Line::Kind::kEdge || other.kind != Line::Kind::kEdge ||
-        s.plan != (is_forward ? edge.first : edge.second) ||
-        t.plan != (is_forward ? edge.second : edge.first))
+    const auto [low_end, high_end] = edge.ends();
+    const bool is_forward = s.plan == low_end;
+    if (s.plan != (is_forward ? low_end : high_end) || t.plan != (is_forward ? high_end : low_end))
         return std::nullopt;
     const double low = is_forward ? s.z : t.z, high = is_forward ? t.z : s.z;
     return nearest_sum(low, part_of(share_of_way(g, edge, other), Extended(high) - low));
@@ -225,18 +229,16 @@ std::optional<std::array<double, 3>> near_line_key(const NearLine& l) {
 }
 
 NearPoint LocalArrangement::near(PointId id) const {
-    if (is_vertex(id)) return {id, {0, 0}, {0, 0}};
+    if (is_vertex(id)) return {vertex(id), {0, 0}, {0, 0}};
     return near(point(id));
 }
 
 NearPoint LocalArrangement::near(const Point& p) const {
     const Line* l = &line(p.first);
     const Line* m = &line(p.second);
-    if (l->kind == Line::Kind::kTrace) std::swap(l, m);
-    const VertexId origin = l->kind == Line::Kind::kEdge
-                                ? l->first
-                                : shared_.space(shared_.plane(l->first).corner[0]).plan;
-    if (m->kind == Line::Kind::kEdge) return near_crossing(shared_, *l, *m);
+    if (!l->is_edge()) std::swap(l, m);
+    const VertexId origin = anchor(shared_, *l);
+    if (m->is_edge()) return near_crossing(shared_, *l, *m);
     const NearLine a = near_line(shared_, *l, origin), b = near_line(shared_, *m, origin);
     const ExtendedInterval w = determinant(a.a, b.b, b.a, a.b);
     return {origin, quotient(determinant(a.b, b.c, b.b, a.c), w),

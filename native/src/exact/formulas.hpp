@@ -41,16 +41,18 @@ Normal<Number> plane_normal(const Arithmetic& in, const PlanArrangement& g, Plan
 template <class Number, class Arithmetic>
 LineCoefficients<Number> line_coefficients(const Arithmetic& in, const PlanArrangement& g,
                                            const Line& line, VertexId origin) {
-    if (line.kind == Line::Kind::kEdge) {
-        const Number a = in.dy(line.first, line.second), b = in.dx(line.second, line.first);
-        const Number px = in.dx(line.first, origin), py = in.dy(line.first, origin);
+    if (line.is_edge()) {
+        const auto [from, to] = line.ends();
+        const Number a = in.dy(from, to), b = in.dx(to, from);
+        const Number px = in.dx(from, origin), py = in.dy(from, origin);
         return {a, b, Number(-(a * px + b * py))};
     }
     // h(x, y) = -(A (x - x0) + B (y - y0)) / C + z0 for either plane; C is positive, so the sign of
     // the difference of heights is that of the difference of the numerators.
-    const Normal<Number> p = plane_normal<Number>(in, g, line.first);
-    const Normal<Number> q = plane_normal<Number>(in, g, line.second);
-    const SpaceId sp = g.plane(line.first).corner[0], sq = g.plane(line.second).corner[0];
+    const auto [first, second] = line.planes();
+    const Normal<Number> p = plane_normal<Number>(in, g, first);
+    const Normal<Number> q = plane_normal<Number>(in, g, second);
+    const SpaceId sp = g.plane(first).corner[0], sq = g.plane(second).corner[0];
     const VertexId vp = g.space(sp).plan, vq = g.space(sq).plan;
     const Number offset_p = p.a * in.dx(vp, origin) + p.b * in.dy(vp, origin);
     const Number offset_q = q.a * in.dx(vq, origin) + q.b * in.dy(vq, origin);
@@ -70,7 +72,10 @@ Homogeneous<Number> cross(const LineCoefficients<Number>& l, const LineCoefficie
 template <class Number, class Arithmetic>
 Homogeneous<Number> place(const Arithmetic& in, const LocalArrangement& scope, PointId id,
                           VertexId origin) {
-    if (scope.is_vertex(id)) return {in.dx(id, origin), in.dy(id, origin), Number(1)};
+    if (scope.is_vertex(id)) {
+        const VertexId v = scope.vertex(id);
+        return {in.dx(v, origin), in.dy(v, origin), Number(1)};
+    }
     const Point& p = scope.point(id);
     return cross(line_coefficients<Number>(in, scope.shared(), scope.line(p.first), origin),
                  line_coefficients<Number>(in, scope.shared(), scope.line(p.second), origin));
@@ -78,8 +83,7 @@ Homogeneous<Number> place(const Arithmetic& in, const LocalArrangement& scope, P
 
 /// A plan vertex that a line starts from.
 inline VertexId anchor(const PlanArrangement& g, const Line& line) {
-    return line.kind == Line::Kind::kEdge ? line.first
-                                          : g.space(g.plane(line.first).corner[0]).plan;
+    return line.is_edge() ? line.ends()[0] : g.space(g.plane(line.planes()[0]).corner[0]).plan;
 }
 
 }  // namespace realmodel::exact

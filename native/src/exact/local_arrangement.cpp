@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <tuple>
 
 #include "exact/arithmetic.hpp"
 #include "exact/formulas.hpp"
@@ -18,7 +17,8 @@ int sign_of(double value) {
 }
 
 VertexId origin_of(const LocalArrangement& scope, PointId id) {
-    return scope.is_vertex(id) ? id : anchor(scope.shared(), scope.line(scope.point(id).first));
+    return scope.is_vertex(id) ? scope.vertex(id)
+                               : anchor(scope.shared(), scope.line(scope.point(id).first));
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ bool LocalArrangement::vanishes(const LineFilter& edge, const Point& vertex) con
 // one does, as the edges of such a border do.
 bool LocalArrangement::runs_along(const LineFilter& edge, const Point& crossing) const {
     const auto runs_on = [&](LineId id) {
-        if (line(id).kind != Line::Kind::kEdge) return false;
+        if (!line(id).is_edge()) return false;
         const LineFilter other = filter(id);
         return (edge.a == 0.0 && other.a == 0.0 && edge.y0 == other.y0) ||
                (edge.b == 0.0 && other.b == 0.0 && edge.x0 == other.x0);
@@ -65,7 +65,7 @@ int LocalArrangement::exact_side(const Line& line, PointId point) {
     return exactly(shared_, [&](const auto& in, auto number) -> std::optional<int> {
         using Number = decltype(number);
         if (is_vertex(point)) {
-            const auto c = line_coefficients<Number>(in, shared_, line, point).c;
+            const auto c = line_coefficients<Number>(in, shared_, line, vertex(point)).c;
             return is_known(c) ? std::optional(sign_of(c)) : std::nullopt;
         }
         const VertexId origin = anchor(shared_, line);
@@ -76,61 +76,67 @@ int LocalArrangement::exact_side(const Line& line, PointId point) {
     });
 }
 
+/// compare_heights where both triangles have a corner above a plan vertex.
+std::optional<int> LocalArrangement::compare_corners(PlaneId upper, PlaneId lower,
+                                                     VertexId vertex) const {
+    const SpaceId s = shared_.corner_above(upper, vertex);
+    const SpaceId t = s == kNone ? kNone : shared_.corner_above(lower, vertex);
+    if (t == kNone) return std::nullopt;
+    return sign_of(shared_.space(s).z - shared_.space(t).z);
+}
+
 int LocalArrangement::side(DirectedLine directed_line, PointId id) {
-    const LineId line_id = line_of(directed_line);
+    const LineId line_id = directed_line.id();
     const Line& l = line(line_id);
     const Point& p = point(id);
     int result = 2;
     if (is_vertex(id)) {
-        if (l.kind == Line::Kind::kEdge) {
-            if (id == l.first || id == l.second) return 0;
-        } else {
-            const SpaceId s = shared_.corner_above(l.first, id);
-            const SpaceId t = s < 0 ? -1 : shared_.corner_above(l.second, id);
-            if (t >= 0) result = sign_of(shared_.space(s).z - shared_.space(t).z);
+        const VertexId v = vertex(id);
+        if (l.is_edge()) {
+            if (v == l.ends()[0] || v == l.ends()[1]) return 0;
+        } else if (const auto known = compare_corners(l.planes()[0], l.planes()[1], v)) {
+            result = *known;
         }
     } else {
         if (p.first == line_id || p.second == line_id) return 0;
-        if (l.kind == Line::Kind::kTrace && on_trace_by_name(l.first, l.second, p)) return 0;
+        if (!l.is_edge() && on_trace_by_name(l.planes()[0], l.planes()[1], p)) return 0;
     }
     ++decisions_;
     if (result == 2) {
         const LineFilter f = filter(line_id);
         result = filtered_side(f, p);
-        if (result == 2 && l.kind == Line::Kind::kEdge) {
+        if (result == 2 && l.is_edge()) {
             if (is_vertex(id) ? vanishes(f, p) : runs_along(f, p)) return 0;
         }
     }
     if (result == 2) result = exact_side(l, id);
-    return is_reversed(directed_line) ? -result : result;
+    return directed_line.is_reversed() ? -result : result;
 }
 
 // Both triangles stand on an input edge that meets the point, or one on the edge and the other
 // pierced by it.
 bool LocalArrangement::on_trace_by_name(PlaneId a, PlaneId b, const Point& p) const {
-    const auto has_edge = [&](PlaneId plane, SpaceId from, SpaceId to) {
+    const auto has = [&](PlaneId plane, const EdgeOrPlane& name) {
+        if (!name.is_edge()) return plane == name.plane();
         const auto& c = shared_.plane(plane).corner;
+        const SpaceId from = name.from(), to = name.to();
         return (c[0] == from || c[1] == from || c[2] == from) &&
                (c[0] == to || c[1] == to || c[2] == to);
     };
-    if (p.edge_from >= 0) {
+    if (p.edge.is_edge()) {
         const auto meets = [&](PlaneId plane) {
-            return has_edge(plane, p.edge_from, p.edge_to) ||
-                   (p.pierced_to < 0 ? plane == p.pierced
-                                     : has_edge(plane, p.pierced, p.pierced_to));
+            return has(plane, p.edge) || has(plane, p.pierced);
         };
         if (meets(a) && meets(b)) return true;
     }
     for (const LineId id : {p.first, p.second}) {
         const Line& l = line(id);
-        if (l.kind == Line::Kind::kTrace) {
-            if (l.first == std::min(a, b) && l.second == std::max(a, b)) return true;
-            continue;
+        if (l.is_edge()) {
+            const EdgeOrPlane edge = shared_.plane(a).above(l);
+            if (edge.is_edge() && edge == shared_.plane(b).above(l)) return true;
+        } else if (l == Line(std::min(a, b), std::max(a, b))) {
+            return true;
         }
-        const SpaceId from_a = shared_.corner_above(a, l.first);
-        if (from_a < 0 || from_a != shared_.corner_above(b, l.first)) continue;
-        const SpaceId to_a = shared_.corner_above(a, l.second);
-        if (to_a >= 0 && to_a == shared_.corner_above(b, l.second)) return true;
     }
     return false;
 }
@@ -146,14 +152,12 @@ int LocalArrangement::compare_heights(PlaneId upper, PlaneId lower, const LineFi
     const Point& p = point(id);
     ++decisions_;
     if (is_vertex(id)) {
-        const SpaceId s = shared_.corner_above(upper, id);
-        const SpaceId t = s < 0 ? -1 : shared_.corner_above(lower, id);
-        if (t >= 0) return sign_of(shared_.space(s).z - shared_.space(t).z);
+        if (const auto known = compare_corners(upper, lower, vertex(id))) return *known;
     } else if (on_trace_by_name(upper, lower, p)) {
         return 0;
     }
     const int result = filtered_side(trace, p);
-    return result != 2 ? result : exact_side({Line::Kind::kTrace, upper, lower}, id);
+    return result != 2 ? result : exact_side(Line(upper, lower), id);
 }
 
 bool LocalArrangement::same_place(PointId a, PointId b) {
@@ -162,16 +166,17 @@ bool LocalArrangement::same_place(PointId a, PointId b) {
     if (is_vertex(a) && is_vertex(b)) return false;
     if (is_vertex(a)) std::swap(a, b);
     const Point p = point(a);
-    return side(directed(p.first, false), b) == 0 && side(directed(p.second, false), b) == 0;
+    return side(DirectedLine(p.first), b) == 0 && side(DirectedLine(p.second), b) == 0;
 }
 
 bool LocalArrangement::same_line(LineId a, LineId b) {
     if (a == b) return true;
-    if (line(a).kind == Line::Kind::kTrace) std::swap(a, b);
+    if (!line(a).is_edge()) std::swap(a, b);
     const Line l = line(a), m = line(b);
-    if (l.kind == m.kind && l.first == m.first && l.second == m.second) return true;
-    if (l.kind == Line::Kind::kEdge) {
-        return side(directed(b, false), l.first) == 0 && side(directed(b, false), l.second) == 0;
+    if (l == m) return true;
+    if (l.is_edge()) {
+        const DirectedLine other(b);
+        return side(other, l.ends()[0]) == 0 && side(other, l.ends()[1]) == 0;
     }
     ++exact_;
     return exactly(shared_, [&](const auto& in, auto number) -> std::optional<bool> {
@@ -188,9 +193,9 @@ bool LocalArrangement::same_line(LineId a, LineId b) {
 
 std::array<int, 2> LocalArrangement::direction_signs(LineId id) {
     const Line& l = line(id);
-    if (l.kind == Line::Kind::kEdge) {
-        const Point& p = shared_.point(l.first);
-        const Point& q = shared_.point(l.second);
+    if (l.is_edge()) {
+        const Point& p = shared_.point(l.ends()[0]);
+        const Point& q = shared_.point(l.ends()[1]);
         return {sign_of(q.x - p.x), sign_of(q.y - p.y)};
     }
     const VertexId origin = anchor(shared_, l);
@@ -225,20 +230,20 @@ int LocalArrangement::compare(int axis, PointId a, PointId b) {
 
 DirectedLine LocalArrangement::trace(PlaneId upper, PlaneId lower) {
     const LineId id = find_or_add_trace(std::min(upper, lower), std::max(upper, lower));
-    return directed(id, upper > lower);
+    return DirectedLine(id, upper > lower);
 }
 
 PointId LocalArrangement::crossing(LineId a, LineId b) {
     const Line la = line(a), lb = line(b);
     // Where an end of one edge lies on the other line, the crossing is that input vertex.
-    if (la.kind == Line::Kind::kEdge) {
-        for (const VertexId v : {la.first, la.second}) {
-            if (side(directed(b, false), v) == 0) return v;
+    if (la.is_edge()) {
+        for (const VertexId v : la.ends()) {
+            if (side(DirectedLine(b), v) == 0) return v;
         }
     }
-    if (lb.kind == Line::Kind::kEdge) {
-        for (const VertexId v : {lb.first, lb.second}) {
-            if (side(directed(a, false), v) == 0) return v;
+    if (lb.is_edge()) {
+        for (const VertexId v : lb.ends()) {
+            if (side(DirectedLine(a), v) == 0) return v;
         }
     }
     return crossing_between_ends(a, b);
@@ -249,23 +254,18 @@ PointId LocalArrangement::crossing_between_ends(LineId a, LineId b) {
     Point p;
     p.first = a;
     p.second = b;
-    if ((la.kind == Line::Kind::kEdge) != (lb.kind == Line::Kind::kEdge)) {
-        const Line& edge = la.kind == Line::Kind::kEdge ? la : lb;
-        const Line& trace_line = la.kind == Line::Kind::kEdge ? lb : la;
+    if (la.is_edge() != lb.is_edge()) {
+        const Line &edge = la.is_edge() ? la : lb, &trace_line = la.is_edge() ? lb : la;
         const auto standing = [&](PlaneId plane) {
-            const SpaceId s = shared_.corner_above(plane, edge.first);
-            const SpaceId t = s < 0 ? -1 : shared_.corner_above(plane, edge.second);
-            return std::array{t < 0 ? -1 : std::min(s, t), std::max(s, t)};
+            const EdgeOrPlane above = shared_.plane(plane).above(edge);
+            return above.is_edge() ? above : EdgeOrPlane(plane);
         };
-        auto one = standing(trace_line.first), other = standing(trace_line.second);
-        if (one[0] >= 0 && other[0] >= 0) {
-            if (other < one) std::swap(one, other);
-            std::tie(p.edge_from, p.edge_to) = std::tie(one[0], one[1]);
-            std::tie(p.pierced, p.pierced_to) = std::tie(other[0], other[1]);
-        } else if (one[0] >= 0 || other[0] >= 0) {
-            const auto& there = one[0] >= 0 ? one : other;
-            std::tie(p.edge_from, p.edge_to) = std::tie(there[0], there[1]);
-            p.pierced = one[0] >= 0 ? trace_line.second : trace_line.first;
+        const auto [first, second] = trace_line.planes();
+        EdgeOrPlane one = standing(first), other = standing(second);
+        if (!one.is_edge() || (other.is_edge() && other < one)) std::swap(one, other);
+        if (one.is_edge()) {
+            p.edge = one;
+            p.pierced = other;
         }
     }
     return find_or_add_point(p, [&](Point& at) { locate(at); });

@@ -21,12 +21,9 @@ struct NearPoint {
 };
 
 /// What is known of the height of a plane above a point without arithmetic; planes with equal names
-/// are equally high there. A space vertex twice: it stands there; two of them, ascending: an input
-/// edge between the two passes there; -1 and a plane: nothing but that it is as high as that plane.
-struct HeightName {
-    std::int32_t first, second;
-    friend bool operator==(const HeightName&, const HeightName&) = default;
-};
+/// are equally high there. An input edge or vertex is there; of a plane no more is known than that
+/// it is as high as that one.
+using HeightName = EdgeOrPlane;
 
 /// One thread's view of the arrangement: all questions are asked here, and answered exactly. What
 /// is shared is only read; lines and points that answers need are this thread's own (LocalIds).
@@ -98,6 +95,7 @@ private:
     bool vanishes(const LineFilter& edge, const Point& vertex) const;
     bool runs_along(const LineFilter& edge, const Point& crossing) const;
     int exact_side(const Line& line, PointId point);
+    std::optional<int> compare_corners(PlaneId upper, PlaneId lower, VertexId vertex) const;
     bool on_trace_by_name(PlaneId a, PlaneId b, const Point& point) const;
     NearPoint near(const Point& point) const;
     void locate(Point& point);

@@ -4,27 +4,26 @@
 namespace realmodel::exact {
 
 LineId LocalIds::find_or_add_trace(PlaneId first, PlaneId second) {
-    const Line trace{Line::Kind::kTrace, first, second};
-    const auto found = line_table_.insert(line_key_of(trace), [&](std::int32_t number) {
-        return line_key_of(lines_[static_cast<std::size_t>(number)]);
-    });
+    const Line trace(first, second);
+    const auto found = line_table_.insert(
+        trace.key(), [&](std::int32_t number) { return lines_[index(number)].key(); });
     if (found.is_new) {
         lines_.push_back(trace);
         filters_.push_back(shared_.trace_filter(first, second));
     }
-    return kLocal + found.number;
+    return LineId(kLocal + found.number);
 }
 
 void LocalIds::mark_local_line(LineId id) {
-    if (line_ids_.size() < lines_.size()) line_ids_.resize(lines_.size(), kUnmarked);
-    line_ids_[local_index(id)] = kMarked;
-    marked_lines_.push_back(id - kLocal);
+    if (line_ids_.size() < lines_.size()) line_ids_.resize(lines_.size(), kNone);
+    line_ids_[local_index(id)] = kMarked<LineId>;
+    marked_lines_.push_back(id);
 }
 
 void LocalIds::mark_local_point(PointId id) {
-    if (point_ids_.size() < points_.size()) point_ids_.resize(points_.size(), kUnmarked);
-    point_ids_[local_index(id)] = kMarked;
-    marked_points_.push_back(id - kLocal);
+    if (point_ids_.size() < points_.size()) point_ids_.resize(points_.size(), kNone);
+    point_ids_[local_index(id)] = kMarked<PointId>;
+    marked_points_.push_back(id);
     const Point& point = points_[local_index(id)];
     mark_line_used(point.first);
     mark_line_used(point.second);
@@ -36,20 +35,22 @@ void LocalIds::reserve_ids(PlanArrangement& receiver) {
 }
 
 void LocalIds::write_marked() {
-    line_ids_.resize(lines_.size(), kUnmarked);
-    point_ids_.resize(points_.size(), kUnmarked);
+    line_ids_.resize(lines_.size(), kNone);
+    point_ids_.resize(points_.size(), kNone);
     LineId line = appended_.line;
-    for (const std::int32_t local : marked_lines_) {
-        receiver_->set_line(line, lines_[static_cast<std::size_t>(local)]);
-        line_ids_[static_cast<std::size_t>(local)] = line++;
+    for (const LineId local : marked_lines_) {
+        receiver_->set_line(line, lines_[local_index(local)]);
+        line_ids_[local_index(local)] = line;
+        ++line;
     }
     PointId point = appended_.point;
-    for (const std::int32_t local : marked_points_) {
-        Point own = points_[static_cast<std::size_t>(local)];
+    for (const PointId local : marked_points_) {
+        Point own = points_[local_index(local)];
         own.first = shared_line(own.first);
         own.second = shared_line(own.second);
         receiver_->set_point(point, own);
-        point_ids_[static_cast<std::size_t>(local)] = point++;
+        point_ids_[local_index(local)] = point;
+        ++point;
     }
 }
 

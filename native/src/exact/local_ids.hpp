@@ -21,15 +21,16 @@ public:
 
     const PlanArrangement& shared() const { return shared_; }
     const Line& line(LineId id) const {
-        return id < kLocal ? shared_.line(id) : lines_[local_index(id)];
+        return is_local(id) ? lines_[local_index(id)] : shared_.line(id);
     }
     LineFilter filter(LineId id) const {
-        return id < kLocal ? shared_.filter(id) : filters_[local_index(id)];
+        return is_local(id) ? filters_[local_index(id)] : shared_.filter(id);
     }
     const Point& point(PointId id) const {
-        return id < kLocal ? shared_.point(id) : points_[local_index(id)];
+        return is_local(id) ? points_[local_index(id)] : shared_.point(id);
     }
-    bool is_vertex(PointId id) const { return id < shared_.vertex_count(); }
+    bool is_vertex(PointId id) const { return shared_.is_vertex(id); }
+    VertexId vertex(PointId id) const { return shared_.vertex(id); }
 
     /// Makes room for so many points at once.
     void expect_points(std::size_t count) {
@@ -39,10 +40,10 @@ public:
 
     /// Marks a line or point, which may be local, as needed.
     void mark_line_used(LineId id) {
-        if (id >= kLocal && is_unmarked(line_ids_, id)) mark_local_line(id);
+        if (is_local(id) && is_unmarked(line_ids_, id)) mark_local_line(id);
     }
     void mark_point_used(PointId id) {
-        if (id >= kLocal && is_unmarked(point_ids_, id)) mark_local_point(id);
+        if (is_local(id) && is_unmarked(point_ids_, id)) mark_local_point(id);
     }
     /// Appends the marked lines and points to the shared arrangement; the others stay behind.
     /// Nothing new may be found afterwards. In two steps: the ids in the order that is wanted, then
@@ -60,17 +61,17 @@ public:
     /// The shared id of a line or point, which may be local; after commit(). One that was not
     /// marked is found by name, or added now, which only one thread may do.
     LineId shared_line(LineId id) {
-        if (id < kLocal) return id;
+        if (!is_local(id)) return id;
         const LineId shared = line_ids_[local_index(id)];
-        return shared >= 0 ? shared : add_line_by_name(id);
+        return shared.has_value() ? shared : add_line_by_name(id);
     }
     DirectedLine shared_directed(DirectedLine id) {
-        return directed(shared_line(line_of(id)), is_reversed(id));
+        return DirectedLine(shared_line(id.id()), id.is_reversed());
     }
     PointId shared_point(PointId id) {
-        if (id < kLocal) return id;
+        if (!is_local(id)) return id;
         const PointId shared = point_ids_[local_index(id)];
-        return shared >= 0 ? shared : add_point_by_name(id);
+        return shared.has_value() ? shared : add_point_by_name(id);
     }
 
 protected:
@@ -88,21 +89,23 @@ protected:
             locate(point);
             points_.push_back(point);
         }
-        return kLocal + found.number;
+        return PointId(kLocal + found.number);
     }
 
     const PlanArrangement& shared_;
 
 private:
-    /// Instead of a shared id.
-    static constexpr std::int32_t kUnmarked = -1, kMarked = -2;
+    /// Instead of a shared id: there will be one.
+    template <class SomeId>
+    static constexpr SomeId kMarked{-2};
 
-    static std::size_t local_index(std::int32_t id) {
-        assert(id >= kLocal);
-        return static_cast<std::size_t>(id - kLocal);
+    template <class SomeId>
+    static std::size_t local_index(SomeId id) {
+        return index(id.number() - kLocal);
     }
-    static bool is_unmarked(const std::vector<std::int32_t>& ids, std::int32_t id) {
-        return local_index(id) >= ids.size() || ids[local_index(id)] == kUnmarked;
+    template <class SomeId>
+    static bool is_unmarked(const std::vector<SomeId>& ids, SomeId id) {
+        return local_index(id) >= ids.size() || ids[local_index(id)] == kNone;
     }
     void mark_local_line(LineId id);
     void mark_local_point(PointId id);
@@ -114,10 +117,11 @@ private:
     std::vector<Point> points_;
     KeyTable line_table_, point_table_;
     PlanArrangement* receiver_ = nullptr;
-    PlanArrangement::Appended appended_{0, 0};
-    std::vector<LineId> line_ids_;  ///< shared ones, or kUnmarked or kMarked
+    PlanArrangement::Appended appended_;
+    std::vector<LineId> line_ids_;  ///< shared ones; none where not marked
     std::vector<PointId> point_ids_;
-    std::vector<std::int32_t> marked_lines_, marked_points_;  ///< indices, in the order of marking
+    std::vector<LineId> marked_lines_;  ///< in the order of marking
+    std::vector<PointId> marked_points_;
 };
 
 }  // namespace realmodel::exact

@@ -53,7 +53,7 @@ VertexId PlanArrangement::add_vertex(double x, double y) {
         vertex.y = y == 0.0 ? 0.0 : y;
         points_.push_back(vertex);
     }
-    return found.number;
+    return VertexId(found.number);
 }
 
 SpaceId PlanArrangement::add_space_vertex(VertexId plan, double z) {
@@ -65,7 +65,7 @@ SpaceId PlanArrangement::add_space_vertex(VertexId plan, double z) {
         check_ids(space_.size() + 1, "vertices");
         space_.push_back({plan, z == 0.0 ? 0.0 : z});
     }
-    return found.number;
+    return SpaceId(found.number);
 }
 
 PlaneId PlanArrangement::add_plane(const std::array<SpaceId, 3>& corner) {
@@ -76,7 +76,7 @@ PlaneId PlanArrangement::add_plane(const std::array<SpaceId, 3>& corner) {
 
 PlaneId PlanArrangement::make_planes(std::size_t count) {
     check_ids(planes_.size() + count, "triangles");
-    const auto first = static_cast<PlaneId>(planes_.size());
+    const PlaneId first(planes_.size());
     planes_.resize(planes_.size() + count);
     plane_filters_.resize(planes_.size());
     return first;
@@ -84,7 +84,7 @@ PlaneId PlanArrangement::make_planes(std::size_t count) {
 
 void PlanArrangement::set_plane(PlaneId plane, const std::array<SpaceId, 3>& corner) {
     const auto position = [&](int i) {
-        const Point& p = points_[static_cast<std::size_t>(space(corner[i]).plan)];
+        const Point& p = point(space(corner[i]).plan);
         return std::array{p.x, p.y};
     };
     const auto [x0, y0] = position(0);
@@ -108,9 +108,9 @@ void PlanArrangement::set_plane(PlaneId plane, const std::array<SpaceId, 3>& cor
     };
     filter.error_x = error_of(filter.gx, error_a);
     filter.error_y = error_of(filter.gy, error_b);
-    planes_[static_cast<std::size_t>(plane)] = {
-        corner, {space(corner[0]).plan, space(corner[1]).plan, space(corner[2]).plan}};
-    plane_filters_[static_cast<std::size_t>(plane)] = filter;
+    planes_[index(plane)] = {corner,
+                             {space(corner[0]).plan, space(corner[1]).plan, space(corner[2]).plan}};
+    plane_filters_[index(plane)] = filter;
 }
 
 void PlanArrangement::freeze_vertices() {
@@ -163,41 +163,45 @@ void PlanArrangement::forget_all() {
 
 /// The line with this name, `next` where it is new.
 LineId PlanArrangement::find_or_add_line(const Line& wanted, LineId next) {
-    if (wanted.kind == Line::Kind::kEdge) {
-        const LineId known = edges_of_vertex_.find_or_add(
-            wanted.first, next, [&](LineId id) { return line(id).second == wanted.second; });
-        if (known != OwnedNames::kElsewhere) return known;
+    if (wanted.is_edge()) {
+        const auto [first, second] = wanted.ends();
+        const std::int32_t known = edges_of_vertex_.find_or_add(
+            first.number(), next.number(),
+            [&, to = second](std::int32_t number) { return line(LineId(number)).ends()[1] == to; });
+        if (known != OwnedNames::kElsewhere) return LineId(known);
     }
-    return line_table_
-        .insert(line_key_of(wanted), next, [&](LineId id) { return line_key_of(line(id)); })
-        .number;
+    const auto found = line_table_.insert(wanted.key(), next.number(), [&](std::int32_t number) {
+        return line(LineId(number)).key();
+    });
+    return LineId(found.number);
 }
 
 DirectedLine PlanArrangement::add_edge(VertexId from, VertexId to) {
     const bool reversed = from > to;
-    const LineId id = add_line({Line::Kind::kEdge, reversed ? to : from, reversed ? from : to});
-    return directed(id, reversed);
+    const LineId id = add_line(reversed ? Line(to, from) : Line(from, to));
+    return DirectedLine(id, reversed);
 }
 
 LineId PlanArrangement::add_line(const Line& line) {
-    const auto next = static_cast<LineId>(lines_.size());
+    const LineId next(lines_.size());
     const LineId id = find_or_add_line(line, next);
     if (id == next) set_line(append(1, 0).line, line);
     return id;
 }
 
 PointId PlanArrangement::add_point(const Point& wanted) {
-    const auto next = static_cast<PointId>(points_.size());
-    const auto found = point_table_.insert(point_key_of(wanted), next,
-                                           [&](PointId id) { return point_key_of(point(id)); });
+    const PointId next(points_.size());
+    const auto found = point_table_.insert(
+        point_key_of(wanted), next.number(),
+        [&](std::int32_t number) { return point_key_of(point(PointId(number))); });
     if (found.is_new) set_point(append(0, 1).point, wanted);
-    return found.number;
+    return PointId(found.number);
 }
 
 PlanArrangement::Appended PlanArrangement::append(std::size_t lines, std::size_t points) {
     check_ids(lines_.size() + lines, "lines");
     check_ids(points_.size() + points, "points");
-    const Appended first{static_cast<LineId>(lines_.size()), static_cast<PointId>(points_.size())};
+    const Appended first{LineId(lines_.size()), PointId(points_.size())};
     lines_.resize(lines_.size() + lines);
     points_.resize(points_.size() + points);
     return first;

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/key_table.hpp"
 #include "exact/error_bounds.hpp"
 #include "exact/owned_names.hpp"
@@ -19,19 +20,25 @@
 namespace realmodel::exact {
 
 /// Index of a plan vertex: an input position (x, y), the same for all surfaces that use it.
-using VertexId = std::int32_t;
+using VertexId = Id<struct VertexKind>;
 /// Index of a space vertex: an input position (x, y, z).
-using SpaceId = std::int32_t;
+using SpaceId = Id<struct SpaceVertex>;
 /// Index of a plane: the input triangle that spans it.
-using PlaneId = std::int32_t;
+using PlaneId = Id<struct Plane>;
 /// Index of a plan line; ids from `kLocal` on belong to the LocalArrangement that made them.
-using LineId = std::int32_t;
+using LineId = Id<class Line>;
 /// Index of a plan point; ids below the number of plan vertices are those vertices.
-using PointId = std::int32_t;
+using PointId = Id<struct PointKind>;
+struct PointKind {};
+struct VertexKind : PointKind {};
 
 /// First id of lines and points that a LocalArrangement holds for itself; of all kinds of things
 /// there may be as many as there are ids below it.
 inline constexpr std::int32_t kLocal = 1 << 29;
+template <class Kind>
+bool is_local(Id<Kind> id) {
+    return id.number() >= kLocal;
+}
 
 /// To be called before there are `count` things of a kind.
 /// @param what  their name, for the user
@@ -39,20 +46,25 @@ inline constexpr std::int32_t kLocal = 1 << 29;
 void check_ids(std::size_t count, const char* what,
                std::size_t most = static_cast<std::size_t>(kLocal));
 
-/// A line with a direction: `line * 2 + reversed`. Its left side is positive.
-using DirectedLine = std::int32_t;
-inline DirectedLine directed(LineId line, bool reversed) {
-    return line * 2 + (reversed ? 1 : 0);
-}
-inline LineId line_of(DirectedLine line) {
-    return line >> 1;
-}
-inline bool is_reversed(DirectedLine line) {
-    return (line & 1) != 0;
-}
-inline DirectedLine opposite(DirectedLine line) {
-    return line ^ 1;
-}
+/// A line with a direction. Its left side is positive.
+class DirectedLine {
+public:
+    DirectedLine() = default;
+    explicit DirectedLine(LineId line, bool is_reversed = false)
+        : line_and_way_(line.number() * 2 + (is_reversed ? 1 : 0)) {}
+
+    LineId id() const { return LineId(line_and_way_ >> 1); }
+    bool is_reversed() const { return (line_and_way_ & 1) != 0; }
+    DirectedLine reversed() const {
+        DirectedLine other = *this;
+        other.line_and_way_ ^= 1;
+        return other;
+    }
+    friend bool operator==(DirectedLine, DirectedLine) = default;
+
+private:
+    std::int32_t line_and_way_;
+};
 
 /// A stretch of a directed line between two different points of it, in its direction.
 struct DirectedEdge {
@@ -62,15 +74,58 @@ struct DirectedEdge {
 
 /// What a plan line is made of, straight from the input. Nothing in the program stands on a line or
 /// a point that was itself rounded, so every decision is exact on the input.
-struct Line {
-    enum class Kind : std::int32_t {
-        kEdge,  ///< through plan vertices `first` < `second`, positive to the left of first->second
-        kTrace  ///< where planes `first` < `second` are equally high, positive where first is
-                ///< higher
-    };
-    Kind kind = Kind::kEdge;
-    std::int32_t first = 0;
-    std::int32_t second = 0;
+class Line {
+public:
+    Line() = default;
+    /// Through two plan vertices, in ascending order; positive to the left of the way from the
+    /// first to the second.
+    Line(VertexId first, VertexId second) : is_edge_(1), of_{first.number(), second.number()} {}
+    /// The trace of two planes, in ascending order: where they are equally high; positive where the
+    /// first is higher.
+    Line(PlaneId first, PlaneId second) : is_edge_(0), of_{first.number(), second.number()} {}
+
+    bool is_edge() const { return is_edge_ != 0; }
+    std::array<VertexId, 2> ends() const {
+        assert(is_edge());
+        return {VertexId(of_[0]), VertexId(of_[1])};
+    }
+    std::array<PlaneId, 2> planes() const {
+        assert(!is_edge());
+        return {PlaneId(of_[0]), PlaneId(of_[1])};
+    }
+    /// What tells lines apart.
+    KeyTable::Key key() const { return {is_edge_, of_[0], of_[1], 0}; }
+    friend bool operator==(const Line&, const Line&) = default;
+
+private:
+    std::int32_t is_edge_;
+    std::array<std::int32_t, 2> of_;
+};
+
+/// An input edge by the space vertices over the ends of its plan line, a vertex as an edge from it
+/// to itself, or a plane: what tells in which place something lies, or how high.
+class EdgeOrPlane {
+public:
+    EdgeOrPlane() = default;  ///< neither
+    EdgeOrPlane(SpaceId from, SpaceId to) : from_(from), other_(to.number()) {}
+    explicit EdgeOrPlane(PlaneId plane) : other_(plane.number()) {}
+
+    bool is_edge() const { return from_ != kNone; }
+    SpaceId from() const { return from_; }
+    SpaceId to() const {
+        assert(is_edge());
+        return SpaceId(other_);
+    }
+    PlaneId plane() const {
+        assert(!is_edge());
+        return PlaneId(other_);
+    }
+    std::array<std::int32_t, 2> key() const { return {from_.number(), other_}; }
+    friend auto operator<=>(const EdgeOrPlane&, const EdgeOrPlane&) = default;
+
+private:
+    SpaceId from_ = kNone;  ///< none of a plane
+    std::int32_t other_ = -1;
 };
 
 /// A line in doubles: a * (x - x0) + b * (y - y0) + c, each coefficient with a bound on its error.
@@ -99,22 +154,17 @@ inline double rounding_error(double size) {
 
 /// A plan point: an input vertex, or the crossing of two lines.
 struct Point {
-    LineId first = -1;  ///< -1 for an input vertex
-    LineId second = -1;
-    /// Where an input edge (space vertices edge_from < edge_to) pierces a plane: known by name,
-    /// since the traces of both triangles beside that edge run through it. edge_from is -1
+    LineId first = kNone, second = kNone;  ///< none of an input vertex
+    /// Where an input edge pierces a plane: known by name, since the traces of both triangles
+    /// beside that edge run through it. Where the plane's triangle has an edge over the same plan
+    /// edge, that edge stands for the plane, as the triangles beside it share it too. Neither
     /// elsewhere.
-    SpaceId edge_from = -1, edge_to = -1;
-    PlaneId pierced = -1;
-    /// Where the plane's triangle has an edge over the same plan edge, that edge stands for the
-    /// plane, as the triangles beside it share it too: `pierced` is its lower space vertex and this
-    /// the higher one. -1 elsewhere.
-    SpaceId pierced_to = -1;
+    EdgeOrPlane edge, pierced;
     double x = 0, y = 0;  ///< the doubles nearest to the true position
 
     /// Bound on the distance from the true position in x and in y.
     double error() const {
-        return first < 0 ? 0 : rounding_error(std::max(std::abs(x), std::abs(y)));
+        return first == kNone ? 0 : rounding_error(std::max(std::abs(x), std::abs(y)));
     }
 };
 
@@ -130,18 +180,14 @@ inline KeyTable::Key position_key(double x, double y) {
 }
 inline KeyTable::Key height_key(VertexId plan, double z) {
     const auto hz = halves(z);
-    return {plan, hz[0], hz[1], 0};
-}
-/// What tells lines apart.
-inline KeyTable::Key line_key_of(const Line& line) {
-    return {static_cast<std::int32_t>(line.kind), line.first, line.second, 0};
+    return {plan.number(), hz[0], hz[1], 0};
 }
 /// The name of a crossing: the edge and the plane or edge that it meets, or its two lines.
 inline KeyTable::Key point_key_of(const Point& point) {
-    if (point.pierced_to >= 0)
-        return {2 + point.edge_from, point.edge_to, point.pierced, point.pierced_to};
-    if (point.edge_from >= 0) return {0, point.edge_from, point.edge_to, point.pierced};
-    return {1, std::min(point.first, point.second), std::max(point.first, point.second), 0};
+    const auto edge = point.edge.key(), pierced = point.pierced.key();
+    if (point.edge.is_edge()) return {edge[0], edge[1], pierced[0], pierced[1]};
+    return {-1, std::min(point.first, point.second).number(),
+            std::max(point.first, point.second).number(), 0};
 }
 
 /// A space vertex: a plan vertex and a height.
@@ -161,12 +207,21 @@ struct Plane {
     std::array<SpaceId, 3> corner;
     std::array<VertexId, 3> plan;
 
-    /// The corner above a plan vertex, -1 where there is none.
+    /// The corner above a plan vertex, if there is one.
     SpaceId above(VertexId vertex) const {
         for (std::size_t i = 0; i < 3; ++i) {
             if (plan[i] == vertex) return corner[i];
         }
-        return -1;
+        return kNone;
+    }
+    /// The side above an input edge, neither where there is none.
+    EdgeOrPlane above(const Line& line) const {
+        if (!line.is_edge()) return {};
+        const auto [first, second] = line.ends();
+        const SpaceId from = above(first);
+        if (from == kNone) return {};
+        const SpaceId to = above(second);
+        return to == kNone ? EdgeOrPlane() : EdgeOrPlane(from, to);
     }
 };
 
@@ -231,10 +286,8 @@ public:
     /// is used, by any thread.
     /// @throws InputError kind too_large
     Appended append(std::size_t lines, std::size_t points);
-    void set_line(LineId id, const Line& line) { lines_[static_cast<std::size_t>(id)] = line; }
-    void set_point(PointId id, const Point& point) {
-        points_[static_cast<std::size_t>(id)] = point;
-    }
+    void set_line(LineId id, const Line& line) { lines_[index(id)] = line; }
+    void set_point(PointId id, const Point& point) { points_[index(id)] = point; }
     /// Makes room for so many more lines and points than there are. While there is room for what is
     /// added, what was there may be read by other threads.
     void make_room(std::size_t lines, std::size_t points);
@@ -250,28 +303,32 @@ public:
         space_table_.prefetch(height_key(plan, z));
     }
     [[gnu::always_inline]] void prefetch_edge(VertexId from, VertexId to) const {
-        __builtin_prefetch(edges_of_vertex_.place(std::min(from, to)));
+        __builtin_prefetch(edges_of_vertex_.place(std::min(from, to).number()));
     }
 
-    VertexId vertex_count() const { return static_cast<VertexId>(vertex_count_); }
+    std::size_t vertex_count() const { return vertex_count_; }
+    bool is_vertex(PointId id) const { return index(id) < vertex_count_; }
+    /// The plan vertex that a point is.
+    VertexId vertex(PointId id) const {
+        assert(is_vertex(id));
+        return VertexId(id.number());
+    }
     std::size_t space_count() const { return space_.size(); }
     std::size_t plane_count() const { return planes_.size(); }
     std::size_t line_count() const { return lines_.size(); }
     std::size_t point_count() const { return points_.size(); }
-    const Line& line(LineId id) const { return lines_[static_cast<std::size_t>(id)]; }
+    const Line& line(LineId id) const { return lines_[index(id)]; }
     LineFilter filter(LineId id) const {
         const Line& l = line(id);
-        return l.kind == Line::Kind::kEdge ? edge_filter(l.first, l.second)
-                                           : trace_filter(l.first, l.second);
+        return l.is_edge() ? edge_filter(l.ends()[0], l.ends()[1])
+                           : trace_filter(l.planes()[0], l.planes()[1]);
     }
-    const Point& point(PointId id) const { return points_[static_cast<std::size_t>(id)]; }
-    const Plane& plane(PlaneId id) const { return planes_[static_cast<std::size_t>(id)]; }
-    const PlaneFilter& plane_filter(PlaneId id) const {
-        return plane_filters_[static_cast<std::size_t>(id)];
-    }
-    const SpaceVertex& space(SpaceId id) const { return space_[static_cast<std::size_t>(id)]; }
+    const Point& point(PointId id) const { return points_[index(id)]; }
+    const Plane& plane(PlaneId id) const { return planes_[index(id)]; }
+    const PlaneFilter& plane_filter(PlaneId id) const { return plane_filters_[index(id)]; }
+    const SpaceVertex& space(SpaceId id) const { return space_[index(id)]; }
 
-    /// The space vertex of a plane's triangle above a plan vertex, -1 where it has none there.
+    /// The space vertex of a plane's triangle above a plan vertex, if it has one there.
     SpaceId corner_above(PlaneId id, VertexId vertex) const { return plane(id).above(vertex); }
 
     LineFilter edge_filter(VertexId from, VertexId to) const;

@@ -60,16 +60,16 @@ double LocalArrangement::rounded_height(PlaneId plane, PointId id) {
 
 std::optional<double> LocalArrangement::rounded_height_of_crossing(const HeightName& name,
                                                                    PointId id) const {
-    if (name.first < 0 || is_vertex(id)) return std::nullopt;
+    if (!name.is_edge() || is_vertex(id)) return std::nullopt;
     const Point& p = point(id);
-    return near_height_of_crossing(shared_, name.first, name.second, line(p.first), line(p.second));
+    return near_height_of_crossing(shared_, name.from(), name.to(), line(p.first), line(p.second));
 }
 
 double LocalArrangement::rounded_height(PlaneId plane, const HeightName& name, PointId id,
                                         const NearPoint& close) {
-    if (name.first >= 0) {
-        if (name.first == name.second) return shared_.space(name.first).z;
-        if (const auto z = near_edge_height(shared_, name.first, name.second, close)) return *z;
+    if (name.is_edge()) {
+        if (name.from() == name.to()) return shared_.space(name.from()).z;
+        if (const auto z = near_edge_height(shared_, name.from(), name.to(), close)) return *z;
     }
     return rounded_height(plane, id, close);
 }
@@ -77,8 +77,8 @@ double LocalArrangement::rounded_height(PlaneId plane, const HeightName& name, P
 double LocalArrangement::rounded_height(PlaneId plane_id, PointId id, const NearPoint& close) {
     const SpaceVertex& corner = shared_.space(shared_.plane(plane_id).corner[0]);
     if (is_vertex(id)) {
-        const SpaceId s = shared_.corner_above(plane_id, id);
-        if (s >= 0) return shared_.space(s).z;
+        const SpaceId s = shared_.corner_above(plane_id, vertex(id));
+        if (s != kNone) return shared_.space(s).z;
     }
     if (const auto z = near_height(shared_, plane_id, close)) return *z;
     {
@@ -103,7 +103,7 @@ double LocalArrangement::rounded_height(PlaneId plane_id, PointId id, const Near
 
 std::array<double, 3> LocalArrangement::line_key(LineId id) {
     const Line& l = line(id);
-    constexpr VertexId kOrigin = 0;  // any vertex does, as long as it is the same for all lines
+    constexpr VertexId kOrigin{0};  // any vertex does, as long as it is the same for all lines
     if (const auto key = near_line_key(near_line(shared_, l, kOrigin))) return *key;
     {
         const auto c =

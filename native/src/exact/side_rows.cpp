@@ -20,8 +20,8 @@ Sides completed(Sides known, std::size_t size, const Ask& ask) {
 }  // namespace
 
 RowFilter row_filter(const LocalArrangement& scope, DirectedLine line) {
-    const LineFilter f = scope.filter(line_of(line));
-    const double sign = is_reversed(line) ? -1.0 : 1.0;
+    const LineFilter f = scope.filter(line.id());
+    const double sign = line.is_reversed() ? -1.0 : 1.0;
     const PlanReach& reach = scope.shared().reach();
     return {sign * f.a, sign * f.b, sign * f.c,
             f.x0,       f.y0,       f.error_at(reach.width, reach.height, reach.point_error)};

@@ -87,7 +87,7 @@ Surfaces make_surfaces(Site& site, int threads, const Progress* progress) {
         for (const BorderEdge& edge : rock.region_border)
             surfaces.links.border.emplace_back(edge.low, edge.high);
     }
-    surfaces.links.neighbor.resize(site.geometry.plane_count(), {-1, -1, -1});
+    surfaces.links.neighbor.resize(site.geometry.plane_count(), {kNone, kNone, kNone});
     surfaces.measure(site.geometry, threads, progress);
     return surfaces;
 }

@@ -67,7 +67,7 @@ void dump_polygons(const PlanArrangement& geometry, const PolygonPool& polygons,
                    const char* path) {
     std::map<std::int32_t, std::vector<std::size_t>> of_surface;
     for (std::size_t p = 0; p < plane.size(); ++p) {
-        if (plane[p] >= 0) of_surface[surface[p]].push_back(p);
+        if (plane[p].has_value()) of_surface[surface[p]].push_back(p);
     }
     LocalArrangement local(geometry);
     ObjFile file(path);
@@ -125,11 +125,11 @@ void dump_arrangement(const PlanArrangement& geometry, const char* path) {
         const exact::Point& point = geometry.point(static_cast<PointId>(p));
         file.add_vertex({point.x, point.y, 0});
     }
-    for (const auto kind : {exact::Line::Kind::kEdge, exact::Line::Kind::kTrace}) {
-        file.begin_group(kind == exact::Line::Kind::kEdge ? "edges" : "traces");
+    for (const bool edges : {true, false}) {
+        file.begin_group(edges ? "edges" : "traces");
         for (std::size_t l = 0; l < geometry.line_count(); ++l) {
             const auto line = static_cast<LineId>(l);
-            if (geometry.line(line).kind == kind) file.add('l', across_box(geometry, line));
+            if (geometry.line(line).is_edge() == edges) file.add('l', across_box(geometry, line));
         }
     }
 }

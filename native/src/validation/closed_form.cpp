@@ -16,8 +16,6 @@ using strata::Rule;
 
 namespace {
 
-constexpr PlaneId kNone = -1;
-
 /// The planes of a rock mass's surfaces above one place.
 class PlaneColumn {
 public:
@@ -94,7 +92,7 @@ private:
     }
 
     PlanArrangement geometry_;
-    exact::VertexId point_ = 0;
+    exact::VertexId point_;
     std::vector<PlaneId> plane_;
 };
 

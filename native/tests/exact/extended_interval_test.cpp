@@ -51,7 +51,10 @@ TEST(ExtendedInterval, HeightsAreThoseOfRationalsAndNearlyAlwaysKnown) {
             g.freeze_vertices();
             const PlaneId plane = turn(0, 1, 2) > 0 ? g.add_plane({s[0], s[1], s[2]})
                                                     : g.add_plane({s[0], s[2], s[1]});
-            const LineId l = line_of(g.add_edge(3, 4)), m = line_of(g.add_edge(5, 6));
+            const auto line = [&](int from, int to) {
+                return g.add_edge(VertexId(from), VertexId(to)).id();
+            };
+            const LineId l = line(3, 4), m = line(5, 6);
             LocalArrangement scope(g);
             const PointId point = scope.crossing(l, m);
 
@@ -94,7 +97,7 @@ TEST(ExtendedInterval, HeightsAreThoseOfRationalsAndNearlyAlwaysKnown) {
                 }
             }
             EXPECT_FALSE(scope.rounded_height_of_crossing({s[3], s[5]}, point));
-            EXPECT_FALSE(scope.rounded_height_of_crossing({-1, plane}, point));
+            EXPECT_FALSE(scope.rounded_height_of_crossing(HeightName(plane), point));
         }
         EXPECT_GT(asked, 200);
         // elsewhere there may be no such numbers: then nothing is known, and that is right too

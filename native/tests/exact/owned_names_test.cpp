@@ -56,9 +56,9 @@ TEST(OwnedNames, EdgesAreFoundAgainHoweverManyMeet) {
     geometry.freeze_vertices();
     std::vector<LineId> fan;
     for (const VertexId v : to)
-        fan.push_back(line_of(geometry.add_edge(from, v)));
+        fan.push_back(geometry.add_edge(from, v).id());
     for (std::size_t i = 0; i < to.size(); ++i)
-        EXPECT_EQ(geometry.add_edge(to[i], from), directed(fan[i], true));
+        EXPECT_EQ(geometry.add_edge(to[i], from), DirectedLine(fan[i], true));
     EXPECT_EQ(geometry.line_count(), static_cast<std::size_t>(kLines));
 }
 

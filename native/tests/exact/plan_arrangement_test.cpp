@@ -41,8 +41,8 @@ public:
     }
 
     mpq_class value(const Line& line, const Position& p) const {
-        if (line.kind == Line::Kind::kTrace) return height(line.first, p) - height(line.second, p);
-        const Point &a = g_.point(line.first), &b = g_.point(line.second);
+        if (!line.is_edge()) return height(line.planes()[0], p) - height(line.planes()[1], p);
+        const Point &a = g_.point(line.ends()[0]), &b = g_.point(line.ends()[1]);
         return (q(b.x) - q(a.x)) * (p[1] - q(a.y)) - (q(b.y) - q(a.y)) * (p[0] - q(a.x));
     }
 
@@ -118,14 +118,14 @@ Tally compare(std::uint64_t seed, int rounds, const std::function<double(std::mt
         std::uniform_int_distribution<std::size_t> pick(0, trial.vertices.size() - 1);
         for (int i = 0; i < 6; ++i) {
             const VertexId a = trial.vertices[pick(random)], b = trial.vertices[pick(random)];
-            if (a != b) lines.push_back(line_of(trial.geometry.add_edge(a, b)));
+            if (a != b) lines.push_back(trial.geometry.add_edge(a, b).id());
         }
         {
             LocalArrangement scope(trial.geometry);
             for (std::size_t i = 0; i < trial.planes.size(); ++i) {
                 for (std::size_t j = 0; j < i; ++j) {
                     const PlaneId a = trial.planes[i], b = trial.planes[j];
-                    const LineId trace = line_of(scope.trace(a, b));
+                    const LineId trace = scope.trace(a, b).id();
                     if (reference.is_proper(scope.line(trace))) lines.push_back(trace);
                 }
             }
@@ -145,10 +145,10 @@ Tally compare(std::uint64_t seed, int rounds, const std::function<double(std::mt
                     const int expected = sgn(reference.value(scope.line(l), at));
                     tally.zeros += expected == 0;
                     const std::uint64_t exact_before = scope.exact_decisions();
-                    EXPECT_EQ(scope.side(directed(l, false), point), expected);
+                    EXPECT_EQ(scope.side(DirectedLine(l), point), expected);
                     ++tally.sides;
                     if (expected != 0) tally.exact_sides += scope.exact_decisions() - exact_before;
-                    EXPECT_EQ(scope.side(directed(l, true), point), -expected);
+                    EXPECT_EQ(scope.side(DirectedLine(l, true), point), -expected);
                 }
                 for (const PlaneId a : trial.planes) {
                     const mpq_class z = reference.height(a, at);
@@ -187,12 +187,12 @@ Tally compare(std::uint64_t seed, int rounds, const std::function<double(std::mt
                         EXPECT_TRUE(same);
                         EXPECT_EQ(scope.line_key(l), scope.line_key(m));
                     }
-                    if (a.kind == Line::Kind::kEdge) {
+                    if (a.is_edge()) {
                         const auto on_b = [&](VertexId v) {
                             return reference.value(b, {q(trial.geometry.point(v).x),
                                                        q(trial.geometry.point(v).y)}) == 0;
                         };
-                        EXPECT_EQ(scope.same_line(l, m), on_b(a.first) && on_b(a.second));
+                        EXPECT_EQ(scope.same_line(l, m), on_b(a.ends()[0]) && on_b(a.ends()[1]));
                     }
                 }
             }
@@ -263,8 +263,7 @@ TEST(PlanArrangement, LocalNamesBecomeSharedOnes) {
     const VertexId a = g.add_vertex(0, 0), b = g.add_vertex(4, 0), c = g.add_vertex(0, 4),
                    d = g.add_vertex(4, 3);
     g.freeze_vertices();
-    const LineId ab = line_of(g.add_edge(a, b)), ad = line_of(g.add_edge(a, d)),
-                 bc = line_of(g.add_edge(b, c));
+    const LineId ab = g.add_edge(a, b).id(), ad = g.add_edge(a, d).id(), bc = g.add_edge(b, c).id();
     LocalArrangement first(g), second(g);
     const PointId p = first.crossing(ad, bc), r = second.crossing(bc, ad);
     EXPECT_EQ(first.crossing(ad, bc), p);
@@ -282,8 +281,8 @@ TEST(LocalIds, WhatIsMarkedGetsARangeOfIdsInTheOrderOfMarking) {
                    d = g.add_vertex(2, -4), e = g.add_vertex(3, 9), f = g.add_vertex(5, -3),
                    h = g.add_vertex(6, 7);
     g.freeze_vertices();
-    const LineId ab = line_of(g.add_edge(a, b)), ac = line_of(g.add_edge(a, c)),
-                 de = line_of(g.add_edge(d, e)), fh = line_of(g.add_edge(f, h));
+    const LineId ab = g.add_edge(a, b).id(), ac = g.add_edge(a, c).id(), de = g.add_edge(d, e).id(),
+                 fh = g.add_edge(f, h).id();
     LocalArrangement first(g), second(g);
     const PointId with_de = first.crossing(ab, de), with_fh = first.crossing(ab, fh);
     const PointId again = second.crossing(ab, de);
@@ -295,14 +294,14 @@ TEST(LocalIds, WhatIsMarkedGetsARangeOfIdsInTheOrderOfMarking) {
     first.commit(g);
     second.commit(g);
     EXPECT_EQ(first.shared_point(a), a);
-    EXPECT_EQ(first.shared_point(with_fh), 7);
-    EXPECT_EQ(first.shared_point(with_de), 8);
-    EXPECT_EQ(second.shared_point(again), 9);  // nobody looks for the one of the first
+    EXPECT_EQ(first.shared_point(with_fh), PointId(7));
+    EXPECT_EQ(first.shared_point(with_de), PointId(8));
+    EXPECT_EQ(second.shared_point(again), PointId(9));  // nobody looks for the one of the first
     EXPECT_EQ(g.line_count(), 4u);
     EXPECT_EQ(first.shared_line(ac), ac);
     LocalArrangement reader(g);
-    EXPECT_TRUE(reader.same_place(8, 9));
-    EXPECT_FALSE(reader.same_place(7, 9));
+    EXPECT_TRUE(reader.same_place(PointId(8), PointId(9)));
+    EXPECT_FALSE(reader.same_place(PointId(7), PointId(9)));
     EXPECT_EQ(reader.exact_decisions(), 0u);
 }
 
@@ -337,7 +336,7 @@ struct CrossingOnOneMesh {
             plane[k] = {g.add_plane({s[0], s[1], s[2]}), g.add_plane({s[2], s[1], s[3]})};
         }
         g.freeze_vertices();
-        edge = line_of(g.add_edge(v[1], v[2]));
+        edge = g.add_edge(v[1], v[2]).id();
     }
 
     PlanArrangement g;
@@ -349,7 +348,7 @@ TEST(PlanArrangement, EdgesOverEachOtherCrossInOnePointFromBothSides) {
     CrossingOnOneMesh mesh;
     LocalArrangement scope(mesh.g);
     const auto trace = [&](std::size_t lower, std::size_t upper) {
-        return line_of(scope.trace(mesh.plane[0][lower], mesh.plane[1][upper]));
+        return scope.trace(mesh.plane[0][lower], mesh.plane[1][upper]).id();
     };
     const PointId from_one = scope.crossing(mesh.edge, trace(0, 0));
     EXPECT_EQ(scope.crossing(trace(1, 1), mesh.edge), from_one);
@@ -375,7 +374,7 @@ TEST(PlanArrangement, CrossingsOnABorderAlongAnAxisNeedNoExactArithmetic) {
     const std::array<VertexId, 5> v{g.add_vertex(x, 0), g.add_vertex(x, 0.3), g.add_vertex(x, 0.7),
                                     g.add_vertex(-1, 0.1), g.add_vertex(1, 0.2)};
     g.freeze_vertices();
-    const LineId lower = line_of(g.add_edge(v[0], v[1])), across = line_of(g.add_edge(v[3], v[4]));
+    const LineId lower = g.add_edge(v[0], v[1]).id(), across = g.add_edge(v[3], v[4]).id();
     const DirectedLine upper = g.add_edge(v[1], v[2]);
     LocalArrangement scope(g);
     const PointId at = scope.crossing(lower, across);

@@ -48,8 +48,7 @@ public:
                             *next++ = late->vertex;
                     }
                     complex.face_offsets[f] = face - start;
-                    complex.face_surface[f] =
-                        surface_of_plane[static_cast<std::size_t>(faces_.plane[f])];
+                    complex.face_surface[f] = surface_of_plane[index(faces_.plane[f])];
                     if (faces_.below[f] >= 0) {
                         complex.face_cells[f] = {faces_.below[f], faces_.above[f]};
                     } else {

@@ -21,7 +21,7 @@ public:
         : geometry_(geometry), places_(places) {}
 
     bool movable(std::size_t place) const {
-        return places_.representative[place] >= geometry_.vertex_count();
+        return !geometry_.is_vertex(places_.representative[place]);
     }
     const PlanPosition& at(std::size_t place) const {
         if (!moved_.empty()) {
@@ -139,7 +139,7 @@ public:
 
 private:
     std::size_t place_of(const Corner& corner) const {
-        return static_cast<std::size_t>(places_.of_point[static_cast<std::size_t>(corner.point)]);
+        return index(places_.of_point[index(corner.point)]);
     }
 
     /// Asks for what will be read of the faces after one: mostly that of two corners.
@@ -148,7 +148,7 @@ private:
             const std::size_t f = std::min(face + ahead, faces_.size() - 1);
             return faces_.polygons.corners.data() + faces_.polygons.offsets[f];
         };
-        prefetch(&places_.of_point[static_cast<std::size_t>(first_corner(24)->point)]);
+        prefetch(&places_.of_point[index(first_corner(24)->point)]);
         const Corner* const near = first_corner(12);
         prefetch(&places_.position[place_of(near[0])]);
         prefetch(&places_.position[place_of(near[1])]);

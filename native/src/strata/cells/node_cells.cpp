@@ -125,8 +125,7 @@ WallBatch join_stretches(std::span<const WallStretch> stretches,
     for (std::size_t c = 0; c < faces.polygons.corners.size(); ++c)
         is_needed[static_cast<std::size_t>(loops.vertices[loops.entries.first(c)])] = 1;
     for (const ExtraPoint& e : crossings) {
-        const auto place =
-            static_cast<std::size_t>(places.of_point[static_cast<std::size_t>(e.point)]);
+        const auto place = index(places.of_point[index(e.point)]);
         std::fill(may_bend.begin() + loops.vertex_offsets[place],
                   may_bend.begin() + loops.vertex_offsets[place + 1], std::uint8_t{1});
     }

@@ -40,11 +40,10 @@ void add_touched_triangles(PlanArrangement& geometry, const TriangleLinks& links
             for (std::size_t p = begin; p < end; ++p) {
                 if (!wholes.face[p].is_set() || wholes.is_added[p] != 0) continue;
                 const auto& neighbors = links.neighbor[p];
-                is_touched[p] =
-                    wholes.is_exact[p] != 0 ||
-                    std::any_of(neighbors.begin(), neighbors.end(), [&](PlaneId n) {
-                        return n >= 0 && wholes.is_in_parts[static_cast<std::size_t>(n)] != 0;
-                    });
+                is_touched[p] = wholes.is_exact[p] != 0 ||
+                                std::any_of(neighbors.begin(), neighbors.end(), [&](PlaneId n) {
+                                    return n != kNone && wholes.is_in_parts[index(n)] != 0;
+                                });
             }
         });
     std::vector<PlaneId> planes;
@@ -63,7 +62,7 @@ void add_touched_triangles(PlanArrangement& geometry, const TriangleLinks& links
         faces.add(outlines[i], planes[i], face.layer, face.above, face.below);
     }
     for (const auto& [plane, base, node] : wholes.on_base) {
-        if (is_touched[static_cast<std::size_t>(plane)] == 0) continue;
+        if (is_touched[index(plane)] == 0) continue;
         faces.add(triangle_outline(geometry, geometry.plane(plane).plan), base, -1, node,
                   kOutsideCell);
     }
@@ -80,7 +79,7 @@ UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
       threads_(threads),
       progress_(progress),
       of_space_(static_cast<std::size_t>(geometry.space_count()), -1),
-      of_base_(wholes.on_base.empty() ? 0 : static_cast<std::size_t>(geometry.vertex_count()), -1) {
+      of_base_(wholes.on_base.empty() ? 0 : geometry.vertex_count(), -1) {
     // Several threads may say so of one vertex at once; they all write the same, but for vertices
     // of several bases, which lie on borders and so on no untouched triangle.
     const auto set = [](std::int32_t& number, std::int32_t to) {
@@ -89,19 +88,18 @@ UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
     parallel_ranges(
         faces.size(), kTriangles, threads, progress, [&](std::size_t begin, std::size_t end) {
             for (std::size_t f = begin; f < end; ++f) {
-                const bool is_base = surface_of_plane[static_cast<std::size_t>(faces.plane[f])] < 0;
+                const bool is_base = surface_of_plane[index(faces.plane[f])] < 0;
                 const auto last = static_cast<std::size_t>(faces.polygons.offsets[f + 1]);
                 for (auto c = static_cast<std::size_t>(faces.polygons.offsets[f]); c < last; ++c) {
                     const PointId point = faces.polygons.corners[c].point;
-                    if (point >= geometry.vertex_count()) continue;
+                    if (!geometry.is_vertex(point)) continue;
                     const std::int32_t number = loops.vertices[loops.entries.first(c)];
                     if (is_base) {
-                        if (!of_base_.empty())
-                            set(of_base_[static_cast<std::size_t>(point)], number);
+                        if (!of_base_.empty()) set(of_base_[index(point)], number);
                         continue;
                     }
-                    const SpaceId s = geometry.corner_above(faces.plane[f], point);
-                    if (s >= 0) set(of_space_[static_cast<std::size_t>(s)], number);
+                    const SpaceId s = geometry.corner_above(faces.plane[f], geometry.vertex(point));
+                    if (s != kNone) set(of_space_[index(s)], number);
                 }
             }
         });
@@ -122,7 +120,7 @@ void UntouchedTriangles::number_vertices(CellComplex& complex) {
                         for (std::size_t p = begin; p < end; ++p) {
                             if (!is_face(p)) continue;
                             for (const SpaceId s : geometry_.plane(static_cast<PlaneId>(p)).corner)
-                                mark(is_new[static_cast<std::size_t>(s)]);
+                                mark(is_new[index(s)]);
                         }
                     });
     std::vector<std::size_t> first((of_space_.size() + kVertices - 1) / kVertices);
@@ -172,7 +170,7 @@ void UntouchedTriangles::add_triangles(CellComplex& complex,
                 const auto& corner = geometry_.plane(static_cast<PlaneId>(p)).corner;
                 std::int32_t* loop = complex.face_vertices.begin() + corners + 3 * next;
                 std::transform(corner.begin(), corner.end(), loop,
-                               [&](SpaceId s) { return of_space_[static_cast<std::size_t>(s)]; });
+                               [&](SpaceId s) { return of_space_[index(s)]; });
                 complex.face_cells[faces + next] =
                     turn_outwards(loop, loop + 3, cell(cell_of_node, wholes_.face[p].above),
                                   cell(cell_of_node, wholes_.face[p].below));
@@ -187,10 +185,10 @@ void UntouchedTriangles::add_bases(CellComplex& complex,
                                    const std::vector<std::int32_t>& cell_of_node) {
     auto& loop = complex.face_vertices;
     for (const auto& [plane, base, node] : wholes_.on_base) {
-        if (wholes_.is_added[static_cast<std::size_t>(plane)] != 0) continue;
+        if (wholes_.is_added[index(plane)] != 0) continue;
         const double z = geometry_.space(geometry_.plane(base).corner[0]).z;
         for (const exact::VertexId v : geometry_.plane(plane).plan) {
-            std::int32_t& number = of_base_[static_cast<std::size_t>(v)];
+            std::int32_t& number = of_base_[index(v)];
             if (number < 0) {
                 number = static_cast<std::int32_t>(complex.vertices.size());
                 check_total(complex.vertices.size() + 1, INT32_MAX);

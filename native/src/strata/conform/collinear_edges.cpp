@@ -262,7 +262,7 @@ private:
     VerticesOnLine on_line_;
     EdgeMatching matching_;
     std::span<LineEdge> edges_;
-    LineId line_ = -1;
+    LineId line_ = kNone;
     bool is_ranked_ = false;  ///< whether ends of edges are counted along the line
 };
 
@@ -277,8 +277,8 @@ CollinearEdges find_collinear_edges(const PlanArrangement& geometry, const FaceL
     std::vector<std::pair<std::int32_t, PlanVertexId>>
         extra_vertices;  // line and plan vertex, ascending
     for (const ExtraPoint& e : extra) {
-        extra_vertices.emplace_back(lines.of_line[static_cast<std::size_t>(e.line)],
-                                    plan_vertices.of_point[static_cast<std::size_t>(e.point)]);
+        extra_vertices.emplace_back(lines.of_line[index(e.line)],
+                                    plan_vertices.of_point[index(e.point)]);
     }
     std::sort(extra_vertices.begin(), extra_vertices.end());
     const auto extra_from = [&](std::size_t line) {

@@ -43,7 +43,7 @@ Array<Keyed> lines_in_use(const PlanArrangement& geometry, const FaceList& faces
     parallel_ranges(corners.size(), kChunk, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t c = begin; c < end; ++c)
-                            mark(used[static_cast<std::size_t>(exact::line_of(corners[c].line))]);
+                            mark(used[index(corners[c].line.id())]);
                     });
     std::vector<std::size_t> before((used.size() + kChunk - 1) / kChunk);
     parallel_ranges(
@@ -121,10 +121,10 @@ CollinearLines join_lines(const PlanArrangement& geometry, const FaceList& faces
     joined.of_line = Array<std::int32_t>(geometry.line_count());
     std::fill(joined.of_line.begin(), joined.of_line.end(), -1);
     for (const Keyed& line : lines)
-        joined.of_line[static_cast<std::size_t>(line.line)] = 0;
+        joined.of_line[index(line.line)] = 0;
     const auto followers = find_followers(geometry, std::move(lines), threads, progress);
     for (const Follower& follower : followers)
-        joined.of_line[static_cast<std::size_t>(follower.line)] = -1;
+        joined.of_line[index(follower.line)] = -1;
 
     std::vector<std::size_t> before((joined.of_line.size() + kChunk - 1) / kChunk);
     parallel_ranges(
@@ -143,8 +143,7 @@ CollinearLines join_lines(const PlanArrangement& geometry, const FaceList& faces
                         }
                     });
     for (const Follower& follower : followers) {
-        joined.of_line[static_cast<std::size_t>(follower.line)] =
-            joined.of_line[static_cast<std::size_t>(follower.leader)];
+        joined.of_line[index(follower.line)] = joined.of_line[index(follower.leader)];
     }
     return joined;
 }

@@ -20,7 +20,7 @@ constexpr std::size_t kFaces = 1 << 12, kEntries = 1 << 15,
 /// What faces have on plan vertices, sorted by plan vertex.
 struct FacesAtVertices {
     Array<std::uint32_t> offsets;  ///< of each plan vertex
-    /// First the planes of the faces (complements of those that pass tentatively), then which of
+    /// First the codes of the faces' planes, tentative where they pass tentatively, then which of
     /// the heights there those have, at last vertices; -1 for what takes up none.
     Array<std::int32_t> values;
 };
@@ -36,8 +36,7 @@ Array<PlanVertexId> vertices_of_entries(const FaceList& faces, const PlanVertice
     parallel_ranges(corners.size(), 4 * kFaces, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         loops.entries.for_each(begin, end, [&](std::size_t c, std::size_t entry) {
-                            plan_vertex[entry] =
-                                plan_vertices.of_point[static_cast<std::size_t>(corners[c].point)];
+                            plan_vertex[entry] = plan_vertices.of_point[index(corners[c].point)];
                         });
                     });
     parallel_chunks(collinear.passed.size(), threads, progress, [&](std::size_t chunk) {
@@ -119,7 +118,7 @@ FacesAtVertices sort_by_vertex(const FaceList& faces, Array<PlanVertexId>& plan_
                 for (const std::size_t next = first_entry(faces, loops, f + 1); i < next; ++i) {
                     counts.prefetch(vertex_of(std::min(i + 32, last)));
                     const std::uint32_t at = counts.counts()[vertex_of(i)] + counts.number(i);
-                    on.values[at] = plan_vertex[i] < 0 ? ~plane : plane;
+                    on.values[at] = code_of(plane, plan_vertex[i] < 0);
                     plan_vertex[i] = static_cast<std::int32_t>(at);
                 }
             }
@@ -139,14 +138,12 @@ FacesAtVertices sort_by_vertex(const FaceList& faces, Array<PlanVertexId>& plan_
     };
     prefetch(&point(24));
     for (const LineId line : {point(16).first, point(16).second}) {
-        if (line >= 0) prefetch(&geometry.line(line));
+        if (line != kNone) prefetch(&geometry.line(line));
     }
     for (const LineId id : {point(8).first, point(8).second}) {
-        if (id < 0) continue;
-        const exact::Line& line = geometry.line(id);
-        if (line.kind != exact::Line::Kind::kEdge) continue;
-        prefetch(&geometry.point(line.first));
-        prefetch(&geometry.point(line.second));
+        if (id == kNone || !geometry.line(id).is_edge()) continue;
+        for (const exact::VertexId end : geometry.line(id).ends())
+            prefetch(&geometry.point(end));
     }
 }
 

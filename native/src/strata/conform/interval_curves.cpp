@@ -104,7 +104,7 @@ void IntervalCurves::find_crossings(std::size_t number, std::span<const Curve> c
             const Curve &a = curves[i], &b = curves[j];
             if (a.start >= b.start || a.end <= b.end) continue;
             const LineId line = collinear_.representative[number];
-            const LineId trace = exact::line_of(scope.trace(plane(a), plane(b)));
+            const LineId trace = scope.trace(plane(a), plane(b)).id();
             missing.push_back({line, scope.crossing(line, trace)});
         }
     }

@@ -87,7 +87,7 @@ void LineBuckets::collect(std::size_t bucket, const PlanVertices& plan_vertices,
     const Corner* const corners = faces_.polygons.corners.data();
     const PlanVertexId* const of_point = plan_vertices.of_point.begin();
     const auto vertex_of = [&](std::size_t corner) {
-        return of_point[static_cast<std::size_t>(corners[corner].point)];
+        return of_point[index(corners[corner].point)];
     };
     // Counted two further on, these become the ends, and filled up to their ends the beginnings.
     // About every other edge is on a line of another bucket: it is put down, too, and the next one

@@ -48,7 +48,7 @@ public:
 private:
     using Found = BucketEdges::Found;
     std::size_t joined_line(const Corner& corner) const {
-        const auto line = static_cast<std::size_t>(exact::line_of(corner.line));
+        const auto line = index(corner.line.id());
         return static_cast<std::size_t>(lines_.of_line[line]);
     }
     void prefetch_faces(std::size_t number, std::size_t end) const;

@@ -14,21 +14,14 @@ std::uint64_t packed(std::int32_t high, std::int32_t low) {
 
 }  // namespace
 
-EdgeMatching::Name EdgeMatching::over(PlaneId plane, const exact::Line& line) const {
-    if (line.kind != exact::Line::Kind::kEdge) return {-1, -1};
-    const exact::Plane& triangle = geometry_.plane(plane);
-    const exact::SpaceId s = triangle.above(line.first);
-    return {s, s < 0 ? -1 : triangle.above(line.second)};
-}
-
 EdgeMatching::Name EdgeMatching::name(const LineEdge& edge, const exact::Line& line) const {
     const PlaneId plane = plane_of(edge);
-    const Name first = over(plane, line);
-    if (first[1] >= 0) return first;
+    const Name first = geometry_.plane(plane).above(line);
+    if (first.is_edge()) return first;
     // several edges in a row are one line, each on a line of its own
-    const auto own = exact::line_of(faces_.polygons.corners[edge.begin].line);
-    const Name second = over(plane, geometry_.line(own));
-    return second[1] >= 0 ? second : Name{-1, plane};
+    const auto own = faces_.polygons.corners[edge.begin].line.id();
+    const Name second = geometry_.plane(plane).above(geometry_.line(own));
+    return second.is_edge() ? second : Name(plane);
 }
 
 /// Whether two edges of the same ends are one segment in space.
@@ -39,7 +32,7 @@ bool EdgeMatching::are_one_line(const LineEdge& left, const LineEdge& right,
     const Name of_left = name(left, line);
     if (of_left != name(right, line)) return false;
     // Segments that follow each other mostly lie between the same two triangles.
-    if (of_left == over(planes[0], line)) same_ = planes;
+    if (of_left == geometry_.plane(planes[0]).above(line)) same_ = planes;
     return true;
 }
 
@@ -76,7 +69,7 @@ bool EdgeMatching::find_matches(std::span<const LineEdge> edges, LineId line_id)
               [](const Segment& a, const Segment& b) { return a.ends_and_side < b.ends_and_side; });
     const exact::Line& line = geometry_.line(line_id);
     matches_.clear();
-    same_ = {-1, -1};
+    same_ = {kNone, kNone};
     for (std::size_t begin = 0, end = 0; begin < segments_.size(); begin = end) {
         std::size_t right = begin;
         for (end = begin;

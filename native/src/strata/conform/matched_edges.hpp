@@ -70,9 +70,9 @@ private:
         std::uint64_t ends() const { return ends_and_side >> 1; }
         bool is_right() const { return (ends_and_side & 1) != 0; }
     };
-    /// What tells the line in space that an edge is on: the input edge over the line of the line
-    /// (two space vertices), or its plane (-1 and the plane).
-    using Name = std::array<std::int32_t, 2>;
+    /// What tells the line in space that an edge is on: the input edge over the line of the line,
+    /// or its plane.
+    using Name = exact::EdgeOrPlane;
     /// A pair that bounds a wall between two cells.
     struct Bound {
         std::uint64_t cells;        ///< left and right of the line
@@ -89,7 +89,6 @@ private:
     PlaneId plane_of(const LineEdge& edge) const {
         return faces_.plane[static_cast<std::size_t>(edge.face)];
     }
-    Name over(PlaneId plane, const exact::Line& line) const;
     Name name(const LineEdge& edge, const exact::Line& line) const;
     bool find_matches(std::span<const LineEdge> edges, LineId line);
     bool are_one_line(const LineEdge& left, const LineEdge& right, const exact::Line& line);
@@ -101,7 +100,8 @@ private:
     const exact::PlanArrangement& geometry_;
     const FaceList& faces_;
     std::vector<Segment> segments_;
-    std::array<PlaneId, 2> same_{-1, -1};  ///< planes that have the line of the line in common
+    std::array<PlaneId, 2> same_{kNone,
+                                 kNone};  ///< planes that have the line of the line in common
     std::vector<std::pair<Name, const LineEdge*>> left_names_, right_names_;
     std::vector<Pair> matches_;
     std::vector<Bound> bounds_, beneath_;

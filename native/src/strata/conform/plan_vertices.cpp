@@ -41,7 +41,7 @@ struct XRange {
 /// Where the vertices in use are, and nearly all points with them.
 XRange range_of_vertices(const PlanArrangement& geometry, const Array<std::uint8_t>& used,
                          int threads, const Progress* progress) {
-    const auto vertices = static_cast<std::size_t>(geometry.vertex_count());
+    const auto vertices = geometry.vertex_count();
     std::vector<XRange> ranges((vertices + kChunk - 1) / kChunk);
     parallel_ranges(vertices, kChunk, threads, progress, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
@@ -69,10 +69,10 @@ Array<Rounded> points_in_use(const PlanArrangement& geometry, const FaceList& fa
     parallel_ranges(corners.size(), kChunk, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t c = begin; c < end; ++c)
-                            mark(used[static_cast<std::size_t>(corners[c].point)]);
+                            mark(used[index(corners[c].point)]);
                     });
     for (const ExtraPoint& e : extra)
-        used[static_cast<std::size_t>(e.point)] = 1;
+        used[index(e.point)] = 1;
     const XRange range = range_of_vertices(geometry, used, threads, progress);
     const auto share = [range](const Rounded& p) { return range.share(p.x); };
     const auto in_order = [](const Rounded& a, const Rounded& b) {
@@ -168,7 +168,7 @@ PlanVertices find_plan_vertices(const PlanArrangement& geometry, const FaceList&
     PlanVertices vertices = empty_vertices(count, geometry.point_count(), threads, progress);
     std::vector<std::vector<PlanVertexId>> coincident(before.size());
     const auto of_point = [&](std::size_t i) -> PlanVertexId& {
-        return vertices.of_point[static_cast<std::size_t>(points[i].point)];
+        return vertices.of_point[index(points[i].point)];
     };
     parallel_ranges(points.size(), kChunk, threads, progress,
                     [&](std::size_t range_begin, std::size_t range_end) {

@@ -20,14 +20,15 @@ void VertexHeights::find(PointId point, std::span<std::int32_t> planes) {
     rank_levels(point);
     if (!tentative_.empty()) settle_tentative(point);
     separate();
-    for (std::int32_t& plane : planes) {
-        if (plane >= 0) {
-            plane = rank_of(plane);
+    for (std::int32_t& code : planes) {
+        const PlaneId plane = plane_of(code);
+        if (!is_tentative(code)) {
+            code = rank_of(plane);
             continue;
         }
         const auto at = std::find_if(tentative_.begin(), tentative_.end(),
-                                     [&](const Plane& p) { return p.plane == ~plane; });
-        plane = at->level < 0 ? -1 : levels_[static_cast<std::size_t>(at->level)].rank;
+                                     [&](const Plane& p) { return p.plane == plane; });
+        code = at->level < 0 ? -1 : levels_[static_cast<std::size_t>(at->level)].rank;
     }
 }
 
@@ -35,13 +36,16 @@ void VertexHeights::find(PointId point, std::span<std::int32_t> planes) {
 /// vertices, there is nothing to put in order.
 /// @return whether that is so, and all is done
 bool VertexHeights::find_single(PointId point, std::span<std::int32_t> planes) {
-    if (planes.empty() || planes[0] < 0) return false;
-    Level level{scope_.height_name(planes[0], point), planes[0], 0.0, 0};
+    if (planes.empty() || is_tentative(planes[0])) return false;
+    const PlaneId first = plane_of(planes[0]);
+    Level level{scope_.height_name(first, point), first, 0.0, 0};
     std::array known{planes[0], planes[0]};
-    for (const std::int32_t plane : planes.subspan(1)) {
-        if (plane == known[0] || plane == known[1]) continue;
-        if (plane < 0 || scope_.height_name(plane, point) != level.name) return false;
-        known = {plane, known[0]};
+    for (const std::int32_t code : planes.subspan(1)) {
+        if (code == known[0] || code == known[1]) continue;
+        if (is_tentative(code)) return false;
+        const PlaneId plane = plane_of(code);
+        if (scope_.height_name(plane, point) != level.name) return false;
+        known = {code, known[0]};
         level.plane = std::min(level.plane, plane);
     }
     std::optional<exact::NearPoint> near;
@@ -63,10 +67,10 @@ void VertexHeights::find_distinct(PointId point, std::span<const std::int32_t> p
     planes_.clear();
     tentative_.clear();
     levels_.clear();
-    for (const std::int32_t given : planes) {
-        std::vector<Plane>& kind = given < 0 ? tentative_ : planes_;
-        const PlaneId plane = given < 0 ? ~given : given;
-        const std::size_t near = given < 0 ? kind.size() : std::min(kind.size(), kFew);
+    for (const std::int32_t code : planes) {
+        std::vector<Plane>& kind = is_tentative(code) ? tentative_ : planes_;
+        const PlaneId plane = plane_of(code);
+        const std::size_t near = is_tentative(code) ? kind.size() : std::min(kind.size(), kFew);
         bool known = false;
         for (std::size_t i = 0; i < near && !known; ++i)
             known = kind[i].plane == plane;
@@ -132,8 +136,8 @@ std::int32_t VertexHeights::level_of(PointId point, PlaneId plane) {
 /// @param near  where the point lies, found for the first level that asks for it
 double VertexHeights::rounded(const Level& level, PointId point,
                               std::optional<exact::NearPoint>& near) {
-    if (level.name.first >= 0 && level.name.first == level.name.second)
-        return scope_.shared().space(level.name.first).z;
+    if (level.name.is_edge() && level.name.from() == level.name.to())
+        return scope_.shared().space(level.name.from()).z;
     if (const auto z = scope_.rounded_height_of_crossing(level.name, point)) return *z;
     if (!near) near = scope_.near(point);
     return scope_.rounded_height(level.plane, level.name, point, *near);
@@ -167,7 +171,7 @@ bool VertexHeights::is_double(std::size_t rank) const {
     const auto z = [&](exact::SpaceId s) { return geometry.space(s).z; };
     return std::any_of(levels_.begin(), levels_.end(), [&](const Level& level) {
         if (level.rank != static_cast<std::int32_t>(rank)) return false;
-        if (level.name.first >= 0) return z(level.name.first) == z(level.name.second);
+        if (level.name.is_edge()) return z(level.name.from()) == z(level.name.to());
         const auto& corner = geometry.plane(level.plane).corner;
         return z(corner[0]) == z(corner[1]) && z(corner[1]) == z(corner[2]);
     });

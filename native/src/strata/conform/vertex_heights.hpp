@@ -9,6 +9,17 @@
 
 namespace realmodel::strata {
 
+/// A plane as a number, which is below 0 where it is tentative.
+inline std::int32_t code_of(PlaneId plane, bool is_tentative) {
+    return is_tentative ? ~plane.number() : plane.number();
+}
+inline bool is_tentative(std::int32_t code) {
+    return code < 0;
+}
+inline PlaneId plane_of(std::int32_t code) {
+    return PlaneId(code < 0 ? ~code : code);
+}
+
 /// The different heights of planes at one plan vertex, ascending. Planes that are known to be
 /// equally high there by what the plan vertex is made of share a name and are asked once; rounded
 /// heights keep the order of the others, and where they are equal, the exact test decides.
@@ -17,11 +28,10 @@ public:
     explicit VertexHeights(const exact::PlanArrangement& geometry) : scope_(geometry) {}
 
     /// Finds the heights of planes above a point.
-    /// @param planes  of each of them; in its stead comes which of the heights it has. Those given
-    /// by
-    ///     their complement are tentative: they make no height, but take up that of another plane
-    ///     which is as high, and where they are so near to one that rounding could make a
-    ///     difference they count like the others. What takes up none gets -1.
+    /// @param planes  code_of each of them; in its stead comes which of the heights it has.
+    ///     Tentative ones make no height, but take up that of another plane which is as high, and
+    ///     where they are so near to one that rounding could make a difference they count like the
+    ///     others. What takes up none gets -1.
     void find(PointId point, std::span<std::int32_t> planes);
 
     /// The heights, rounded, each a different double. Where several round to one, those that are

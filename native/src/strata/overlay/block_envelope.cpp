@@ -55,7 +55,7 @@ void BlockEnvelope::start(const BlockTiling& tiling, std::int32_t number) {
     std::swap(whole_block_, next_whole_block_);
     for (std::size_t p = 0; p < tiling.part_plane.size(); ++p) {
         const PlaneId plane = tiling.part_plane[p];
-        wholes_.is_in_parts[static_cast<std::size_t>(plane)] = 1;
+        wholes_.is_in_parts[index(plane)] = 1;
         parts_.add_facet(tiling.parts[p], plane, number, number);
         parts_.add_face(tiling.parts[p], kOutsideCell);
     }
@@ -66,7 +66,7 @@ void BlockEnvelope::enter(PlaneId plane, std::int32_t number, std::int32_t node_
                           const TileSpan& span) {
     assert(!wholes_.of(plane).is_set());
     wholes_.of(plane) = {node_above, WholeFace::kUnset, number};
-    if (borders_.near(span)) wholes_.is_exact[static_cast<std::size_t>(plane)] = 1;
+    if (borders_.near(span)) wholes_.is_exact[index(plane)] = 1;
     next_whole_.push_back(plane);
     next_whole_block_.push_back(number);
 }
@@ -87,15 +87,15 @@ Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTi
         blocks.span.push_back(filter_.facet_at[f].span);
         if (i < first_part) {
             const WholeFace& face = wholes_.of(whole_[f]);
-            wholes_.is_exact[static_cast<std::size_t>(whole_[f])] = 1;
+            wholes_.is_exact[index(whole_[f])] = 1;
             // until it turns out to be kept or sealed as it is
-            wholes_.is_in_parts[static_cast<std::size_t>(whole_[f])] = kMayStayWhole;
+            wholes_.is_in_parts[index(whole_[f])] = kMayStayWhole;
             envelope.add_facet(outlines[i], whole_[f], face.layer, whole_block_[f]);
             envelope.add_face(outlines[i], face.above);
             continue;
         }
         envelope.add_facet_of(parts_, f - whole_.size(), facets.block(f));
-        if (facets.plane(f) < 0) {
+        if (!facets.plane(f).has_value()) {
             blocks.is_complete[i] = !tiles().any(filter_.facet_at[f].span, [&](std::size_t tile) {
                 return !borders_.in_tile(tile) && filter_.is_empty[tile] == 0;
             });
@@ -106,7 +106,7 @@ Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTi
                                        threads_, progress_);
     sort_overlaid(overlaid.kept, first_face);
     for (std::size_t i = 0; i < first_part; ++i) {
-        std::uint8_t& in_parts = wholes_.is_in_parts[static_cast<std::size_t>(whole_[exact[i]])];
+        std::uint8_t& in_parts = wholes_.is_in_parts[index(whole_[exact[i]])];
         in_parts = in_parts == kMayStayWhole ? 1 : 0;
     }
     return overlaid;
@@ -122,8 +122,8 @@ bool BlockEnvelope::is_triangle(PolygonView polygon, PlaneId plane) const {
 /// Of what facets overlaid exactly became, whole triangles stay or become whole faces.
 void BlockEnvelope::sort_overlaid(const Envelope& kept, std::size_t first_face) {
     const auto stays_whole = [&](PolygonView polygon, PlaneId plane) {
-        if (plane < 0) return false;
-        std::uint8_t& in_parts = wholes_.is_in_parts[static_cast<std::size_t>(plane)];
+        if (!plane.has_value()) return false;
+        std::uint8_t& in_parts = wholes_.is_in_parts[index(plane)];
         if (in_parts != kMayStayWhole || !is_triangle(polygon, plane)) return false;
         in_parts = kStaysWhole;
         return true;
@@ -135,7 +135,7 @@ void BlockEnvelope::sort_overlaid(const Envelope& kept, std::size_t first_face) 
             !stays_whole(faces.polygons[f], faces.plane[f]))
             continue;
         wholes_.of(faces.plane[f]).below = faces.below[f];
-        wholes_.is_added[static_cast<std::size_t>(faces.plane[f])] = 1;
+        wholes_.is_added[index(faces.plane[f])] = 1;
     }
     for (std::size_t f = 0; f < kept.size(); ++f) {
         if (stays_whole(kept.outlines[f], kept.plane[f])) {
@@ -236,9 +236,9 @@ void BlockEnvelope::add_surface(const BlockTiling& tiling, const SurfaceTiling& 
                 link(node_above_[t], node_of(piece));
             continue;
         }
-        wholes_.is_exact[static_cast<std::size_t>(plane)] = 1;
+        wholes_.is_exact[index(plane)] = 1;
         if (is_whole[p] == 0) {
-            wholes_.is_in_parts[static_cast<std::size_t>(plane)] = 1;
+            wholes_.is_in_parts[index(plane)] = 1;
             continue;
         }
         use[p] = kElsewhere;

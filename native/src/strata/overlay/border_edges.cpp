@@ -19,7 +19,7 @@ BorderEdges::BorderEdges(PlanArrangement& geometry, const PlanTiles& tiles, std:
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     segments_.reserve(edges.size());
     for (const auto& [from, to] : edges)
-        segments_.push_back({from, to, exact::line_of(geometry.add_edge(from, to))});
+        segments_.push_back({from, to, geometry.add_edge(from, to).id()});
     const auto for_all = [&](const auto& visit) {
         for (std::size_t s = 0; s < segments_.size(); ++s) {
             const auto &p = geometry.point(segments_[s].from), &q = geometry.point(segments_[s].to);
@@ -69,7 +69,7 @@ bool BorderEdges::reaches_inside(const Segment& segment, std::size_t corners,
 
 bool BorderEdges::divide(LocalArrangement& scope, PolygonView polygon, const TileSpan& span) const {
     return any_in(span, [&](const Segment& segment) {
-        const auto line = exact::directed(segment.line, false);
+        const exact::DirectedLine line(segment.line);
         return reaches_inside(
             segment, polygon.size(),
             [&](std::size_t i) { return scope.side(line, polygon[i].point); },
@@ -109,7 +109,7 @@ bool BorderEdges::divide(const PlanArrangement& geometry, const PlanTriangle& tr
 bool BorderEdges::run_between(LocalArrangement& scope, PointId a, PointId b,
                               const TileSpan& span) const {
     return any_in(span, [&](const Segment& segment) {
-        const auto line = exact::directed(segment.line, false);
+        const exact::DirectedLine line(segment.line);
         if (scope.side(line, a) != 0 || scope.side(line, b) != 0) return false;
         const int axis = scope.compare(0, segment.from, segment.to) != 0 ? 0 : 1;
         const auto before = [&](PointId p, PointId q) { return scope.compare(axis, p, q) > 0; };

@@ -42,7 +42,7 @@ public:
 
 private:
     struct Segment {
-        PointId from, to;
+        exact::VertexId from, to;
         LineId line;
     };
     template <class Holds>

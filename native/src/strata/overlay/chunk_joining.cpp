@@ -2,6 +2,7 @@
 #include "strata/overlay/chunk_joining.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include "base/parallel.hpp"
 #include "strata/overlay/shared_polygons.hpp"
@@ -20,13 +21,17 @@ void pass(PoolStart& start, const PolygonPool& pool) {
 
 /// Lists as long as the faces, facets or pieces that they are of.
 auto lists_of(FaceList& faces) {
-    return std::array{&faces.plane, &faces.layer, &faces.above, &faces.below};
+    return std::tie(faces.plane, faces.layer, faces.above, faces.below);
 }
 auto lists_of(PiecesBelow& below) {
-    return std::array{&below.polygon, &below.node_above};
+    return std::tie(below.polygon, below.node_above);
 }
 auto lists_of(Envelope& envelope) {
-    return std::array{&envelope.plane, &envelope.layer, &envelope.block_beneath};
+    return std::tie(envelope.plane, envelope.layer, envelope.block_beneath);
+}
+template <class Lists, class Do>
+void for_each(const Lists& lists, const Do& act) {
+    std::apply([&](auto&... list) { (act(list), ...); }, lists);
 }
 
 template <class Array>
@@ -50,13 +55,14 @@ bool has_room(Array& array, std::size_t size) {
 template <class Lists>
 bool has_room(PolygonPool& pool, const Lists& lists, const PoolStart& end) {
     return has_room(pool.offsets, end.polygon + 1) && has_room(pool.corners, end.corner) &&
-           std::all_of(lists.begin(), lists.end(),
-                       [&](auto* list) { return has_room(*list, end.polygon); });
+           std::apply([&](auto&... list) { return (has_room(list, end.polygon) && ...); }, lists);
 }
 
-void resize(PolygonPool& pool, const PoolStart& end) {
+template <class Lists>
+void resize(PolygonPool& pool, const Lists& lists, const PoolStart& end) {
     pool.offsets.resize(end.polygon + 1);
     pool.corners.resize(end.corner);
+    for_each(lists, [&](auto& list) { list.resize(end.polygon); });
 }
 
 template <class Element, class From>
@@ -82,8 +88,7 @@ ChunkResult::ChunkResult(const exact::PlanArrangement& geometry, std::size_t fac
         pool->offsets.reserve(kPolygons * facets);
         pool->corners.reserve(kPolygons * kCorners * facets);
     }
-    for (auto* list : lists_of(faces))
-        list->reserve(kPolygons * facets);
+    for_each(lists_of(faces), [&](auto& list) { list.reserve(kPolygons * facets); });
     below.reserve(kPolygons * facets);
 }
 
@@ -111,12 +116,10 @@ ChunkJoining::ChunkJoining(std::vector<std::unique_ptr<ChunkResult>>& chunks, st
     const std::size_t polygons = facets * kPolygonsOfFacet + kSome;
     make_room(construction.node_block, polygons);
     make_room(construction.node_is_thick, polygons);
-    for (auto* list : lists_of(construction.faces))
-        make_room(*list, polygons);
-    for (auto* list : lists_of(below))
-        make_room(*list, polygons);
-    for (auto* list : lists_of(next))
-        make_room(*list, polygons);
+    const auto make_room_for_all = [&](auto& list) { make_room(list, polygons); };
+    for_each(lists_of(construction.faces), make_room_for_all);
+    for_each(lists_of(below), make_room_for_all);
+    for_each(lists_of(next), make_room_for_all);
     make_room(next.face_offsets, polygons);
     make_room(next.face_above, polygons);
 }
@@ -130,7 +133,7 @@ bool ChunkJoining::has_room() {
                             end_.face) &&
            strata::has_room(below_.outlines, lists_of(below_), end_.below) &&
            strata::has_room(next_.outlines, lists_of(next_), end_.facet) &&
-           strata::has_room(next_.face_polygons, std::array{&next_.face_above}, end_.facet_face);
+           strata::has_room(next_.face_polygons, std::tie(next_.face_above), end_.facet_face);
 }
 
 void ChunkJoining::find_offset(std::size_t chunk) {
@@ -147,18 +150,11 @@ void ChunkJoining::put_where_room(std::size_t chunk) {
 void ChunkJoining::finish(int threads, const Progress* progress) {
     construction_.node_block.resize(static_cast<std::size_t>(end_.node));
     construction_.node_is_thick.resize(static_cast<std::size_t>(end_.node));
-    resize(construction_.faces.polygons, end_.face);
-    for (auto* list : lists_of(construction_.faces))
-        list->resize(end_.face.polygon);
-    resize(below_.outlines, end_.below);
-    for (auto* list : lists_of(below_))
-        list->resize(end_.below.polygon);
-    resize(next_.outlines, end_.facet);
-    for (auto* list : lists_of(next_))
-        list->resize(end_.facet.polygon);
+    resize(construction_.faces.polygons, lists_of(construction_.faces), end_.face);
+    resize(below_.outlines, lists_of(below_), end_.below);
+    resize(next_.outlines, lists_of(next_), end_.facet);
     next_.face_offsets.resize(end_.facet.polygon + 1);
-    resize(next_.face_polygons, end_.facet_face);
-    next_.face_above.resize(end_.facet_face.polygon);
+    resize(next_.face_polygons, std::tie(next_.face_above), end_.facet_face);
     parallel_chunks(chunks_.size(), threads, progress, [&](std::size_t c) {
         if (chunks_[c]) put(c);
     });

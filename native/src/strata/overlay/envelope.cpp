@@ -40,7 +40,7 @@ void Construction::count_blocks_from(std::size_t first_node, std::int32_t first_
 Envelope initial_envelope(const SurfaceTiling& tiling, std::int32_t number) {
     Envelope envelope;
     for (std::size_t p = 0; p < tiling.plane.size(); ++p) {
-        const bool surface = tiling.plane[p] >= 0;
+        const bool surface = tiling.plane[p].has_value();
         const PlaneId plane = tiling.plane[p] == kVoid ? kSky : tiling.plane[p];
         envelope.add_facet(tiling.polygons[p], plane, surface ? number : -1, surface ? number : -1);
         if (surface) envelope.add_face(tiling.polygons[p], kOutsideCell);
@@ -53,7 +53,7 @@ std::array<double, 3> lowest_position(const exact::PlanArrangement& geometry,
     LocalArrangement scope(geometry);
     std::array<double, 3> lowest{0, 0, HUGE_VAL};
     for (std::size_t f = 0; f < envelope.size(); ++f) {
-        if (envelope.plane[f] < 0) continue;
+        if (!envelope.plane[f].has_value()) continue;
         for (const Corner& corner : envelope.outlines[f]) {
             const double z = scope.rounded_height(envelope.plane[f], corner.point);
             if (z >= lowest[2]) continue;

@@ -33,7 +33,7 @@ void FacetClipper::begin(PolygonView facet) {
 }
 
 [[gnu::always_inline]] inline Sides FacetClipper::sides_of_point(PointId point) {
-    KnownPoint& known = points_[static_cast<std::size_t>(point) % kKnown];
+    KnownPoint& known = points_[index(point) % kKnown];
     if (known.point != point || known.facet != number_)
         known = {point, number_, sides_of(scope_, lines_, point)};
     return known.sides;
@@ -41,14 +41,14 @@ void FacetClipper::begin(PolygonView facet) {
 
 [[gnu::always_inline]] inline FacetClipper::KnownLine& FacetClipper::known_line(PolygonView window,
                                                                                 std::size_t edge) {
-    const LineId line = exact::line_of(window[edge].line);
-    KnownLine& known = known_lines_[static_cast<std::size_t>(line) % kKnown];
+    const LineId line = window[edge].line.id();
+    KnownLine& known = known_lines_[index(line) % kKnown];
     if (known.line != line || known.facet != number_) {
         const exact::DirectedEdge along = edge_of(window, edge);
         const Sides sides = sides_of(scope_, along, corners_);
         known.line = line;
         known.facet = number_;
-        known.sides = exact::is_reversed(along.line) ? sides.turned() : sides;
+        known.sides = along.line.is_reversed() ? sides.turned() : sides;
         known.crossings = 0;
     }
     return known;
@@ -79,8 +79,7 @@ bool FacetClipper::compare(PolygonView window) {
     if (reached != all) return false;
     for (std::size_t j = 0; j < window.size(); ++j) {
         KnownLine& known = known_line(window, j);
-        const Sides corners =
-            exact::is_reversed(window[j].line) ? known.sides.turned() : known.sides;
+        const Sides corners = window[j].line.is_reversed() ? known.sides.turned() : known.sides;
         if (corners.left() == 0) return false;
         beside &= corners.either();
         edges_[j] = {&known, corners};
@@ -91,12 +90,11 @@ bool FacetClipper::compare(PolygonView window) {
 
 PointId FacetClipper::crossing(std::size_t i, std::size_t j, PolygonView window) {
     KnownLine& known = *edges_[j].known;
-    const LineId line = exact::line_of(window[j].line);
+    const LineId line = window[j].line.id();
     // two lines of the window may have the same slot
-    if (known.line != line)
-        return scope_.crossing_between_ends(exact::line_of(facet_[i].line), line);
+    if (known.line != line) return scope_.crossing_between_ends(facet_[i].line.id(), line);
     if (!bit(known.crossings, i)) {
-        known.crossing[i] = scope_.crossing_between_ends(exact::line_of(facet_[i].line), line);
+        known.crossing[i] = scope_.crossing_between_ends(facet_[i].line.id(), line);
         known.crossings |= 1U << i;
     }
     return known.crossing[i];

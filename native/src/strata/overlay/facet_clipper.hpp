@@ -33,12 +33,12 @@ private:
     /// Known things are looked up in the slot that their number gives; who comes later stays.
     static constexpr std::size_t kKnown = 64;
     struct KnownPoint {
-        PointId point = -1;
+        PointId point = kNone;
         std::uint32_t facet = 0;  ///< of which this is known
         exact::Sides sides;       ///< of the facet's lines
     };
     struct KnownLine {
-        LineId line = -1;
+        LineId line = kNone;
         std::uint32_t facet = 0;
         exact::Sides sides;           ///< of the facet's corners, seen along the line
         std::uint32_t crossings = 0;  ///< a bit for each edge whose crossing is known

@@ -105,12 +105,12 @@ void PieceFinder::add_all(std::span<const std::int32_t> polygons, const Facet& f
 const Pieces& PieceFinder::find(PolygonView outline, PlaneId plane) {
     const Facet facet = facet_of(outline, plane);
     if (!begin(facet)) add_all({candidates_.begin(), candidates_.end()}, facet);
-    assert(plane < 0 || tile(scope_, pieces_, outline));
+    assert(!plane.has_value() || tile(scope_, pieces_, outline));
     return pieces_;
 }
 
 const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
-    if (plane < 0) return find(outline, plane);
+    if (!plane.has_value()) return find(outline, plane);
     const Facet facet = facet_of(outline, plane);
     if (begin(facet)) return pieces_;
     // for as long as all is higher, it is only looked which polygons meet the facet
@@ -136,7 +136,7 @@ const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
 /// floating point tell.
 bool PieceFinder::is_higher(std::int32_t polygon, const Facet& facet) const {
     const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
-    if (surface < 0) return false;
+    if (!surface.has_value()) return false;
     const HeightRange heights = layer_.heights[static_cast<std::size_t>(polygon)];
     if (heights.low >= facet.heights.high) return true;
     if (heights.high < facet.heights.high) return false;  // most that are not higher
@@ -150,9 +150,9 @@ bool PieceFinder::is_higher(std::int32_t polygon, const Facet& facet) const {
 void PieceFinder::add_common(std::int32_t polygon, PolygonView common, const Facet& facet) {
     if (common.empty()) return;
     const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
-    if (surface < 0) {
+    if (!surface.has_value()) {
         add(polygon, Side::kAbsent, common);
-    } else if (facet.plane < 0) {
+    } else if (!facet.plane.has_value()) {
         add(polygon, facet.plane == kSky ? Side::kBelow : Side::kNotBelow, common);
     } else {
         // both are parts of triangles, so most are sorted by the heights of the corners
@@ -210,7 +210,7 @@ void PieceFinder::classify(std::int32_t polygon, PlaneId facet_plane, PolygonVie
         return;
     }
     const DirectedLine above = scope_.trace(surface, facet_plane);
-    add_touching(polygon, clipper_.cut(common, exact::opposite(above)), surface, facet_plane);
+    add_touching(polygon, clipper_.cut(common, above.reversed()), surface, facet_plane);
     add(polygon, Side::kNotBelow, clipper_.cut(common, above));
 }
 

@@ -67,7 +67,8 @@ private:
         HeightRange heights;
     };
     Facet facet_of(PolygonView outline, PlaneId plane) const {
-        return {outline, plane, plane < 0 ? HeightRange{} : heights_of(scope_.shared(), plane)};
+        return {outline, plane,
+                !plane.has_value() ? HeightRange{} : heights_of(scope_.shared(), plane)};
     }
     PolygonView outline_of(std::int32_t polygon) const {
         return layer_.polygons[static_cast<std::size_t>(polygon)];

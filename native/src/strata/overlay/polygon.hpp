@@ -88,7 +88,7 @@ void keep_left(LocalArrangement& scope, const Corners& corners, DirectedLine lin
             if (here == 0 && there < 0) result.back().line = line;
         }
         if (here * there < 0) {
-            const PointId at = scope.crossing(exact::line_of(corner.line), exact::line_of(line));
+            const PointId at = scope.crossing(corner.line.id(), line.id());
             const DirectedLine leaving = here > 0 ? line : corner.line;
             auto& made = result.emplace_back();
             made.point = at;

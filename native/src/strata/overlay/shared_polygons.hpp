@@ -9,7 +9,7 @@ namespace realmodel::strata {
 inline void mark_used(LocalArrangement& scope, const PolygonPool& pool) {
     for (const Corner& corner : pool.corners) {
         scope.mark_point_used(corner.point);
-        scope.mark_line_used(exact::line_of(corner.line));
+        scope.mark_line_used(corner.line.id());
     }
 }
 

@@ -33,8 +33,8 @@ struct WholeTriangles {
 
     explicit WholeTriangles(std::size_t planes)
         : face(planes), is_exact(planes), is_in_parts(planes), is_added(planes) {}
-    WholeFace& of(PlaneId plane) { return face[static_cast<std::size_t>(plane)]; }
-    const WholeFace& of(PlaneId plane) const { return face[static_cast<std::size_t>(plane)]; }
+    WholeFace& of(PlaneId plane) { return face[index(plane)]; }
+    const WholeFace& of(PlaneId plane) const { return face[index(plane)]; }
 };
 
 /// Facets that bounds sorted above a surface: the nodes beneath the triangles come first, one after

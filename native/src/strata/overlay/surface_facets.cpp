@@ -68,8 +68,9 @@ private:
 void resize(Envelope& envelope, const EnvelopeSize& size) {
     envelope.outlines.offsets.resize(size.facets + 1);
     envelope.outlines.corners.resize(size.corners);
-    for (auto* list : {&envelope.plane, &envelope.layer, &envelope.block_beneath})
-        list->resize(size.facets);
+    envelope.plane.resize(size.facets);
+    envelope.layer.resize(size.facets);
+    envelope.block_beneath.resize(size.facets);
     envelope.face_offsets.resize(size.facets + 1);
     envelope.face_polygons.offsets.resize(size.faces + 1);
     envelope.face_polygons.corners.resize(size.face_corners);

@@ -40,7 +40,7 @@ void WholeTriangleFilter::locate(const FacetView& facets, bool with_heights) {
                             const PlaneId plane = list.plane(i);
                             if (list.is_whole(i)) return located(bounds_of(geometry_, plane));
                             TriangleBounds bounds{};
-                            if (plane >= 0) bounds = bounds_of(geometry_, plane);
+                            if (plane.has_value()) bounds = bounds_of(geometry_, plane);
                             bounds.box = box_of(scope, list.parts[i - list.whole.size()]);
                             return located(bounds);
                         };
@@ -80,7 +80,7 @@ void WholeTriangleFilter::measure_facets(const FacetView& facets) {
     facet_tiles_.assign(tiles().size(), {});
     for (std::size_t f = 0; f < facets.size(); ++f) {
         poll(progress_, f);
-        if (facets.plane(f) < 0) continue;
+        if (!facets.plane(f).has_value()) continue;
         const auto& at = facet_at[f];
         const std::int32_t block_beneath = facets.block(f);
         tiles().for_each(at.span, [&](std::size_t tile) {
@@ -102,9 +102,9 @@ void WholeTriangleFilter::compare(const FacetView& facets) {
     if (tiling_->is_raised) {
         is_same_.resize(static_cast<std::size_t>(geometry_.plane_count()));
         for (const PlaneId plane : facets.whole)
-            is_same_[static_cast<std::size_t>(plane)] = 1;
+            is_same_[index(plane)] = 1;
         for (const PlaneId plane : tiling_->whole)
-            is_same_[static_cast<std::size_t>(plane)] |= 2;
+            is_same_[index(plane)] |= 2;
     }
     classify_surface(facets);
     classify_facets(facets);
@@ -115,7 +115,7 @@ void WholeTriangleFilter::classify_surface(const FacetView& facets) {
     block.assign(tiling_->size(), kSeveral);
     const auto classify = [&](std::size_t t) {
         const auto& [b, span] = surface_at[t];
-        if (!is_same_.empty() && is_same_[static_cast<std::size_t>(tiling_->whole[t])] == 3) {
+        if (!is_same_.empty() && is_same_[index(tiling_->whole[t])] == 3) {
             surface[t] = Standing::kAbove;
             return;
         }
@@ -164,8 +164,8 @@ void WholeTriangleFilter::compare_surface(const FacetView& facets,
                                           const std::vector<std::uint8_t>& is_wanted) {
     const spatial::TileBins bins(
         tiles(), is_wanted, facets.size(),
-        [&](std::size_t f) { return facets.plane(f) < 0 ? nullptr : &facet_at[f].span; }, threads_,
-        progress_);
+        [&](std::size_t f) { return !facets.plane(f).has_value() ? nullptr : &facet_at[f].span; },
+        threads_, progress_);
     is_unclear_.assign(tiles().size(), 0);
     parallel_ranges(tiling_->size(), kChunk, threads_, progress_,
                     [&](std::size_t begin, std::size_t end) {
@@ -235,9 +235,8 @@ void WholeTriangleFilter::classify_facets(const FacetView& facets) {
     };
     const auto classify = [&](std::size_t f) {
         const PlaneId plane = facets.plane(f);
-        if (plane < 0) return Standing::kExact;
-        if (facets.is_whole(f) && !is_same_.empty() &&
-            is_same_[static_cast<std::size_t>(plane)] == 3)
+        if (!plane.has_value()) return Standing::kExact;
+        if (facets.is_whole(f) && !is_same_.empty() && is_same_[index(plane)] == 3)
             return Standing::kBelow;
         const TileSpan& span = facet_at[f].span;
         if (!borders_.near(span)) return by_tiles(facet_at[f]);
@@ -306,7 +305,7 @@ void WholeTriangleFilter::cover(const FacetView& facets) {
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t f = begin; f < end; ++f) {
                             const TileSpan& span = facet_at[f].span;
-                            if (facets.plane(f) < 0 || borders_.near(span)) continue;
+                            if (!facets.plane(f).has_value() || borders_.near(span)) continue;
                             bool any_empty = false, any_surface = false;
                             tiles().for_each(span, [&](std::size_t tile) {
                                 (is_empty[tile] != 0 ? any_empty : any_surface) = true;
@@ -323,7 +322,7 @@ SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const T
     const std::size_t triangles = tiling.whole.size();
     std::vector<std::uint8_t> is_needed(tiles().size(), 0);
     for (std::size_t f = 0; f < facets.size(); ++f) {
-        if (facet[f] != Standing::kExact || facets.plane(f) < 0) continue;
+        if (facet[f] != Standing::kExact || !facets.plane(f).has_value()) continue;
         tiles().for_each(facet_at[f].span, [&](std::size_t tile) { is_needed[tile] = 1; });
     }
     polygon.assign(tiling.size(), -1);
@@ -348,8 +347,8 @@ SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const T
         [&](std::size_t i) { return geometry.plane(part.plane[i]).plan; },
         [&](std::size_t i, std::size_t e) {
             const PlaneId other = links.of(part.plane[i])[e];
-            if (tiling.is_raised || other < 0 || other > part.plane[i]) return kNoOutline;
-            return polygon[static_cast<std::size_t>(other - tiling.whole.front())];
+            if (tiling.is_raised || other == kNone || other > part.plane[i]) return kNoOutline;
+            return polygon[index(other - tiling.whole.front())];
         },
         [](std::size_t) { return PolygonView(); }, part.polygons, progress_);
     for (std::size_t i = 0; i < tiling.part_plane.size(); ++i) {

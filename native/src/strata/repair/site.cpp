@@ -53,7 +53,7 @@ std::vector<PlanTriangle> enter_region(PlanArrangement& geometry, const RegionVi
 
 Frame enter_frame(PlanArrangement& geometry) {
     std::array<double, 2> low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-    for (VertexId v = 0; v < static_cast<VertexId>(geometry.point_count()); ++v) {
+    for (VertexId v{0}; index(v) < geometry.point_count(); ++v) {
         const std::array<double, 2> p{geometry.point(v).x, geometry.point(v).y};
         for (std::size_t axis = 0; axis < 2; ++axis) {
             low[axis] = std::min(low[axis], p[axis]);
@@ -106,7 +106,7 @@ void enter_base(Site& site, EnteredRock& rock) {
     for (std::size_t i = 0; i < 3; ++i)
         corner[i] = site.geometry.add_space_vertex(site.frame[i], *rock.base_elevation);
     rock.base = site.geometry.add_plane(corner);
-    site.surface_of_plane.resize(static_cast<std::size_t>(site.geometry.plane_count()), kBase);
+    site.surface_of_plane.resize(site.geometry.plane_count(), kBase);
 }
 
 }  // namespace

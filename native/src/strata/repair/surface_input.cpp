@@ -17,8 +17,6 @@ using exact::PlanArrangement;
 
 namespace {
 
-constexpr exact::SpaceId kNotEntered = -1;
-
 constexpr std::size_t kRange = 1 << 12;  // looked at at a time
 
 std::array<double, 3> vertex_of(const SurfaceView& surface, std::int64_t v) {
@@ -56,7 +54,11 @@ void check_corners(const SurfaceView& surface, int index, std::size_t begin, std
 
 /// What the triangles of a range are used as, and which of them have no area.
 struct RangeOfTriangles {
-    std::vector<UsedTriangle> used;  ///< with numbers of the surface's vertices
+    struct Used {
+        std::int64_t number;
+        std::array<std::int32_t, 3> vertex;  ///< of the surface, counter-clockwise in plan
+    };
+    std::vector<Used> used;
     std::vector<std::int64_t> flat;
 };
 
@@ -91,12 +93,12 @@ RangeOfTriangles triangles_with_area(const SurfaceView& surface, int index,
         if (turn < 0) std::swap(v[1], v[2]);
         for (const std::int32_t i : v)
             mark(is_used[static_cast<std::size_t>(i)]);
-        found.used.push_back({number, {v[0], v[1], v[2]}});
+        found.used.push_back({number, v});
     }
     return found;
 }
 
-/// What the vertices of a surface were entered as, kNotEntered where no triangle uses them.
+/// What the vertices of a surface were entered as, none where no triangle uses them.
 struct EnteredVertices {
     std::vector<exact::SpaceId> space;
     std::vector<exact::VertexId> plan;
@@ -113,8 +115,8 @@ EnteredVertices enter_vertices(PlanArrangement& geometry, const SurfaceView& sur
     };
     std::array<Entering, 2 * kAhead> ahead{};  // of vertices, in turn
     const std::size_t count = is_used.size();
-    EnteredVertices entered{std::vector<exact::SpaceId>(count, kNotEntered),
-                            std::vector<exact::VertexId>(count, kNotEntered)};
+    EnteredVertices entered{std::vector<exact::SpaceId>(count, kNone),
+                            std::vector<exact::VertexId>(count, kNone)};
     const auto is_to_enter = [&](std::size_t round, std::size_t behind) {
         return round >= behind && round - behind < count && is_used[round - behind] != 0;
     };
@@ -134,7 +136,7 @@ EnteredVertices enter_vertices(PlanArrangement& geometry, const SurfaceView& sur
         if (is_to_enter(round, 0)) {
             const auto [x, y, z] = vertex_of(surface, static_cast<std::int64_t>(round));
             Entering& e = ahead[round % ahead.size()];
-            e = {snapping.x(x), snapping.y(y), z, -1};
+            e = {snapping.x(x), snapping.y(y), z, kNone};
             geometry.prefetch_vertex(e.x, e.y);
         }
     }
@@ -226,9 +228,9 @@ private:
         Array<PlanTriangle> corners(result_.triangles.size());
         PlanTriangle* next = corners.begin();
         for (const RangeOfTriangles& range : ranges_) {
-            for (const UsedTriangle& triangle : range.used) {
+            for (const RangeOfTriangles::Used& triangle : range.used) {
                 for (std::size_t i = 0; i < 3; ++i)
-                    (*next)[i] = entered_.plan[static_cast<std::size_t>(triangle.corner[i])];
+                    (*next)[i] = entered_.plan[index(triangle.vertex[i])];
                 ++next;
             }
         }
@@ -237,10 +239,11 @@ private:
     void use(std::size_t range) {
         std::transform(ranges_[range].used.begin(), ranges_[range].used.end(),
                        result_.triangles.begin() + static_cast<std::ptrdiff_t>(first_[range]),
-                       [&](UsedTriangle triangle) {
-                           for (exact::SpaceId& corner : triangle.corner)
-                               corner = entered_.space[static_cast<std::size_t>(corner)];
-                           return triangle;
+                       [&](const RangeOfTriangles::Used& triangle) {
+                           UsedTriangle used{triangle.number, {}};
+                           for (std::size_t i = 0; i < 3; ++i)
+                               used.corner[i] = entered_.space[index(triangle.vertex[i])];
+                           return used;
                        });
     }
 

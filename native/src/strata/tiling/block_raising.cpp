@@ -55,7 +55,7 @@ BlockTiling BlockRaising::raise(const BlockTiling& surface, const BlockBound& bo
     const SurfaceTiling exact =
         raise_tiling(geometry_, part, exact_facets(bound.tiling), given, threads_, progress_);
     for (std::size_t p = 0; p < exact.plane.size(); ++p) {
-        if (exact.plane[p] >= 0) raised.add_part(exact.polygons[p], exact.plane[p]);
+        if (exact.plane[p].has_value()) raised.add_part(exact.polygons[p], exact.plane[p]);
     }
     return raised;
 }

@@ -15,9 +15,9 @@ namespace {
 
 /// Whether neighbors have each other.
 [[maybe_unused]] bool are_symmetric(const TriangleLinks& links, PlaneId first) {
-    for (std::size_t p = static_cast<std::size_t>(first); p < links.neighbor.size(); ++p) {
+    for (std::size_t p = index(first); p < links.neighbor.size(); ++p) {
         for (const PlaneId n : links.neighbor[p]) {
-            if (n < 0) continue;
+            if (n == kNone) continue;
             const auto& back = links.of(n);
             if (std::find(back.begin(), back.end(), static_cast<PlaneId>(p)) == back.end())
                 return false;
@@ -36,9 +36,8 @@ BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedT
         make_surface_tiling(geometry, triangles, plan, {}, number, threads, progress);  // refuses
     const PlaneId first = make_planes(geometry, triangles, threads, progress);
     assert(plan.links.neighbor.size() == triangles.size());
-    links.neighbor.resize(static_cast<std::size_t>(first), {-1, -1, -1});  // planes of bases
-    links.neighbor.insert(links.neighbor.end(), plan.links.neighbor.begin(),
-                          plan.links.neighbor.end());
+    links.neighbor.resize(index(first), {kNone, kNone, kNone});  // planes of bases
+    links.neighbor.resize(index(first) + triangles.size());
     BlockTiling tiling;
     tiling.whole.resize(triangles.size());
     std::iota(tiling.whole.begin(), tiling.whole.end(), first);
@@ -49,12 +48,14 @@ BlockTiling make_block_tiling(PlanArrangement& geometry, const std::vector<UsedT
             for (std::size_t t = begin; t < end; ++t) {
                 const PlaneId plane = tiling.whole[t];
                 const PlanTriangle& corner = geometry.plane(plane).plan;
-                auto& neighbors = links.neighbor[static_cast<std::size_t>(plane)];
+                auto& neighbors = links.neighbor[index(plane)];
                 for (std::size_t i = 0; i < 3; ++i) {
-                    PlaneId& n = neighbors[i];
-                    n = n < 0 ? -1 : n + first;
-                    if (n >= 0 && meet_in_height(geometry, plane, i, n)) continue;
-                    n = -1;
+                    const std::int32_t n = plan.links.neighbor[t][i];
+                    if (n >= 0 && meet_in_height(geometry, plane, i, first + n)) {
+                        neighbors[i] = first + n;
+                        continue;
+                    }
+                    neighbors[i] = kNone;
                     border[begin / kTriangles].emplace_back(corner[i], corner[(i + 1) % 3]);
                 }
             }

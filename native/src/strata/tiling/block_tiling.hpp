@@ -39,10 +39,8 @@ struct TriangleLinks {
     /// The edges across which there is none, and borders of regions.
     std::vector<std::pair<exact::VertexId, exact::VertexId>> border;
 
-    bool has(PlaneId plane) const { return static_cast<std::size_t>(plane) < neighbor.size(); }
-    const std::array<PlaneId, 3>& of(PlaneId plane) const {
-        return neighbor[static_cast<std::size_t>(plane)];
-    }
+    bool has(PlaneId plane) const { return index(plane) < neighbor.size(); }
+    const std::array<PlaneId, 3>& of(PlaneId plane) const { return neighbor[index(plane)]; }
 };
 
 /// A checked surface from its linked triangles; its planes are made, and their links added.

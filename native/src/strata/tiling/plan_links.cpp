@@ -25,7 +25,8 @@ namespace {
 using Pass = std::uint64_t;
 
 Pass pass_of(VertexId high, std::size_t half_edge, bool upward) {
-    return static_cast<Pass>(high) << 33 | static_cast<Pass>(half_edge) << 1 | (upward ? 1 : 0);
+    return static_cast<Pass>(high.number()) << 33 | static_cast<Pass>(half_edge) << 1 |
+           (upward ? 1 : 0);
 }
 VertexId high_of(Pass pass) {
     return static_cast<VertexId>(pass >> 33);
@@ -38,10 +39,8 @@ bool is_upward(Pass pass) {
 }
 
 struct VertexRange {
-    VertexId first = std::numeric_limits<VertexId>::max(), last = -1;
-    std::size_t size() const {
-        return last < first ? 0 : static_cast<std::size_t>(last - first + 1);
-    }
+    VertexId first{INT32_MAX}, last = kNone;
+    std::size_t size() const { return last < first ? 0 : index(last - first + 1); }
 };
 
 }  // namespace
@@ -59,7 +58,7 @@ PlanLinks link_triangles(std::span<const PlanTriangle> triangles, const Progress
             range.last = std::max(range.last, v);
         }
     }
-    const auto row = [&](VertexId v) { return static_cast<std::size_t>(v - range.first); };
+    const auto row = [&](VertexId v) { return index(v - range.first); };
     auto passes = bucketize<Pass>(range.size(), [&](const auto& put) {  // by the lower vertex
         for (std::size_t t = 0; t < count; ++t) {
             poll(progress, t);
@@ -84,8 +83,7 @@ PlanLinks link_triangles(std::span<const PlanTriangle> triangles, const Progress
                 links.neighbor[a / 3][a % 3] = static_cast<std::int32_t>(b / 3);
                 links.neighbor[b / 3][b % 3] = static_cast<std::int32_t>(a / 3);
             } else if (net != 0) {
-                links.border.push_back(
-                    {range.first + static_cast<VertexId>(r), high_of(*first), net});
+                links.border.push_back({range.first + r, high_of(*first), net});
             }
             first = last;
         }

@@ -77,8 +77,9 @@ SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surfa
             const PlaneId plane = bound.plane[f];
             const Pieces& pieces = finder.find(bound.polygons[f], plane);
             const bool all_below =
-                plane >= 0 && std::all_of(pieces.list.begin(), pieces.list.end(),
-                                          [](const Piece& p) { return p.side == Side::kBelow; });
+                plane.has_value() &&
+                std::all_of(pieces.list.begin(), pieces.list.end(),
+                            [](const Piece& p) { return p.side == Side::kBelow; });
             if (all_below) out.add(bound.polygons[f], plane, -1);
             for (const Piece& piece : pieces.list) {
                 const auto polygon = static_cast<std::size_t>(piece.polygon);
@@ -94,7 +95,7 @@ SurfaceTiling raise_tiling(PlanArrangement& geometry, const SurfaceTiling& surfa
         });
     SurfaceTiling raised;
     for (std::size_t p = 0; p < surface.plane.size(); ++p) {
-        if (is_given(p) || (surface.plane[p] >= 0 && whole[p] == 0)) continue;
+        if (is_given(p) || (surface.plane[p].has_value() && whole[p] == 0)) continue;
         raised.polygons.add(surface.polygons[p]);
         raised.plane.push_back(surface.plane[p]);
     }
@@ -146,7 +147,7 @@ SurfaceTiling TilingRaising::cover(const SurfaceTiling& older, const SurfaceTili
     SurfaceTiling covered;
     for (const SurfaceTiling* part : {&newer, &rest}) {
         for (std::size_t p = 0; p < part->plane.size(); ++p) {
-            if (part == &newer && part->plane[p] < 0) continue;
+            if (part == &newer && !part->plane[p].has_value()) continue;
             covered.polygons.add(part->polygons[p]);
             covered.plane.push_back(part->plane[p]);
         }

@@ -125,7 +125,7 @@ void SurfaceTiling::index(const PlanArrangement& geometry, int threads, const Pr
     parallel_ranges(
         plane.size(), kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
             for (std::size_t p = begin; p < end; ++p)
-                heights[p] = plane[p] < 0 ? HeightRange{} : heights_of(geometry, plane[p]);
+                heights[p] = !plane[p].has_value() ? HeightRange{} : heights_of(geometry, plane[p]);
         });
 }
 
@@ -151,11 +151,11 @@ std::vector<SurfacePlan> plan_surfaces(const PlanArrangement& geometry,
 PlaneId make_planes(PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
                     int threads, const Progress* progress) {
     const PlaneId first = geometry.make_planes(triangles.size());
-    parallel_ranges(
-        triangles.size(), kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t t = begin; t < end; ++t)
-                geometry.set_plane(first + static_cast<PlaneId>(t), triangles[t].corner);
-        });
+    parallel_ranges(triangles.size(), kRange, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t t = begin; t < end; ++t)
+                            geometry.set_plane(first + t, triangles[t].corner);
+                    });
     return first;
 }
 

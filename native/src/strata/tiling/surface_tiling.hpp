@@ -15,9 +15,9 @@ namespace realmodel::strata {
 
 /// Planes that are none: where a layer has no surface, what lies above all surfaces, and what lies
 /// outside the region.
-inline constexpr PlaneId kVoid = -1;
-inline constexpr PlaneId kSky = -2;
-inline constexpr PlaneId kOutside = -3;
+inline constexpr PlaneId kVoid{-1};
+inline constexpr PlaneId kSky{-2};
+inline constexpr PlaneId kOutside{-3};
 
 /// Heights between which a triangle lies.
 struct HeightRange {

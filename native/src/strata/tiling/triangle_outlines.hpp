@@ -22,7 +22,7 @@ void add_outlines(exact::PlanArrangement& geometry, std::size_t count, const Pla
                   const Earlier& earlier, const Similar& similar, PolygonPool& pool,
                   const Progress* progress) {
     constexpr std::size_t kAhead = 8;
-    constexpr DirectedLine kUnknown = -1;
+    const DirectedLine unknown{LineId(kNone)};
     const std::size_t polygons = pool.size(), corners = pool.corners.size();
     pool.corners.resize(corners + 3 * count);
     pool.offsets.resize(polygons + count + 1);
@@ -35,7 +35,7 @@ void add_outlines(exact::PlanArrangement& geometry, std::size_t count, const Pla
             const bool same = like.size() == 3 && like[0].point == v[0] && like[1].point == v[1] &&
                               like[2].point == v[2];
             for (std::size_t e = 0; e < 3; ++e) {
-                outline(ahead)[e] = {v[e], same ? like[e].line : kUnknown};
+                outline(ahead)[e] = {v[e], same ? like[e].line : unknown};
                 if (!same && earlier(ahead, e) == kNoOutline)
                     geometry.prefetch_edge(v[e], v[(e + 1) % 3]);
             }
@@ -46,18 +46,18 @@ void add_outlines(exact::PlanArrangement& geometry, std::size_t count, const Pla
         const std::size_t i = ahead - kAhead;
         Corner* const own = outline(i);
         for (std::size_t e = 0; e < 3; ++e) {
-            if (own[e].line != kUnknown) continue;
+            if (own[e].line != unknown) continue;
             const PointId to = own[(e + 1) % 3].point;
             const std::int32_t before = earlier(i, e);
             if (before == kNoOutline) {
-                own[e].line = geometry.add_edge(own[e].point, to);
+                own[e].line = geometry.add_edge(geometry.vertex(own[e].point), geometry.vertex(to));
                 continue;
             }
             assert(static_cast<std::size_t>(before) < i);
             const Corner* other = outline(static_cast<std::size_t>(before));
             while (other->point != to)
                 ++other;
-            own[e].line = exact::opposite(other->line);
+            own[e].line = other->line.reversed();
         }
     }
 }

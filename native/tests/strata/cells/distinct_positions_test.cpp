@@ -24,15 +24,16 @@ protected:
         std::array<Corner, 3> corners;
         for (std::int32_t i = 0; i < 3; ++i) {
             const auto p = static_cast<std::size_t>(i);
-            corners[p] = {i, 0};
-            places_.of_point[p] = places_.representative[p] = i;
+            corners[p] = {PointId(i), DirectedLine(LineId(0))};
+            places_.of_point[p] = i;
+            places_.representative[p] = PointId(i);
             places_.position[p] = at[p];
             loops_.vertex_offsets[p] = i;
             loops_.positions.push_back({at[p][0], at[p][1], 0.0});
         }
         loops_.vertex_offsets[3] = 3;
         FaceList faces;
-        faces.add(corners, 0, 0, kOutsideCell, 0);
+        faces.add(corners, PlaneId(0), 0, kOutsideCell, 0);
         return make_distinct(geometry_, faces, places_, loops_, 1, nullptr);
     }
 

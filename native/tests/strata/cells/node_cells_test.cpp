@@ -23,7 +23,8 @@ TEST(NodeCells, AreJoinedAcrossEdgesOfWholeTriangles) {
     for (const std::int32_t block : {1, 1, 0, 0})
         made.add_node(block, true);
     TriangleLinks links;
-    links.neighbor = {{1, -1, -1}, {0, 2, -1}, {1, -1, -1}};
+    links.neighbor = {
+        {PlaneId(1), kNone, kNone}, {PlaneId(0), PlaneId(2), kNone}, {PlaneId(1), kNone, kNone}};
     WholeTriangles wholes(3);
     wholes.face[0] = {0, 2, 1};
     wholes.face[1] = {1, 3, 1};

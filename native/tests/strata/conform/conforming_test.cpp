@@ -75,8 +75,8 @@ TEST(PlanVertices, OnePositionIsOneVertexHoweverOftenItWasFound) {
     ASSERT_NE(extra[0].point, extra[1].point);
     const PlanVertices found = Conformed(small, extra).vertices;
     EXPECT_EQ(found.size(), small.geometry.point_count() - 1);
-    const auto vertex = found.of_point[static_cast<std::size_t>(extra[0].point)];
-    EXPECT_EQ(found.of_point[static_cast<std::size_t>(extra[1].point)], vertex);
+    const auto vertex = found.of_point[index(extra[0].point)];
+    EXPECT_EQ(found.of_point[index(extra[1].point)], vertex);
     EXPECT_EQ(found.representative[static_cast<std::size_t>(vertex)], extra[0].point);
     EXPECT_TRUE(found.coincident.empty());
 }
@@ -86,7 +86,7 @@ TEST(CollinearLines, LinesThroughTheSamePointsAreOne) {
     small.add_t_junction();
     const CollinearLines found = join_lines(small.geometry, small.faces, 1, nullptr);
     const auto of = [&](std::size_t from, std::size_t to) {
-        return found.of_line[static_cast<std::size_t>(small.line(from, to))];
+        return found.of_line[index(small.line(from, to))];
     };
     EXPECT_EQ(of(0, 1), of(0, 2));
     EXPECT_EQ(of(1, 2), of(0, 2));

@@ -58,7 +58,7 @@ struct SmallFaces {
     }
 
     LineId line(std::size_t from, std::size_t to) {
-        return exact::line_of(geometry.add_edge(vertex[from], vertex[to]));
+        return geometry.add_edge(vertex[from], vertex[to]).id();
     }
 
     exact::PlanArrangement geometry;

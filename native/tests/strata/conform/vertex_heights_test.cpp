@@ -38,11 +38,18 @@ std::vector<PlaneId> random_planes(PlanArrangement& geometry, std::mt19937& rand
     return planes;
 }
 
+std::vector<std::int32_t> codes_of(const std::vector<PlaneId>& planes) {
+    std::vector<std::int32_t> codes;
+    for (const PlaneId plane : planes)
+        codes.push_back(code_of(plane, false));
+    return codes;
+}
+
 /// Compares ranks and heights with what LocalArrangement says of each pair of planes.
 void check(const PlanArrangement& geometry, LocalArrangement& scope, PointId point,
            const std::vector<PlaneId>& planes) {
     VertexHeights heights_there(geometry);
-    std::vector<std::int32_t> ranks = planes;
+    std::vector<std::int32_t> ranks = codes_of(planes);
     heights_there.find(point, ranks);
     const auto& heights = heights_there.heights();
     EXPECT_TRUE(std::is_sorted(heights.begin(), heights.end()));
@@ -62,9 +69,9 @@ void check(const PlanArrangement& geometry, LocalArrangement& scope, PointId poi
 void check_tentative(const PlanArrangement& geometry, LocalArrangement& scope, PointId point,
                      const std::vector<PlaneId>& planes) {
     VertexHeights heights_there(geometry);
-    std::vector<std::int32_t> ranks = planes;
+    std::vector<std::int32_t> ranks = codes_of(planes);
     for (std::size_t i = 1; i < ranks.size(); i += 2)
-        ranks[i] = ~ranks[i];
+        ranks[i] = code_of(planes[i], true);
     heights_there.find(point, ranks);
     const auto& heights = heights_there.heights();
     EXPECT_TRUE(std::is_sorted(heights.begin(), heights.end()));
@@ -95,10 +102,10 @@ TEST_P(VertexHeightsOf, AgreesWithEachPairOfPlanes) {
         for (int i = 0; i < 8; ++i) {
             const auto a = static_cast<VertexId>(random() % 4),
                        b = static_cast<VertexId>(random() % 4);
-            if (a != b) edges.push_back(exact::line_of(geometry.add_edge(a, b)));
+            if (a != b) edges.push_back(geometry.add_edge(a, b).id());
         }
         LocalArrangement scope(geometry);
-        for (VertexId v = 0; v < geometry.vertex_count(); ++v) {
+        for (VertexId v{0}; index(v) < geometry.vertex_count(); ++v) {
             check(geometry, scope, v, planes);
             check_tentative(geometry, scope, v, planes);
         }
@@ -115,7 +122,7 @@ TEST_P(VertexHeightsOf, AgreesWithEachPairOfPlanes) {
                     // clearly not parallel
                     const double turn = f.a * (p.gy - q.gy) - f.b * (p.gx - q.gx);
                     if (std::abs(turn) < 1e-9) continue;
-                    points.push_back(maker.crossing(edge, exact::line_of(maker.trace(a, b))));
+                    points.push_back(maker.crossing(edge, maker.trace(a, b).id()));
                 }
             }
         }
@@ -146,12 +153,11 @@ TEST(VertexHeights, WhatIsNearCounts) {
     geometry.freeze_vertices();
     std::vector<std::int32_t> ranks;
     for (const auto& corner : corners)
-        ranks.push_back(~geometry.add_plane(corner));
-    ranks[0] = ~ranks[0];
+        ranks.push_back(code_of(geometry.add_plane(corner), !ranks.empty()));
     ASSERT_LT(0x1p-30, geometry.clear_height(0));
     ASSERT_GT(0x1.8p-29, geometry.clear_height(1));
     VertexHeights heights_there(geometry);
-    heights_there.find(0, ranks);
+    heights_there.find(PointId(0), ranks);
     EXPECT_EQ(ranks, (std::vector<std::int32_t>{0, 1, 2, -1}));
     EXPECT_EQ(heights_there.heights(), (std::vector<double>{0, 0x1p-30, 0x1.8p-29}));
 }
@@ -168,8 +174,8 @@ TEST(VertexHeights, LevelPlanesKeepTheirHeight) {
     };
     const auto level = corners(1), rising = corners(up), falling = corners(down);
     geometry.freeze_vertices();
-    std::vector<std::int32_t> planes{geometry.add_plane(level), geometry.add_plane(rising),
-                                     geometry.add_plane(falling)};
+    std::vector<std::int32_t> planes = codes_of(
+        {geometry.add_plane(level), geometry.add_plane(rising), geometry.add_plane(falling)});
     VertexHeights heights_there(geometry);
     heights_there.find(at, planes);
     EXPECT_EQ(planes, (std::vector<std::int32_t>{1, 2, 0}));

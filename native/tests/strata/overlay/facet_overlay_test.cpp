@@ -20,7 +20,7 @@ struct Columns {
     std::vector<std::int32_t> blocks_beneath() const {
         std::vector<std::int32_t> blocks;
         for (std::size_t f = 0; f < envelope.size(); ++f) {
-            if (envelope.plane[f] >= 0) blocks.push_back(envelope.block_beneath[f]);
+            if (envelope.plane[f].has_value()) blocks.push_back(envelope.block_beneath[f]);
         }
         std::sort(blocks.begin(), blocks.end());
         return blocks;
@@ -60,7 +60,7 @@ TEST(FacetOverlay, WhatWasErodedLeavesTheFacetOverItsBlock) {
     EXPECT_TRUE(c.made.faces.size() == 0);
     EXPECT_EQ(c.blocks_beneath(), (std::vector<std::int32_t>{0, 0}));
     for (std::size_t f = 0; f < c.envelope.size(); ++f) {
-        EXPECT_EQ(c.envelope.layer[f], c.envelope.plane[f] >= 0 ? 1 : -1);
+        EXPECT_EQ(c.envelope.layer[f], c.envelope.plane[f].has_value() ? 1 : -1);
     }
 }
 
@@ -74,7 +74,7 @@ TEST(FacetOverlay, WhereSurfacesCrossBothAreDivided) {
         EXPECT_EQ(thick, 0);
     std::array<int, 2> facets{0, 0};  // of the younger and the older one
     for (std::size_t f = 0; f < c.envelope.size(); ++f) {
-        if (c.envelope.plane[f] >= 0) ++facets[c.envelope.layer[f] == 1 ? 0 : 1];
+        if (c.envelope.plane[f].has_value()) ++facets[c.envelope.layer[f] == 1 ? 0 : 1];
     }
     EXPECT_GT(facets[0], 0);
     EXPECT_GT(facets[1], 0);

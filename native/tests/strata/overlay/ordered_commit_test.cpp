@@ -29,9 +29,9 @@ public:
         geometry.freeze_vertices();
         for (int i = 0; i < kEdges; ++i) {
             const auto& [from, to] = upright[static_cast<std::size_t>(i)];
-            upright_.push_back(exact::line_of(geometry.add_edge(from, to)));
+            upright_.push_back(geometry.add_edge(from, to).id());
             const auto& [left, right] = level[static_cast<std::size_t>(i)];
-            level_.push_back(exact::line_of(geometry.add_edge(left, right)));
+            level_.push_back(geometry.add_edge(left, right).id());
         }
     }
 
@@ -50,8 +50,7 @@ public:
         }
         committing.finish();
         std::vector<std::array<LineId, 2>> crossings;
-        for (auto p = geometry.vertex_count(); p < static_cast<PointId>(geometry.point_count());
-             ++p)
+        for (PointId p(geometry.vertex_count()); index(p) < geometry.point_count(); ++p)
             crossings.push_back({geometry.point(p).first, geometry.point(p).second});
         return crossings;
     }

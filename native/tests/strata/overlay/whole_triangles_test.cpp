@@ -111,7 +111,7 @@ TEST(TriangleLinks, AreSymmetricAndEndAtBorders) {
     EXPECT_EQ(links.border.size(), 8u);  // two edges on each side of the square
     for (const PlaneId plane : tiling.whole) {
         for (const PlaneId n : links.of(plane)) {
-            if (n < 0) continue;
+            if (!n.has_value()) continue;
             const auto& back = links.of(n);
             EXPECT_EQ(std::count(back.begin(), back.end(), plane), 1);
         }
