@@ -8,7 +8,7 @@
 
 namespace realmodel::arrangement {
 
-EdgeFan fan_around(const exact::SpacePoints& points, NodeId a, NodeId b,
+EdgeFan fan_around(const exact::SpacePoints& points, exact::SpacePointId a, exact::SpacePointId b,
                    std::span<const HalfPlane> items) {
     assert(!items.empty());
     // the view in which the first is not seen from its edge

@@ -37,9 +37,9 @@ void each_edge(const Loops& loops, std::int32_t item, const Visit& visit) {
 
 /// Half of a plane that begins at an edge.
 struct HalfPlane {
-    NodeId towards;         ///< a point of it, not on the line of the edge
-    std::int32_t plane;     ///< two of the same number, if it is not -1, lie in one plane
-    std::int8_t direction;  ///< 1 or -1: two of the same plane and direction are the same
+    exact::SpacePointId towards;  ///< a point of it, not on the line of the edge
+    std::int32_t plane;           ///< two of the same number, if it is not -1, lie in one plane
+    std::int8_t direction;        ///< 1 or -1: two of the same plane and direction are the same
 };
 
 /// Half-planes around one edge in counter-clockwise order for one who looks along it, beginning
@@ -55,7 +55,7 @@ struct EdgeFan {
 };
 
 /// The fan around the edge from a to b.
-EdgeFan fan_around(const exact::SpacePoints& points, NodeId a, NodeId b,
+EdgeFan fan_around(const exact::SpacePoints& points, exact::SpacePointId a, exact::SpacePointId b,
                    std::span<const HalfPlane> items);
 
 }  // namespace realmodel::arrangement

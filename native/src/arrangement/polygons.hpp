@@ -16,7 +16,8 @@ using PlanePosition = std::array<double, 2>;
 using NodeId = std::int32_t;
 
 /// An edge as (lesser, greater) node.
-inline std::array<NodeId, 2> unordered(NodeId a, NodeId b) {
+template <class Node>
+std::array<Node, 2> unordered(Node a, Node b) {
     return {std::min(a, b), std::max(a, b)};
 }
 

@@ -26,7 +26,7 @@ constexpr std::size_t kChunk = 1 << 8;
 
 }  // namespace
 
-std::int32_t TriangleArrangement::add(const std::array<NodeId, 3>& corners) {
+std::int32_t TriangleArrangement::add(const std::array<SpacePointId, 3>& corners) {
     const std::int32_t number = checked_number(triangles_.size(), "triangles");
     Triangle t;
     t.corners = corners;
@@ -48,15 +48,17 @@ std::int32_t TriangleArrangement::add(const std::array<NodeId, 3>& corners) {
     return number;
 }
 
-NodeId TriangleArrangement::left_corner(std::int32_t triangle, NodeId from, NodeId to) const {
+SpacePointId TriangleArrangement::left_corner(std::int32_t triangle, SpacePointId from,
+                                              SpacePointId to) const {
     const Triangle& t = triangles_[index(triangle)];
-    for (const NodeId corner : t.corners) {
+    for (const SpacePointId corner : t.corners) {
         if (orientation(t, from, to, corner) > 0) return corner;
     }
     return t.corners[0];
 }
 
-void TriangleArrangement::add_segment(std::int32_t one, std::int32_t other, NodeId p, NodeId q) {
+void TriangleArrangement::add_segment(std::int32_t one, std::int32_t other, SpacePointId p,
+                                      SpacePointId q) {
     for (const auto& [mine, yours] : {std::pair(one, other), std::pair(other, one)}) {
         Triangle& t = triangles_[index(mine)];
         t.points.push_back(p);
@@ -92,9 +94,9 @@ TriangleArrangement::Sides TriangleArrangement::sides_of(const Triangle& own,
 /// Of two triangles in one plane with two corners in common: whether neither covers a part of the
 /// other.
 bool TriangleArrangement::are_folded_apart(const Triangle& a, const Triangle& b) const {
-    std::array<NodeId, 2> edge{}, tip{};
+    std::array<SpacePointId, 2> edge{}, tip{};
     std::size_t found = 0;
-    for (const NodeId p : a.corners) {
+    for (const SpacePointId p : a.corners) {
         const bool both = std::find(b.corners.begin(), b.corners.end(), p) != b.corners.end();
         if (both) {
             edge[found++] = p;
@@ -102,7 +104,7 @@ bool TriangleArrangement::are_folded_apart(const Triangle& a, const Triangle& b)
             tip[0] = p;
         }
     }
-    for (const NodeId p : b.corners) {
+    for (const SpacePointId p : b.corners) {
         if (p != edge[0] && p != edge[1]) tip[1] = p;
     }
     return orientation(a, edge[0], edge[1], tip[0]) != orientation(a, edge[0], edge[1], tip[1]);
@@ -137,10 +139,10 @@ TriangleArrangement::Interval TriangleArrangement::interval_of(const Triangle& o
 /// plane.
 int TriangleArrangement::order(const Triangle& a, const Sides& sides, const End& on_a,
                                const Triangle& b, const End& on_b) const {
-    if (on_a.to >= 0 && on_b.to >= 0)
+    if (on_a.to != kNone && on_b.to != kNone)
         return orient3d(points_, on_a.from, on_a.to, on_b.from, on_b.to);
-    if (on_a.to >= 0) return orientation(a, on_a.from, on_a.to, on_b.from);
-    if (on_b.to >= 0) return orientation(b, on_b.from, on_b.to, on_a.from);
+    if (on_a.to != kNone) return orientation(a, on_a.from, on_a.to, on_b.from);
+    if (on_b.to != kNone) return orientation(b, on_b.from, on_b.to, on_a.from);
     std::size_t off = 0;
     while (sides.of[off] == 0)
         ++off;
@@ -151,7 +153,7 @@ std::optional<TriangleArrangement::Intersection> TriangleArrangement::intersecti
     std::int32_t one, std::int32_t other) const {
     const Triangle &a = triangles_[index(one)], &b = triangles_[index(other)];
     if (a.facing == 0 || b.facing == 0) return std::nullopt;
-    const auto shared = std::count_if(a.corners.begin(), a.corners.end(), [&b](NodeId p) {
+    const auto shared = std::count_if(a.corners.begin(), a.corners.end(), [&b](SpacePointId p) {
         return std::find(b.corners.begin(), b.corners.end(), p) != b.corners.end();
     });
     std::array<Sides, 2> sides;
@@ -173,8 +175,8 @@ std::optional<TriangleArrangement::Intersection> TriangleArrangement::intersecti
     if (order_of(of_a.down, of_b.down) > 0 || order_of(of_a.up, of_b.up) < 0) return std::nullopt;
     const int first = order_of(of_a.up, of_b.down), last = order_of(of_a.down, of_b.up);
     // of two that coincide a corner, which has a number
-    const bool from_b = first > 0 || (first == 0 && of_a.up.to >= 0);
-    const bool to_b = last < 0 || (last == 0 && of_a.down.to >= 0);
+    const bool from_b = first > 0 || (first == 0 && of_a.up.to != kNone);
+    const bool to_b = last < 0 || (last == 0 && of_a.down.to != kNone);
     return Intersection{
         one, other, false, {from_b ? of_b.down : of_a.up, to_b ? of_b.up : of_a.down}};
 }
@@ -186,12 +188,13 @@ void TriangleArrangement::insert(const Intersection& intersection) {
         in_one_plane_.push_back({intersection.one, intersection.other});
         return;
     }
-    std::array<NodeId, 2> ends;
+    std::array<SpacePointId, 2> ends;
     for (std::size_t i = 0; i < 2; ++i) {
         const End& end = intersection.ends[i];
         const auto& plane = triangles_[index(end.plane)].corners;
-        ends[i] = end.to < 0 ? end.from
-                             : points_.intersection(end.from, end.to, plane[0], plane[1], plane[2]);
+        ends[i] = end.to == kNone
+                      ? end.from
+                      : points_.intersection(end.from, end.to, plane[0], plane[1], plane[2]);
     }
     add_segment(intersection.one, intersection.other, ends[0], ends[1]);
 }
@@ -204,16 +207,17 @@ void TriangleArrangement::clip_edges(std::int32_t edges_of, std::int32_t into) {
 }
 
 /// Where a interval of one triangle runs over another in its plane.
-void TriangleArrangement::clip_segment(NodeId p, NodeId q, std::int32_t of, std::int32_t into) {
+void TriangleArrangement::clip_segment(SpacePointId p, SpacePointId q, std::int32_t of,
+                                       std::int32_t into) {
     const Triangle& t = triangles_[index(into)];
     for (std::size_t k = 0; k < 3; ++k) {
-        const NodeId a = t.corners[k], b = t.corners[(k + 1) % 3];
+        const SpacePointId a = t.corners[k], b = t.corners[(k + 1) % 3];
         const int first = orientation(t, a, b, p), second = orientation(t, a, b, q);
         if (first < 0 && second < 0) return;
         if (first < 0 && second == 0) p = q;
         if (first == 0 && second < 0) q = p;
         if (first * second >= 0) continue;
-        const NodeId c = points_.intersection(t.axis, p, q, a, b);
+        const SpacePointId c = points_.intersection(t.axis, p, q, a, b);
         (first < 0 ? p : q) = c;
     }
     add_segment(of, into, p, q);
@@ -247,36 +251,37 @@ public:
           t_(t),
           axis_((t.axis + 1) % 3),
           in_order_(t.points) {
-        std::sort(in_order_.begin(), in_order_.end(), [this](NodeId p, NodeId q) {
+        std::sort(in_order_.begin(), in_order_.end(), [this](SpacePointId p, SpacePointId q) {
             return std::pair(coordinate(p), p) < std::pair(coordinate(q), q);
         });
     }
 
     /// The nodes between two others, in order from the first to the second.
-    std::vector<NodeId> operator()(NodeId a, NodeId b) const {
-        std::vector<NodeId> found;
-        for (const NodeId p : t_.corners) {
+    std::vector<SpacePointId> operator()(SpacePointId a, SpacePointId b) const {
+        std::vector<SpacePointId> found;
+        for (const SpacePointId p : t_.corners) {
             if (is_between(p, a, b)) found.push_back(p);
         }
         const auto [low, high] = std::minmax({coordinate(a), coordinate(b)});
-        auto next = std::lower_bound(in_order_.begin(), in_order_.end(), low,
-                                     [this](NodeId p, double x) { return coordinate(p) < x; });
+        auto next =
+            std::lower_bound(in_order_.begin(), in_order_.end(), low,
+                             [this](SpacePointId p, double x) { return coordinate(p) < x; });
         for (; next != in_order_.end() && coordinate(*next) <= high; ++next) {
             if (is_between(*next, a, b) &&
                 std::find(found.begin(), found.end(), *next) == found.end())
                 found.push_back(*next);
         }
         const int direction = compare(points_, a, b);
-        std::sort(found.begin(), found.end(), [this, direction](NodeId p, NodeId q) {
+        std::sort(found.begin(), found.end(), [this, direction](SpacePointId p, SpacePointId q) {
             return compare(points_, p, q) * direction > 0;
         });
         return found;
     }
 
 private:
-    double coordinate(NodeId p) const { return points_.rounded(p)[axis_]; }
+    double coordinate(SpacePointId p) const { return points_.rounded(p)[axis_]; }
     /// In the view in which the triangle has an area, nothing in its plane falls together.
-    bool is_between(NodeId p, NodeId a, NodeId b) const {
+    bool is_between(SpacePointId p, SpacePointId a, SpacePointId b) const {
         if (p == a || p == b) return false;
         const Position &r = points_.rounded(p), &s = points_.rounded(a), &e = points_.rounded(b);
         for (std::size_t k = 0; k < 3; ++k) {
@@ -291,7 +296,7 @@ private:
     const exact::SpacePoints& points_;
     const Triangle& t_;
     std::size_t axis_;
-    std::vector<NodeId> in_order_;  ///< the triangle's points in the order of one coordinate
+    std::vector<SpacePointId> in_order_;  ///< the triangle's points in the order of one coordinate
 };
 
 /// Puts the points and segments of all triangles in order, each once.
@@ -318,7 +323,7 @@ std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segm
     std::vector<Boxed> boxed;
     for (const Segment& s : t.segments) {
         Boxed& own = boxed.emplace_back(Boxed{&s, {}});
-        for (const NodeId end : s.ends)
+        for (const SpacePointId end : s.ends)
             own.box.include(points_.rounded(end));
     }
     const std::size_t axis = (t.axis + 1) % 3;
@@ -359,7 +364,7 @@ void TriangleArrangement::messages_of(std::int32_t triangle, std::vector<Message
     // of a triangle without area one corner may lie on the edge between the others
     if (t.points.empty() && t.facing != 0) return;
     const NodesOnLines nodes_on(*this, t);
-    const auto send = [&](std::int32_t to, NodeId p) {
+    const auto send = [&](std::int32_t to, SpacePointId p) {
         const Triangle& other = triangles_[index(to)];
         if (to == triangle ||
             std::find(other.corners.begin(), other.corners.end(), p) != other.corners.end() ||
@@ -368,17 +373,17 @@ void TriangleArrangement::messages_of(std::int32_t triangle, std::vector<Message
         messages.push_back({to, p});
     };
     for (const Segment& s : t.segments) {
-        for (const NodeId p : nodes_on(s.ends[0], s.ends[1]))
+        for (const SpacePointId p : nodes_on(s.ends[0], s.ends[1]))
             send(s.other, p);
     }
     for (std::size_t i = 0; i < 3; ++i) {
-        const NodeId a = t.corners[i], b = t.corners[(i + 1) % 3];
+        const SpacePointId a = t.corners[i], b = t.corners[(i + 1) % 3];
         const auto on = nodes_on(a, b);
         if (on.empty()) continue;
         const auto edge = unordered(a, b);
         for (auto other = std::lower_bound(of_edge_.begin(), of_edge_.end(), std::pair(edge, 0));
              other != of_edge_.end() && other->first == edge; ++other) {
-            for (const NodeId p : on)
+            for (const SpacePointId p : on)
                 send(other->second, p);
         }
     }
@@ -418,10 +423,10 @@ void TriangleArrangement::find_regions(std::int32_t triangle, std::vector<Region
         return;
     }
     const NodesOnLines nodes_on(*this, t);
-    std::vector<std::array<NodeId, 2>> edges;
-    const auto add_edges = [&](NodeId a, NodeId b) {
-        NodeId last = a;
-        for (const NodeId p : nodes_on(a, b)) {
+    std::vector<std::array<SpacePointId, 2>> edges;
+    const auto add_edges = [&](SpacePointId a, SpacePointId b) {
+        SpacePointId last = a;
+        for (const SpacePointId p : nodes_on(a, b)) {
             edges.push_back(unordered(last, p));
             last = p;
         }

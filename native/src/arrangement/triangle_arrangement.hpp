@@ -11,11 +11,13 @@
 
 namespace realmodel::arrangement {
 
+using exact::SpacePointId;
+
 /// A part of a triangle that nothing crosses. The outline turns as the triangle does, holes follow
 /// the other way round.
 struct Region {
     std::int32_t triangle;
-    std::vector<std::vector<NodeId>> loops;
+    std::vector<std::vector<SpacePointId>> loops;
 };
 
 /// Triangles in any position, divided exactly where they cross each other: every region's edges are
@@ -27,14 +29,14 @@ public:
 
     /// The number of the triangle. One without area stays an edge that others share.
     /// @throws InputError kind too_large
-    std::int32_t add(const std::array<NodeId, 3>& corners);
+    std::int32_t add(const std::array<SpacePointId, 3>& corners);
 
     /// An end of a segment on the line of two planes: a corner, or where an edge of one triangle
     /// passes through the plane of the other.
     struct End {
-        NodeId from;             ///< the corner, or the end of the edge below the plane
-        NodeId to = -1;          ///< the other end, -1: a corner
-        std::int32_t plane = 0;  ///< of which triangle
+        SpacePointId from;        ///< the corner, or the end of the edge below the plane
+        SpacePointId to = kNone;  ///< the other end, none of a corner
+        std::int32_t plane = 0;   ///< of which triangle
     };
     /// Where two triangles intersect: along a segment, in a point (two equal ends), or in one
     /// plane.
@@ -52,7 +54,7 @@ public:
     void divide(int threads, const Progress* progress);
 
     const std::vector<Region>& regions() const { return regions_; }
-    const std::array<NodeId, 3>& corners(std::int32_t triangle) const {
+    const std::array<SpacePointId, 3>& corners(std::int32_t triangle) const {
         return triangles_[index(triangle)].corners;
     }
     /// The axis along which a triangle is seen best, and which way it turns: 0 it has no area.
@@ -60,20 +62,20 @@ public:
         return {triangles_[index(triangle)].axis, triangles_[index(triangle)].facing};
     }
     /// A corner of a triangle to the left of a line in it.
-    NodeId left_corner(std::int32_t triangle, NodeId from, NodeId to) const;
+    SpacePointId left_corner(std::int32_t triangle, SpacePointId from, SpacePointId to) const;
 
 private:
     struct Segment {
-        std::array<NodeId, 2> ends;  ///< in order
-        std::int32_t other;          ///< the triangle that it is shared with
+        std::array<SpacePointId, 2> ends;  ///< in order
+        std::int32_t other;                ///< the triangle that it is shared with
         auto operator<=>(const Segment&) const = default;
     };
     struct Triangle {
-        std::array<NodeId, 3> corners;
+        std::array<SpacePointId, 3> corners;
         std::size_t axis = 0;
-        int facing = 0;                 ///< which way it turns seen along its axis, 0: no area
-        std::vector<NodeId> points;     ///< in order, once all are there
-        std::vector<Segment> segments;  ///< likewise
+        int facing = 0;                    ///< which way it turns seen along its axis, 0: no area
+        std::vector<SpacePointId> points;  ///< in order, once all are there
+        std::vector<Segment> segments;     ///< likewise
     };
     /// On which sides of the plane of another triangle corners lie.
     struct Sides {
@@ -88,13 +90,13 @@ private:
     /// A point of one triangle that is also on another.
     struct Message {
         std::int32_t to;
-        NodeId point;
+        SpacePointId point;
     };
     /// The ends of one segment, then those of another.
-    using SegmentPair = std::array<NodeId, 4>;
+    using SegmentPair = std::array<SpacePointId, 4>;
     class NodesOnLines;
 
-    int orientation(const Triangle& t, NodeId a, NodeId b, NodeId c) const {
+    int orientation(const Triangle& t, SpacePointId a, SpacePointId b, SpacePointId c) const {
         return t.facing * exact::orient2d(points_, t.axis, a, b, c);
     }
     Sides sides_of(const Triangle& own, const Triangle& plane) const;
@@ -102,9 +104,9 @@ private:
     static Interval interval_of(const Triangle& own, const Sides& sides, std::int32_t plane);
     int order(const Triangle& a, const Sides& sides, const End& on_a, const Triangle& b,
               const End& on_b) const;
-    void add_segment(std::int32_t one, std::int32_t other, NodeId p, NodeId q);
+    void add_segment(std::int32_t one, std::int32_t other, SpacePointId p, SpacePointId q);
     void clip_edges(std::int32_t edges_of, std::int32_t into);
-    void clip_segment(NodeId p, NodeId q, std::int32_t of, std::int32_t into);
+    void clip_segment(SpacePointId p, SpacePointId q, std::int32_t of, std::int32_t into);
     void exchange_segments();
     template <class Visit>
     void each_triangle(int threads, const Progress* progress, const Visit& visit) const;
@@ -118,7 +120,7 @@ private:
     exact::SpacePoints& points_;
     std::vector<Triangle> triangles_;
     /// The edges of all triangles, in order, with the triangle of each.
-    std::vector<std::pair<std::array<NodeId, 2>, std::int32_t>> of_edge_;
+    std::vector<std::pair<std::array<SpacePointId, 2>, std::int32_t>> of_edge_;
     std::vector<Region> regions_;
     std::vector<std::array<std::int32_t, 2>> in_one_plane_;
 };

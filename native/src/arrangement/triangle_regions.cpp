@@ -12,7 +12,7 @@ namespace realmodel::arrangement {
 namespace {
 
 struct HalfEdge {
-    NodeId from, to;
+    SpacePointId from, to;
     std::size_t origin;  ///< the position of `from` among the nodes
     std::int32_t next = -1, loop = -1;
 };
@@ -21,7 +21,7 @@ struct HalfEdge {
 class PlaneGraph {
 public:
     PlaneGraph(const exact::SpacePoints& points, const Projection& view,
-               const std::vector<std::array<NodeId, 2>>& edges)
+               const std::vector<std::array<SpacePointId, 2>>& edges)
         : points_(points), view_(view) {
         assert(std::is_sorted(edges.begin(), edges.end()));
         for (const auto& edge : edges)
@@ -56,15 +56,15 @@ public:
 private:
     static std::int32_t twin(std::int32_t h) { return h ^ 1; }
     const HalfEdge& half(std::int32_t h) const { return halves_[index(h)]; }
-    std::size_t position(NodeId node) const {
+    std::size_t position(SpacePointId node) const {
         return static_cast<std::size_t>(std::lower_bound(nodes_.begin(), nodes_.end(), node) -
                                         nodes_.begin());
     }
-    int orientation(NodeId a, NodeId b, NodeId c) const {
+    int orientation(SpacePointId a, SpacePointId b, SpacePointId c) const {
         return view_.facing * exact::orient2d(points_, view_.axis, a, b, c);
     }
     /// From left to right, then from below: the triangle turns left in this view.
-    bool is_before(NodeId p, NodeId q) const {
+    bool is_before(SpacePointId p, SpacePointId q) const {
         const int x = exact::compare(points_, (view_.axis + 1) % 3, p, q);
         return x != 0 ? x < 0
                       : view_.facing * exact::compare(points_, (view_.axis + 2) % 3, p, q) < 0;
@@ -78,10 +78,10 @@ private:
 
     const exact::SpacePoints& points_;
     Projection view_;
-    std::vector<NodeId> nodes_;  ///< in order
+    std::vector<SpacePointId> nodes_;  ///< in order
     std::vector<HalfEdge> halves_;
     std::vector<std::vector<std::int32_t>> leaving_;  ///< of nodes: counter-clockwise
-    std::vector<std::vector<NodeId>> loops_;
+    std::vector<std::vector<SpacePointId>> loops_;
     std::vector<std::size_t> leftmost_;    ///< of components: the position of their first node
     std::vector<std::int32_t> outer_;      ///< of components: the loop around them
     std::vector<bool> is_outer_;           ///< of loops
@@ -192,7 +192,7 @@ void PlaneGraph::add_holes(std::vector<RegionLoops>& regions) const {
 }  // namespace
 
 std::vector<RegionLoops> regions_of_graph(const exact::SpacePoints& points, const Projection& view,
-                                          const std::vector<std::array<NodeId, 2>>& edges) {
+                                          const std::vector<std::array<SpacePointId, 2>>& edges) {
     return PlaneGraph(points, view, edges).regions();
 }
 

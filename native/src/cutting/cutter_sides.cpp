@@ -176,11 +176,12 @@ std::int8_t CutterSides::side_at(std::size_t item, bool of_cutter) {
     }
     exact::SpacePoints& points = overlay_.points();
     const std::pair<std::size_t, int> seen = is_region ? overlay_.view_of(item) : std::pair{2UL, 1};
-    const NodeId p = is_region ? overlay_.inner_point(item)
+    const SpacePointId p = is_region
+                               ? overlay_.inner_point(item)
                                : overlay_.exact(overlay_.model().face(item - overlay_.size())[0]);
     bool inside = false;
     for (const auto& t : overlay_.surface().triangles) {
-        std::array<NodeId, 3> corners;
+        std::array<SpacePointId, 3> corners;
         for (std::size_t i = 0; i < 3; ++i)
             corners[i] = points.add(overlay_.surface().vertices[index(t[i])]);
         if (exact::ray_crosses(points, seen.first, p, corners, of_cutter && seen.second > 0) != 0)

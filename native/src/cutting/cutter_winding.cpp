@@ -227,13 +227,13 @@ void CutterWinding::spread(std::size_t e, Progress* progress) {
 
 /// What is just below a region, by the triangles that a ray from there crosses.
 Winding CutterWinding::cast(std::size_t region) {
-    const NodeId p = overlay_.inner_point(region);
+    const SpacePointId p = overlay_.inner_point(region);
     const auto view = overlay_.view_of(region);
     const auto axis = view.first;
     const bool faces_ray = view.second > 0;
     exact::SpacePoints& points = overlay_.points();
     Winding winding;
-    overlay_.each_triangle(axis, p, [&](std::size_t face, const std::array<NodeId, 3>& corners) {
+    overlay_.each_triangle(axis, p, [&](std::size_t face, const auto& corners) {
         const int side = exact::ray_crosses(points, axis, p, corners, faces_ray);
         if (side == 0) return;
         add(winding, overlay_.model().cell(face, 0), side);

@@ -115,14 +115,14 @@ bool is_within(const Position& p, const Position& q, const Position& tolerance, 
 }  // namespace
 
 /// A point that was found near p in floating point, if it is indeed as near.
-std::optional<NodeId> SurfaceOverlay::confirmed(NodeId found, const Position& p) const {
+std::optional<SpacePointId> SurfaceOverlay::confirmed(SpacePointId found, const Position& p) const {
     if (!is_within(p, points_.rounded(found), tolerance_of(p), 3)) return std::nullopt;
     return found;
 }
 
 /// The point of an edge of the surface that a vertex is at but for its rounding.
-std::optional<NodeId> SurfaceOverlay::point_on_edge(const Position& p, const Position& a,
-                                                    const Position& b) {
+std::optional<SpacePointId> SurfaceOverlay::point_on_edge(const Position& p, const Position& a,
+                                                          const Position& b) {
     // the part of the edge that is within the tolerance on every axis, and the axis that has it
     // shortest: there the point keeps the vertex's coordinate
     const Position tolerance = tolerance_of(p);
@@ -148,8 +148,8 @@ std::optional<NodeId> SurfaceOverlay::point_on_edge(const Position& p, const Pos
 }
 
 /// The point within a triangle of the surface that a vertex is at but for its rounding.
-std::optional<NodeId> SurfaceOverlay::point_in_triangle(const Position& p,
-                                                        const std::array<Position, 3>& corners) {
+std::optional<SpacePointId> SurfaceOverlay::point_in_triangle(
+    const Position& p, const std::array<Position, 3>& corners) {
     constexpr double kRounding = 0x1p-50;  // of the distance
     const Position normal = polygon_normal(corners), tolerance = tolerance_of(p);
     double off = 0, allowed = 0, size = 0;
@@ -173,7 +173,7 @@ std::optional<NodeId> SurfaceOverlay::point_in_triangle(const Position& p,
 
 /// The point of the surface that a vertex is at but for its rounding; none where it is elsewhere.
 /// Corners of the surface come first, then its edges, then its triangles.
-std::optional<NodeId> SurfaceOverlay::point_on_surface(const Position& p) {
+std::optional<SpacePointId> SurfaceOverlay::point_on_surface(const Position& p) {
     Box box;
     box.include(p);
     std::vector<std::int32_t> near;
@@ -199,7 +199,7 @@ std::optional<NodeId> SurfaceOverlay::point_on_surface(const Position& p) {
 /// Exact points for the vertices of faces near the surface: where they are, or where they are but
 /// for their rounding. No two share one.
 void SurfaceOverlay::name_vertices() {
-    vertex_node_.assign(model_.vertex_count(), -1);
+    vertex_point_.assign(model_.vertex_count(), kNone);
     name_vertices_of(active_faces_);
     activate_beside_flat_triangles();
 }
@@ -208,25 +208,25 @@ void SurfaceOverlay::name_vertices_of(std::span<const std::int32_t> faces) {
     std::vector<NodeId> vertices;
     for (const std::int32_t f : faces) {
         for (const NodeId v : model_.face(index(f))) {
-            if (vertex_node_[index(v)] < 0) vertices.push_back(v);
+            if (!is_near(v)) vertices.push_back(v);
         }
     }
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    const auto is_taken = [this](NodeId p) -> std::uint8_t& {
+    const auto is_taken = [this](SpacePointId p) -> std::uint8_t& {
         if (is_taken_.size() <= index(p)) is_taken_.resize(points_.size());
         return is_taken_[index(p)];
     };
     for (const NodeId v : vertices)
-        is_taken(vertex_node_[index(v)] = points_.add(model_.vertex(v))) = 1;
+        is_taken(vertex_point_[index(v)] = points_.add(model_.vertex(v))) = 1;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         poll(progress_, 16 * i);
-        NodeId& node = vertex_node_[index(vertices[i])];
+        SpacePointId& point = vertex_point_[index(vertices[i])];
         const auto found = point_on_surface(model_.vertex(vertices[i]));
-        if (!found || *found == node || is_taken(*found) != 0) continue;
-        is_taken(node) = 0;
+        if (!found || *found == point || is_taken(*found) != 0) continue;
+        is_taken(point) = 0;
         is_taken(*found) = 1;
-        node = *found;
+        point = *found;
     }
 }
 
@@ -240,7 +240,7 @@ void SurfaceOverlay::activate_beside_flat_triangles() {
         for (const std::int32_t f : fresh) {
             triangulate_face(model_, index(f), triangles);
             for (const auto& t : triangles) {
-                const NodeId a = exact(t[0]), b = exact(t[1]), c = exact(t[2]);
+                const SpacePointId a = exact(t[0]), b = exact(t[1]), c = exact(t[2]);
                 bool flat = true;
                 for (std::size_t axis = 0; axis < 3 && flat; ++axis)
                     flat = exact::orient2d(points_, axis, a, b, c) == 0;
@@ -277,7 +277,7 @@ void SurfaceOverlay::overlay_all() {
         for (std::size_t i = begin; i < end; ++i) {
             const auto t = static_cast<std::int32_t>(i);
             Box box;
-            for (const NodeId p : arrangement_.corners(t))
+            for (const SpacePointId p : arrangement_.corners(t))
                 box.include(points_.rounded(p));
             if (t >= first_cutter_ && !box.meets(model_box_)) continue;
             tree_->find(box, [&](std::int32_t c) {
@@ -303,8 +303,8 @@ void SurfaceOverlay::add_triangles() {
     for (const std::int32_t f : active_faces_) {
         triangulate_face(model_, index(f), triangles);
         for (const auto& t : triangles) {
-            arrangement_.add(
-                {vertex_node_[index(t[0])], vertex_node_[index(t[1])], vertex_node_[index(t[2])]});
+            arrangement_.add({vertex_point_[index(t[0])], vertex_point_[index(t[1])],
+                              vertex_point_[index(t[2])]});
             face_of_.push_back(f);
         }
     }
@@ -317,35 +317,35 @@ void SurfaceOverlay::add_triangles() {
 /// Numbers all nodes: the model's vertices keep theirs, the others follow.
 void SurfaceOverlay::name_nodes() {
     std::vector<NodeId> out(points_.size(), -1);
-    for (std::size_t v = 0; v < vertex_node_.size(); ++v) {
-        if (vertex_node_[v] >= 0) out[index(vertex_node_[v])] = static_cast<NodeId>(v);
+    for (std::size_t v = 0; v < vertex_point_.size(); ++v) {
+        if (vertex_point_[v] != kNone) out[index(vertex_point_[v])] = static_cast<NodeId>(v);
     }
     // edges and sides number regions and then faces in one row
     checked_number(size() + model_.face_count(), "faces and their parts");
     for (const arrangement::Region& region : arrangement_.regions()) {
-        auto& loops = loops_.emplace_back(region.loops);
-        for (auto& loop : loops) {
-            for (NodeId& p : loop) {
+        auto& loops = loops_.emplace_back(region.loops.size());
+        for (std::size_t i = 0; i < loops.size(); ++i) {
+            for (const SpacePointId p : region.loops[i]) {
                 NodeId& node = out[index(p)];
                 if (node < 0) {
                     node = add_node(points_.rounded(p));
                     exact_of_new_.push_back(p);
                 }
-                p = node;
+                loops[i].push_back(node);
             }
         }
     }
 }
 
-NodeId SurfaceOverlay::exact(NodeId node) {
+SpacePointId SurfaceOverlay::exact(NodeId node) {
     const auto vertices = static_cast<NodeId>(model_.vertex_count());
     if (node >= vertices) return exact_of_new_[index(node - vertices)];
-    const NodeId known = vertex_node_[index(node)];
-    return known >= 0 ? known : points_.add(model_.vertex(node));
+    const SpacePointId known = vertex_point_[index(node)];
+    return known != kNone ? known : points_.add(model_.vertex(node));
 }
 
 /// The corner of a face that is farthest from the line of one of its edges, as an exact point.
-NodeId SurfaceOverlay::far_corner(std::size_t face, const std::array<NodeId, 2>& edge) {
+SpacePointId SurfaceOverlay::far_corner(std::size_t face, const std::array<NodeId, 2>& edge) {
     const Position a = position(edge[0]), b = position(edge[1]);
     NodeId found = edge[0];
     double farthest = -1;
@@ -361,7 +361,7 @@ NodeId SurfaceOverlay::far_corner(std::size_t face, const std::array<NodeId, 2>&
 }
 
 arrangement::EdgeFan SurfaceOverlay::fan_of(std::span<const EdgeUse> uses) {
-    const NodeId a = exact(uses[0].edge[0]), b = exact(uses[0].edge[1]);
+    const SpacePointId a = exact(uses[0].edge[0]), b = exact(uses[0].edge[1]);
     std::vector<arrangement::HalfPlane> items;
     for (const EdgeUse& use : uses) {
         const auto item = index(use.item);
@@ -379,11 +379,11 @@ arrangement::EdgeFan SurfaceOverlay::fan_of(std::span<const EdgeUse> uses) {
 
 /// Of a corner that turns left, the middle of the triangle that it cuts off; where the outline or a
 /// hole reaches into that, the middle between the corner and what reaches in farthest.
-NodeId SurfaceOverlay::inner_point(std::size_t region) {
+SpacePointId SurfaceOverlay::inner_point(std::size_t region) {
     const auto [axis, facing] = view_of(region);
     const auto& outline = loops_[region][0];
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
-    std::vector<NodeId> own;
+    std::vector<SpacePointId> own;
     for (const NodeId node : outline)
         own.push_back(exact(node));
     std::size_t lowest = 0;
@@ -392,27 +392,28 @@ NodeId SurfaceOverlay::inner_point(std::size_t region) {
         if (x < 0 || (x == 0 && exact::compare(points_, l, own[i], own[lowest]) < 0)) lowest = i;
     }
     // an outline may pass its lowest node twice: of the corners there, one that turns left
-    NodeId a = -1, c = -1;
-    const NodeId b = own[lowest];
+    SpacePointId a = kNone, c = kNone;
+    const SpacePointId b = own[lowest];
     for (std::size_t i = 0; i < own.size(); ++i) {
         if (own[i] != b) continue;
         a = own[(i + own.size() - 1) % own.size()];
         c = own[(i + 1) % own.size()];
         if (facing * exact::orient2d(points_, axis, a, b, c) > 0) break;
     }
-    NodeId farthest = -1;
+    SpacePointId farthest = kNone;
     for (const auto& loop : loops_[region]) {
         for (const NodeId node : loop) {
-            const NodeId p = exact(node);
+            const SpacePointId p = exact(node);
             if (p == a || p == b || p == c) continue;
             if (facing * exact::orient2d(points_, axis, a, b, p) < 0 ||
                 facing * exact::orient2d(points_, axis, b, c, p) < 0 ||
                 facing * exact::orient2d(points_, axis, c, a, p) < 0)
                 continue;
-            if (farthest < 0 || exact::is_farther(points_, axis, c, a, p, farthest)) farthest = p;
+            if (farthest == kNone || exact::is_farther(points_, axis, c, a, p, farthest))
+                farthest = p;
         }
     }
-    return farthest < 0 ? points_.middle({a, b, c}) : points_.middle({b, b, farthest});
+    return farthest == kNone ? points_.middle({a, b, c}) : points_.middle({b, b, farthest});
 }
 
 }  // namespace realmodel::cutting

@@ -13,6 +13,8 @@
 
 namespace realmodel::cutting {
 
+using exact::SpacePointId;
+
 /// A model's faces near a surface, and the surface, divided along one another exactly. Nodes are
 /// the model's vertices, then the points where they meet.
 ///
@@ -50,20 +52,20 @@ public:
         new_positions_.push_back(p);
         return checked_number(model_.vertex_count() + new_positions_.size(), "nodes") - 1;
     }
-    bool is_near(NodeId vertex) const { return vertex_node_[index(vertex)] >= 0; }
+    bool is_near(NodeId vertex) const { return vertex_point_[index(vertex)] != kNone; }
 
     /// The exact point of a node. Those of regions have one already: of them several threads may
     /// ask at once.
-    NodeId exact(NodeId node);
+    SpacePointId exact(NodeId node);
     exact::SpacePoints& points() { return points_; }
     /// The corners, as exact points, of the triangle that a region is part of.
-    const std::array<NodeId, 3>& corners(std::size_t region) const {
+    const std::array<SpacePointId, 3>& corners(std::size_t region) const {
         return arrangement_.corners(triangle(region));
     }
     /// The fan of an edge's uses by regions and whole faces, in nodes.
     arrangement::EdgeFan fan_of(std::span<const arrangement::EdgeUse> uses);
     /// A point within a region, on none of its edges.
-    NodeId inner_point(std::size_t region);
+    SpacePointId inner_point(std::size_t region);
     /// The axis along which a region is seen best, and which way it turns seen along it.
     std::pair<std::size_t, int> view_of(std::size_t region) const {
         return arrangement_.view_of(triangle(region));
@@ -71,7 +73,7 @@ public:
     /// Calls visit(face, corners as exact points) for the triangles of all faces, those away from
     /// the surface only where the line along `axis` through `p` may meet them.
     template <class Visit>
-    void each_triangle(std::size_t axis, NodeId p, const Visit& visit);
+    void each_triangle(std::size_t axis, SpacePointId p, const Visit& visit);
     /// Around the whole model, and a little wider.
     const spatial::Box& model_box() const { return model_box_; }
 
@@ -83,16 +85,17 @@ private:
     void name_vertices();
     void name_vertices_of(std::span<const std::int32_t> faces);
     void activate_beside_flat_triangles();
-    NodeId far_corner(std::size_t face, const std::array<NodeId, 2>& edge);
+    SpacePointId far_corner(std::size_t face, const std::array<NodeId, 2>& edge);
     Position corner(std::int32_t triangle, std::size_t i) const {
         return surface_.vertices[index(surface_.triangles[index(triangle)][i % 3])];
     }
     bool is_beside(std::size_t face, std::int32_t triangle) const;
-    std::optional<NodeId> confirmed(NodeId found, const Position& p) const;
-    std::optional<NodeId> point_on_edge(const Position& p, const Position& a, const Position& b);
-    std::optional<NodeId> point_in_triangle(const Position& p,
-                                            const std::array<Position, 3>& corners);
-    std::optional<NodeId> point_on_surface(const Position& p);
+    std::optional<SpacePointId> confirmed(SpacePointId found, const Position& p) const;
+    std::optional<SpacePointId> point_on_edge(const Position& p, const Position& a,
+                                              const Position& b);
+    std::optional<SpacePointId> point_in_triangle(const Position& p,
+                                                  const std::array<Position, 3>& corners);
+    std::optional<SpacePointId> point_on_surface(const Position& p);
     void add_triangles();
     void overlay_all();
     void name_nodes();
@@ -109,17 +112,18 @@ private:
     spatial::Box model_box_;
     std::vector<std::uint8_t> active_;
     std::vector<std::int32_t> active_faces_;
-    std::vector<NodeId> vertex_node_;     ///< of the model's vertices, -1 away from the surface
+    std::vector<SpacePointId>
+        vertex_point_;                    ///< of the model's vertices, none away from the surface
     std::vector<std::uint8_t> is_taken_;  ///< of exact points: a vertex is there
     std::vector<std::int32_t> face_of_;   ///< of the model's triangles in the overlay
     std::int32_t first_cutter_ = 0;       ///< the overlay's first triangle of the surface
-    std::vector<NodeId> exact_of_new_;    ///< the exact point of each new node
+    std::vector<SpacePointId> exact_of_new_;  ///< the exact point of each new node
     std::vector<Position> new_positions_;
     std::vector<std::vector<std::vector<NodeId>>> loops_;  ///< of regions, in nodes
 };
 
 template <class Visit>
-void SurfaceOverlay::each_triangle(std::size_t axis, NodeId p, const Visit& visit) {
+void SurfaceOverlay::each_triangle(std::size_t axis, SpacePointId p, const Visit& visit) {
     const Position at = points_.rounded(p);
     std::vector<std::array<std::int32_t, 3>> triangles;
     for (std::size_t f = 0; f < model_.face_count(); ++f) {

@@ -24,21 +24,27 @@ std::uint64_t hash_of(const SpacePosition& p) {
 
 }  // namespace
 
-/// The number of a point that is the same as the last one, or -1.
+std::uint64_t SpacePoints::Intersection::hash() const {
+    return HashIndex::hash(
+        std::array{of[0].number(), of[1].number(), of[2].number(), of[3].number(), of[4].number()});
+}
+
+/// The number of a point that is the same as the last one, if there is one.
 SpacePointId SpacePoints::find_equal(SpacePointId p) const {
-    return by_doubles_.find(hash_of(rounded(p)), [this, p](SpacePointId other) {
+    return SpacePointId(by_doubles_.find(hash_of(rounded(p)), [this, p](std::int32_t number) {
+        const SpacePointId other(number);
         return rounded(other) == rounded(p) && compare(*this, p, other) == 0;
-    });
+    }));
 }
 
 /// The number of a point: a new one where none is the same. Only new points keep their source.
 SpacePointId SpacePoints::enter(const SpacePosition& rounded, Source source) {
-    const SpacePointId number = checked_number(rounded_.size(), "points where surfaces meet");
+    const SpacePointId number(checked_number(rounded_.size(), "points where surfaces meet"));
     rounded_.push_back(rounded);
     source_.push_back(source);
     const SpacePointId known = find_equal(number);
-    if (known < 0) {
-        by_doubles_.insert(hash_of(rounded), number);
+    if (known == kNone) {
+        by_doubles_.insert(hash_of(rounded), number.number());
         return number;
     }
     rounded_.pop_back();
@@ -87,7 +93,7 @@ SpacePointId SpacePoints::intersection(SpacePointId p, SpacePointId q, SpacePoin
     std::array<SpacePointId, 3> plane{a, b, c};
     std::sort(plane.begin(), plane.end());
     const Intersection of{{std::min(p, q), std::max(p, q), plane[0], plane[1], plane[2]}};
-    const std::uint64_t hash = HashIndex::hash(of.of);
+    const std::uint64_t hash = of.hash();
     const std::int32_t known = by_intersection_.find(
         hash, [&](std::int32_t i) { return intersections_[index(i)].first == of; });
     if (known >= 0) return intersections_[index(known)].second;

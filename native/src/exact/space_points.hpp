@@ -16,7 +16,7 @@ namespace realmodel::exact {
 
 using SpacePosition = std::array<double, 3>;
 /// The number of a point of SpacePoints.
-using SpacePointId = std::int32_t;
+using SpacePointId = Id<struct SpacePoint>;
 
 /// Points of space, each known exactly, equal ones once: inputs, intersections of lines and planes
 /// through them, and constructions of any depth in rational numbers. What is asked of them is in
@@ -27,6 +27,7 @@ public:
     struct Intersection {
         std::array<SpacePointId, 5> of;
         bool operator==(const Intersection&) const = default;
+        std::uint64_t hash() const;
         bool is_on_line(SpacePointId a, SpacePointId b) const { return of[0] == a && of[1] == b; }
         bool is_on_plane_of(const Intersection& i) const {
             return of[2] == i.of[2] && of[3] == i.of[3] && of[4] == i.of[4];

@@ -8,7 +8,7 @@ namespace {
 
 class AnEdgeUpward : public testing::Test {
 protected:
-    NodeId at(double x, double y, double z) { return points.add(Position{x, y, z}); }
+    exact::SpacePointId at(double x, double y, double z) { return points.add(Position{x, y, z}); }
     HalfPlane towards(double x, double y) { return {at(x, y, 0.5), -1, 1}; }
     std::vector<std::vector<std::size_t>> blades(const std::vector<HalfPlane>& items) {
         const EdgeFan fan = fan_around(points, a, b, items);
@@ -18,7 +18,7 @@ protected:
         return found;
     }
     exact::SpacePoints points;
-    NodeId a = at(0, 0, 0), b = at(0, 0, 1);
+    exact::SpacePointId a = at(0, 0, 0), b = at(0, 0, 1);
 };
 
 using Blades = std::vector<std::vector<std::size_t>>;

@@ -37,7 +37,7 @@ public:
         std::set<Position> found;
         for (const Region* region : regions_of(triangle)) {
             for (const auto& loop : region->loops) {
-                for (const NodeId p : loop)
+                for (const SpacePointId p : loop)
                     found.insert(points.rounded(p));
             }
         }
@@ -131,7 +131,7 @@ TEST(TriangleArrangement, EdgesOfRegionsAreUsedOnceEitherWayWithinATriangle) {
     for (int i = 1; i < 8; ++i)
         a.add({{{-1, 1.0 * i, -1}, {20, 1.0 * i, -1}, {3, 1.0 * i + 0.25, 9.0 - i}}});
     a.divide(15);
-    std::map<std::array<NodeId, 2>, int> uses;
+    std::map<std::array<SpacePointId, 2>, int> uses;
     for (const Region* region : a.regions_of(level)) {
         for (const auto& loop : region->loops) {
             for (std::size_t i = 0; i < loop.size(); ++i)

@@ -11,7 +11,7 @@ namespace {
 /// A plane graph in z = 0.
 class Graph {
 public:
-    NodeId at(double x, double y) { return points.add(Position{x, y, 0}); }
+    SpacePointId at(double x, double y) { return points.add(Position{x, y, 0}); }
     void ring(const std::vector<std::array<double, 2>>& corners) {
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const auto &p = corners[i], &q = corners[(i + 1) % corners.size()];
@@ -28,7 +28,7 @@ public:
         std::sort(edges.begin(), edges.end());
         return regions_of_graph(points, {2, facing}, edges);
     }
-    double twice_area(const std::vector<NodeId>& loop) const {
+    double twice_area(const std::vector<SpacePointId>& loop) const {
         double sum = 0;
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const Position &p = points.rounded(loop[i]),
@@ -51,7 +51,7 @@ public:
     }
 
     exact::SpacePoints points;
-    std::vector<std::array<NodeId, 2>> edges;
+    std::vector<std::array<SpacePointId, 2>> edges;
 };
 
 TEST(TriangleRegions, ALineDividesATriangle) {
