@@ -268,7 +268,7 @@ PointId LocalArrangement::crossing_between_ends(LineId a, LineId b) {
             p.pierced = other;
         }
     }
-    return find_or_add_point(p, [&](Point& at) { locate(at); });
+    return points_.find_or_add(p, [&](Point& at) { locate(at); });
 }
 
 }  // namespace realmodel::exact

@@ -11,8 +11,50 @@
 
 namespace realmodel::exact {
 
-/// The lines and points that one thread finds, under ids from kLocal on until those that are needed
-/// are committed: they are appended to the arrangement that all share.
+/// Lines or points that one thread finds: the first has the id kLocal until it is shared.
+template <class SomeId, class Thing>
+class LocalThings {
+public:
+    const Thing& operator[](SomeId id) const { return things_[local_index(id)]; }
+    /// The thing with a name; complete(thing) is called where it is new.
+    template <class Complete>
+    SomeId find_or_add(Thing& thing, const Complete& complete) {
+        const auto found = table_.insert(
+            thing.key(), [&](std::int32_t number) { return things_[index(number)].key(); });
+        if (found.is_new) {
+            complete(thing);
+            things_.push_back(thing);
+        }
+        return SomeId(kLocal + found.number);
+    }
+    void reserve(std::size_t count) {
+        things_.reserve(count);
+        table_.reserve(count);
+    }
+
+    bool is_marked(SomeId id) const {
+        return local_index(id) < shared_.size() && shared_[local_index(id)] != kNone;
+    }
+    void mark(SomeId id) {
+        make_shared_ids();
+        shared_[local_index(id)] = SomeId(-2);
+        marked_.push_back(id);
+    }
+    const std::vector<SomeId>& marked() const { return marked_; }  ///< in the order of marking
+    void make_shared_ids() { shared_.resize(things_.size(), kNone); }
+    /// The shared id, below 0 where there is none.
+    SomeId& shared(SomeId id) { return shared_[local_index(id)]; }
+
+private:
+    static std::size_t local_index(SomeId id) { return index(id.number() - kLocal); }
+
+    std::vector<Thing> things_;
+    KeyTable table_;
+    std::vector<SomeId> shared_, marked_;
+};
+
+/// The lines and points that one thread finds, under ids of its own until those that are needed are
+/// committed: they are appended to the arrangement that all share.
 class LocalIds {
 public:
     explicit LocalIds(const PlanArrangement& shared) : shared_(shared) {}
@@ -20,30 +62,23 @@ public:
     LocalIds& operator=(const LocalIds&) = delete;
 
     const PlanArrangement& shared() const { return shared_; }
-    const Line& line(LineId id) const {
-        return is_local(id) ? lines_[local_index(id)] : shared_.line(id);
-    }
+    const Line& line(LineId id) const { return is_local(id) ? lines_[id] : shared_.line(id); }
     LineFilter filter(LineId id) const {
-        return is_local(id) ? filters_[local_index(id)] : shared_.filter(id);
+        return is_local(id) ? filters_[index(id.number() - kLocal)] : shared_.filter(id);
     }
-    const Point& point(PointId id) const {
-        return is_local(id) ? points_[local_index(id)] : shared_.point(id);
-    }
+    const Point& point(PointId id) const { return is_local(id) ? points_[id] : shared_.point(id); }
     bool is_vertex(PointId id) const { return shared_.is_vertex(id); }
     VertexId vertex(PointId id) const { return shared_.vertex(id); }
 
     /// Makes room for so many points at once.
-    void expect_points(std::size_t count) {
-        points_.reserve(count);
-        point_table_.reserve(count);
-    }
+    void expect_points(std::size_t count) { points_.reserve(count); }
 
     /// Marks a line or point, which may be local, as needed.
     void mark_line_used(LineId id) {
-        if (is_local(id) && is_unmarked(line_ids_, id)) mark_local_line(id);
+        if (is_local(id) && !lines_.is_marked(id)) lines_.mark(id);
     }
     void mark_point_used(PointId id) {
-        if (is_local(id) && is_unmarked(point_ids_, id)) mark_local_point(id);
+        if (is_local(id) && !points_.is_marked(id)) mark_local_point(id);
     }
     /// Appends the marked lines and points to the shared arrangement; the others stay behind.
     /// Nothing new may be found afterwards. In two steps: the ids in the order that is wanted, then
@@ -56,13 +91,13 @@ public:
     }
     /// Whether there is room for what is marked.
     bool has_room_in(const PlanArrangement& receiver) const {
-        return receiver.has_room(marked_lines_.size(), marked_points_.size());
+        return receiver.has_room(lines_.marked().size(), points_.marked().size());
     }
     /// The shared id of a line or point, which may be local; after commit(). One that was not
     /// marked is found by name, or added now, which only one thread may do.
     LineId shared_line(LineId id) {
         if (!is_local(id)) return id;
-        const LineId shared = line_ids_[local_index(id)];
+        const LineId shared = lines_.shared(id);
         return shared.has_value() ? shared : add_line_by_name(id);
     }
     DirectedLine shared_directed(DirectedLine id) {
@@ -70,7 +105,7 @@ public:
     }
     PointId shared_point(PointId id) {
         if (!is_local(id)) return id;
-        const PointId shared = point_ids_[local_index(id)];
+        const PointId shared = points_.shared(id);
         return shared.has_value() ? shared : add_point_by_name(id);
     }
 
@@ -78,50 +113,25 @@ protected:
     ~LocalIds() = default;
 
     /// The local trace of two planes, by name.
-    LineId find_or_add_trace(PlaneId first, PlaneId second);
-    /// The local point with a name; located(point) gives a new one its position.
-    template <class Locate>
-    PointId find_or_add_point(Point& point, const Locate& locate) {
-        const auto found = point_table_.insert(point_key_of(point), [&](std::int32_t number) {
-            return point_key_of(points_[static_cast<std::size_t>(number)]);
-        });
-        if (found.is_new) {
-            locate(point);
-            points_.push_back(point);
-        }
-        return PointId(kLocal + found.number);
+    LineId find_or_add_trace(PlaneId first, PlaneId second) {
+        Line trace(first, second);
+        return lines_.find_or_add(
+            trace, [&](const Line&) { filters_.push_back(shared_.trace_filter(first, second)); });
     }
 
     const PlanArrangement& shared_;
+    LocalThings<PointId, Point> points_;
 
 private:
-    /// Instead of a shared id: there will be one.
-    template <class SomeId>
-    static constexpr SomeId kMarked{-2};
-
-    template <class SomeId>
-    static std::size_t local_index(SomeId id) {
-        return index(id.number() - kLocal);
-    }
-    template <class SomeId>
-    static bool is_unmarked(const std::vector<SomeId>& ids, SomeId id) {
-        return local_index(id) >= ids.size() || ids[local_index(id)] == kNone;
-    }
-    void mark_local_line(LineId id);
     void mark_local_point(PointId id);
     LineId add_line_by_name(LineId id);
     PointId add_point_by_name(PointId id);
+    Point with_shared_lines(PointId id);
 
-    std::vector<Line> lines_;
+    LocalThings<LineId, Line> lines_;
     std::vector<LineFilter> filters_;
-    std::vector<Point> points_;
-    KeyTable line_table_, point_table_;
     PlanArrangement* receiver_ = nullptr;
     PlanArrangement::Appended appended_;
-    std::vector<LineId> line_ids_;  ///< shared ones; none where not marked
-    std::vector<PointId> point_ids_;
-    std::vector<LineId> marked_lines_;  ///< in the order of marking
-    std::vector<PointId> marked_points_;
 };
 
 }  // namespace realmodel::exact

@@ -191,9 +191,9 @@ LineId PlanArrangement::add_line(const Line& line) {
 
 PointId PlanArrangement::add_point(const Point& wanted) {
     const PointId next(points_.size());
-    const auto found = point_table_.insert(
-        point_key_of(wanted), next.number(),
-        [&](std::int32_t number) { return point_key_of(point(PointId(number))); });
+    const auto found = point_table_.insert(wanted.key(), next.number(), [&](std::int32_t number) {
+        return point(PointId(number)).key();
+    });
     if (found.is_new) set_point(append(0, 1).point, wanted);
     return PointId(found.number);
 }

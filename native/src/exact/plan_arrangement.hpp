@@ -166,6 +166,12 @@ struct Point {
     double error() const {
         return first == kNone ? 0 : rounding_error(std::max(std::abs(x), std::abs(y)));
     }
+    /// The name of a crossing: the edge and the plane or edge that it meets, or its two lines.
+    KeyTable::Key key() const {
+        const auto of_edge = edge.key(), of_pierced = pierced.key();
+        if (edge.is_edge()) return {of_edge[0], of_edge[1], of_pierced[0], of_pierced[1]};
+        return {-1, std::min(first, second).number(), std::max(first, second).number(), 0};
+    }
 };
 
 /// The halves of a double as a part of a key; -0 is 0.
@@ -181,13 +187,6 @@ inline KeyTable::Key position_key(double x, double y) {
 inline KeyTable::Key height_key(VertexId plan, double z) {
     const auto hz = halves(z);
     return {plan.number(), hz[0], hz[1], 0};
-}
-/// The name of a crossing: the edge and the plane or edge that it meets, or its two lines.
-inline KeyTable::Key point_key_of(const Point& point) {
-    const auto edge = point.edge.key(), pierced = point.pierced.key();
-    if (point.edge.is_edge()) return {edge[0], edge[1], pierced[0], pierced[1]};
-    return {-1, std::min(point.first, point.second).number(),
-            std::max(point.first, point.second).number(), 0};
 }
 
 /// A space vertex: a plan vertex and a height.
