@@ -22,7 +22,7 @@ bool is_trace_of(const Line& line, PlaneId plane) {
 
 HeightName LocalArrangement::height_name(PlaneId plane, PointId id) const {
     if (is_vertex(id)) {
-        const SpaceId s = shared_.corner_above(plane, vertex(id));
+        const SpaceId s = shared_.plane(plane).above(vertex(id));
         return s != kNone ? HeightName(s, s) : HeightName(plane);
     }
     const Point& p = point(id);

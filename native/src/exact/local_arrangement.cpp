@@ -79,8 +79,8 @@ int LocalArrangement::exact_side(const Line& line, PointId point) {
 /// compare_heights where both triangles have a corner above a plan vertex.
 std::optional<int> LocalArrangement::compare_corners(PlaneId upper, PlaneId lower,
                                                      VertexId vertex) const {
-    const SpaceId s = shared_.corner_above(upper, vertex);
-    const SpaceId t = s == kNone ? kNone : shared_.corner_above(lower, vertex);
+    const SpaceId s = shared_.plane(upper).above(vertex);
+    const SpaceId t = s == kNone ? kNone : shared_.plane(lower).above(vertex);
     if (t == kNone) return std::nullopt;
     return sign_of(shared_.space(s).z - shared_.space(t).z);
 }

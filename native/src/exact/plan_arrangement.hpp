@@ -327,9 +327,6 @@ public:
     const PlaneFilter& plane_filter(PlaneId id) const { return plane_filters_[index(id)]; }
     const SpaceVertex& space(SpaceId id) const { return space_[index(id)]; }
 
-    /// The space vertex of a plane's triangle above a plan vertex, if it has one there.
-    SpaceId corner_above(PlaneId id, VertexId vertex) const { return plane(id).above(vertex); }
-
     LineFilter edge_filter(VertexId from, VertexId to) const;
     LineFilter trace_filter(PlaneId first, PlaneId second) const;
 

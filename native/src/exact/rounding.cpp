@@ -77,7 +77,7 @@ double LocalArrangement::rounded_height(PlaneId plane, const HeightName& name, P
 double LocalArrangement::rounded_height(PlaneId plane_id, PointId id, const NearPoint& close) {
     const SpaceVertex& corner = shared_.space(shared_.plane(plane_id).corner[0]);
     if (is_vertex(id)) {
-        const SpaceId s = shared_.corner_above(plane_id, vertex(id));
+        const SpaceId s = shared_.plane(plane_id).above(vertex(id));
         if (s != kNone) return shared_.space(s).z;
     }
     if (const auto z = near_height(shared_, plane_id, close)) return *z;

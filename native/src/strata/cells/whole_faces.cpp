@@ -98,7 +98,7 @@ UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
                         if (!of_base_.empty()) set(of_base_[index(point)], number);
                         continue;
                     }
-                    const SpaceId s = geometry.corner_above(faces.plane[f], geometry.vertex(point));
+                    const SpaceId s = geometry.plane(faces.plane[f]).above(geometry.vertex(point));
                     if (s != kNone) set(of_space_[index(s)], number);
                 }
             }

@@ -132,7 +132,7 @@ void SurfaceTiling::index(const PlanArrangement& geometry, int threads, const Pr
 bool meet_in_height(const PlanArrangement& geometry, PlaneId plane, std::size_t i, PlaneId other) {
     const auto& corner = geometry.plane(plane).corner;
     for (const exact::SpaceId s : {corner[i], corner[(i + 1) % 3]}) {
-        if (geometry.corner_above(other, geometry.space(s).plan) != s) return false;
+        if (geometry.plane(other).above(geometry.space(s).plan) != s) return false;
     }
     return true;
 }
