@@ -29,7 +29,7 @@ public:
 
     /// Adds a plan vertex, which may be there already.
     /// @return a number to ask rank() with
-    std::int32_t add(PlanVertexId plan_vertex) {
+    [[gnu::always_inline]] std::int32_t add(PlanVertexId plan_vertex) {
         // Most lines have a handful of plan vertices, each the end of several edges, and the last
         // ones are met again soonest.
         for (std::size_t i = added_.size(), least = i > kFew ? i - kFew : 0; i > least; --i) {
