@@ -115,8 +115,8 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         action="append",
         default=[],
         help=(
-            "cut the model by a plane X,Y,Z,NX,NY,NZ, a surface F.off, or a block PROJECT.toml:BLOCK (:BLOCK "
-            "of the model itself) and write its halves as --export does; one may be left out"
+            "cut the model by a plane X,Y,Z,NX,NY,NZ, a file of a surface, or a block PROJECT.toml:BLOCK "
+            "(:BLOCK of the model itself) and write its halves as --export does; one may be left out"
         ),
     )
     parser.add_argument("--stage", metavar="M", type=_whole, help="only up to surface M, counted from 0")

@@ -144,7 +144,7 @@ void bind_meshing(py::module_& module) {
 
 rings        list of (N, 2) float64: outlines and holes alike, either way round
 edge_length  length of most edges, model units; not used where triangles is above 0
-mesher       "delaunay", "frontal" or "grid"
+mesher       one of the names of kMesherNames (region_mesh.hpp)
 triangles    how many there should be (within 5 %); 0: as edge_length says
 sizes        list of (places (N, 2) or None, length, distance): edges are `length` long within
              `distance` of the line through the places (None: of the rings), and grow from there on

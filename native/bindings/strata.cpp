@@ -107,8 +107,8 @@ void bind_strata(py::module_& module) {
 rocks: list of (surfaces, region, base_elevation, rules). surfaces: list of (vertices (V, 3)
 float64, triangles (T, 3) int32), oldest first; region: None or a triangulation (vertices (R, 2)
 float64, triangles (Q, 3) int32) whose border clips them; base_elevation: None or the height of a
-flat base; rules: one a surface, "erosional", "conformable", "base" or "discontinuous" (none: all
-erosional). cells: "columns" or "blocks" (each connected part of a block one cell); threads: 0 for
+flat base; rules: one a surface, names of kRules in stack.hpp (none: all erosional). cells:
+"columns" or "blocks" (each connected part of a block one cell); threads: 0 for
 all. Surfaces are counted through all rock masses. Returns a dict of arrays: vertices (V, 3)
 float64, face_offsets (F + 1,) int64, face_vertices int32, face_cells (F, 2) int32, face_surface
 (F,) int32 (-1 a wall, -2 a base), cell_block (C,) int32 (the surface that the cell's block lies

@@ -13,8 +13,6 @@ namespace realmodel::fuzz {
 
 namespace {
 
-using strata::Rule;
-
 /// A plan point x / w, y / w with w > 0.
 struct Corner {
     mpz_class x, y, w;
@@ -175,13 +173,11 @@ std::vector<Block> blocks_of(Order& order, const std::vector<const Plane*>& plan
         before.push_back(top);
         level.push_back(planes[k]);
         if (planes[k] == nullptr) continue;
-        const Rule rule = rock.rule(k);
-        const bool cuts = rule == Rule::kErosional || rule == Rule::kDiscontinuous;
-        const bool protects = rule == Rule::kBase || rule == Rule::kDiscontinuous;
-        if (!cuts && top != nullptr) level[k] = order.higher(level[k], top);
+        const strata::RuleMeaning& rule = strata::meaning(rock.rule(k));
+        if (!rule.cuts && top != nullptr) level[k] = order.higher(level[k], top);
         if (floor != nullptr) level[k] = order.higher(level[k], floor);
         top = level[k];
-        if (protects) floor = level[k];
+        if (rule.protects) floor = level[k];
         if (order.changes()) return {};
     }
     std::vector<Block> blocks;

@@ -141,7 +141,7 @@ public:
         if (random_.with(family_.base)) rock.base_elevation = base_below(rock);
         if (random_.with(family_.rules)) {
             for (std::size_t k = 0; k < rock.surfaces.size(); ++k)
-                rock.rules.push_back(static_cast<Rule>(random_.below(4)));
+                rock.rules.push_back(static_cast<Rule>(random_.below(std::size(strata::kRules))));
         }
         return rock;
     }

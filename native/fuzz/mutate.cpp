@@ -229,7 +229,8 @@ void order_of_surfaces(RandomSource& random, StackCase& stack) {
 
 void change_a_rule(RandomSource& random, StackCase& stack) {
     RockCase& rock = some_rock(random, stack);
-    rock.all_rules()[random.below(rock.surfaces.size())] = static_cast<Rule>(random.below(4));
+    rock.all_rules()[random.below(rock.surfaces.size())] =
+        static_cast<Rule>(random.below(std::size(strata::kRules)));
 }
 
 /// A region over part of a surface, the border of a surface itself, or none any more.

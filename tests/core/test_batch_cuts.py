@@ -102,7 +102,7 @@ def test_vtu_and_obj_know_block_and_property(layers, out, tmp_path):  # noqa: F8
         (("--cut", "0,0,0,1,0,0=,"), "one of them may be left out"),
         (("--cut", "0,0,0,1,0,0=a.npz,b.npz,c.npz"), "it is written as"),
         (("--cut", "0,0,0,1,0,0=a.obj"), "use .npz or .vtu"),
-        (("--cut", "fault.stl=a.npz"), "is no cutter"),
+        (("--cut", "fault.unknown=a.npz"), "is no cutter"),
         (("--cut", "other.toml:=a.npz"), "which block?"),
         (("--cut", ":chalk=a.npz"), "no block named 'chalk'"),
         (("--cut", ":1=a.npz", "--export", "a.npz"), "two outputs have this name"),

@@ -5,7 +5,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-from realmodel.core import Project, Rock, Surface, build, mesh_region
+from realmodel.core import InputRefused, Project, Rock, Surface, build, mesh_region
 from realmodel.core.meshers import MESHERS
 from realmodel.core.methods import METHODS, OPTIONS
 from realmodel.core.readers.mesh_file import read_mesh
@@ -42,11 +42,25 @@ def test_the_native_part_knows_a_rule(rule):
 
 @pytest.mark.parametrize("mesher", MESHERS)
 def test_the_native_part_knows_a_mesher(mesher):
-    _, triangles = mesh_region(PLAN, edge_length=1.0, mesher=mesher)
-    assert len(triangles) >= 32
+    vertices, triangles = mesh_region(PLAN, edge_length=1.0, mesher=mesher)
+    first, second, third = vertices[triangles].transpose(1, 0, 2)
+    (ux, uy), (vx, vy) = (second - first).T, (third - first).T
+    assert (ux * vy - uy * vx).sum() == pytest.approx(2 * 16)
+
+
+def test_any_method_that_spreads_thickness_may_serve_parallel():
+    spreading = {name for name, method in METHODS.items() if method.spreads_thickness}
+    assert set(METHODS["parallel"].options["thickness_method"].words) == spreading
 
 
 def test_the_content_says_the_format_of_a_mesh(tmp_path):
     file = tmp_path / "mesh.dat"
     file.write_text("# a comment\nOFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
     assert read_mesh(file).triangles.tolist() == [[0, 1, 2]]
+
+
+def test_a_mesh_of_no_known_format_is_refused(tmp_path):
+    file = tmp_path / "mesh.dat"
+    file.write_text("ply\n")
+    with pytest.raises(InputRefused, match="beginning nor its ending is that of a mesh"):
+        read_mesh(file)

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from realmodel.core import InputRefused, Project, Rock, Surface, build, estimate, interpolate, load_project
 from realmodel.core.exporters.report import model_report
+from realmodel.core.rules import RULES
 
 SQUARE = [[0, 0], [10, 0], [10, 10], [0, 10]]
 CORNERS = np.array([[0, 0], [10, 0], [10, 10], [0, 10.0]])
@@ -73,13 +74,13 @@ def wrong_sides(*surfaces):
     return [(w.surface, w.items) for w in build(rock(*surfaces)).warnings if w.kind == "wrong_side"]
 
 
-@pytest.mark.parametrize("low_rule", ["erosional", "conformable", "base", "discontinuous"])
-@pytest.mark.parametrize("rule", ["erosional", "conformable", "base", "discontinuous"])
+@pytest.mark.parametrize("low_rule", RULES)
+@pytest.mark.parametrize("rule", RULES)
 def test_points_below_what_a_surface_does_not_cut_are_listed(low_rule, rule):
     """Those of the older surface above it are not: there the younger one ends, or has cut."""
     low = Surface("low", points=points(0, 0, 6, 6), method="tin", rule=low_rule)
     high = Surface("high", points=points(2, 2, 4, 8), method="tin", rule=rule)
-    ends = rule in ("conformable", "base") or low_rule in ("base", "discontinuous")
+    ends = not RULES[rule].cuts or RULES[low_rule].protects
     assert wrong_sides(low, high) == ([("high", (2,))] if ends else [])
 
 

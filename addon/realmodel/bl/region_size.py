@@ -10,16 +10,13 @@ from ..core import RealModelError
 from ..core.readers import read_region
 from . import project_settings, settings, stored_arrays
 
-# Of triangles that Delaunay refinement makes, mean area over that of an equilateral one of the edge length
-_AREA_SHARE = {"delaunay": 1.0, "frontal": 1.0}
-
 
 def expected_triangles(row):
     """About how many triangles the planar mesh of a rock mass will have; None where it cannot be told."""
     if row.region_area <= 0.0 or row.edge_length <= 0.0:
         return None
     equilateral = math.sqrt(3.0) / 4.0 * row.edge_length**2
-    return row.region_area / (_AREA_SHARE.get(row.mesher, 1.0) * equilateral)
+    return row.region_area / equilateral
 
 
 def ask():

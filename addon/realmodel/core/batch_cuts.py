@@ -138,7 +138,7 @@ def fence_request(text: str) -> SectionRequest:
 
 
 def cut_request(text: str) -> CutRequest:
-    """CUTTER=BELOW,ABOVE: a plane X,Y,Z,NX,NY,NZ, a surface FILE.off, a block PROJECT.toml:BLOCK or :BLOCK.
+    """CUTTER=BELOW,ABOVE: a plane X,Y,Z,NX,NY,NZ, a file of a surface, a block PROJECT.toml:BLOCK or :BLOCK.
     Raises UsageError."""
     form = "CUTTER=BELOW,ABOVE (one of them may be left out)"
     what, files = _divided("--cut", text, form)
@@ -158,8 +158,9 @@ def cut_request(text: str) -> CutRequest:
         return CutRequest((Path(project) if project else None, block), below, above)
     if Path(what).suffix.lower() not in MESH_ENDINGS:
         raise UsageError(
-            f"--cut {text}: '{what}' is no cutter; use a plane X,Y,Z,NX,NY,NZ, a surface FILE.off, or a "
-            "block PROJECT.toml:BLOCK (:BLOCK for one of the model's own)"
+            f"--cut {text}: '{what}' is no cutter; use a plane X,Y,Z,NX,NY,NZ, a surface "
+            f"FILE{' or FILE'.join(MESH_ENDINGS)}, or a block PROJECT.toml:BLOCK (:BLOCK for one of the "
+            "model's own)"
         )
     return CutRequest(Path(what), below, above)
 

@@ -310,13 +310,6 @@ METHODS: dict[str, Method] = {
         spreads_thickness=True,
         has_shape=False,
     ),
-}
-
-_SPREAD_BY = "idw"
-THICKNESS_METHODS = tuple(
-    dict.fromkeys([_SPREAD_BY, *(name for name, method in METHODS.items() if method.spreads_thickness)])
-)
-METHODS |= {
     "parallel": Method(
         "Parallel",
         "A given thickness above or below another surface",
@@ -339,21 +332,30 @@ METHODS |= {
                 switch=("Given thickness", "Give the thickness; off: it comes from the points"),
                 unset="from the points",
             ),
-            "thickness_method": Option(
-                _SPREAD_BY,
-                check.one_of(*THICKNESS_METHODS),
-                "word",
-                "Spread by",
-                "How the thickness at the points is spread between them",
-                {name: (METHODS[name].label, METHODS[name].tip) for name in THICKNESS_METHODS},
-                more="also " + ", ".join(f'`"{name}"`' for name in THICKNESS_METHODS[1:]),
-            ),
         },
         instead_of_points="thickness",
         has_shape=False,
     ),
     "auto": Method("Automatic", "Chooses the method that predicts left-out points best", None, _EXTRAPOLATE),
 }
+
+_SPREAD_BY = "idw"
+THICKNESS_METHODS = tuple(
+    dict.fromkeys([_SPREAD_BY, *(name for name, method in METHODS.items() if method.spreads_thickness)])
+)
+# Of any of the methods above: only now are they all there.
+_THICKNESS_METHOD = Option(
+    _SPREAD_BY,
+    check.one_of(*THICKNESS_METHODS),
+    "word",
+    "Spread by",
+    "How the thickness at the points is spread between them",
+    {name: (METHODS[name].label, METHODS[name].tip) for name in THICKNESS_METHODS},
+    more="also " + ", ".join(f'`"{name}"`' for name in THICKNESS_METHODS[1:]),
+)
+METHODS["parallel"] = replace(
+    METHODS["parallel"], options={**METHODS["parallel"].options, "thickness_method": _THICKNESS_METHOD}
+)
 
 # Every option once: those of one name mean the same wherever they are.
 OPTIONS: dict[str, Option] = {

@@ -8,6 +8,7 @@ from bpy_extras.io_utils import ImportHelper
 from ..bl import live, plan_mesh, project_settings, settings
 from ..core import InputRefused
 from ..core.plan_input import read_constraints
+from ..core.readers import MAP_ENDINGS
 from .reporting import Reporting, needed_path, needed_rock
 
 
@@ -96,7 +97,7 @@ class REALMODEL_OT_constraint_read(Reporting, bpy.types.Operator, ImportHelper):
 
     filename_ext = ""
     filter_glob: bpy.props.StringProperty(
-        default="*.geojson;*.json;*.wkt;*.txt;*.shp;*.gpkg", options={"HIDDEN"}
+        default=";".join(f"*{ending}" for ending in (*MAP_ENDINGS, ".txt")), options={"HIDDEN"}
     )
 
     def act(self, context):

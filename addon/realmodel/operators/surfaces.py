@@ -11,25 +11,12 @@ from bpy_extras.io_utils import ImportHelper
 from ..bl import built_scene, live, project_settings, settings
 from ..core import InputRefused, PointFile
 from ..core.errors import HeightsMissing
-from ..core.readers import MESH_ENDINGS, read_mesh, read_point_file
+from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, RASTER_ENDINGS, read_mesh, read_point_file
 from .reporting import Reporting, needed_surface
 from .rocks import add_rock
 
-_POINT_ENDINGS = (
-    ".csv",
-    ".xyz",
-    ".txt",
-    ".dat",
-    ".tsv",
-    ".asc",
-    ".tif",
-    ".tiff",
-    ".geojson",
-    ".json",
-    ".gpkg",
-    ".shp",
-    ".wkt",
-)
+_TABLE_ENDINGS = (".csv", ".xyz", ".txt", ".dat", ".tsv")
+_ENDINGS = (*MESH_ENDINGS, *_TABLE_ENDINGS, *RASTER_ENDINGS, *MAP_ENDINGS)
 
 
 class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
@@ -50,7 +37,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
         name="Empty", description="Choose the source afterwards", options={"SKIP_SAVE", "HIDDEN"}
     )
     filter_glob: StringProperty(
-        default=";".join(f"*{ending}" for ending in (*MESH_ENDINGS, *_POINT_ENDINGS)),
+        default=";".join(f"*{ending}" for ending in _ENDINGS),
         options={"HIDDEN"},
     )
     filename_ext = ""

@@ -80,7 +80,7 @@ TEST(Int126, NoAnswerFromShortOnesIsGivenByLongOnes) {
         return is_known(d) ? std::optional(sign_of(d)) : std::nullopt;
     });
     EXPECT_EQ(sign, 1);
-    EXPECT_EQ(asked, 2);
+    EXPECT_GE(asked, 2);  // by each shorter type there is, and by GMP
 }
 
 }  // namespace

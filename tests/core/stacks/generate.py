@@ -15,6 +15,7 @@ from .case import Stack, as_region, as_surface
 from .plan import PLANS, lattice, some_triangles
 from .rational import double_valued_pairs, flat_triangles
 
+# Those that the outside checker knows; the native fuzzer draws from all there are.
 RULES = ("erosional", "conformable", "base", "discontinuous")
 
 CONFORMING = ("lattice", "scattered", "fan")

@@ -17,6 +17,7 @@ from .shapes import Heights, Shapes
 from .text import Step, no_step, read_text
 from .wkt import parse_wkt
 
+MAP_ENDINGS = (".geojson", ".json", ".gpkg", ".shp", ".wkt")
 _HEAD = 512
 _JSON = (".json", ".geojson", ".geojsonl", ".geojsons")
 _BOM = b"\xef\xbb\xbf"

@@ -40,5 +40,8 @@ def read_mesh(file: str | Path, step: Step = no_step) -> TriangleMesh:
     except OSError as error:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
     by_ending = [known for known in MESH_FORMATS if file.suffix.lower() in known.endings]
-    found = next((known for known in MESH_FORMATS if known.begins(head)), (*by_ending, MESH_FORMATS[0])[0])
-    return found.read(file, step)
+    found = [*(known for known in MESH_FORMATS if known.begins(head)), *by_ending]
+    if not found:
+        names = ", ".join(known.name for known in MESH_FORMATS)
+        raise InputRefused(f"neither its beginning nor its ending is that of a mesh ({names})", file=file)
+    return found[0].read(file, step)

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points from any file that holds some: what kind it is, is told from what it holds."""
+"""Points from any file that holds some: what kind it is, is told from what it holds. The formats of rasters
+are one registry (docs/extending.md)."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +22,23 @@ from .raster import Raster
 from .text import Step, no_step
 
 _HEAD = 512
+
+
+@dataclass(frozen=True)
+class RasterFormat:
+    """begins(head): whether a file that begins with these bytes is of this format. read(file, nodata, step)
+    raises InputRefused; nodata: further numbers that mean no height."""
+
+    endings: tuple[str, ...]
+    begins: Callable[[bytes], bool]
+    read: Callable[..., Raster]
+
+
+RASTER_FORMATS = (
+    RasterFormat((".tif", ".tiff"), is_tiff, read_geotiff),
+    RasterFormat((".asc",), is_ascii_grid, read_ascii_grid),
+)
+RASTER_ENDINGS = tuple(ending for known in RASTER_FORMATS for ending in known.endings)
 # What grids and tables of many programs have for "no height".
 _OFTEN_NO_VALUE = (
     -9999.0,
@@ -44,8 +64,9 @@ def read_point_file(
     """
     file = Path(given.file)
     head = _head(file)
-    if is_tiff(head) or is_ascii_grid(head):
-        points, warnings = _raster_points(given, file, head, step)
+    raster = next((known for known in RASTER_FORMATS if known.begins(head)), None)
+    if raster is not None:
+        points, warnings = _raster_points(given, file, raster, step)
     elif is_map_layer(file, head):
         _refuse_keys(file, "has shapes", given.only_for_tables)
         points, warnings = read_map_points(given, step)
@@ -112,11 +133,12 @@ def _head(file: Path) -> bytes:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
 
 
-def _raster_points(given: PointFile, file: Path, head: bytes, step: Step) -> tuple[np.ndarray, list[str]]:
+def _raster_points(
+    given: PointFile, file: Path, known: RasterFormat, step: Step
+) -> tuple[np.ndarray, list[str]]:
     chosen = ["where"] if given.where else []
     _refuse_keys(file, "is a raster", [*given.only_for_tables, *chosen, *given.only_for_shapes])
     nodata = [value for value in given.nodata_values if not isinstance(value, str)]
-    read = read_geotiff if is_tiff(head) else read_ascii_grid
-    raster: Raster = read(file, nodata, step)
+    raster = known.read(file, nodata, step)
     warnings = [] if given.units else [f"{file}: {text}" for text in raster.warnings]
     return raster.points(file), warnings

@@ -112,7 +112,8 @@ void enter_base(Site& site, EnteredRock& rock) {
 }  // namespace
 
 bool EnteredRock::is_erosional() const {
-    return std::all_of(rules.begin(), rules.end(), [](Rule r) { return r == Rule::kErosional; });
+    return std::all_of(rules.begin(), rules.end(),
+                       [](Rule r) { return meaning(r).cuts && !meaning(r).protects; });
 }
 
 std::unique_ptr<Site> enter_site(std::span<const StackInput> rocks, const PlanSnapping& snapping,

@@ -4,7 +4,12 @@
 namespace realmodel::strata {
 namespace {
 
-constexpr Rule kAll[] = {Rule::kErosional, Rule::kConformable, Rule::kBase, Rule::kDiscontinuous};
+std::vector<Rule> every_rule() {
+    std::vector<Rule> every;
+    for (const RuleMeaning& row : kRules)
+        every.push_back(*rule_named(row.name));
+    return every;
+}
 
 CellComplex build_ruled(const std::vector<OwnedSurface>& surfaces, std::vector<Rule> rules,
                         std::optional<double> base = std::nullopt,
@@ -71,11 +76,10 @@ std::vector<double> thickness(const std::vector<double>& heights, const std::vec
     for (std::size_t k = 0; k < heights.size(); ++k) {
         before.push_back(top);
         double z = heights[k];
-        const bool cutting = rules[k] == Rule::kErosional || rules[k] == Rule::kDiscontinuous;
-        if (k > 0 && !cutting) z = std::max(z, top);
+        if (k > 0 && !meaning(rules[k]).cuts) z = std::max(z, top);
         z = std::max(z, floor);
         top = z;
-        if (rules[k] == Rule::kBase || rules[k] == Rule::kDiscontinuous) floor = z;
+        if (meaning(rules[k]).protects) floor = z;
         e.push_back(z);
     }
     std::vector<double> result(heights.size(), 0.0);
@@ -89,10 +93,11 @@ std::vector<double> thickness(const std::vector<double>& heights, const std::vec
 
 TEST(Rules, EveryMixtureOfFourLevelSurfacesIsTheClosedForm) {
     const std::vector<double> heights{0, 3, 1, 2};
-    for (const Rule a : kAll) {
-        for (const Rule b : kAll) {
-            for (const Rule c : kAll) {
-                for (const Rule d : kAll) {
+    const std::vector<Rule> every = every_rule();
+    for (const Rule a : every) {
+        for (const Rule b : every) {
+            for (const Rule c : every) {
+                for (const Rule d : every) {
                     const std::vector<Rule> rules{a, b, c, d};
                     std::vector<OwnedSurface> surfaces;
                     for (std::size_t k = 0; k < 4; ++k)
@@ -114,9 +119,10 @@ TEST(Rules, MixturesOverCrossingSurfacesAreValid) {
         flat(-2), rising(1, -1), rising(-1, 1),
         grid(
             2, 2, 0, 0, 1, 1, [](double x, double y) { return 4 * (x - 0.5) * (y - 0.5); }, true)};
-    for (const Rule b : kAll) {
-        for (const Rule c : kAll) {
-            for (const Rule d : kAll) {
+    const std::vector<Rule> every = every_rule();
+    for (const Rule b : every) {
+        for (const Rule c : every) {
+            for (const Rule d : every) {
                 const std::vector<Rule> rules{Rule::kErosional, b, c, d};
                 const auto built = build_ruled(surfaces, rules, -3.0);
                 expect_valid(built);
