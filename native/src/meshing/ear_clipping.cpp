@@ -60,17 +60,12 @@ public:
     Triangles swapped() {
         Ticker tick(check_);
         std::vector<HalfEdge> open;
-        const auto count = static_cast<std::int32_t>(mesh_.corners.size());
         // All are asked before the first is flipped: then no answer waits for another.
-        for (std::int32_t t = 0; t < count; ++t) {
+        mesh_.for_each_edge([&](HalfEdge edge) {
             tick(0);
-            for (int i = 0; i < 3; ++i) {
-                const HalfEdge edge(t, i);
-                if (mesh_.twin(edge).triangle() > t && mesh_.should_flip(edge)) {
-                    open.push_back(edge);
-                }
-            }
-        }
+            if (mesh_.twin(edge).triangle() > edge.triangle() && mesh_.should_flip(edge))
+                open.push_back(edge);
+        });
         mesh_.legalize(open);
         return std::move(mesh_.corners);
     }
