@@ -22,8 +22,6 @@
 
 namespace {
 
-using realmodel::cutting::view;
-
 struct Surface {
     std::vector<double> vertices;
     std::vector<std::int32_t> triangles;

@@ -70,8 +70,8 @@ int main(int count, char** arguments) {
         return std::chrono::duration<double>(Clock::now() - since).count();
     };
     const auto begin = Clock::now();
-    const strata::CellComplex model = strata::build_stack(
-        input, threads, nullptr, blocks ? strata::CellKind::kBlocks : strata::CellKind::kColumns);
+    const CellComplex model = strata::build_stack(input, threads, nullptr,
+                                                  blocks ? CellKind::kBlocks : CellKind::kColumns);
     const double built = seconds(begin);
 
     const auto start = Clock::now();

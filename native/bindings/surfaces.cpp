@@ -8,7 +8,7 @@
 #include "realmodel/base/progress.hpp"
 #include "realmodel/interpolation/convex_hull.hpp"
 #include "realmodel/interpolation/dsi.hpp"
-#include "realmodel/interpolation/mesh_locator.hpp"
+#include "realmodel/interpolation/surface_heights.hpp"
 #include "realmodel/interpolation/triangulated.hpp"
 #include "rows.hpp"
 

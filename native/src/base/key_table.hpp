@@ -5,14 +5,15 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <span>
 
 #include "realmodel/base/array.hpp"
 
 namespace realmodel {
 
-/// Numbers things that are told apart by keys of four 32-bit numbers, consecutively. The keys stay
-/// with the things: the table has their hashes only. Open addressing with linear probing; numbers
-/// are given in the order of first insertion, so nothing depends on the hash.
+/// Numbers things that are told apart by keys of four 32-bit numbers, or in another way, in the
+/// order of first insertion. The keys stay with the things: the table has hashes only, and nothing
+/// depends on these. Open addressing with linear probing.
 class KeyTable {
 public:
     using Key = std::array<std::int32_t, 4>;
@@ -33,8 +34,13 @@ public:
     /// The same with numbers that the caller gives: a new key's is `next`.
     template <class KeyOf>
     Found insert(const Key& key, std::int32_t next, const KeyOf& key_of) {
+        return find_or_add(hash(key), next,
+                           [&](std::int32_t number) { return same(key_of(number), key); });
+    }
+    /// The number of the thing with this hash of which `is_it` holds; `next` where there is none.
+    template <class IsIt>
+    Found find_or_add(std::uint32_t tag, std::int32_t next, const IsIt& is_it) {
         if ((static_cast<std::size_t>(size_) + 1) * 3 > slots_.size() * 2) grow();
-        const std::uint32_t tag = hash(key);
         for (std::size_t slot = tag & mask_;; slot = (slot + 1) & mask_) {
             Slot& here = slots_[slot];
             if (here.number < 0) {
@@ -42,8 +48,19 @@ public:
                 ++size_;
                 return {next, true};
             }
-            if (here.tag == tag && same(key_of(here.number), key)) return {here.number, false};
+            if (here.tag == tag && is_it(here.number)) return {here.number, false};
         }
+    }
+    static std::uint32_t hash(std::span<const std::uint64_t> words) {
+        std::uint64_t h = 0;
+        for (const std::uint64_t word : words) {
+            h = (h ^ word) * 0x9E3779B97F4A7C15u;
+            h ^= h >> 29;
+        }
+        return static_cast<std::uint32_t>(h ^ (h >> 32));
+    }
+    static std::uint32_t hash(const Key& key) {
+        return hash(std::bit_cast<std::array<std::uint64_t, 2>>(key));
     }
 
     /// Where a key will be looked for first, nothing where there is no table yet: to be fetched
@@ -73,19 +90,6 @@ private:
         const auto p = std::bit_cast<Words>(a), q = std::bit_cast<Words>(b);
         return p[0] == q[0] && p[1] == q[1];
     }
-    static std::uint32_t hash(const Key& key) {
-        const auto word = [](std::int32_t a, std::int32_t b) {
-            return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)) << 32) |
-                   static_cast<std::uint32_t>(b);
-        };
-        std::uint64_t h = word(key[0], key[1]) * 0x9E3779B97F4A7C15u;
-        h ^= h >> 29;
-        h = (h + word(key[2], key[3])) * 0xBF58476D1CE4E5B9u;
-        h ^= h >> 32;
-        h *= 0x94D049BB133111EBu;
-        return static_cast<std::uint32_t>(h ^ (h >> 31));
-    }
-
     void grow() { resize(slots_.empty() ? 64 : slots_.size() * 2); }
     void resize(std::size_t slots) {
         Array<Slot> old(slots, Slot{});

@@ -62,25 +62,8 @@ std::int8_t side_of_nearest(const CutterSurface& surface, const Position& p) {
     return side;
 }
 
-namespace {
-
-/// A face as a loop in the view along its normal, and the rounding of its corners.
-std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::size_t face) {
-    const auto corners = model.face(face);
-    std::vector<Position> positions;
-    for (const NodeId v : corners)
-        positions.push_back(model.vertex(v));
-    const View view(polygon_normal(positions));
-    Loop loop;
-    for (std::size_t i = 0; i < corners.size(); ++i)
-        loop.push_back({corners[i], view(positions[i])});
-    return {std::move(loop), view.rounding(positions)};
-}
-
-}  // namespace
-
 void divide_face(const ComplexView& model, std::size_t face, Polygons& polygons) {
-    const auto [loop, rounding] = loop_of(model, face);
+    const auto [loop, rounding] = loop_of(model, model.face(face));
     divide_convex(std::span(&loop, 1), rounding, {}, polygons);
 }
 
@@ -92,7 +75,7 @@ void triangulate_face(const ComplexView& model, std::size_t face,
         triangles.push_back({corners[0], corners[1], corners[2]});
         return;
     }
-    const auto [loop, rounding] = loop_of(model, face);
+    const auto [loop, rounding] = loop_of(model, model.face(face));
     std::vector<std::array<LoopCorner, 3>> found;
     triangulate(std::span(&loop, 1), rounding, found);
     for (const auto& t : found)

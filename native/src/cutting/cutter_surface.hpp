@@ -20,7 +20,7 @@ struct CutterSurface {
 /// its parts oriented upward on the whole. Where a border runs along another the edges are divided
 /// so that they are shared; other borders are extended by a seam, wider than rounding.
 /// @throws InputError kinds not_finite, bad_index, no_triangles, branching (an edge of three or
-///         more triangles of an open surface; items: they), one_sided (items: two neighbours)
+///         more triangles of an open surface; items: they), one_sided (items: two neighbors)
 CutterSurface oriented_surface(const TriangleView& surface);
 
 /// The boundary of a block.

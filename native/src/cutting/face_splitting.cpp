@@ -101,15 +101,9 @@ void FaceSplitter::split_triangle(const std::array<LoopCorner, 3>& t, const Cuts
 }
 
 void FaceSplitter::split_by_triangles(std::span<const NodeId> face, FaceParts& parts) {
-    std::vector<Position> corners;
-    for (const NodeId v : face)
-        corners.push_back(model_.vertex(v));
-    const View view(polygon_normal(corners));
-    Loop loop;
-    for (std::size_t i = 0; i < face.size(); ++i)
-        loop.push_back({face[i], view(corners[i])});
+    const auto [loop, rounding] = loop_of(model_, face);
     std::vector<std::array<LoopCorner, 3>> triangles;
-    triangulate(std::span(&loop, 1), view.rounding(corners), triangles);
+    triangulate(std::span(&loop, 1), rounding, triangles);
     const Cuts cuts(face, triangles, cuts_);
     std::vector<TrianglePart> pieces;
     for (const auto& t : triangles)

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "cutting/plane_cross.hpp"
 #include "exact/orient2d.hpp"
+#include "spatial/corner_grid.hpp"
 
 namespace realmodel::cutting {
 
@@ -42,8 +44,6 @@ private:
     struct Link {
         LoopCorner corner;
         std::int32_t previous, next;
-        std::uint32_t curve = 0;  ///< place along the space-filling curve
-        std::int32_t curve_previous = -1, curve_next = -1;
     };
     enum class Care { kFat, kProper, kStrict, kNone };
     static constexpr std::size_t kFew = 64;
@@ -61,8 +61,7 @@ private:
     }
     bool is_ear(std::int32_t tip, Care care);
     bool blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int32_t c, Care care);
-    void lay_curve();
-    std::uint32_t curve_value(const PlanePosition& p) const;
+    void enter_corners();
     void remove(std::int32_t i);
 
     PlanePosition rounding_;
@@ -71,16 +70,14 @@ private:
     std::vector<Link> links_;
     std::int32_t entry_ = -1;
     std::size_t count_ = 0;
-    bool has_curve_ = false;
-    PlanePosition low_{}, scale_{};
+    std::optional<spatial::CornerGrid> grid_;  ///< of the ring's corners, where they are many
 };
 
 std::int32_t Ring::append(const Loop& loop) {
     const auto first = static_cast<std::int32_t>(links_.size());
     const auto size = static_cast<std::int32_t>(loop.size());
     for (std::int32_t i = 0; i < size; ++i) {
-        links_.push_back(
-            {loop[index(i)], first + (i + size - 1) % size, first + (i + 1) % size, 0, -1, -1});
+        links_.push_back({loop[index(i)], first + (i + size - 1) % size, first + (i + 1) % size});
     }
     count_ += loop.size();
     return first;
@@ -168,54 +165,22 @@ void Ring::join_hole(const Loop& hole, std::span<const Loop> others) {
     link(outer_again).previous = inner_again;
 }
 
-std::uint32_t Ring::curve_value(const PlanePosition& p) const {
-    std::uint32_t value = 0;
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-        auto bits = static_cast<std::uint32_t>((p[axis] - low_[axis]) * scale_[axis]) & 0x7fffU;
-        bits = (bits | (bits << 8)) & 0x00ff00ffU;
-        bits = (bits | (bits << 4)) & 0x0f0f0f0fU;
-        bits = (bits | (bits << 2)) & 0x33333333U;
-        bits = (bits | (bits << 1)) & 0x55555555U;
-        value |= bits << axis;
-    }
-    return value;
-}
-
-void Ring::lay_curve() {
-    has_curve_ = count_ > kFew;
-    if (!has_curve_) return;
-    std::vector<std::int32_t> order;
-    PlanePosition high{-HUGE_VAL, -HUGE_VAL};
-    low_ = {HUGE_VAL, HUGE_VAL};
+void Ring::enter_corners() {
+    if (count_ <= kFew) return;
+    std::vector<spatial::CornerGrid::Member> corners;
     std::int32_t i = entry_;
     do {
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            low_[axis] = std::min(low_[axis], at(i)[axis]);
-            high[axis] = std::max(high[axis], at(i)[axis]);
-        }
-        order.push_back(i);
+        corners.push_back({at(i), i});
         i = link(i).next;
     } while (i != entry_);
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-        scale_[axis] = high[axis] > low_[axis] ? 32767.0 / (high[axis] - low_[axis]) : 0.0;
-    }
-    for (const std::int32_t k : order)
-        link(k).curve = curve_value(at(k));
-    std::stable_sort(order.begin(), order.end(), [this](std::int32_t a, std::int32_t b) {
-        return link(a).curve < link(b).curve;
-    });
-    for (std::size_t k = 1; k < order.size(); ++k) {
-        link(order[k - 1]).curve_next = order[k];
-        link(order[k]).curve_previous = order[k - 1];
-    }
+    grid_.emplace(std::move(corners), links_.size());
 }
 
 void Ring::remove(std::int32_t i) {
     const Link gone = link(i);
     link(gone.previous).next = gone.next;
     link(gone.next).previous = gone.previous;
-    if (gone.curve_previous >= 0) link(gone.curve_previous).curve_next = gone.curve_next;
-    if (gone.curve_next >= 0) link(gone.curve_next).curve_previous = gone.curve_previous;
+    if (grid_) grid_->remove(i);
     --count_;
 }
 
@@ -249,32 +214,22 @@ bool Ring::is_ear(std::int32_t tip, Care care) {
     if (care == Care::kFat &&
         cross(at(a), at(tip), at(c)) <= slack(at(a), at(tip), at(c), rounding_))
         return false;
-    if (!has_curve_) {
+    if (!grid_) {
         for (std::int32_t other = link(c).next; other != a; other = link(other).next) {
             if (blocks(other, a, tip, c, care)) return false;
         }
         return true;
     }
-    PlanePosition low = at(a), high = at(a);
-    for (const std::int32_t k : {tip, c}) {
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            low[axis] = std::min(low[axis], at(k)[axis]);
-            high[axis] = std::max(high[axis], at(k)[axis]);
-        }
-    }
-    const std::uint32_t first = curve_value(low), last = curve_value(high);
-    for (std::int32_t k = tip; k >= 0 && link(k).curve >= first; k = link(k).curve_previous) {
-        if (blocks(k, a, tip, c, care)) return false;
-    }
-    for (std::int32_t k = tip; k >= 0 && link(k).curve <= last; k = link(k).curve_next) {
-        if (blocks(k, a, tip, c, care)) return false;
-    }
-    return true;
+    return !grid_->any_in_triangle(at(a), at(tip), at(c),
+                                   [&](const spatial::CornerGrid::Member& other) {
+                                       return blocks(other.number, a, tip, c, care);
+                                   },
+                                   {2 * rounding_[0], 2 * rounding_[1]});
 }
 
 bool Ring::cut_ears() {
     bool clean = true;
-    lay_curve();
+    enter_corners();
     Care care = Care::kFat;
     std::int32_t tip = entry_, stop = entry_;
     while (count_ > 2) {
@@ -347,6 +302,17 @@ std::size_t outline_around(std::span<const Loop> loops, const std::vector<double
 }
 
 }  // namespace
+
+std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon) {
+    std::vector<Position> positions;
+    for (const NodeId v : polygon)
+        positions.push_back(model.vertex(v));
+    const View view(polygon_normal(positions));
+    Loop loop;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        loop.push_back({polygon[i], view(positions[i])});
+    return {std::move(loop), view.rounding(positions)};
+}
 
 int CornerTurns::operator()(const LoopCorner& a, const LoopCorner& b, const LoopCorner& c) const {
     return exact::orient2d(a.at, b.at, c.at);

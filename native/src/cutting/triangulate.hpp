@@ -2,9 +2,11 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cutting/polygons.hpp"
+#include "realmodel/complex.hpp"
 
 namespace realmodel::cutting {
 
@@ -14,6 +16,10 @@ struct LoopCorner {
     PlanePosition at;
 };
 using Loop = std::vector<LoopCorner>;
+
+/// A polygon of the model's vertices as a loop in the view along its normal, and the rounding of
+/// its corners.
+std::pair<Loop, PlanePosition> loop_of(const ComplexView& model, std::span<const NodeId> polygon);
 
 /// Which way corners turn: 1 left, -1 right, 0 straight on. By itself it tells that of the places
 /// in the view, exactly; others know better where the corners are than their rounded places say.
@@ -26,7 +32,7 @@ public:
 /// Divides the region that loops bound (outlines counter-clockwise, holes clockwise; a hole may be
 /// a slit of two corners) into triangles without new nodes, by cutting off ears (G. H. Meisters
 /// 1975), with holes joined to their outline by bridges (D. Eberly, "Triangulation by ear
-/// clipping", 2002) and ears tested against what is near along a space-filling curve.
+/// clipping", 2002).
 ///
 /// Each edge of each loop belongs to exactly one triangle, and every other edge to two, whatever
 /// the loops look like: where rounding has made them cross, triangles may overlap by as much, but

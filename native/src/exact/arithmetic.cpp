@@ -37,7 +37,7 @@ mpz_class whole_number(double value, int exponent) {
     int own = 0;
     const std::int64_t mantissa = odd_mantissa(value, own);
     mpz_class result = whole_number_of(static_cast<std::uint64_t>(std::abs(mantissa)));
-    if (mantissa < 0) result = -result;
+    if (mantissa < 0) mpz_neg(result.get_mpz_t(), result.get_mpz_t());
     if (mantissa != 0 && own > exponent) result <<= static_cast<unsigned>(own - exponent);
     return result;
 }

@@ -2,21 +2,23 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
+#include <type_traits>
 
 #include "exact/arithmetic.hpp"
-#include "exact/fixed_integer.hpp"
 #include "exact/space_points.hpp"
 
 namespace realmodel::exact {
 
-/// Points in homogeneous coordinates that are whole numbers of fixed width, for one question:
-/// relative to an origin, in units of the finest of the doubles that they were made of. Points
-/// given by rational numbers are not known.
+/// Points in homogeneous coordinates that are whole numbers, for one question: relative to an
+/// origin, in units of the finest of the doubles that they were made of. Signs of them take no
+/// common denominators, as those of rational numbers do.
+/// @tparam Integer  Int126, whose answers may be unknown, or mpz_class
+template <class Integer>
 class HomogeneousPoints {
 public:
-    using Integer = FixedInteger;
     using Intersection = SpacePoints::Intersection;
     struct Point {
         std::array<Integer, 3> at;
@@ -30,11 +32,11 @@ public:
             include(p);
     }
 
+    /// Whether all points are given by doubles or constructed of such.
+    bool are_known() const { return are_known_; }
     Point point(SpacePointId p) const {
         if (const auto* construction = points_.construction(p)) return point(construction->of);
-        Point point;
-        point.at = points_.is_double(p) ? minus(points_.rounded(p), origin_) : unknown();
-        return point;
+        return {minus(points_.rounded(p), origin_), Integer(1)};
     }
     Point point(const Intersection& of) const {
         const auto [p, q, a, b, c] = of.of;
@@ -42,9 +44,9 @@ public:
             return minus(points_.rounded(end), points_.rounded(o));
         };
         const auto u = from(b, a), v = from(c, a), start = from(p, a), line = from(q, p);
-        const std::array normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                                u[0] * v[1] - u[1] * v[0]};
-        const auto dot = [&normal](const std::array<Integer, 3>& w) {
+        const std::array<Integer, 3> normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                                            u[0] * v[1] - u[1] * v[0]};
+        const auto dot = [&normal](const std::array<Integer, 3>& w) -> Integer {
             return normal[0] * w[0] + normal[1] * w[1] + normal[2] * w[2];
         };
         const Integer ratio = dot(start);
@@ -60,14 +62,13 @@ public:
     static std::array<Integer, 3> minus(const Point& p, const Point& other) {
         std::array<Integer, 3> result;
         for (std::size_t k = 0; k < 3; ++k)
-            result[k] = times(p.at[k], other) - times(other.at[k], p);
+            result[k] = p.is_whole && other.is_whole
+                            ? Integer(p.at[k] - other.at[k])
+                            : Integer(times(p.at[k], other) - times(other.at[k], p));
         return result;
     }
     static Integer times(const Integer& number, const Point& point) {
-        return point.is_whole ? number : number * point.weight;
-    }
-    static int sign_of_weight(const Point& point) {
-        return point.is_whole ? 1 : sign_of(point.weight);
+        return point.is_whole ? number : Integer(number * point.weight);
     }
     /// The point that is best taken as the origin of the others: one whose weight is 1, if any.
     static std::size_t simplest(std::span<const Point> points) {
@@ -75,7 +76,8 @@ public:
                                         [](const Point& point) { return point.is_whole; });
         return found == points.end() ? 0 : static_cast<std::size_t>(found - points.begin());
     }
-    /// Whether an intersection is exactly at these doubles; nothing where that is not known.
+    /// Whether an intersection of points given by doubles is exactly at these doubles; nothing
+    /// where that is not known.
     std::optional<bool> is_at(const Intersection& of, const SpacePosition& doubles) {
         for (const double x : doubles)
             unit_ = finest_exponent(x, unit_);
@@ -97,7 +99,10 @@ private:
                 include(q);
             return;
         }
-        if (!points_.is_double(p)) return;
+        if (!points_.is_double(p)) {
+            are_known_ = false;
+            return;
+        }
         if (!has_origin_) origin_ = points_.rounded(p);
         has_origin_ = true;
         for (const double x : points_.rounded(p))
@@ -105,18 +110,31 @@ private:
     }
     std::array<Integer, 3> minus(const SpacePosition& p, const SpacePosition& q) const {
         std::array<Integer, 3> result;
-        for (std::size_t k = 0; k < 3; ++k)
-            result[k] = Integer::of(p[k], unit_) - Integer::of(q[k], unit_);
+        for (std::size_t k = 0; k < 3; ++k) {
+            if constexpr (std::is_same_v<Integer, Int126>) {
+                result[k] = Int126::difference(p[k], q[k], std::ldexp(1.0, -unit_));
+            } else {
+                if (p[k] != q[k]) result[k] = whole_number(p[k], unit_) - whole_number(q[k], unit_);
+            }
+        }
         return result;
-    }
-    static std::array<Integer, 3> unknown() {
-        return {Integer::unknown(), Integer::unknown(), Integer::unknown()};
     }
 
     const SpacePoints& points_;
     SpacePosition origin_{0, 0, 0};
-    bool has_origin_ = false;
+    bool has_origin_ = false, are_known_ = true;
     int unit_ = 1024;
 };
+
+/// The answer ask(in) of points in whole numbers, short ones first; nothing where a point is given
+/// by rational numbers.
+template <class Ask>
+auto by_integers(const SpacePoints& points, std::span<const SpacePointId> asked, const Ask& ask) {
+    HomogeneousPoints<Int126> in(points, asked);
+    decltype(ask(in)) answer;
+    if (!in.are_known()) return answer;
+    answer = ask(in);
+    return answer ? answer : ask(HomogeneousPoints<mpz_class>(points, asked));
+}
 
 }  // namespace realmodel::exact

@@ -16,6 +16,8 @@ __extension__ typedef unsigned __int128 UInt128;
 
 /// A number of 64 bits as GMP's, whose own constructors take a `long`: on Windows 32 bits.
 inline mpz_class whole_number_of(std::uint64_t number) {
+    if constexpr (sizeof(unsigned long) == sizeof number)
+        return mpz_class(static_cast<unsigned long>(number));
     mpz_class result;
     mpz_import(result.get_mpz_t(), 1, -1, sizeof number, 0, 0, &number);
     return result;
@@ -31,6 +33,13 @@ public:
     explicit Int126(std::int64_t value)
         : value_(value), bits_(std::bit_width(static_cast<std::uint64_t>(std::abs(value)))) {}
     static Int126 unknown() { return {0, kMostBits + 1}; }
+    /// a - b in units of 1 / scale, a power of two that makes both of them whole.
+    static Int126 difference(double a, double b, double scale) {
+        constexpr double kMost = 0x1p61;
+        const double p = a * scale, q = b * scale;
+        if (!(std::abs(p) < kMost && std::abs(q) < kMost)) return Int126::unknown();
+        return Int126(static_cast<std::int64_t>(p) - static_cast<std::int64_t>(q));
+    }
 
     friend bool is_known(const Int126& a) { return a.bits_ <= kMostBits; }
     friend int sign_of(const Int126& a) { return a.value_ > 0 ? 1 : (a.value_ < 0 ? -1 : 0); }
@@ -73,26 +82,18 @@ public:
           height_scale_(std::ldexp(1.0, -geometry.height_exponent())) {}
 
     Int126 dx(VertexId v, VertexId o) const {
-        return difference(g_.point(v).x, g_.point(o).x, plan_scale_);
+        return Int126::difference(g_.point(v).x, g_.point(o).x, plan_scale_);
     }
     Int126 dy(VertexId v, VertexId o) const {
-        return difference(g_.point(v).y, g_.point(o).y, plan_scale_);
+        return Int126::difference(g_.point(v).y, g_.point(o).y, plan_scale_);
     }
     Int126 dz(SpaceId s, SpaceId t) const {
-        return difference(g_.space(s).z, g_.space(t).z, height_scale_);
+        return Int126::difference(g_.space(s).z, g_.space(t).z, height_scale_);
     }
-    Int126 plan(double value) const { return difference(value, 0.0, plan_scale_); }
-    Int126 height(double value) const { return difference(value, 0.0, height_scale_); }
+    Int126 plan(double value) const { return Int126::difference(value, 0.0, plan_scale_); }
+    Int126 height(double value) const { return Int126::difference(value, 0.0, height_scale_); }
 
 private:
-    /// a - b in units of 1 / scale, a power of two that makes both of them whole.
-    static Int126 difference(double a, double b, double scale) {
-        constexpr double kMost = 0x1p61;
-        const double p = a * scale, q = b * scale;
-        if (!(std::abs(p) < kMost && std::abs(q) < kMost)) return Int126::unknown();
-        return Int126(static_cast<std::int64_t>(p) - static_cast<std::int64_t>(q));
-    }
-
     const PlanArrangement& g_;
     double plan_scale_, height_scale_;
 };

@@ -9,7 +9,7 @@
 namespace realmodel::exact {
 
 /// Finds numbered things again, each among the few that have the same owner: an edge among those of
-/// its lower vertex, a crossing among those of the younger of its lines. Neighbours are numbered
+/// its lower vertex, a crossing among those of the younger of its lines. Neighbors are numbered
 /// together, so what is asked for next mostly lies beside what was asked for last, where a hash
 /// table would go to another page of memory; and it takes a third of one. Owners may have any
 /// number of things: from `kMost` on they have to be kept elsewhere, as lists are read from end to

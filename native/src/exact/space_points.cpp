@@ -15,43 +15,31 @@ namespace realmodel::exact {
 
 namespace {
 
-std::uint64_t hash_of(const SpacePosition& p) {
+std::uint32_t hash_of(const SpacePosition& p) {
     std::array<std::uint64_t, 3> words;
     for (std::size_t k = 0; k < 3; ++k)
         words[k] = std::bit_cast<std::uint64_t>(p[k] + 0.0);  // both zeros alike
-    return HashIndex::hash(words);
+    return KeyTable::hash(words);
 }
 
 }  // namespace
-
-std::uint64_t SpacePoints::Intersection::hash() const {
-    return HashIndex::hash(
-        std::array{of[0].number(), of[1].number(), of[2].number(), of[3].number(), of[4].number()});
-}
-
-/// The number of a point that is the same as the last one, if there is one.
-SpacePointId SpacePoints::find_equal(SpacePointId p) const {
-    return SpacePointId(by_doubles_.find(hash_of(rounded(p)), [this, p](std::int32_t number) {
-        const SpacePointId other(number);
-        return rounded(other) == rounded(p) && compare(*this, p, other) == 0;
-    }));
-}
 
 /// The number of a point: a new one where none is the same. Only new points keep their source.
 SpacePointId SpacePoints::enter(const SpacePosition& rounded, Source source) {
     const SpacePointId number(checked_number(rounded_.size(), "points where surfaces meet"));
     rounded_.push_back(rounded);
     source_.push_back(source);
-    const SpacePointId known = find_equal(number);
-    if (known == kNone) {
-        by_doubles_.insert(hash_of(rounded), number.number());
-        return number;
-    }
+    const auto found =
+        by_doubles_.find_or_add(hash_of(rounded), number.number(), [&](std::int32_t candidate) {
+            const SpacePointId other(candidate);
+            return rounded_[index(other)] == rounded && compare(*this, number, other) == 0;
+        });
+    if (found.is_new) return number;
     rounded_.pop_back();
     source_.pop_back();
     if (source.kind == Source::Kind::kConstruction) constructions_.pop_back();
     if (source.kind == Source::Kind::kRational) rationals_.pop_back();
-    return known;
+    return SpacePointId(found.number);
 }
 
 SpacePointId SpacePoints::add(const SpacePosition& p) {
@@ -93,14 +81,14 @@ SpacePointId SpacePoints::intersection(SpacePointId p, SpacePointId q, SpacePoin
     std::array<SpacePointId, 3> plane{a, b, c};
     std::sort(plane.begin(), plane.end());
     const Intersection of{{std::min(p, q), std::max(p, q), plane[0], plane[1], plane[2]}};
-    const std::uint64_t hash = of.hash();
-    const std::int32_t known = by_intersection_.find(
-        hash, [&](std::int32_t i) { return intersections_[index(i)].first == of; });
-    if (known >= 0) return intersections_[index(known)].second;
-    const SpacePointId number = construct(of);
-    by_intersection_.insert(hash, static_cast<std::int32_t>(intersections_.size()));
-    intersections_.push_back({of, number});
-    return number;
+    std::array<std::uint64_t, 5> words;
+    std::transform(of.of.begin(), of.of.end(), words.begin(),
+                   [](SpacePointId id) { return static_cast<std::uint64_t>(id.number()); });
+    const auto found = by_intersection_.find_or_add(
+        KeyTable::hash(words), static_cast<std::int32_t>(intersections_.size()),
+        [&](std::int32_t i) { return intersections_[index(i)].first == of; });
+    if (found.is_new) intersections_.push_back({of, construct(of)});
+    return intersections_[index(found.number)].second;
 }
 
 SpacePointId SpacePoints::construct(const Intersection& of) {
@@ -117,8 +105,8 @@ SpacePointId SpacePoints::construct(const Intersection& of) {
         may_be_doubles = may_be_doubles && at[k].low == 0;
     }
     if (may_be_doubles) {
-        const auto are_doubles = HomogeneousPoints(*this, of.of).is_at(of, rounded);
-        if (!are_doubles) return add(rational(of));
+        const auto are_doubles =
+            by_integers(*this, of.of, [&](auto&& in) { return in.is_at(of, rounded); });
         if (*are_doubles) return enter(rounded, {});
     }
     constructions_.push_back({of, at});

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/hash_index.hpp"
 #include "base/index.hpp"
+#include "base/key_table.hpp"
 #include "exact/double_double_interval.hpp"
 #include "exact/rational_point.hpp"
 
@@ -84,7 +84,6 @@ private:
     const Source& source(SpacePointId p) const { return source_[index(p)]; }
     SpacePointId enter(const SpacePosition& rounded, Source source);
     SpacePointId construct(const Intersection& of);
-    SpacePointId find_equal(SpacePointId p) const;
     std::array<DoubleDoubleInterval, 3> coordinates(const Intersection& of) const;
     RationalPoint rational(const Intersection& of) const;
 
@@ -92,8 +91,8 @@ private:
     std::vector<Source> source_;
     std::vector<Construction> constructions_;
     std::vector<RationalPoint> rationals_;
-    HashIndex by_doubles_;       ///< points by their doubles
-    HashIndex by_intersection_;  ///< positions in `intersections_`
+    KeyTable by_doubles_;       ///< points by their doubles
+    KeyTable by_intersection_;  ///< positions in `intersections_`
     std::vector<std::pair<Intersection, SpacePointId>> intersections_;
 };
 

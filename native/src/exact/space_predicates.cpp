@@ -13,8 +13,6 @@ namespace realmodel::exact {
 namespace {
 
 using Construction = SpacePoints::Construction;
-using Homogeneous = HomogeneousPoints;
-using Integer = HomogeneousPoints::Integer;
 
 /// The difference of two coordinates: without error where both are doubles.
 DoubleDoubleInterval difference(const DoubleDoubleInterval& to, const DoubleDoubleInterval& from) {
@@ -120,11 +118,11 @@ std::optional<int> orient2d_by_intervals(const SpacePoints& points, std::size_t 
     return (u[0] * v[1] - u[1] * v[0]).sign();
 }
 
-std::optional<int> orient3d_by_integers(const SpacePoints& points,
-                                        const std::array<SpacePointId, 4>& of) {
-    const Homogeneous in(points, of);
-    std::array<Homogeneous::Point, 4> at{in.point(of[0]), in.point(of[1]), in.point(of[2]),
-                                         in.point(of[3])};
+template <class Integer>
+std::optional<int> orient3d_in(const HomogeneousPoints<Integer>& in,
+                               const std::array<SpacePointId, 4>& of) {
+    using Homogeneous = HomogeneousPoints<Integer>;
+    std::array at{in.point(of[0]), in.point(of[1]), in.point(of[2]), in.point(of[3])};
     // each exchange of two points reverses the sign
     const std::size_t origin = Homogeneous::simplest(at);
     int sign = 1;
@@ -135,7 +133,7 @@ std::optional<int> orient3d_by_integers(const SpacePoints& points,
     std::array<std::array<Integer, 3>, 3> from_first;
     for (std::size_t i = 0; i < 3; ++i) {
         from_first[i] = Homogeneous::minus(at[i + 1], at[0]);
-        sign *= Homogeneous::sign_of_weight(at[i + 1]) * Homogeneous::sign_of_weight(at[0]);
+        sign *= sign_of(at[i + 1].weight) * sign_of(at[0].weight);
     }
     const auto& [u, v, w] = from_first;
     const Integer found = w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
@@ -144,26 +142,27 @@ std::optional<int> orient3d_by_integers(const SpacePoints& points,
     return sign * sign_of(found);
 }
 
-std::optional<int> orient2d_by_integers(const SpacePoints& points, std::size_t axis,
-                                        const std::array<SpacePointId, 3>& of) {
+template <class Integer>
+std::optional<int> orient2d_in(const HomogeneousPoints<Integer>& in, std::size_t axis,
+                               const std::array<SpacePointId, 3>& of) {
+    using Homogeneous = HomogeneousPoints<Integer>;
     const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
-    const Homogeneous in(points, of);
-    std::array<Homogeneous::Point, 3> at{in.point(of[0]), in.point(of[1]), in.point(of[2])};
+    std::array at{in.point(of[0]), in.point(of[1]), in.point(of[2])};
     const auto origin = static_cast<std::ptrdiff_t>(Homogeneous::simplest(at));
     std::rotate(at.begin(), at.begin() + origin, at.end());
     const auto u = Homogeneous::minus(at[1], at[0]), v = Homogeneous::minus(at[2], at[0]);
     const Integer found = u[k] * v[l] - u[l] * v[k];
     if (!is_known(found)) return std::nullopt;
-    return sign_of(found) * Homogeneous::sign_of_weight(at[1]) * Homogeneous::sign_of_weight(at[2]);
+    return sign_of(found) * sign_of(at[1].weight) * sign_of(at[2].weight);
 }
 
-std::optional<int> compare_by_integers(const SpacePoints& points, std::size_t axis, SpacePointId a,
-                                       SpacePointId b) {
-    const Homogeneous in(points, std::array{a, b});
-    const Homogeneous::Point p = in.point(a), q = in.point(b);
-    const Integer found = Homogeneous::times(p.at[axis], q) - Homogeneous::times(q.at[axis], p);
+template <class Integer>
+std::optional<int> compare_in(const HomogeneousPoints<Integer>& in, std::size_t axis,
+                              SpacePointId a, SpacePointId b) {
+    const auto p = in.point(a), q = in.point(b);
+    const Integer found = in.times(p.at[axis], q) - in.times(q.at[axis], p);
     if (!is_known(found)) return std::nullopt;
-    return sign_of(found) * Homogeneous::sign_of_weight(p) * Homogeneous::sign_of_weight(q);
+    return sign_of(found) * sign_of(p.weight) * sign_of(q.weight);
 }
 
 }  // namespace
@@ -177,7 +176,8 @@ int orient3d(const SpacePoints& points, SpacePointId a, SpacePointId b, SpacePoi
         return *sign;
     if (lie_on_one_plane_by_construction(points, of)) return 0;
     if (const auto sign = orient3d_by_intervals(points, of)) return *sign;
-    if (const auto sign = orient3d_by_integers(points, of)) return *sign;
+    const auto sign = by_integers(points, of, [&](auto&& in) { return orient3d_in(in, of); });
+    if (sign) return *sign;
     const RationalPoint o = points.exact(a);
     const auto from_a = [&](SpacePointId p) { return minus(points.exact(p), o); };
     return sgn(determinant(from_a(b), from_a(c), from_a(d)));
@@ -194,7 +194,8 @@ int orient2d(const SpacePoints& points, std::size_t axis, SpacePointId a, SpaceP
         return *sign;
     if (lie_on_one_line_by_construction(points, of)) return 0;
     if (const auto sign = orient2d_by_intervals(points, axis, of)) return *sign;
-    if (const auto sign = orient2d_by_integers(points, axis, of)) return *sign;
+    const auto sign = by_integers(points, of, [&](auto&& in) { return orient2d_in(in, axis, of); });
+    if (sign) return *sign;
     const RationalPoint o = points.exact(a);
     return sgn(cross(minus(points.exact(b), o), minus(points.exact(c), o), axis));
 }
@@ -208,7 +209,9 @@ int compare(const SpacePoints& points, std::size_t axis, SpacePointId a, SpacePo
     if (p && q) {
         if (const auto sign = difference(*p, *q).sign()) return *sign;
     }
-    if (const auto sign = compare_by_integers(points, axis, a, b)) return *sign;
+    const auto sign = by_integers(points, std::array{a, b},
+                                  [&](auto&& in) { return compare_in(in, axis, a, b); });
+    if (sign) return *sign;
     return sgn(mpq_class(points.exact(a)[axis] - points.exact(b)[axis]));
 }
 

@@ -34,17 +34,6 @@ bool usable(double number) {
 
 }  // namespace
 
-Bounds bounds_of(std::span<const Position> positions) {
-    Bounds bounds{positions[0], positions[0]};
-    for (const Position& p : positions) {
-        for (std::size_t axis = 0; axis < 2; ++axis) {
-            bounds.low[axis] = std::min(bounds.low[axis], p[axis]);
-            bounds.high[axis] = std::max(bounds.high[axis], p[axis]);
-        }
-    }
-    return bounds;
-}
-
 std::vector<double> DataPoints::for_given(std::span<const double> found) const {
     std::vector<double> out(number_of.size());
     for (std::size_t i = 0; i < out.size(); ++i)

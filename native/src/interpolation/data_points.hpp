@@ -6,22 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "spatial/plan_tiles.hpp"
+
 namespace realmodel::interpolation {
 
-/// x and y in plan.
-using Position = std::array<double, 2>;
-
-using Place = Position;  // in the spatial indexes
-
-/// The box around some positions.
-struct Bounds {
-    Position low, high;
-
-    double width() const { return high[0] - low[0]; }
-    double height() const { return high[1] - low[1]; }
-};
-/// @param positions  at least one
-Bounds bounds_of(std::span<const Position> positions);
+using Position = spatial::PlanPosition;
 
 /// Points of which no two lie at one position. Their coordinates are relative to an origin among
 /// them: at UTM coordinates differences keep all their digits.

@@ -167,15 +167,13 @@ void add_triangles(FlatMesh& mesh, const Cdt& cdt, const std::vector<signed char
 }
 
 void lock_pieces(FlatMesh& mesh, std::int32_t first, std::span<const Segment> locked) {
-    const auto count = static_cast<std::int32_t>(mesh.corners.size());
-    for (std::int32_t t = locked.empty() ? count : first; t < count; ++t) {
-        for (int i = 0; i < 3; ++i) {
-            const HalfEdge edge(t, i);
-            const Segment piece{mesh.from(edge), mesh.to(edge)};
-            if (mesh.is_border(edge) && std::binary_search(locked.begin(), locked.end(), piece))
-                mesh.fix(edge, true, true);
-        }
-    }
+    if (locked.empty()) return;
+    const auto lock = [&](HalfEdge edge) {
+        const Segment piece{mesh.from(edge), mesh.to(edge)};
+        if (mesh.is_border(edge) && std::binary_search(locked.begin(), locked.end(), piece))
+            mesh.fix(edge, true, true);
+    };
+    mesh.for_each_edge(lock, first);
 }
 
 }  // namespace

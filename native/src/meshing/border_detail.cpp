@@ -76,32 +76,27 @@ std::vector<SizeSource> border_detail(const RegionGraph& graph, const SizeField&
     for (const std::int32_t v : graph.loners)
         is_loner[v] = true;
     std::vector<SizeSource> sources;
-    const auto count = static_cast<std::int32_t>(mesh.corners.size());
     std::vector<bool> is_fixed(mesh.points.size(), false);
-    for (std::int32_t t = 0; t < count; ++t)
-        for (int i = 0; i < 3; ++i)
-            if (mesh.is_fixed({t, i}))
-                is_fixed[mesh.from({t, i})] = is_fixed[mesh.to({t, i})] = true;
-    for (std::int32_t t = 0; t < count; ++t) {
-        for (int i = 0; i < 3; ++i) {
-            const HalfEdge edge(t, i);
-            const bool is_first = mesh.is_border(edge) || mesh.twin(edge).triangle() > t;
-            if (!is_first) continue;
-            const PlanPoint &a = mesh.origin_point(edge), &b = mesh.target_point(edge);
-            const double length = std::sqrt(squared_distance(a, b));
-            if (length >= kShortShare * size.at(middle(a, b))) continue;
-            // Refinement passes over triangles with the shortest edges: leave it room above them.
-            const double least = std::max(length, 4 * shortest_edge);
-            if (mesh.is_fixed(edge)) {
-                const double here = std::max(length_at(mesh, edge, is_fixed), 4 * shortest_edge);
-                sources.push_back({a, b, here, here, kGrowth});
-            }
-            for (const std::int32_t v : {mesh.from(edge), mesh.to(edge)}) {
-                const PlanPoint& p = mesh.points[v];
-                if (is_loner[v]) sources.push_back({p, p, least, least, kGrowth});
-            }
+    mesh.for_each_edge([&](HalfEdge edge) {
+        if (mesh.is_fixed(edge)) is_fixed[mesh.from(edge)] = is_fixed[mesh.to(edge)] = true;
+    });
+    mesh.for_each_edge([&](HalfEdge edge) {
+        const bool is_first = mesh.is_border(edge) || mesh.twin(edge).triangle() > edge.triangle();
+        if (!is_first) return;
+        const PlanPoint &a = mesh.origin_point(edge), &b = mesh.target_point(edge);
+        const double length = std::sqrt(squared_distance(a, b));
+        if (length >= kShortShare * size.at(middle(a, b))) return;
+        // Refinement passes over triangles with the shortest edges: leave it room above them.
+        const double least = std::max(length, 4 * shortest_edge);
+        if (mesh.is_fixed(edge)) {
+            const double here = std::max(length_at(mesh, edge, is_fixed), 4 * shortest_edge);
+            sources.push_back({a, b, here, here, kGrowth});
         }
-    }
+        for (const std::int32_t v : {mesh.from(edge), mesh.to(edge)}) {
+            const PlanPoint& p = mesh.points[v];
+            if (is_loner[v]) sources.push_back({p, p, least, least, kGrowth});
+        }
+    });
     if (sources.size() > kManySources) thin_out(sources, size.largest() / kFinestOfMany);
     return sources;
 }

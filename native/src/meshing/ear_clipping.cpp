@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "meshing/check.hpp"
-#include "meshing/corner_grid.hpp"
 #include "meshing/ear_ring.hpp"
 #include "meshing/plan_predicates.hpp"
 #include "meshing/point_insertion.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/meshing/rings.hpp"
+#include "spatial/corner_grid.hpp"
 
 namespace realmodel::meshing {
 
@@ -39,7 +39,7 @@ public:
 
     /// False where no ear is left.
     bool run() {
-        CornerGrid grid = take_corners();
+        spatial::CornerGrid grid = take_corners();
         std::int32_t tip = ring_.first();
         for (const bool is_choosy : {true, false}) {
             queue_.clear();
@@ -60,17 +60,12 @@ public:
     Triangles swapped() {
         Ticker tick(check_);
         std::vector<HalfEdge> open;
-        const auto count = static_cast<std::int32_t>(mesh_.corners.size());
         // All are asked before the first is flipped: then no answer waits for another.
-        for (std::int32_t t = 0; t < count; ++t) {
+        mesh_.for_each_edge([&](HalfEdge edge) {
             tick(0);
-            for (int i = 0; i < 3; ++i) {
-                const HalfEdge edge(t, i);
-                if (mesh_.twin(edge).triangle() > t && mesh_.should_flip(edge)) {
-                    open.push_back(edge);
-                }
-            }
-        }
+            if (mesh_.twin(edge).triangle() > edge.triangle() && mesh_.should_flip(edge))
+                open.push_back(edge);
+        });
         mesh_.legalize(open);
         return std::move(mesh_.corners);
     }
@@ -85,8 +80,8 @@ private:
 
     /// Only corners that do not turn left can hide in an ear: of those that lie in it, the one
     /// farthest from its diagonal turns right or not at all.
-    CornerGrid take_corners() {
-        std::vector<CornerGrid::Member> hiding;
+    spatial::CornerGrid take_corners() {
+        std::vector<spatial::CornerGrid::Member> hiding;
         std::int32_t node = ring_.first();
         do {
             tips_[node].turn = static_cast<std::int8_t>(turn_at(node));
@@ -98,7 +93,7 @@ private:
     }
 
     /// Cuts the ears in the queue and those that come of it; returns a corner that is left.
-    std::int32_t cut_ears(CornerGrid& grid, bool is_choosy, std::int32_t left_over) {
+    std::int32_t cut_ears(spatial::CornerGrid& grid, bool is_choosy, std::int32_t left_over) {
         for (std::size_t i = 0; i < queue_.size() && left_ > 3; ++i) {
             if (i % 1024 == 0) check_(0);
             const std::int32_t tip = queue_[i];
@@ -168,7 +163,7 @@ private:
 
     /// What keeps a corner that turns left from being cut off, or none. Who is choosy takes only
     /// triangles that hardly need flips: with none of a few corners nearby in their circle.
-    std::int32_t blocker_of(std::int32_t tip, CornerGrid& grid, bool is_choosy) const {
+    std::int32_t blocker_of(std::int32_t tip, spatial::CornerGrid& grid, bool is_choosy) const {
         const EarNode& node = ring_.nodes[tip];
         const PlanPoint &a = ring_.place(node.previous), &b = node.place,
                         &c = ring_.place(node.next);
@@ -192,8 +187,8 @@ private:
                 return blocker;
             }
         }
-        grid.any_in_triangle(a, b, c, [&](const CornerGrid::Member& member) {
-            const PlanPoint& p = member.place;
+        grid.any_in_triangle(a, b, c, [&](const spatial::CornerGrid::Member& member) {
+            const PlanPoint& p = member.position;
             if (p == a || p == b || p == c) return false;
             if (orient2d(a, b, p) < 0 || orient2d(b, c, p) < 0 || orient2d(c, a, p) < 0) {
                 return false;

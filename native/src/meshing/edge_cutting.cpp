@@ -57,19 +57,18 @@ EdgeCutting::EdgeCutting(const ConstrainedTriangulation& triangulation,
     mesh_.corners = triangulation.triangles;
     mesh_.twins.resize(count);
     mesh_.marks.resize(count);
-    for (std::int32_t t = 0; t < count; ++t) {
-        for (int i = 0; i < 3; ++i) {
-            const HalfEdge edge(t, i);
-            at_[mesh_.from(edge)] = edge;
-            if (triangulation.constrained[t][i]) mesh_.fix(edge);
-            const std::int32_t other = triangulation.neighbors[t][i];
-            if (other < 0) continue;
-            const auto& corners = mesh_.corners[other];
-            const auto twin = std::find(corners.begin(), corners.end(), mesh_.to(edge));
-            assert(twin != corners.end());
-            mesh_.twins[t][i] = {other, static_cast<int>(twin - corners.begin())};
-        }
-    }
+    mesh_.for_each_edge([&](HalfEdge edge) {
+        const std::int32_t t = edge.triangle();
+        const int i = edge.index();
+        at_[mesh_.from(edge)] = edge;
+        if (triangulation.constrained[t][i]) mesh_.fix(edge);
+        const std::int32_t other = triangulation.neighbors[t][i];
+        if (other < 0) return;
+        const auto& corners = mesh_.corners[other];
+        const auto twin = std::find(corners.begin(), corners.end(), mesh_.to(edge));
+        assert(twin != corners.end());
+        mesh_.twins[t][i] = {other, static_cast<int>(twin - corners.begin())};
+    });
 }
 
 void EdgeCutting::add_points(std::span<const PlanPoint> points) {

@@ -56,6 +56,16 @@ public:
     }
     bool is_dead(std::int32_t triangle) const { return corners[triangle][0] < 0; }
 
+    /// Visits the half-edges of all triangles that are not dead, from one of them on.
+    template <class Visit>
+    void for_each_edge(const Visit& visit, std::int32_t first = 0) const {
+        for (auto t = static_cast<std::size_t>(first); t < corners.size(); ++t) {
+            const auto triangle = static_cast<std::int32_t>(t);
+            for (int i = 0; i < 3 && !is_dead(triangle); ++i)
+                visit(HalfEdge(triangle, i));
+        }
+    }
+
     std::int32_t add_triangle(const std::array<std::int32_t, 3>& corner);
     /// Makes two half-edges twins; the second may be none.
     void join(HalfEdge a, HalfEdge b);

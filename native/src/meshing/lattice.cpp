@@ -282,14 +282,10 @@ private:
     void find_rim() {
         const FlatMesh& mesh = lattice_.mesh;
         std::vector<bool> is_used(lattice_.points.size(), false);
-        const auto triangles = static_cast<std::int32_t>(mesh.corners.size());
-        for (std::int32_t t = 0; t < triangles; ++t) {
-            for (int i = 0; i < 3; ++i) {
-                const HalfEdge edge(t, i);
-                is_used[mesh.from(edge)] = true;
-                if (mesh.is_border(edge)) lattice_.rim.push_back(edge);
-            }
-        }
+        mesh.for_each_edge([&](HalfEdge edge) {
+            is_used[mesh.from(edge)] = true;
+            if (mesh.is_border(edge)) lattice_.rim.push_back(edge);
+        });
         for (std::size_t i = 0; i < is_used.size(); ++i)
             if (!is_used[i]) lattice_.loners.push_back(static_cast<std::int32_t>(i));
     }

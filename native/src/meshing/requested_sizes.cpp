@@ -8,7 +8,7 @@
 
 #include "meshing/point_insertion.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/spatial/nearest_points.hpp"
+#include "spatial/nearest_points.hpp"
 
 namespace realmodel::meshing {
 
@@ -77,7 +77,7 @@ std::vector<SizeSource> requested_sources(const RegionGraph& graph, const MeshRe
     const double longest = longest_by_density(graph, request);
     const std::size_t neighbors = std::min(kCountedNeighbors, points.size() - 1);
     const spatial::NearestPoints nearest(points);
-    std::vector<spatial::Neighbour> found;
+    std::vector<spatial::Neighbor> found;
     for (const PlanPoint& p : points) {
         nearest.find(p, neighbors + 1, found);  // the first is the point itself
         // So many points lie in a circle of that radius.

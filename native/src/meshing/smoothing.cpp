@@ -90,19 +90,14 @@ private:
         const std::size_t points = mesh_.points.size();
         std::vector<HalfEdge> border(points, HalfEdge::none());  // of each added vertex: from it
         std::vector<HalfEdge> begins;
-        const auto count = static_cast<std::int32_t>(mesh_.corners.size());
-        for (std::int32_t t = 0; t < count; ++t) {
-            if (mesh_.is_dead(t)) continue;
-            for (int i = 0; i < 3; ++i) {
-                const HalfEdge edge(t, i);
-                if (!mesh_.is_border(edge)) continue;
-                if (mesh_.from(edge) >= corners) {
-                    border[mesh_.from(edge)] = edge;
-                } else if (mesh_.to(edge) >= corners) {
-                    begins.push_back(edge);
-                }
+        mesh_.for_each_edge([&](HalfEdge edge) {
+            if (!mesh_.is_border(edge)) return;
+            if (mesh_.from(edge) >= corners) {
+                border[mesh_.from(edge)] = edge;
+            } else if (mesh_.to(edge) >= corners) {
+                begins.push_back(edge);
             }
-        }
+        });
         for (const HalfEdge begin : begins) {
             std::int32_t end = mesh_.to(begin);
             while (end >= corners)

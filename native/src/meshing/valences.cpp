@@ -28,45 +28,32 @@ Valences::Valences(FlatMesh& mesh, const SizeField& size) : mesh_(mesh), size_(s
     triangles_.assign(points, 0);
     wanted_.assign(points, 6);
     is_fixed_.assign(points, false);
-    const auto count = static_cast<std::int32_t>(mesh_.corners.size());
-    for (std::int32_t t = 0; t < count; ++t) {
-        if (mesh_.is_dead(t)) continue;
-        for (int i = 0; i < 3; ++i) {
-            const HalfEdge edge(t, i);
-            const std::int32_t v = mesh_.from(edge);
-            leaving_[v] = edge;
-            ++triangles_[v];
-            if (mesh_.is_fixed(edge)) is_fixed_[v] = is_fixed_[mesh_.to(edge)] = true;
-        }
-    }
+    mesh_.for_each_edge([&](HalfEdge edge) {
+        const std::int32_t v = mesh_.from(edge);
+        leaving_[v] = edge;
+        ++triangles_[v];
+        if (mesh_.is_fixed(edge)) is_fixed_[v] = is_fixed_[mesh_.to(edge)] = true;
+    });
     want_on_lines();
 }
 
 /// Each sector between two fixed edges wants triangles of 60 degrees.
 void Valences::want_on_lines() {
     std::vector<bool> seen(mesh_.points.size(), false);
-    const auto count = static_cast<std::int32_t>(mesh_.corners.size());
-    for (std::int32_t t = 0; t < count; ++t) {
-        if (mesh_.is_dead(t)) continue;
-        for (int i = 0; i < 3; ++i) {
-            const HalfEdge begin(t, i);
-            if (!mesh_.is_fixed(begin)) continue;
-            const std::int32_t v = mesh_.from(begin);
-            if (!seen[v]) {
-                seen[v] = true;
-                wanted_[v] = 0;
-            }
-            double angle = 0;
-            HalfEdge edge = begin;
-            while (true) {
-                angle += angle_at(edge);
-                const HalfEdge last = edge.prev();
-                if (mesh_.is_fixed(last)) break;
-                edge = mesh_.rotate_ccw(edge);
-            }
-            wanted_[v] += std::max(1, static_cast<int>(std::lround(angle * 3 / std::numbers::pi)));
+    mesh_.for_each_edge([&](HalfEdge begin) {
+        if (!mesh_.is_fixed(begin)) return;
+        const std::int32_t v = mesh_.from(begin);
+        if (!seen[v]) {
+            seen[v] = true;
+            wanted_[v] = 0;
         }
-    }
+        double angle = angle_at(begin);
+        for (HalfEdge edge = begin; !mesh_.is_fixed(edge.prev());) {
+            edge = mesh_.rotate_ccw(edge);
+            angle += angle_at(edge);
+        }
+        wanted_[v] += std::max(1, static_cast<int>(std::lround(angle * 3 / std::numbers::pi)));
+    });
 }
 
 double Valences::angle_at(HalfEdge edge) const {

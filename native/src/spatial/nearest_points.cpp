@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "realmodel/spatial/nearest_points.hpp"
+#include "spatial/nearest_points.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <nanoflann.hpp>
+
+#include "base/index.hpp"
 
 namespace realmodel::spatial {
 
@@ -11,7 +13,7 @@ namespace {
 
 /// What nanoflann asks of a set of points.
 struct PlanPoints {
-    std::span<const std::array<double, 2>> points;
+    std::span<const PlanPosition> points;
 
     std::size_t kdtree_get_point_count() const { return points.size(); }
     double kdtree_get_pt(std::size_t point, std::size_t axis) const { return points[point][axis]; }
@@ -25,7 +27,7 @@ struct PlanPoints {
 /// met first, which depends on the shape of the tree.
 class NearestSoFar {
 public:
-    NearestSoFar(std::vector<Neighbour>& found, std::size_t count) : found_(found), count_(count) {
+    NearestSoFar(std::vector<Neighbor>& found, std::size_t count) : found_(found), count_(count) {
         found_.clear();
     }
     std::size_t size() const { return found_.size(); }
@@ -42,7 +44,7 @@ public:
     }
 
     bool addPoint(double squared_distance, std::int32_t point) {
-        const Neighbour added{squared_distance, point};
+        const Neighbor added{squared_distance, point};
         if (full()) {
             if (!(added < found_.back())) return true;
             found_.pop_back();
@@ -55,14 +57,14 @@ public:
     }
 
 private:
-    std::vector<Neighbour>& found_;
+    std::vector<Neighbor>& found_;
     std::size_t count_;
 };
 
 /// Keeps all that are near enough.
 class NearEnough {
 public:
-    NearEnough(std::vector<Neighbour>& found, double squared_distance, std::size_t most)
+    NearEnough(std::vector<Neighbor>& found, double squared_distance, std::size_t most)
         : found_(found), squared_distance_(squared_distance), most_(most) {
         found_.clear();
     }
@@ -77,7 +79,7 @@ public:
     }
 
 private:
-    std::vector<Neighbour>& found_;
+    std::vector<Neighbor>& found_;
     double squared_distance_;
     std::size_t most_;
 };
@@ -95,12 +97,12 @@ using SearchParameters = nanoflann::SearchParams;
 }  // namespace
 
 struct NearestPoints::Tree {
-    explicit Tree(std::span<const std::array<double, 2>> of) : points{of}, index(2, points) {}
+    explicit Tree(std::span<const PlanPosition> of) : points{of}, index(2, points) {}
     PlanPoints points;
     KdTree index;
 };
 
-NearestPoints::NearestPoints(std::span<const std::array<double, 2>> points)
+NearestPoints::NearestPoints(std::span<const PlanPosition> points)
     : tree_(std::make_unique<Tree>(points)) {}
 
 NearestPoints::~NearestPoints() = default;
@@ -111,19 +113,23 @@ std::size_t NearestPoints::size() const {
     return tree_->points.points.size();
 }
 
-void NearestPoints::find(const std::array<double, 2>& place, std::size_t count,
-                         std::vector<Neighbour>& found) const {
-    NearestSoFar nearest(found, std::min(count, size()));
-    if (count == 0 || size() == 0) return;
-    tree_->index.findNeighbors(nearest, place.data(), SearchParameters());
+const PlanPosition& NearestPoints::point(std::int32_t number) const {
+    return tree_->points.points[index(number)];
 }
 
-bool NearestPoints::within(const std::array<double, 2>& place, double distance, std::size_t most,
-                           std::vector<Neighbour>& found) const {
+void NearestPoints::find(const PlanPosition& position, std::size_t count,
+                         std::vector<Neighbor>& found) const {
+    NearestSoFar nearest(found, std::min(count, size()));
+    if (count == 0 || size() == 0) return;
+    tree_->index.findNeighbors(nearest, position.data(), SearchParameters());
+}
+
+bool NearestPoints::within(const PlanPosition& position, double distance, std::size_t most,
+                           std::vector<Neighbor>& found) const {
     // nanoflann wants what is nearer than this, and bounds branches with rounding.
     const double squared = distance * distance;
     NearEnough near(found, squared + 1e-9 * squared + std::numeric_limits<double>::min(), most);
-    if (size() > 0) tree_->index.findNeighbors(near, place.data(), SearchParameters());
+    if (size() > 0) tree_->index.findNeighbors(near, position.data(), SearchParameters());
     return found.size() <= most;
 }
 

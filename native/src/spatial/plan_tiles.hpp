@@ -6,12 +6,22 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace realmodel::spatial {
+
+/// x and y in plan.
+using PlanPosition = std::array<double, 2>;
 
 /// An axis-parallel box in plan.
 struct PlanBox {
     double low_x = 0, low_y = 0, high_x = 0, high_y = 0;
+    double width() const { return high_x - low_x; }
+    double height() const { return high_y - low_y; }
+    PlanBox widened(double by) const { return {low_x - by, low_y - by, high_x + by, high_y + by}; }
+    bool contains(const PlanPosition& p) const {
+        return p[0] >= low_x && p[0] <= high_x && p[1] >= low_y && p[1] <= high_y;
+    }
     /// Whether the boxes share at least a point. Coordinates are rounded monotonically, so boxes of
     /// polygons that share an area always meet.
     bool meets(const PlanBox& other) const {
@@ -19,6 +29,9 @@ struct PlanBox {
                other.low_y <= high_y;
     }
 };
+
+/// The box around some positions, at least one.
+PlanBox box_around(std::span<const PlanPosition> positions);
 
 /// Tiles from column `left` to `right` and row `low` to `high`, both included.
 struct TileSpan {
@@ -43,6 +56,8 @@ public:
     TileSpan span(const PlanBox& box) const {
         return {column(box.low_x), column(box.high_x), row(box.low_y), row(box.high_y)};
     }
+    /// The tile that a position lies in.
+    std::size_t tile_at(const PlanPosition& p) const { return tile(column(p[0]), row(p[1])); }
     std::size_t tile(std::int32_t column, std::int32_t row) const {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                static_cast<std::size_t>(column);
@@ -66,8 +81,7 @@ public:
     }
     /// Calls visit(tile) for every tile whose center lies in a triangle, or as good as on its edge.
     template <class Visit>
-    void for_each_center_in(const std::array<std::array<double, 2>, 3>& triangle,
-                            const Visit& visit) const;
+    void for_each_center_in(const std::array<PlanPosition, 3>& triangle, const Visit& visit) const;
 
     std::int32_t column(double x) const { return nearest_column((x - frame_.low_x) / step_x_); }
     std::int32_t row(double y) const { return nearest_row((y - frame_.low_y) / step_y_); }
@@ -87,13 +101,9 @@ private:
 };
 
 template <class Visit>
-void PlanTiles::for_each_center_in(const std::array<std::array<double, 2>, 3>& triangle,
+void PlanTiles::for_each_center_in(const std::array<PlanPosition, 3>& triangle,
                                    const Visit& visit) const {
-    PlanBox box{triangle[0][0], triangle[0][1], triangle[0][0], triangle[0][1]};
-    for (const auto& p : triangle) {
-        box = {std::min(box.low_x, p[0]), std::min(box.low_y, p[1]), std::max(box.high_x, p[0]),
-               std::max(box.high_y, p[1])};
-    }
+    const PlanBox box = box_around(triangle);
     if (!box.meets(frame_)) return;
     const TileSpan rows = span(box);
     const double slack = 1e-3 * step_x_;

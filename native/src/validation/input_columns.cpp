@@ -57,12 +57,8 @@ InputColumns::InputColumns(const ModelInput& input, const Probes& probes,
                             &vertices[static_cast<std::size_t>(triangles[3 * t + i]) * columns];
                         p[i] = {row[0], row[1]};
                     }
-                    PlanPosition low, high;
-                    for (std::size_t axis = 0; axis < 2; ++axis) {
-                        low[axis] = std::min({p[0][axis], p[1][axis], p[2][axis]}) - rounding.near;
-                        high[axis] = std::max({p[0][axis], p[1][axis], p[2][axis]}) + rounding.near;
-                    }
-                    bins.within(low, high, [&](std::size_t i, const PlanPosition&) {
+                    const spatial::PlanBox box = spatial::box_around(p).widened(rounding.near);
+                    bins.within(box, [&](std::size_t i, const PlanPosition&) {
                         for (std::size_t e = 0; e < 3; ++e) {
                             if (!passes(p[e], p[(e + 1) % 3], places[i], rounding.near)) continue;
                             mark(near_edge_[i]);

@@ -100,7 +100,7 @@ PlanPosition place_on_face(const ComplexView& model, std::size_t face) {
     return place_in_triangle(largest, 1.0 / 3, 1.0 / 3);
 }
 
-/// The longest stretch of a wall between two neighbouring places, and the middle of the widest
+/// The longest stretch of a wall between two neighboring places, and the middle of the widest
 /// vertical chord there. Nothing where it is too short, or the wall has no area there.
 std::optional<WallSample> point_in_wall(const ComplexView& model, std::size_t face,
                                         const PlanRounding& rounding) {

@@ -35,5 +35,19 @@ TEST(KeyTable, NumbersKeysInOrderOfFirstInsertion) {
     EXPECT_EQ(table.size(), static_cast<std::int32_t>(reference.size()));
 }
 
+TEST(KeyTable, FindsWhatWasAddedThoughHashesAreEqual) {
+    KeyTable table;
+    const auto add = [&](int value) {
+        return table.find_or_add(static_cast<std::uint32_t>(value % 7), value,
+                                 [&](std::int32_t number) { return number == value; });
+    };
+    for (int i = 0; i < 1000; ++i)
+        EXPECT_TRUE(add(i).is_new);
+    for (int i = 0; i < 1000; ++i) {
+        EXPECT_FALSE(add(i).is_new);
+        EXPECT_EQ(add(i).number, i);
+    }
+}
+
 }  // namespace
 }  // namespace realmodel

@@ -52,14 +52,6 @@ TEST(DataPoints, MoreThanCanBeNumberedAreRefusedBeforeTheyAreRead) {
     EXPECT_THROW(require_countable(std::size_t{INT32_MAX} + 1, "nodes"), InputError);
 }
 
-TEST(Bounds, OfAFewPositions) {
-    const Bounds box = bounds_of(std::vector<Position>{{3, -1}, {-2, 5}, {0, 0}});
-    EXPECT_EQ(box.low, (Position{-2, -1}));
-    EXPECT_EQ(box.high, (Position{3, 5}));
-    EXPECT_EQ(box.width(), 5);
-    EXPECT_EQ(box.height(), 6);
-}
-
 TEST(EvenPart, IsAllOrEvenlySpaced) {
     EXPECT_EQ(even_part(3, 5), (std::vector<std::int32_t>{0, 1, 2}));
     EXPECT_EQ(even_part(10, 4), (std::vector<std::int32_t>{0, 2, 5, 7}));

@@ -22,7 +22,7 @@ FlatMesh square() {
     return mesh;
 }
 
-/// Neighbours name one another, share their ends, and agree on what is fixed; returns the area.
+/// Neighbors name one another, share their ends, and agree on what is fixed; returns the area.
 double checked_area(const FlatMesh& mesh) {
     PlanarMesh plain{mesh.points, {}};
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.corners.size()); ++t) {

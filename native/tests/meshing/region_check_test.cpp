@@ -47,7 +47,7 @@ TEST(RegionCheck, RingsThatShareNothingComeBackAsTheyAre) {
 }
 
 /// All cells of a chess board that are chosen at random, each a polygon: their union.
-TEST(RegionCheck, NeighboursDissolve) {
+TEST(RegionCheck, NeighborsDissolve) {
     std::mt19937 random(1);
     for (int round = 0; round < 60; ++round) {
         std::vector<RegionRing> rings;
@@ -67,7 +67,7 @@ TEST(RegionCheck, NeighboursDissolve) {
     }
 }
 
-TEST(RegionCheck, NeighboursWithCornersOnEachOthersEdges) {
+TEST(RegionCheck, NeighborsWithCornersOnEachOthersEdges) {
     const std::vector<Ring> checked = checked_region(std::vector<RegionRing>{
         {box(0, 0, 4), 0, false}, {box(4, 1, 2), 1, false}, {{{1, 4}, {3, 4}, {2, 6}}, 2, false}});
     EXPECT_EQ(checked.size(), 1u);

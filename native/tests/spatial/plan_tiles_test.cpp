@@ -8,6 +8,17 @@
 namespace realmodel::spatial {
 namespace {
 
+TEST(PlanBox, AroundAFewPositions) {
+    const PlanBox box = box_around(std::vector<PlanPosition>{{3, -1}, {-2, 5}, {0, 0}});
+    EXPECT_EQ(box.low_x, -2);
+    EXPECT_EQ(box.high_y, 5);
+    EXPECT_EQ(box.width(), 5);
+    EXPECT_EQ(box.height(), 6);
+    EXPECT_TRUE(box.contains({3, 5}));
+    EXPECT_FALSE(box.contains({3, 5.5}));
+    EXPECT_TRUE(box.widened(0.5).contains({3, 5.5}));
+}
+
 TEST(PlanTiles, AreAsSquareAsTheFrameAllows) {
     const PlanTiles tiles({0, 0, 8, 2}, 16);
     EXPECT_EQ(tiles.columns(), 8u);

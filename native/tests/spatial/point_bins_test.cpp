@@ -12,7 +12,8 @@ namespace {
 std::vector<std::size_t> within(const PointBins& bins, const PointBins::Position& low,
                                 const PointBins::Position& high) {
     std::vector<std::size_t> found;
-    bins.within(low, high, [&](std::size_t i, const PointBins::Position&) { found.push_back(i); });
+    bins.within({low[0], low[1], high[0], high[1]},
+                [&](std::size_t i, const PointBins::Position&) { found.push_back(i); });
     std::sort(found.begin(), found.end());
     return found;
 }

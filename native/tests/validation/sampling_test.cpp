@@ -202,7 +202,7 @@ TEST(Sampling, PassesRegionsWithHoles) {
 }
 
 /// Two rock masses that share the border x = 1, with different heights there.
-std::vector<OwnedRock> neighbours() {
+std::vector<OwnedRock> neighbors() {
     std::vector<OwnedRock> rocks(2);
     rocks[0].surfaces = {level(0, 1, 0, 1, 0), level(0, 1, 0, 1, 2), level(0, 1, 0, 1, 3, 2)};
     rocks[1].surfaces = {level(1, 2, 0, 1, 1, 3), level(1, 2, 0, 1, 2.5, 2)};
@@ -212,7 +212,7 @@ std::vector<OwnedRock> neighbours() {
 
 TEST(Sampling, PassesWallsBetweenRockMasses) {
     for (const bool blocks : {false, true}) {
-        const auto rocks = neighbours();
+        const auto rocks = neighbors();
         auto model = model_of(rocks, blocks);
         const auto results = sample(model, rocks, 1000);
         EXPECT_EQ(failed(results), Names{});
@@ -221,7 +221,7 @@ TEST(Sampling, PassesWallsBetweenRockMasses) {
 }
 
 TEST(Sampling, FindsAWallThatNamesTheWrongSide) {
-    const auto rocks = neighbours();
+    const auto rocks = neighbors();
     auto model = model_of(rocks, true);
     std::size_t between = 0;
     while (model.cells[between][1] < 0 || model.surface[between] != strata::kWall)

@@ -23,9 +23,6 @@ public:
     /// On the border is inside. A hull of no positions contains none.
     bool contains(const Position& position) const;
 
-    /// Corners counter-clockwise, without those in the middle of a straight border.
-    std::vector<Position> corners() const;
-
 private:
     std::vector<Position> lower_, upper_;
 };

@@ -8,7 +8,7 @@
 #include "interpolation/neighbors/neighbor_search.hpp"
 #include "interpolation/node_loop.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/spatial/nearest_points.hpp"
+#include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
 
@@ -33,7 +33,7 @@ std::vector<double> means(const DataPoints& data, std::span<const Position> node
     std::vector<double> z(leave_out ? points : nodes.size());
     struct Scratch {
         NeighborSearch search;
-        std::vector<spatial::Neighbour> near;
+        std::vector<spatial::Neighbor> near;
     };
     const NodeLoop loop{z.size(), all ? 1 + 1'000'000 / points : 256, options.threads, progress,
                         "inverse distance"};
@@ -50,7 +50,7 @@ std::vector<double> means(const DataPoints& data, std::span<const Position> node
                 z[i] = data.values[i];
                 return;
             }
-            const spatial::Neighbour nearest = own.near.front();
+            const spatial::Neighbor nearest = own.near.front();
             // Values count from the nearest one: heights far from 0 lose no digits.
             const double base = data.values[nearest.point];
             if (nearest.squared_distance == 0) {
@@ -66,7 +66,7 @@ std::vector<double> means(const DataPoints& data, std::span<const Position> node
                 sum += weight * (data.values[point] - base);
                 weights += weight;
             };
-            for (const spatial::Neighbour& n : own.near) {
+            for (const spatial::Neighbor& n : own.near) {
                 if (!all) add(n.squared_distance, n.point);
             }
             for (std::int32_t p = 0; all && std::cmp_less(p, points); ++p) {

@@ -6,7 +6,7 @@
 #include "interpolation/data_points.hpp"
 #include "interpolation/node_loop.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/spatial/nearest_points.hpp"
+#include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
 
@@ -29,8 +29,8 @@ std::vector<double> nearest_distances(std::span<const std::array<double, 3>> poi
     std::vector<double> out(nodes.size());
     const NodeLoop loop{nodes.size(), 1024, threads, progress, "distances to points"};
     loop.over_nodes(
-        [] { return std::vector<spatial::Neighbour>(); },
-        [&](std::vector<spatial::Neighbour>& near, std::size_t i) {
+        [] { return std::vector<spatial::Neighbor>(); },
+        [&](std::vector<spatial::Neighbor>& near, std::size_t i) {
             tree.find({nodes[i][0] - points[0][0], nodes[i][1] - points[0][1]}, 1, near);
             out[i] = std::sqrt(near[0].squared_distance);
         });

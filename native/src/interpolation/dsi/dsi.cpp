@@ -13,7 +13,7 @@
 #include "interpolation/dsi/ordered_mesh.hpp"
 #include "interpolation/dsi/smooth_system.hpp"
 #include "realmodel/base/errors.hpp"
-#include "realmodel/interpolation/mesh_locator.hpp"
+#include "spatial/mesh_locator.hpp"
 
 namespace realmodel::interpolation {
 
@@ -69,7 +69,7 @@ void check_constraints(const NodeConstraints& c, std::size_t nodes) {
 class Interpolation {
 public:
     Interpolation(std::span<const std::array<double, 3>> points, std::span<const Position> nodes,
-                  std::span<const Triangle> triangles, const MeshLocator& locator,
+                  std::span<const Triangle> triangles, const spatial::MeshLocator& locator,
                   const NodeConstraints& constraints, const DsiOptions& options, Progress* progress)
         : weight_(options.weight), progress_(progress), mesh_(ordered_mesh(nodes, triangles)) {
         report(0.01, "triangles and their neighbors");
@@ -115,8 +115,8 @@ private:
         if (progress_ != nullptr) progress_->report(share, text);
     }
 
-    void add_points(std::span<const std::array<double, 3>> points, const MeshLocator& locator,
-                    std::span<const Triangle> triangles) {
+    void add_points(std::span<const std::array<double, 3>> points,
+                    const spatial::MeshLocator& locator, std::span<const Triangle> triangles) {
         const bool weighted = weight_ > 0;
         for (const auto& [x, y, height] : points) {
             const auto found = locator.find({x, y});
@@ -319,7 +319,7 @@ DsiHeights dsi(std::span<const std::array<double, 3>> points, std::span<const Po
             if (std::cmp_equal(data.number_of[i], distinct.size())) distinct.push_back(points[i]);
         }
     }
-    const MeshLocator locator(nodes, triangles);
+    const spatial::MeshLocator locator(nodes, triangles);
     Interpolation interpolation(distinct, nodes, triangles, locator, constraints, options,
                                 progress);
     DsiHeights out = interpolation.heights();

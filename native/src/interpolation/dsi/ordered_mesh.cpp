@@ -30,7 +30,7 @@ double mean_edge(std::span<const Position> nodes,
 
 OrderedMesh ordered_mesh(std::span<const Position> nodes,
                          std::span<const OrderedMesh::Triangle> triangles) {
-    const Bounds box = bounds_of(nodes);
+    const spatial::PlanBox box = spatial::box_around(nodes);
     const double unit = mean_edge(nodes, triangles);
     const double width = box.width() / unit, height = box.height() / unit;
     const auto count = static_cast<double>(nodes.size());
@@ -42,7 +42,7 @@ OrderedMesh ordered_mesh(std::span<const Position> nodes,
     };
     const SplineGrid grid({0, 0}, cell, cells(width), cells(height));
     const auto to_mesh = [&](const Position& p) {
-        return Position{(p[0] - box.low[0]) / unit, (p[1] - box.low[1]) / unit};
+        return Position{(p[0] - box.low_x) / unit, (p[1] - box.low_y) / unit};
     };
     const auto by_cell = bucketize<std::int32_t>(grid.cells(), [&](const auto& visit) {
         for (std::size_t i = 0; i < nodes.size(); ++i)

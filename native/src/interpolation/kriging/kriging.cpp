@@ -9,7 +9,7 @@
 #include "interpolation/kriging/neighbor_kriging.hpp"
 #include "interpolation/kriging/unique_neighborhood.hpp"
 #include "interpolation/node_loop.hpp"
-#include "interpolation/node_order.hpp"
+#include "spatial/hilbert_order.hpp"
 
 namespace realmodel::interpolation {
 
@@ -28,7 +28,7 @@ void krige_one_by_one(const KrigingTask& task) {
     struct Scratch {
         NeighborKriging kriging;
         NeighborSearch search;
-        std::vector<spatial::Neighbour> near;
+        std::vector<spatial::Neighbor> near;
     };
     std::atomic<std::int64_t> alone{0};
     NodeLoop{task.count(), 256, task.options.threads, task.progress, "kriging"}.over_nodes(
@@ -67,7 +67,7 @@ void krige_in_lanes(const KrigingTask& task) {
         LaneKriging lanes;
         NeighborKriging single;
         NeighborSearch search;
-        std::vector<spatial::Neighbour> near;
+        std::vector<spatial::Neighbor> near;
     };
     const auto make = [&] {
         return Scratch{{},
@@ -83,7 +83,7 @@ void krige_in_lanes(const KrigingTask& task) {
         positions.resize(here);
         for (std::size_t i = 0; i < here; ++i)
             positions[i] = task.node(first + i);
-        const std::vector<std::uint32_t> order = along_curve(positions);
+        const std::vector<std::uint32_t> order = spatial::along_hilbert_curve(positions);
         const auto share = [&](std::size_t done) {
             return static_cast<double>(done) / static_cast<double>(count);
         };

@@ -16,7 +16,7 @@ LaneKriging::LaneKriging(const DataPoints& data, const spatial::NearestPoints& t
       covariance_(covariance),
       kernels_(kernels),
       neighbors_(neighbors),
-      block_(data, tree, neighbors + (leaves_out ? 1 : 0)),
+      block_(tree, neighbors + (leaves_out ? 1 : 0)),
       drift_(drift),
       terms_(static_cast<std::size_t>(drift_terms(drift))),
       rows_(LaneSystems::numbers(neighbors, terms_)),

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "interpolation/block_neighbours.hpp"
 #include "interpolation/kriging/covariance.hpp"
 #include "interpolation/kriging/estimate.hpp"
 #include "interpolation/kriging/lane_kernels.hpp"
 #include "realmodel/interpolation/drift.hpp"
+#include "spatial/block_neighbors.hpp"
 
 namespace realmodel::interpolation {
 
@@ -71,7 +71,7 @@ private:
     Covariance covariance_;
     const LaneKernels& kernels_;
     std::size_t neighbors_;
-    BlockNeighbours block_;
+    spatial::BlockNeighbors block_;
     std::size_t run_ = kMostInBlock;  // nodes tried as a block next
     std::vector<Position> positions_;
     std::vector<double> table_;  // covariances of all candidates with each other

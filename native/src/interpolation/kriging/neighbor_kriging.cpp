@@ -17,7 +17,7 @@ Estimate universal_kriging(double base, double uu, double ut, const DriftBasis& 
     return {base + ut + open.dot(qt), variance > 0 ? variance : 0};
 }
 
-void NeighborKriging::assemble(const Position& node, std::span<const spatial::Neighbour> neighbors,
+void NeighborKriging::assemble(const Position& node, std::span<const spatial::Neighbor> neighbors,
                                const DriftFrame& frame) {
     const Eigen::Index terms = drift_terms(drift_);
     rows_ = count_ + 2 + static_cast<std::size_t>(terms);
@@ -62,12 +62,12 @@ bool NeighborKriging::eliminate(const Progress* progress) {
     return true;
 }
 
-Estimate NeighborKriging::at(const Position& node, std::span<const spatial::Neighbour> neighbors,
+Estimate NeighborKriging::at(const Position& node, std::span<const spatial::Neighbor> neighbors,
                              const Progress* progress) {
     assert(!neighbors.empty());
     count_ = neighbors.size();
     positions_.clear();
-    for (const spatial::Neighbour& neighbor : neighbors)
+    for (const spatial::Neighbor& neighbor : neighbors)
         positions_.push_back(data_.local[neighbor.point]);
     const DriftFrame frame(positions_, drift_);
     assemble(node, neighbors, frame);

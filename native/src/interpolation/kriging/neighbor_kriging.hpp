@@ -8,7 +8,7 @@
 #include "interpolation/kriging/covariance.hpp"
 #include "interpolation/kriging/estimate.hpp"
 #include "realmodel/base/progress.hpp"
-#include "realmodel/spatial/nearest_points.hpp"
+#include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
 
@@ -30,12 +30,12 @@ public:
     /// @param node       in local coordinates
     /// @param neighbors  nearest first; none is at the node itself
     /// @return           means nothing once the caller has cancelled
-    Estimate at(const Position& node, std::span<const spatial::Neighbour> neighbors,
+    Estimate at(const Position& node, std::span<const spatial::Neighbor> neighbors,
                 const Progress* progress = nullptr);
 
 private:
     double* column(std::size_t k) { return matrix_.data() + k * rows_; }
-    void assemble(const Position& node, std::span<const spatial::Neighbour> neighbors,
+    void assemble(const Position& node, std::span<const spatial::Neighbor> neighbors,
                   const DriftFrame& frame);
     bool eliminate(const Progress* progress);
 

@@ -50,7 +50,7 @@ void UniqueNeighborhood::krige(std::size_t begin, std::size_t end, Scratch& scra
     for (std::size_t i = begin; i < end && !cancelled(task_.progress); ++i) {
         const Position node = task_.node(i);
         task_.tree.find(node, 1, scratch.near);
-        const spatial::Neighbour& nearest = scratch.near[0];
+        const spatial::Neighbor& nearest = scratch.near[0];
         if (nearest.squared_distance == 0) {
             task_.set(i, {task_.data.values[nearest.point], 0});
             continue;

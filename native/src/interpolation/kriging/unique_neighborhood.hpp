@@ -21,7 +21,7 @@ public:
     /// What one thread works with.
     struct Scratch {
         Eigen::MatrixXd u;
-        std::vector<spatial::Neighbour> near;
+        std::vector<spatial::Neighbor> near;
         NeighborKriging others;
     };
     Scratch scratch() const {

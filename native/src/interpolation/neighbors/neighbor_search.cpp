@@ -55,12 +55,12 @@ NeighborSearch::NeighborSearch(const DataPoints& data, const spatial::NearestPoi
     const bool by_octants = octant_limit_ < limit_;
     if (by_octants || (neighborhood.radius > 0 && limit_ > kMostInOrder)) {
         const std::size_t count = by_octants ? kLookedAt * limit_ + 1 : data.local.size();
-        rings_.emplace(data.local,
-                       OctantSearch::Wanted{octant_limit_, limit_, count, squared_radius_});
+        rings_.emplace(data.local, spatial::OctantSearch::Wanted{octant_limit_, limit_, count,
+                                                                 squared_radius_});
     }
 }
 
-bool NeighborSearch::find(const Position& position, std::vector<spatial::Neighbour>& found,
+bool NeighborSearch::find(const Position& position, std::vector<spatial::Neighbor>& found,
                           std::int32_t left_out) {
     if (plain_ && left_out == kNobody) {
         tree_.find(position, limit_, found);
@@ -71,14 +71,14 @@ bool NeighborSearch::find(const Position& position, std::vector<spatial::Neighbo
     } else {
         tree_.find(position, limit_ + 1, candidates_);  // the one left out is one too many
         found.clear();
-        for (const spatial::Neighbour& candidate : candidates_) {
+        for (const spatial::Neighbor& candidate : candidates_) {
             if (candidate.squared_distance > squared_radius_ || found.size() == limit_) break;
             if (candidate.point != left_out) found.push_back(candidate);
         }
     }
     if (!found.empty()) return true;
     tree_.find(position, 2, candidates_);
-    for (const spatial::Neighbour& candidate : candidates_) {
+    for (const spatial::Neighbor& candidate : candidates_) {
         if (candidate.point == left_out) continue;
         found.push_back(candidate);
         break;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "interpolation/data_points.hpp"
-#include "interpolation/octant_search.hpp"
-#include "realmodel/spatial/nearest_points.hpp"
+#include "spatial/nearest_points.hpp"
+#include "spatial/octant_search.hpp"
 
 namespace realmodel::interpolation {
 
@@ -41,7 +41,7 @@ public:
     /// Finds the points around a position (local coordinates), nearest first, without `left_out`:
     /// at least one, unless the one left out is the only point.
     /// @return false where none lies within the radius; the nearest alone is found then
-    bool find(const Position& position, std::vector<spatial::Neighbour>& found,
+    bool find(const Position& position, std::vector<spatial::Neighbor>& found,
               std::int32_t left_out = kNobody);
 
 private:
@@ -49,8 +49,8 @@ private:
     bool plain_;
     std::size_t limit_, octant_limit_;
     double squared_radius_;
-    std::vector<spatial::Neighbour> candidates_;
-    std::optional<OctantSearch> rings_;  // where the tree would be slow
+    std::vector<spatial::Neighbor> candidates_;
+    std::optional<spatial::OctantSearch> rings_;  // where the tree would be slow
 };
 
 }  // namespace realmodel::interpolation

@@ -27,7 +27,7 @@ double squared_distance(const Position& a, const Position& b) {
 
 /// The side of a square as large as each point's share of their box.
 double mean_spacing(std::span<const Position> positions) {
-    const Bounds box = bounds_of(positions);
+    const spatial::PlanBox box = spatial::box_around(positions);
     const double width = box.width(), height = box.height();
     const auto count = static_cast<double>(positions.size());
     const double spacing =
@@ -122,7 +122,7 @@ std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
     struct Scratch {
         Spline spline;
         NeighborSearch search;
-        std::vector<spatial::Neighbour> near;
+        std::vector<spatial::Neighbor> near;
         std::vector<Position> positions;
         std::vector<double> values;
     };
@@ -143,7 +143,7 @@ std::vector<double> thin_plate(std::span<const std::array<double, 3>> points,
                 own.search.find(node, own.near);
                 own.positions.clear();
                 own.values.clear();
-                for (const spatial::Neighbour& n : own.near) {
+                for (const spatial::Neighbor& n : own.near) {
                     own.positions.push_back(data.local[n.point]);
                     own.values.push_back(data.values[n.point]);
                 }

@@ -41,13 +41,6 @@ bool ConvexHull::contains(const Position& position) const {
                                     : exact::orient2d(before, *beyond, position) <= 0;
 }
 
-std::vector<ConvexHull::Position> ConvexHull::corners() const {
-    std::vector<Position> corners = lower_;
-    for (std::size_t i = upper_.size(); i > 2; --i)
-        corners.push_back(upper_[i - 2]);
-    return corners;
-}
-
 std::vector<std::uint8_t> outside_hull(std::span<const std::array<double, 3>> points,
                                        std::span<const std::array<double, 2>> nodes, int threads,
                                        Progress* progress) {

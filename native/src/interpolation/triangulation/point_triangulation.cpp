@@ -51,7 +51,7 @@ PointTriangulation::PointTriangulation(const DataPoints& data, const Progress* p
 }
 
 PointTriangulation::Face PointTriangulation::near(const Position& position,
-                                                  std::vector<spatial::Neighbour>& found) const {
+                                                  std::vector<spatial::Neighbor>& found) const {
     if (delaunay_.dimension() < 2) return {};
     tree_.find(position, 1, found);
     return vertices_[found[0].point]->face();

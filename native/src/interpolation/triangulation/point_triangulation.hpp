@@ -11,7 +11,7 @@
 
 #include "interpolation/data_points.hpp"
 #include "realmodel/base/progress.hpp"
-#include "realmodel/spatial/nearest_points.hpp"
+#include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
 
@@ -32,7 +32,7 @@ public:
     /// A triangle at the point nearest to a position: where the search for it begins, so that what
     /// is found on ties depends on the position alone. No triangle where the points lie in one
     /// line.
-    Face near(const Position& position, std::vector<spatial::Neighbour>& found) const;
+    Face near(const Position& position, std::vector<spatial::Neighbor>& found) const;
 
     /// Value at a position inside `face`, linear between its corners.
     double linear(const Position& position, Face face) const;

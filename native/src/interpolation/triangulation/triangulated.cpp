@@ -34,8 +34,8 @@ std::vector<double> on_triangulation(std::span<const std::array<double, 3>> poin
     std::vector<double> z(nodes.size());
     const NodeLoop loop{nodes.size(), 256, threads, progress, text};
     loop.over_nodes(
-        [] { return std::vector<spatial::Neighbour>(); },
-        [&](std::vector<spatial::Neighbour>& found, std::size_t i) {
+        [] { return std::vector<spatial::Neighbor>(); },
+        [&](std::vector<spatial::Neighbor>& found, std::size_t i) {
             const Position node = data.to_local(nodes[i]);
             Delaunay::Locate_type kind = Delaunay::OUTSIDE_AFFINE_HULL;
             int at = 0;

@@ -7,7 +7,7 @@
 
 #include "interpolation/data_points.hpp"
 #include "realmodel/interpolation/variogram_fit.hpp"
-#include "realmodel/spatial/nearest_points.hpp"
+#include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
 
@@ -96,7 +96,7 @@ std::vector<Position> isotropic_positions(const DataPoints& data, const Anisotro
 }
 
 double diagonal(std::span<const Position> positions) {
-    const Bounds box = bounds_of(positions);
+    const spatial::PlanBox box = spatial::box_around(positions);
     return std::hypot(box.width(), box.height());
 }
 
@@ -107,7 +107,7 @@ ExperimentalVariogram experimental_variogram(const DataPoints& data, const Aniso
     const spatial::NearestPoints tree(positions);
     const std::vector<std::int32_t> near_part = even_part(count, kPointsForNearPairs);
     const std::size_t neighbors = std::min(kNearNeighbors, count - 1);
-    std::vector<spatial::Neighbour> found;
+    std::vector<spatial::Neighbor> found;
     std::vector<double> nearest, farthest;
     for (const std::int32_t i : near_part) {
         tree.find(positions[i], neighbors + 1, found);
@@ -134,7 +134,7 @@ ExperimentalVariogram experimental_variogram(const DataPoints& data, const Aniso
     for (const std::int32_t i : near_part) {
         if (near_classes == 0) break;
         tree.find(positions[i], neighbors + 1, found);
-        for (const spatial::Neighbour& n : found) {
+        for (const spatial::Neighbor& n : found) {
             if (n.point <= i && in_part[n.point]) continue;  // itself, or a pair seen from there
             const double distance = std::sqrt(n.squared_distance);
             const std::size_t k = classes.class_of(distance);

@@ -7,7 +7,7 @@
 #include "interpolation/kriging/lane_kriging.hpp"
 #include "interpolation/kriging/neighbor_kriging.hpp"
 #include "interpolation/node_loop.hpp"
-#include "realmodel/spatial/nearest_points.hpp"
+#include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
 
@@ -31,12 +31,12 @@ LeaveOneOut::LeaveOneOut(const DataPoints& data, std::size_t neighbors, std::siz
     others_.resize(taken * neighbors_);
     const spatial::NearestPoints tree(data.local);
     const NodeLoop loop{taken, kChunk, threads, nullptr};
-    loop.over_nodes([] { return std::vector<spatial::Neighbour>(); },
-                    [&](std::vector<spatial::Neighbour>& found, std::size_t k) {
+    loop.over_nodes([] { return std::vector<spatial::Neighbor>(); },
+                    [&](std::vector<spatial::Neighbor>& found, std::size_t k) {
                         const std::int32_t point = left_out_[k];
                         tree.find(data.local[point], neighbors_ + 1, found);
                         std::int32_t* other = others_.data() + k * neighbors_;
-                        for (const spatial::Neighbour& neighbor : found) {
+                        for (const spatial::Neighbor& neighbor : found) {
                             if (neighbor.point != point) *other++ = neighbor.point;
                         }
                     });
@@ -134,13 +134,13 @@ PredictionErrors LeaveOneOut::errors(const Covariance& covariance, Drift drift) 
     }
     struct Scratch {
         NeighborKriging kriging;
-        std::vector<spatial::Neighbour> near;
+        std::vector<spatial::Neighbor> near;
     };
     const NodeLoop loop{count, kChunk, threads_, progress_, nullptr, 0, 0};
     loop.over_nodes(
         [&] {
             return Scratch{NeighborKriging(data_, covariance, drift),
-                           std::vector<spatial::Neighbour>(neighbors_)};
+                           std::vector<spatial::Neighbor>(neighbors_)};
         },
         [&](Scratch& own, std::size_t k) {
             const std::int32_t point = left_out_[k];

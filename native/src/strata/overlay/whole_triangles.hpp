@@ -101,10 +101,6 @@ public:
     TileBounds located(const TriangleBounds& bounds) const {
         return {bounds, tiles().span(bounds.box)};
     }
-    /// Whether any border meets the tiles of a triangle.
-    bool is_beside_border(PlaneId plane) const {
-        return borders_.near(tiles().span(bounds_of(geometry_, plane).box));
-    }
 
     // Of the triangles and parts of the surface:
     Array<TileBounds> surface_at;
@@ -123,7 +119,6 @@ private:
     void classify_surface(const FacetView& facets);
     void compare_surface(const FacetView& facets, const std::vector<std::uint8_t>& is_wanted);
     void compare_triangle(const FacetView& facets, const spatial::TileBins& bins, std::size_t t);
-    Standing bounds_decide(const TileBounds& at) const;
     void classify_facets(const FacetView& facets);
     void compare_facets(const FacetView& facets, const std::vector<std::uint8_t>& is_wanted);
     Standing compare_facet(PlaneId facet, const TileBounds& at,

@@ -109,9 +109,8 @@ std::vector<PlanPosition> vertices_along(const PlanEdge& edge, const spatial::Po
     const double dx = q[0] - p[0], dy = q[1] - p[1], length = std::hypot(dx, dy);
     std::vector<std::pair<double, PlanPosition>> found;
     bool beside = false;
-    const PlanPosition low{p[0] - 2 * reach, std::min(p[1], q[1]) - 2 * reach};
-    const PlanPosition high{q[0] + 2 * reach, std::max(p[1], q[1]) + 2 * reach};
-    vertices.within(low, high, [&](std::size_t, const PlanPosition& v) {
+    const spatial::PlanBox box = spatial::box_around(std::array{p, q}).widened(2 * reach);
+    vertices.within(box, [&](std::size_t, const PlanPosition& v) {
         const double vx = v[0] - p[0], vy = v[1] - p[1];
         if (std::abs(vx * dy - vy * dx) > reach * length) return;
         const double along = (vx * dx + vy * dy) / length;

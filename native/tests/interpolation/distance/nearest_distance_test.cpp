@@ -8,7 +8,7 @@
 #include "../dense_kriging.hpp"
 #include "realmodel/base/errors.hpp"
 #include "realmodel/base/progress.hpp"
-#include "realmodel/spatial/nearest_points.hpp"
+#include "spatial/nearest_points.hpp"
 
 namespace realmodel::interpolation {
 namespace {
@@ -41,10 +41,10 @@ TEST(NearestDistances, Refuses) {
 TEST(NearestPoints, WithinADistanceAllOrNone) {
     const Nodes positions = scattered_nodes(500, 100);
     const spatial::NearestPoints tree(positions);
-    std::vector<spatial::Neighbour> found;
+    std::vector<spatial::Neighbor> found;
     ASSERT_TRUE(tree.within({50, 50}, 20, 500, found));
     std::vector<bool> seen(positions.size(), false);
-    for (const spatial::Neighbour& n : found) {
+    for (const spatial::Neighbor& n : found) {
         ASSERT_FALSE(seen[static_cast<std::size_t>(n.point)]);
         seen[static_cast<std::size_t>(n.point)] = true;
     }

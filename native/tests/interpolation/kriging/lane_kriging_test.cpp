@@ -43,7 +43,7 @@ std::vector<Estimate> one_by_one(const DataPoints& data, const Covariance& covar
     const spatial::NearestPoints tree(data.local);
     NeighborSearch search(data, tree, {neighbors, 0, 0});
     NeighborKriging kriging(data, covariance, Drift::kConstant);
-    std::vector<spatial::Neighbour> near;
+    std::vector<spatial::Neighbor> near;
     std::vector<Estimate> out;
     for (const LaneKriging::Node& node : nodes) {
         search.find(node.position, near, node.left_out);
@@ -131,7 +131,7 @@ std::size_t left_to_others(const Points& points, const Nodes& nodes, const Vario
     const spatial::NearestPoints tree(data.local);
     NeighborSearch search(data, tree, {neighbors, 0, 0});
     NeighborKriging plain(data, covariance, drift);
-    std::vector<spatial::Neighbour> near;
+    std::vector<spatial::Neighbor> near;
     std::vector<LaneKriging::Node> all;
     for (std::uint32_t i = 0; i < nodes.size(); ++i)
         all.push_back({data.to_local(nodes[i]), i});

@@ -21,7 +21,7 @@ Searched search(const DataPoints& data, const Position& position, const Neighbor
                 std::int32_t left_out = NeighborSearch::kNobody) {
     const spatial::NearestPoints tree(data.local);
     NeighborSearch finder(data, tree, neighborhood);
-    std::vector<spatial::Neighbour> found;
+    std::vector<spatial::Neighbor> found;
     const bool within = finder.find(position, found, left_out);
     EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
     Searched out{{}, within};
@@ -33,7 +33,7 @@ Searched search(const DataPoints& data, const Position& position, const Neighbor
 /// The same, by looking at every point.
 std::vector<std::int32_t> expected(const DataPoints& data, const Position& position,
                                    const Neighborhood& n, std::int32_t left_out) {
-    std::vector<spatial::Neighbour> all;
+    std::vector<spatial::Neighbor> all;
     for (std::size_t i = 0; i < data.local.size(); ++i) {
         const double dx = data.local[i][0] - position[0], dy = data.local[i][1] - position[1];
         all.push_back({dx * dx + dy * dy, static_cast<std::int32_t>(i)});

@@ -1,46 +1,43 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "interpolation/block_neighbours.hpp"
+#include "spatial/block_neighbors.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-namespace realmodel::interpolation {
+#include "base/index.hpp"
+
+namespace realmodel::spatial {
 
 namespace {
 
-constexpr double widest = 0.3;      // radius of a block, in distances to the last point wanted
-constexpr std::size_t at_most = 4;  // candidates for each point wanted
+constexpr double kWidest = 0.3;   // radius of a block, in distances to the last point wanted
+constexpr std::size_t kMost = 4;  // candidates for each point wanted
 
 }  // namespace
 
-bool BlockNeighbours::prepare(std::span<const Place> nodes) {
-    Place low = nodes[0], high = nodes[0];
-    for (const Place& node : nodes) {
-        for (int axis = 0; axis < 2; ++axis) {
-            low[axis] = std::min(low[axis], node[axis]);
-            high[axis] = std::max(high[axis], node[axis]);
-        }
-    }
-    const Place centre{0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])};
-    tree_.find(centre, count_, found_);
+bool BlockNeighbors::prepare(std::span<const PlanPosition> nodes) {
+    const PlanBox box = box_around(nodes);
+    const PlanPosition center{0.5 * (box.low_x + box.high_x), 0.5 * (box.low_y + box.high_y)};
+    tree_.find(center, count_, found_);
     if (nodes.size() > 1) {
         const double wanted = std::sqrt(found_.back().squared_distance);
-        const double radius = std::hypot(high[0] - centre[0], high[1] - centre[1]);
-        if (radius > widest * wanted) return false;
+        const double radius = std::hypot(box.high_x - center[0], box.high_y - center[1]);
+        if (radius > kWidest * wanted) return false;
         // The nearest of a node lie within wanted + radius of it.
         const double reach = (wanted + 2 * radius) * (1 + 1e-9);
-        if (!tree_.within(centre, reach, at_most * count_, found_)) return false;
+        if (!tree_.within(center, reach, kMost * count_, found_)) return false;
     }
     candidates_.clear();
-    for (const spatial::Neighbour& neighbour : found_)
-        candidates_.push_back(neighbour.point);
+    for (const Neighbor& neighbor : found_)
+        candidates_.push_back(neighbor.point);
     std::sort(candidates_.begin(), candidates_.end());
     x_.clear();
     y_.clear();
     for (const std::int32_t point : candidates_) {
-        x_.push_back(data_.local[static_cast<std::size_t>(point)][0]);
-        y_.push_back(data_.local[static_cast<std::size_t>(point)][1]);
+        const auto [x, y] = tree_.point(point);
+        x_.push_back(x);
+        y_.push_back(y);
     }
     squared_.resize(candidates_.size());
     keys_.resize(count_);
@@ -49,7 +46,7 @@ bool BlockNeighbours::prepare(std::span<const Place> nodes) {
     return true;
 }
 
-std::span<const std::int32_t> BlockNeighbours::nearest(const Place& node) {
+std::span<const std::int32_t> BlockNeighbors::nearest(const PlanPosition& node) {
     const std::size_t count = candidates_.size();
 #pragma omp simd
     for (std::size_t i = 0; i < count; ++i) {
@@ -80,4 +77,4 @@ std::span<const std::int32_t> BlockNeighbours::nearest(const Place& node) {
     return {order_.data(), count_};
 }
 
-}  // namespace realmodel::interpolation
+}  // namespace realmodel::spatial

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "meshing/corner_grid.hpp"
+#include "spatial/corner_grid.hpp"
 
-namespace realmodel::meshing {
+namespace realmodel::spatial {
 
 namespace {
 
@@ -18,13 +18,13 @@ CornerGrid::CornerGrid(std::vector<Member> members, std::size_t numbers) : where
 std::int32_t CornerGrid::add_level(std::span<Member> members, std::int32_t above,
                                    std::int32_t cell_above, int depth) {
     Level level{};
-    level.low = level.high = members[0].place;
+    level.low = level.high = members[0].position;
     level.above = above;
     level.cell_above = cell_above;
     for (const Member& member : members) {
         for (int k = 0; k < 2; ++k) {
-            level.low[k] = std::min(level.low[k], member.place[k]);
-            level.high[k] = std::max(level.high[k], member.place[k]);
+            level.low[k] = std::min(level.low[k], member.position[k]);
+            level.high[k] = std::max(level.high[k], member.position[k]);
         }
     }
     const double width = level.high[0] - level.low[0], height = level.high[1] - level.low[1];
@@ -47,7 +47,7 @@ std::int32_t CornerGrid::add_level(std::span<Member> members, std::int32_t above
 
     std::array<std::int32_t, kMostAlong * kMostAlong + 1> begin{};
     for (const Member& member : members) {
-        const std::int32_t cell = cell_at(member.place, level);
+        const std::int32_t cell = cell_at(member.position, level);
         whereabouts_[member.number].cell = cell;
         ++begin[cell - level.first + 1];
     }
@@ -113,4 +113,4 @@ void CornerGrid::remove(std::int32_t number) {
     if (cell.count == 0) clear(level, at);
 }
 
-}  // namespace realmodel::meshing
+}  // namespace realmodel::spatial

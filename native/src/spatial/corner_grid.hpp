@@ -10,16 +10,16 @@
 #include <span>
 #include <vector>
 
-#include "realmodel/meshing/triangulation.hpp"
+#include "spatial/plan_tiles.hpp"
 
-namespace realmodel::meshing {
+namespace realmodel::spatial {
 
 /// Square cells with a few points each; cells that many points share are grids of their own, so
 /// that clusters cost no more than what is evenly spread. Points leave one by one.
 class CornerGrid {
 public:
     struct Member {
-        PlanPoint place;
+        PlanPosition position;
         std::int32_t number;
     };
 
@@ -29,13 +29,14 @@ public:
     /// Forgets a member; nothing where it has gone already.
     void remove(std::int32_t number);
 
-    /// Whether `wanted` is true of a member: asked of all in the triangle a-b-c, and of others in
-    /// the box around it, until it is. (Cells are found by rounded coordinates: of
-    /// members within rounding of the triangle's border some may be passed over.) Searches near
-    /// one another are fast one after another: each begins in the grid where the last one was.
+    /// Whether `wanted` is true of a member: asked of all in the triangle a-b-c, or no farther from
+    /// it than `margin` on either axis, and of others in the box around it, until it is. (Cells are
+    /// found by rounded coordinates: of members within rounding of the triangle's border some may
+    /// be passed over.) Searches near one another are fast one after another: each begins in the
+    /// grid where the last one was.
     template <class Wanted>
-    bool any_in_triangle(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
-                         Wanted&& wanted);
+    bool any_in_triangle(const PlanPosition& a, const PlanPosition& b, const PlanPosition& c,
+                         Wanted&& wanted, const PlanPosition& margin = {0, 0});
 
 private:
     static constexpr std::int32_t kNone = -1;
@@ -47,7 +48,7 @@ private:
     };
     static constexpr std::int32_t kIsLevel = -1;
     struct Level {
-        PlanPoint low, high;
+        PlanPosition low, high;
         double cells_per_unit, side;
         std::int32_t columns, rows;
         std::int32_t first;                          ///< of its cells
@@ -57,8 +58,9 @@ private:
                      cell_above = kNone;  ///< the level that it is in, the cell there
     };
     struct Triangle {
-        PlanPoint a, b, c;
-        PlanPoint low, high;  ///< of the box around it
+        PlanPosition a, b, c;
+        PlanPosition low, high;  ///< of the box around it, with the margin
+        PlanPosition margin;
     };
 
     std::int32_t add_level(std::span<Member> members, std::int32_t above, std::int32_t cell_above,
@@ -76,8 +78,8 @@ private:
     static std::int32_t column_at(double x, const Level& level) {
         return cell_along(x - level.low[0], level, level.columns);
     }
-    /// The cell of a level that a place is in, or the one nearest to it.
-    static std::int32_t cell_at(const PlanPoint& p, const Level& level) {
+    /// The cell of a level that a position is in, or the one nearest to it.
+    static std::int32_t cell_at(const PlanPosition& p, const Level& level) {
         return level.first + row_at(p[1], level) * level.columns + column_at(p[0], level);
     }
     /// Bits of columns, or of rows.
@@ -100,7 +102,7 @@ private:
 };
 
 /// Takes in the part of the segment ab between the lines y = bottom and y = top.
-inline void widen_by_band(double& low, double& high, const PlanPoint& a, const PlanPoint& b,
+inline void widen_by_band(double& low, double& high, const PlanPosition& a, const PlanPosition& b,
                           double bottom, double top) {
     if ((a[1] < bottom && b[1] < bottom) || (a[1] > top && b[1] > top)) return;
     const double rise = b[1] - a[1], run = b[0] - a[0];
@@ -130,14 +132,17 @@ inline std::int32_t CornerGrid::innermost(const Triangle& triangle) const {
 }
 
 template <class Wanted>
-bool CornerGrid::any_in_triangle(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c,
-                                 Wanted&& wanted) {
+bool CornerGrid::any_in_triangle(const PlanPosition& a, const PlanPosition& b,
+                                 const PlanPosition& c, Wanted&& wanted,
+                                 const PlanPosition& margin) {
     if (levels_.empty()) return false;
+    const auto [mx, my] = margin;
     const Triangle triangle{a,
                             b,
                             c,
-                            {std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})},
-                            {std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})}};
+                            {std::min({a[0], b[0], c[0]}) - mx, std::min({a[1], b[1], c[1]}) - my},
+                            {std::max({a[0], b[0], c[0]}) + mx, std::max({a[1], b[1], c[1]}) + my},
+                            margin};
     last_ = innermost(triangle);
     return search(triangle, last_, wanted);
 }
@@ -145,7 +150,7 @@ bool CornerGrid::any_in_triangle(const PlanPoint& a, const PlanPoint& b, const P
 template <class Wanted>
 bool CornerGrid::search(const Triangle& triangle, std::int32_t number, Wanted& wanted) const {
     const Level& level = levels_[number];
-    const auto& [a, b, c, box_low, box_high] = triangle;
+    const auto& [a, b, c, box_low, box_high, margin] = triangle;
     const auto [left, bottom] = box_low;
     const auto [right, top] = box_high;
     if (left > level.high[0] || right < level.low[0] || bottom > level.high[1] ||
@@ -164,13 +169,14 @@ bool CornerGrid::search(const Triangle& triangle, std::int32_t number, Wanted& w
         if (used == 0) continue;
         if (is_large) {
             double low = right, high = left;
-            const double below = row == 0 ? bottom : level.low[1] + row * level.side;
+            const double below = row == 0 ? bottom : level.low[1] + row * level.side - margin[1];
             const double above =
-                row == level.rows - 1 ? top : level.low[1] + (row + 1) * level.side;
+                row == level.rows - 1 ? top : level.low[1] + (row + 1) * level.side + margin[1];
             widen_by_band(low, high, a, b, below, above);
             widen_by_band(low, high, b, c, below, above);
             widen_by_band(low, high, c, a, below, above);
-            used &= bits_between(column_at(low, level), column_at(high, level));
+            used &=
+                bits_between(column_at(low - margin[0], level), column_at(high + margin[0], level));
         }
         const Cell* cells = &cells_[level.first + row * level.columns];
         for (; used != 0; used &= used - 1) {
@@ -181,7 +187,7 @@ bool CornerGrid::search(const Triangle& triangle, std::int32_t number, Wanted& w
             }
             const Member* member = &members_[cell.first];
             for (const Member* end = member + cell.count; member != end; ++member) {
-                const auto [x, y] = member->place;
+                const auto [x, y] = member->position;
                 // One branch instead of four: most are outside, but no one side tells which.
                 const bool is_in_box = static_cast<int>(x >= left) & static_cast<int>(x <= right) &
                                        static_cast<int>(y >= bottom) & static_cast<int>(y <= top);
@@ -192,4 +198,4 @@ bool CornerGrid::search(const Triangle& triangle, std::int32_t number, Wanted& w
     return false;
 }
 
-}  // namespace realmodel::meshing
+}  // namespace realmodel::spatial

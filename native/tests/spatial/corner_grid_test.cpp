@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "meshing/corner_grid.hpp"
+#include "spatial/corner_grid.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <set>
 
-#include "meshing/plan_predicates.hpp"
+#include "exact/orient2d.hpp"
 
-namespace realmodel::meshing {
+namespace realmodel::spatial {
 namespace {
 
 /// Evenly spread places, and a cluster a millionth as wide, some of them equal.
-std::vector<PlanPoint> places() {
+std::vector<PlanPosition> places() {
     std::mt19937 random(5);
     const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
-    std::vector<PlanPoint> made;
+    std::vector<PlanPosition> made;
     for (int i = 0; i < 3000; ++i) {
         const double width = i % 2 == 0 ? 1000 : 1e-3;
         made.push_back({300 + width * uniform(), 5e6 + width * uniform()});
@@ -24,19 +24,19 @@ std::vector<PlanPoint> places() {
     return made;
 }
 
-std::vector<CornerGrid::Member> numbered(const std::vector<PlanPoint>& points) {
+std::vector<CornerGrid::Member> numbered(const std::vector<PlanPosition>& points) {
     std::vector<CornerGrid::Member> members;
-    for (const PlanPoint& p : points)
+    for (const PlanPosition& p : points)
         members.push_back({p, static_cast<std::int32_t>(members.size())});
     return members;
 }
 
-CornerGrid grid_of(const std::vector<PlanPoint>& points) {
+CornerGrid grid_of(const std::vector<PlanPosition>& points) {
     return {numbered(points), points.size()};
 }
 
 TEST(CornerGrid, FindsWhatLiesInATriangleUntilItIsRemoved) {
-    const std::vector<PlanPoint> points = places();
+    const std::vector<PlanPosition> points = places();
     CornerGrid grid = grid_of(points);
     std::set<std::int32_t> left;
     for (const CornerGrid::Member& member : numbered(points))
@@ -47,18 +47,18 @@ TEST(CornerGrid, FindsWhatLiesInATriangleUntilItIsRemoved) {
         // one was, which may be far too small for it, or elsewhere.
         const std::size_t among = round % 3 == 0 ? 1 : 0;
         const auto any = [&] { return points[(random() % (points.size() / 2)) * 2 + among]; };
-        const PlanPoint a = any(), b = round % 7 == 0 ? points[random() % points.size()] : any(),
-                        c = any();
-        if (orient2d(a, b, c) <= 0) continue;
+        const PlanPosition a = any(), b = round % 7 == 0 ? points[random() % points.size()] : any(),
+                           c = any();
+        if (exact::orient2d(a, b, c) <= 0) continue;
         std::set<std::int32_t> found, wanted;
         grid.any_in_triangle(a, b, c, [&](const CornerGrid::Member& member) {
             EXPECT_TRUE(found.insert(member.number).second) << "twice";
-            EXPECT_EQ(member.place, points[member.number]);
+            EXPECT_EQ(member.position, points[member.number]);
             return false;
         });
         for (const std::int32_t n : left) {
-            if (orient2d(a, b, points[n]) > 0 && orient2d(b, c, points[n]) > 0 &&
-                orient2d(c, a, points[n]) > 0) {
+            if (exact::orient2d(a, b, points[n]) > 0 && exact::orient2d(b, c, points[n]) > 0 &&
+                exact::orient2d(c, a, points[n]) > 0) {
                 wanted.insert(n);
             }
         }
@@ -74,16 +74,16 @@ TEST(CornerGrid, FindsWhatLiesInATriangleUntilItIsRemoved) {
 }
 
 TEST(CornerGrid, ClustersAreNotSearchedAsAWhole) {
-    const std::vector<PlanPoint> points = places();
+    const std::vector<PlanPosition> points = places();
     CornerGrid grid = grid_of(points);
     int asked = 0;
-    const PlanPoint a{300, 5e6}, b{300 + 1e-5, 5e6}, c{300, 5e6 + 1e-5};
+    const PlanPosition a{300, 5e6}, b{300 + 1e-5, 5e6}, c{300, 5e6 + 1e-5};
     grid.any_in_triangle(a, b, c, [&](const CornerGrid::Member&) { return ++asked < 0; });
     EXPECT_LT(asked, 100);
 }
 
 TEST(CornerGrid, StopsAtTheFirstThatIsWanted) {
-    const std::vector<PlanPoint> points = places();
+    const std::vector<PlanPosition> points = places();
     CornerGrid grid = grid_of(points);
     int asked = 0;
     EXPECT_TRUE(grid.any_in_triangle({0, 0}, {1e7, 0}, {0, 1e8},
@@ -94,4 +94,4 @@ TEST(CornerGrid, StopsAtTheFirstThatIsWanted) {
 }
 
 }  // namespace
-}  // namespace realmodel::meshing
+}  // namespace realmodel::spatial

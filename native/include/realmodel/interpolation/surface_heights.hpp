@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace realmodel {
+class Progress;
+}
+
+namespace realmodel::interpolation {
+
+/// Heights of a triangulated surface at positions in plan, linear in each triangle; NaN where it
+/// has none. On several triangles the first counts.
+///
+/// @param vertices   x, y, z
+/// @param triangles  vertex numbers
+/// @throws InputError kind "not_finite" (items: the vertex or node), "bad_index" (items: the
+///         triangle)
+/// @throws Cancelled
+std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> vertices,
+                                       std::span<const std::array<std::int32_t, 3>> triangles,
+                                       std::span<const std::array<double, 2>> nodes, int threads,
+                                       Progress* progress = nullptr);
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/interpolation/surface_heights.hpp"
+
+#include <limits>
+
+#include "interpolation/data_points.hpp"
+#include "interpolation/node_loop.hpp"
+#include "spatial/mesh_locator.hpp"
+
+namespace realmodel::interpolation {
+
+std::vector<double> heights_on_surface(std::span<const std::array<double, 3>> vertices,
+                                       std::span<const std::array<std::int32_t, 3>> triangles,
+                                       std::span<const std::array<double, 2>> nodes, int threads,
+                                       Progress* progress) {
+    require_finite_nodes(nodes);
+    std::vector<Position> positions;
+    positions.reserve(vertices.size());
+    for (const auto& [x, y, z] : vertices)
+        positions.push_back({x, y});
+    const spatial::MeshLocator locator(positions, triangles);
+    std::vector<double> z(nodes.size());
+    const NodeLoop loop{nodes.size(), 1024, threads, progress};
+    loop.over_nodes([] { return 0; },
+                    [&](int, std::size_t i) {
+                        const auto found = locator.find(nodes[i]);
+                        if (!found) {
+                            z[i] = std::numeric_limits<double>::quiet_NaN();
+                            return;
+                        }
+                        const auto& corners = triangles[static_cast<std::size_t>(found->triangle)];
+                        // From the first corner: heights far from 0 lose no digits, a flat triangle
+                        // is flat.
+                        const double base = vertices[static_cast<std::size_t>(corners[0])][2];
+                        z[i] = base;
+                        for (std::size_t k = 1; k < 3; ++k)
+                            z[i] += found->weights[k] *
+                                    (vertices[static_cast<std::size_t>(corners[k])][2] - base);
+                    });
+    return z;
+}
+
+}  // namespace realmodel::interpolation

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "spatial/mesh_locator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/index.hpp"
+#include "exact/orient2d.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::spatial {
+
+namespace {
+
+void check_mesh(std::span<const PlanPosition> vertices,
+                std::span<const MeshLocator::Triangle> triangles) {
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        if (std::isfinite(vertices[v][0]) && std::isfinite(vertices[v][1])) continue;
+        throw InputError("not_finite", "vertex " + std::to_string(v) + " is not finite", -1,
+                         {static_cast<std::int64_t>(v)});
+    }
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        for (const std::int32_t v : triangles[t]) {
+            if (v >= 0 && static_cast<std::size_t>(v) < vertices.size()) continue;
+            throw InputError("bad_index",
+                             "triangle " + std::to_string(t) + " names a vertex that is not there",
+                             -1, {static_cast<std::int64_t>(t)});
+        }
+    }
+}
+
+}  // namespace
+
+MeshLocator::MeshLocator(std::span<const PlanPosition> vertices,
+                         std::span<const Triangle> triangles)
+    : vertices_(vertices), triangles_(triangles) {
+    check_mesh(vertices, triangles);
+    std::vector<PlanPosition> corners;
+    for (const Triangle& triangle : triangles) {
+        for (const PlanPosition& corner : corners_of(triangle))
+            corners.push_back(corner);
+    }
+    tiles_ = PlanTiles(box_around(corners), triangles.size());
+    triangles_at_ = bucketize<std::int32_t>(tiles_.size(), [&](const auto& put) {
+        for (std::size_t t = 0; t < triangles.size(); ++t) {
+            const PlanBox box = box_around(std::span(corners).subspan(3 * t, 3));
+            tiles_.for_each(tiles_.span(box),
+                            [&](std::size_t tile) { put(tile, static_cast<std::int32_t>(t)); });
+        }
+    });
+}
+
+std::array<PlanPosition, 3> MeshLocator::corners_of(const Triangle& triangle) const {
+    return {vertices_[index(triangle[0])], vertices_[index(triangle[1])],
+            vertices_[index(triangle[2])]};
+}
+
+std::optional<MeshLocator::Found> MeshLocator::find(const PlanPosition& position) const {
+    if (!tiles_.frame().contains(position)) return std::nullopt;
+    for (const std::int32_t t : triangles_at_[tiles_.tile_at(position)]) {
+        const std::array<PlanPosition, 3> corner = corners_of(triangles_[index(t)]);
+        const int way = exact::orient2d(corner[0], corner[1], corner[2]);
+        if (way == 0 || exact::orient2d(corner[0], corner[1], position) == -way ||
+            exact::orient2d(corner[1], corner[2], position) == -way ||
+            exact::orient2d(corner[2], corner[0], position) == -way) {
+            continue;
+        }
+        Found found{t, {}};
+        double sum = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const PlanPosition &a = corner[(i + 1) % 3], &b = corner[(i + 2) % 3];
+            const double area = (a[0] - position[0]) * (b[1] - position[1]) -
+                                (b[0] - position[0]) * (a[1] - position[1]);
+            found.weights[i] = std::max(0.0, way * area);
+            sum += found.weights[i];
+        }
+        if (!(sum > 0)) {  // an area lost to rounding
+            found.weights = {1, 0, 0};
+            return found;
+        }
+        for (double& weight : found.weights)
+            weight /= sum;
+        return found;
+    }
+    return std::nullopt;
+}
+
+}  // namespace realmodel::spatial
