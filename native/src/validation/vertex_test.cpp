@@ -73,7 +73,7 @@ Buckets<HashedVertex> position_buckets(const ComplexView& model, int threads,
     return bucketize_in_order<HashedVertex>(buckets, chunks, produce, threads, progress);
 }
 
-/// Of each position that several vertices of a bucket have, the later ones with the first.
+/// Of each position that several vertices of a bucket have, all but the first with the one before.
 std::vector<EqualPair> equal_pairs(const ComplexView& model, std::span<HashedVertex> bucket) {
     std::sort(bucket.begin(), bucket.end());
     std::vector<EqualPair> pairs;

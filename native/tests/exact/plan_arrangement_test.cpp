@@ -383,16 +383,5 @@ TEST(PlanArrangement, CrossingsOnABorderAlongAnAxisNeedNoExactArithmetic) {
     EXPECT_EQ(scope.exact_decisions(), 0u);
 }
 
-TEST(Turn, IsExact) {
-    EXPECT_EQ(orient2d({0, 0}, {1, 0}, {0, 1}), 1);
-    EXPECT_EQ(orient2d({0, 0}, {0, 1}, {1, 0}), -1);
-    EXPECT_EQ(orient2d({0.1, 0.1}, {0.2, 0.2}, {0.4, 0.4}), 0);
-    EXPECT_EQ(orient2d({0.1, 0.1}, {0.2, 0.2}, {0.4, std::nextafter(0.4, 1)}), 1);
-    EXPECT_EQ(orient2d({1e-300, 0}, {0, 1e-300}, {0, 0}), 1);
-    EXPECT_EQ(orient2d({0.1, 0.3}, {0.1, 0.7}, {0.1, 0.4}), 0);
-    EXPECT_EQ(orient2d({0.3, 0.1}, {0.7, 0.1}, {0.4, 0.1}), 0);
-    EXPECT_EQ(orient2d({0.3, 0.1}, {0.7, 0.1}, {0.4, std::nextafter(0.1, 1)}), 1);
-}
-
 }  // namespace
 }  // namespace realmodel::exact

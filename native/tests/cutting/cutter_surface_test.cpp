@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cutting/cutter_surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include "../validation/small_complex.hpp"
+#include "prism.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::cutting {
+namespace {
+
+double volume(const CutterSurface& surface) {
+    const auto at = [&](std::int32_t v) { return surface.vertices[index(v)]; };
+    double sixfold = 0;
+    for (const auto& t : surface.triangles)
+        sixfold += sixfold_volume({0, 0, 0}, at(t[0]), at(t[1]), at(t[2]));
+    return sixfold / 6;
+}
+
+TEST(CutterSurface, ABlocksBoundaryTurnsOutward) {
+    auto cubes = validation::two_cubes();
+    for (const std::int32_t block : {0, 1}) {  // of the second, the face in common turns over
+        const CutterSurface surface = block_boundary(cubes.view(), block);
+        EXPECT_TRUE(surface.is_closed);
+        EXPECT_EQ(surface.triangles.size(), 12U);
+        EXPECT_EQ(surface.vertices.size(), 8U);
+        EXPECT_DOUBLE_EQ(volume(surface), 1);
+    }
+    EXPECT_THROW(block_boundary(cubes.view(), 2), InputError);
+}
+
+TEST(CutterSurface, WithinABlockThereIsNoBoundary) {
+    auto cubes = validation::two_cubes();
+    cubes.block = {0, 0};
+    const CutterSurface surface = block_boundary(cubes.view(), 0);
+    EXPECT_EQ(surface.triangles.size(), 20U);
+    EXPECT_DOUBLE_EQ(volume(surface), 2);
+}
+
+/// Two slopes that meet in a ridge along y at x = 0, height 0.
+const CutterSurface kRidge{{{0, -9, 0}, {0, 9, 0}, {3, 0, -9}, {-3, 0, -9}},
+                           {{0, 2, 1}, {0, 1, 3}}};
+
+TEST(CutterSurface, TheNearestTriangleTellsTheSide) {
+    EXPECT_EQ(side_of_nearest(kRidge, {0.25, 0, 5}), kAbove);
+    EXPECT_EQ(side_of_nearest(kRidge, {-4, 0, -3}), kAbove);
+    EXPECT_EQ(side_of_nearest(kRidge, {0.25, 0, -5}), kBelow);
+    EXPECT_EQ(side_of_nearest(kRidge, {-0.25, 0, -5}), kBelow);
+}
+
+TEST(CutterSurface, BeyondItsBorderTheTriangleSeenMostSquarelyTellsTheSide) {
+    // nearest is the corner in common; the upright triangle is seen almost along itself
+    const CutterSurface bent{{{0, 0, 0}, {1, 1, 0}, {1, -1, 0}, {1, -1, 1}},
+                             {{0, 3, 2}, {0, 2, 1}, {0, 3, 2}}};
+    EXPECT_EQ(side_of_nearest(bent, {-1, 0.8, 0.5}), kAbove);
+    EXPECT_EQ(side_of_nearest(bent, {-1, 0.8, -0.5}), kBelow);
+    EXPECT_EQ(side_of_nearest(bent, {-1, 0, 0.5}), kBelow);  // it is that one's turn
+}
+
+TEST(CutterSurface, AFaceThatIsNotConvexIsDividedWithinItself) {
+    auto u = u_shape();
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    triangulate_face(u.view(), 0, triangles);
+    EXPECT_EQ(triangles.size(), 6U);
+    double area = 0;
+    for (const auto& t : triangles) {
+        const Position normal = polygon_normal(
+            std::array{u.vertices[index(t[0])], u.vertices[index(t[1])], u.vertices[index(t[2])]});
+        EXPECT_LT(normal[1], 0);  // as the face turns
+        area -= normal[1] / 2;
+    }
+    EXPECT_DOUBLE_EQ(area, 5);
+    Polygons polygons;
+    divide_face(u.view(), 0, polygons);
+    EXPECT_EQ(polygons.size(), 3U);  // the foot and the towers
+}
+
+}  // namespace
+}  // namespace realmodel::cutting

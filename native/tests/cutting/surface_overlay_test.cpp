@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cutting/surface_overlay.hpp"
+
+#include <gtest/gtest.h>
+
+#include "../validation/small_complex.hpp"
+#include "base/ulp.hpp"
+#include "exact/space_predicates.hpp"
+#include "level_cutter.hpp"
+#include "small_polygons.hpp"
+
+namespace realmodel::cutting {
+namespace {
+
+/// Two unit cubes, one on the other, and a triangle that reaches far beyond them.
+struct Overlaid {
+    explicit Overlaid(double height, bool upward = true) : surface(level_cutter(height, upward)) {}
+    std::size_t regions_of_cutter() const {
+        std::size_t count = 0;
+        for (std::size_t r = 0; r < overlay.size(); ++r)
+            count += overlay.of_cutter(r);
+        return count;
+    }
+    bool on_cutter(int vertex) {
+        const auto& t = surface.triangles[0];
+        const auto at = [&](std::size_t i) {
+            return overlay.points().add(surface.vertices[index(t[i])]);
+        };
+        return exact::orient3d(overlay.points(), at(0), at(1), at(2),
+                               overlay.exact(NodeId{vertex})) == 0;
+    }
+
+    validation::OwnedComplex cubes = validation::two_cubes();
+    ComplexView model = cubes.view();
+    CutterSurface surface;
+    SurfaceOverlay overlay{model, surface, 1, nullptr};
+};
+
+TEST(SurfaceOverlay, OnlyFacesNearTheSurfaceHaveRegions) {
+    Overlaid cut(0.5);
+    EXPECT_EQ(cut.overlay.active_faces(), (std::vector<std::int32_t>{3, 4, 5, 6}));
+    EXPECT_TRUE(cut.overlay.is_active(6));
+    EXPECT_FALSE(cut.overlay.is_active(1));
+    EXPECT_TRUE(Overlaid(5).overlay.active_faces().empty());
+}
+
+TEST(SurfaceOverlay, SurfaceAndWallsDivideOneAnother) {
+    // each wall is two triangles, which the surface halves; it has a region within and one around
+    Overlaid cut(0.5);
+    EXPECT_EQ(cut.overlay.size(), 4U * 4 + 2);
+    EXPECT_EQ(cut.regions_of_cutter(), 2U);
+    // new nodes: on four upright edges and four diagonals, and the surface's corners
+    EXPECT_EQ(cut.overlay.new_positions().size(), 8U + 3);
+    for (const Position& p : cut.overlay.new_positions())
+        EXPECT_EQ(p[2], 0.5);
+}
+
+TEST(SurfaceOverlay, AroundTheCubesTheSurfaceHasAHole) {
+    Overlaid cut(0.5);
+    std::size_t holes = 0;
+    for (std::size_t r = 0; r < cut.overlay.size(); ++r) {
+        if (cut.overlay.loops(r).size() == 1) continue;
+        ++holes;
+        EXPECT_TRUE(cut.overlay.of_cutter(r));
+        EXPECT_EQ(cut.overlay.loops(r)[0].size(), 3U);
+        EXPECT_EQ(cut.overlay.loops(r)[1].size(), 8U);
+    }
+    EXPECT_EQ(holes, 1U);
+}
+
+TEST(SurfaceOverlay, VerticesOnTheSurfaceButForRoundingAreTakenToLieOnIt) {
+    for (const double height : {1.0, moved_by_ulps(1, 2), moved_by_ulps(1, -2)}) {
+        Overlaid cut(height);
+        EXPECT_TRUE(cut.on_cutter(4)) << height;
+        EXPECT_FALSE(cut.on_cutter(0));
+        EXPECT_EQ(cut.overlay.position(NodeId{4})[2], 1);  // where it is in the model
+    }
+    EXPECT_FALSE(Overlaid(moved_by_ulps(1, 64)).on_cutter(4));
+}
+
+TEST(SurfaceOverlay, AlongAFaceItsTrianglesDivideTheSurface) {
+    Overlaid cut(1);
+    std::vector<NodeLoop> of_cutter, of_face;
+    for (std::size_t r = 0; r < cut.overlay.size(); ++r) {
+        const NodeLoop outline = from_least(cut.overlay.loops(r)[0]);
+        if (cut.overlay.of_cutter(r)) {
+            of_cutter.push_back(outline);
+        } else if (cut.overlay.face_of(r) == 1) {
+            of_face.push_back(outline);
+        }
+    }
+    EXPECT_EQ(of_face.size(), 2U);
+    EXPECT_EQ(of_cutter.size(), 3U);
+    for (const NodeLoop& region : of_face)
+        EXPECT_EQ(std::ranges::count(of_cutter, region), 1);
+}
+
+TEST(SurfaceOverlay, AnInnerPointIsInItsRegionAndInNoHole) {
+    for (const bool upward : {true, false}) {
+        Overlaid cut(0.5, upward);
+        int within = 0;
+        for (std::size_t r = 0; r < cut.overlay.size(); ++r) {
+            if (!cut.overlay.of_cutter(r)) continue;
+            const NodeId inner = cut.overlay.inner_point(r);
+            const Position p = cut.overlay.points().rounded(inner);
+            const bool in_cube = p[0] > 0 && p[0] < 1 && p[1] > 0 && p[1] < 1;
+            EXPECT_EQ(in_cube, cut.overlay.loops(r).size() == 1);
+            EXPECT_EQ(p[2], 0.5);
+            within += in_cube;
+        }
+        EXPECT_EQ(within, 1);
+    }
+}
+
+TEST(SurfaceOverlay, TheFanOfAnEdgeHasTheSurfaceAndTheWall) {
+    Overlaid cut(0.5);
+    // around the cut of a wall's triangle: the wall above, the wall below, the surface on two sides
+    std::vector<arrangement::EdgeUse> uses;
+    for (std::size_t r = 0; r < cut.overlay.size(); ++r)
+        arrangement::each_edge(cut.overlay.loops(r), static_cast<std::int32_t>(r),
+                               [&](const arrangement::EdgeUse& use) { uses.push_back(use); });
+    std::ranges::sort(uses);
+    std::size_t begin = 0;
+    while (cut.overlay.of_cutter(index(uses[begin].item)) ||
+           uses[begin].edge != uses[begin + 3].edge)
+        ++begin;
+    const auto fan = cut.overlay.fan_of(std::span(uses).subspan(begin, 4));
+    ASSERT_EQ(fan.blades(), 4U);
+    for (std::size_t b = 0; b < 4; ++b) {
+        const auto of_cutter = [&](std::size_t blade) {
+            return cut.overlay.of_cutter(index(uses[begin + fan.blade(blade % 4)[0]].item));
+        };
+        EXPECT_NE(of_cutter(b), of_cutter(b + 1));
+    }
+}
+
+}  // namespace
+}  // namespace realmodel::cutting
