@@ -2,11 +2,9 @@
 #include "arrangement/triangle_arrangement.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <numeric>
-#include <span>
 
 #include "arrangement/triangle_regions.hpp"
 #include "base/parallel.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parts that a cell falls into.
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "cutting/cell_cut.hpp"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include "cutting/cutter_surface.hpp"
 #include "cutting/triangulate.hpp"

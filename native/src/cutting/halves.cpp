@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cutting/halves.hpp"
 
-#include <algorithm>
-
 #include "base/parallel.hpp"
 #include "strata/cells/volumes.hpp"
 

@@ -2,7 +2,6 @@
 // What bounds the parts of cells, and which of it belongs together.
 #include "cutting/surface_parts.hpp"
 
-#include <algorithm>
 #include <cassert>
 #include <map>
 #include <stdexcept>

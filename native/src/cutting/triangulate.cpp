@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <optional>
 
 #include "cutting/plane_cross.hpp"
@@ -220,11 +218,19 @@ bool Ring::is_ear(std::int32_t tip, Care care) {
         }
         return true;
     }
-    return !grid_->any_in_triangle(at(a), at(tip), at(c),
+    // A little more than the triangle: what rounding may have put just beyond it counts, too.
+    const auto outward = [&](std::int32_t i) {
+        PlanePosition p = at(i);
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const double from_middle = 3 * p[axis] - at(a)[axis] - at(tip)[axis] - at(c)[axis];
+            p[axis] += std::copysign(2 * rounding_[axis], from_middle);
+        }
+        return p;
+    };
+    return !grid_->any_in_triangle(outward(a), outward(tip), outward(c),
                                    [&](const spatial::CornerGrid::Member& other) {
                                        return blocks(other.number, a, tip, c, care);
-                                   },
-                                   {2 * rounding_[0], 2 * rounding_[1]});
+                                   });
 }
 
 bool Ring::cut_ears() {

@@ -2,7 +2,6 @@
 #include "exact/local_arrangement.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "exact/arithmetic.hpp"

@@ -2,8 +2,6 @@
 // Where constructed points and heights become doubles, always the nearest ones: equal however they
 // are computed and whichever way a place, a height or a line is named. So the quickest way that is
 // sure of its answer may give it: extended precision, then twice that of doubles, then GMP.
-#include <algorithm>
-#include <cmath>
 
 #include "exact/arithmetic.hpp"
 #include "exact/extended_interval.hpp"

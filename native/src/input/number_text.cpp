@@ -2,9 +2,7 @@
 #include "input/number_text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <system_error>

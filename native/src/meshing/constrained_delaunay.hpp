@@ -8,7 +8,6 @@
 #include <CGAL/Triangulation_data_structure_2.h>
 #include <CGAL/Triangulation_vertex_base_2.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -8,6 +8,7 @@
 #include "meshing/ear_ring.hpp"
 #include "meshing/plan_predicates.hpp"
 #include "meshing/point_insertion.hpp"
+#include "meshing/ring_graph.hpp"
 #include "realmodel/base/progress.hpp"
 #include "realmodel/meshing/rings.hpp"
 #include "spatial/corner_grid.hpp"
@@ -263,18 +264,11 @@ private:
 Triangles by_region(std::span<const Ring> rings, const Progress* progress) {
     const std::vector<PlanPoint> corners = corners_of(rings);
     const RingTriangulation region = triangulate_region(rings, progress);
-    std::vector<std::int32_t> order(corners.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        order[i] = static_cast<std::int32_t>(i);
-    std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-        return corners[a] != corners[b] ? corners[a] < corners[b] : a < b;
-    });
-    std::vector<std::int32_t> corner_of;
-    corner_of.reserve(region.graph.points.size());
-    for (const PlanPoint& p : region.graph.points) {
-        corner_of.push_back(
-            *std::lower_bound(order.begin(), order.end(), p,
-                              [&](std::int32_t a, const PlanPoint& q) { return corners[a] < q; }));
+    const std::vector<std::int32_t> first = first_equal(corners);
+    std::vector<std::int32_t> corner_of;  // of each point of the region
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        const auto corner = static_cast<std::int32_t>(i);
+        if (first[i] == corner) corner_of.push_back(corner);
     }
     Triangles triangles;
     for (std::size_t t = 0; t < region.inside.size(); ++t) {

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "meshing/check.hpp"
 #include "meshing/flat_mesh.hpp"

@@ -38,14 +38,15 @@ public:
         if (same_ != kNone) refuse_overlap(graph_, edges_[same_ - 1], edges_[same_]);
     }
 
-    /// Calls visit(ring) for each ring along the edge between two points.
-    template <class Visit>
-    void visit(std::int32_t a, std::int32_t b, Visit&& visit) const {
+    /// The rings along the edge between two points.
+    std::vector<std::int32_t> along(std::int32_t a, std::int32_t b) const {
         const CoveredEdge wanted{std::min(a, b), std::max(a, b), kNone};
+        std::vector<std::int32_t> rings;
         for (auto at = std::lower_bound(edges_.begin(), edges_.end(), wanted);
              at != edges_.end() && at->from == wanted.from && at->to == wanted.to; ++at) {
-            visit(ring_of(*at));
+            rings.push_back(ring_of(*at));
         }
+        return rings;
     }
 
 private:
@@ -59,76 +60,65 @@ private:
     std::int32_t same_ = kNone;
 };
 
-/// How rings lie in each other, told by walking over the triangles from the outside.
-struct Nesting {
-    std::vector<bool> inside;           ///< of triangles: in an odd number of rings
-    std::vector<std::int32_t> parents;  ///< of rings: the innermost other one around it, or kNone
-};
-
-/// The innermost ring around a place, after an edge is crossed along which rings run.
-std::int32_t cross(const RingsOfEdges& rings, std::int32_t a, std::int32_t b,
-                   std::int32_t innermost, Nesting& nesting, std::vector<bool>& met, bool& odd) {
-    std::vector<std::int32_t> entered;
-    bool more = true;
-    std::vector<std::int32_t> along;
-    rings.visit(a, b, [&](std::int32_t ring) { along.push_back(ring); });
-    odd = along.size() % 2 != 0;
-    while (more) {  // leave the innermost ones first, in whatever order they are listed
-        more = false;
-        for (std::int32_t& ring : along) {
-            if (ring == kNone || ring != innermost) continue;
-            innermost = nesting.parents[ring];
-            ring = kNone;
-            more = true;
-        }
-    }
-    for (const std::int32_t ring : along) {
-        if (ring == kNone) continue;
-        if (!met[ring]) nesting.parents[ring] = innermost;
-        met[ring] = true;
-        innermost = ring;
-    }
-    return innermost;
-}
-
-Nesting nesting_of(const ConstrainedTriangulation& mesh, const RingsOfEdges& rings,
-                   std::size_t ring_count) {
-    constexpr signed char kUnknown = -1;
-    Nesting nesting{{}, std::vector<std::int32_t>(ring_count, kNone)};
-    std::vector<bool> met(ring_count);
-    std::vector<signed char> parity(mesh.triangles.size(), kUnknown);
-    std::vector<std::int32_t> innermost(mesh.triangles.size(), kNone), open;
-    const auto reach = [&](std::int32_t triangle, const std::array<std::int32_t, 3>& corners, int i,
-                           std::int32_t around, bool constrained, signed char value) {
-        if (parity[triangle] != kUnknown) return;
-        bool odd = false;
-        if (constrained) {
-            around = cross(rings, corners[i], corners[(i + 1) % 3], around, nesting, met, odd);
-        }
-        innermost[triangle] = around;
-        parity[triangle] = static_cast<signed char>(odd ? 1 - value : value);
-        open.push_back(triangle);
-    };
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (int i = 0; i < 3; ++i) {
-            if (mesh.neighbors[t][i] >= 0) continue;
-            reach(static_cast<std::int32_t>(t), mesh.triangles[t], i, kNone, mesh.constrained[t][i],
-                  0);
-        }
-        while (!open.empty()) {
-            const std::int32_t from = open.back();
-            open.pop_back();
+/// How rings lie in each other, told by walking over the triangles from the outside: of each ring
+/// the innermost other one around it, or kNone.
+class Nesting {
+public:
+    Nesting(const ConstrainedTriangulation& mesh, const RingsOfEdges& rings, std::size_t ring_count)
+        : parents(ring_count, kNone), rings_(rings), met_(ring_count, false) {
+        constexpr std::int32_t kUnknown = -2;
+        std::vector<std::int32_t> innermost(mesh.triangles.size(), kUnknown), open;
+        // From a triangle, or from outside, over its side i.
+        const auto reach = [&](std::int32_t to, std::int32_t from, int i, std::int32_t around) {
+            if (innermost[to] != kUnknown) return;
+            const auto& corners = mesh.triangles[from];
+            if (mesh.constrained[from][i]) around = cross(corners[i], corners[(i + 1) % 3], around);
+            innermost[to] = around;
+            open.push_back(to);
+        };
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+            const auto first = static_cast<std::int32_t>(t);
             for (int i = 0; i < 3; ++i) {
-                const std::int32_t to = mesh.neighbors[from][i];
-                if (to < 0) continue;
-                reach(to, mesh.triangles[from], i, innermost[from], mesh.constrained[from][i],
-                      parity[from]);
+                if (mesh.neighbors[t][i] < 0) reach(first, first, i, kNone);
+            }
+            while (!open.empty()) {
+                const std::int32_t from = open.back();
+                open.pop_back();
+                for (int i = 0; i < 3; ++i) {
+                    const std::int32_t to = mesh.neighbors[from][i];
+                    if (to >= 0) reach(to, from, i, innermost[from]);
+                }
             }
         }
     }
-    nesting.inside.assign(parity.begin(), parity.end());
-    return nesting;
-}
+
+    std::vector<std::int32_t> parents;
+
+private:
+    /// The innermost ring around a place, after an edge is crossed along which rings run.
+    std::int32_t cross(std::int32_t a, std::int32_t b, std::int32_t innermost) {
+        std::vector<std::int32_t> along = rings_.along(a, b);
+        for (bool more = true; more;) {  // leave the innermost first, in whatever order they are
+            more = false;
+            for (std::int32_t& ring : along) {
+                if (ring == kNone || ring != innermost) continue;
+                innermost = parents[ring];
+                ring = kNone;
+                more = true;
+            }
+        }
+        for (const std::int32_t ring : along) {
+            if (ring == kNone) continue;
+            if (!met_[ring]) parents[ring] = innermost;
+            met_[ring] = true;
+            innermost = ring;
+        }
+        return innermost;
+    }
+
+    const RingsOfEdges& rings_;
+    std::vector<bool> met_;
+};
 
 /// Refuses the first hole that does not lie inside the outline of its polygon.
 void require_holes_inside(std::span<const RegionRing> rings, const Nesting& nesting) {
@@ -192,16 +182,21 @@ std::vector<Ring> checked_region(std::span<const RegionRing> rings, const Progre
     given.reserve(rings.size());
     for (const RegionRing& ring : rings)
         given.push_back(ring.corners);
-    const auto [graph, covered, mesh] = constrained_rings(given, progress);
-    const RingsOfEdges edges(graph, rings, covered);
+    const ConstrainedRings all = constrained_rings(given, progress);
+    const ConstrainedTriangulation& mesh = all.triangulation;
+    const RingsOfEdges edges(all.graph, rings, all.edges);
     edges.require_apart();
-    const Nesting nesting = nesting_of(mesh, edges, rings.size());
-    require_holes_inside(rings, nesting);
-    if (std::none_of(nesting.inside.begin(), nesting.inside.end(), [](bool in) { return in; })) {
+    require_holes_inside(rings, Nesting(mesh, edges, rings.size()));
+    const std::vector<bool> inside = inside_rings(mesh, [&](std::int32_t t, int i) {
+        const auto& corners = mesh.triangles[t];
+        return mesh.constrained[t][i] &&
+               edges.along(corners[i], corners[(i + 1) % 3]).size() % 2 != 0;
+    });
+    if (std::none_of(inside.begin(), inside.end(), [](bool in) { return in; })) {
         throw InputError("no_area", "the polygons cover each other: nothing is left of the region");
     }
     if (!edges.shared()) return given;
-    return border_rings(graph, mesh, nesting.inside);
+    return border_rings(all.graph, mesh, inside);
 }
 
 }  // namespace realmodel::meshing

@@ -181,10 +181,6 @@ RingTriangulation triangulate_region(std::span<const Ring> rings, const Progress
     return out;
 }
 
-void check_rings(std::span<const Ring> rings) {
-    (void)triangulate_region(rings);
-}
-
 PlanarMesh triangulate_rings(std::span<const Ring> rings) {
     RingTriangulation region = triangulate_region(rings);
     PlanarMesh mesh;

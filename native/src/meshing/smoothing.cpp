@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "meshing/smoothing.hpp"
 
-#include <algorithm>
-
 #include "meshing/judged_flips.hpp"
 #include "meshing/star_moves.hpp"
 #include "meshing/valences.hpp"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,14 +28,13 @@ public:
     /// Forgets a member; nothing where it has gone already.
     void remove(std::int32_t number);
 
-    /// Whether `wanted` is true of a member: asked of all in the triangle a-b-c, or no farther from
-    /// it than `margin` on either axis, and of others in the box around it, until it is. (Cells are
-    /// found by rounded coordinates: of members within rounding of the triangle's border some may
-    /// be passed over.) Searches near one another are fast one after another: each begins in the
-    /// grid where the last one was.
+    /// Whether `wanted` is true of a member: asked of all in the triangle a-b-c, and of others in
+    /// the box around it, until it is. (Cells are found by rounded coordinates: of
+    /// members within rounding of the triangle's border some may be passed over.) Searches near
+    /// one another are fast one after another: each begins in the grid where the last one was.
     template <class Wanted>
     bool any_in_triangle(const PlanPosition& a, const PlanPosition& b, const PlanPosition& c,
-                         Wanted&& wanted, const PlanPosition& margin = {0, 0});
+                         Wanted&& wanted);
 
 private:
     static constexpr std::int32_t kNone = -1;
@@ -59,8 +57,7 @@ private:
     };
     struct Triangle {
         PlanPosition a, b, c;
-        PlanPosition low, high;  ///< of the box around it, with the margin
-        PlanPosition margin;
+        PlanPosition low, high;  ///< of the box around it
     };
 
     std::int32_t add_level(std::span<Member> members, std::int32_t above, std::int32_t cell_above,
@@ -133,16 +130,13 @@ inline std::int32_t CornerGrid::innermost(const Triangle& triangle) const {
 
 template <class Wanted>
 bool CornerGrid::any_in_triangle(const PlanPosition& a, const PlanPosition& b,
-                                 const PlanPosition& c, Wanted&& wanted,
-                                 const PlanPosition& margin) {
+                                 const PlanPosition& c, Wanted&& wanted) {
     if (levels_.empty()) return false;
-    const auto [mx, my] = margin;
     const Triangle triangle{a,
                             b,
                             c,
-                            {std::min({a[0], b[0], c[0]}) - mx, std::min({a[1], b[1], c[1]}) - my},
-                            {std::max({a[0], b[0], c[0]}) + mx, std::max({a[1], b[1], c[1]}) + my},
-                            margin};
+                            {std::min({a[0], b[0], c[0]}), std::min({a[1], b[1], c[1]})},
+                            {std::max({a[0], b[0], c[0]}), std::max({a[1], b[1], c[1]})}};
     last_ = innermost(triangle);
     return search(triangle, last_, wanted);
 }
@@ -150,7 +144,7 @@ bool CornerGrid::any_in_triangle(const PlanPosition& a, const PlanPosition& b,
 template <class Wanted>
 bool CornerGrid::search(const Triangle& triangle, std::int32_t number, Wanted& wanted) const {
     const Level& level = levels_[number];
-    const auto& [a, b, c, box_low, box_high, margin] = triangle;
+    const auto& [a, b, c, box_low, box_high] = triangle;
     const auto [left, bottom] = box_low;
     const auto [right, top] = box_high;
     if (left > level.high[0] || right < level.low[0] || bottom > level.high[1] ||
@@ -169,14 +163,13 @@ bool CornerGrid::search(const Triangle& triangle, std::int32_t number, Wanted& w
         if (used == 0) continue;
         if (is_large) {
             double low = right, high = left;
-            const double below = row == 0 ? bottom : level.low[1] + row * level.side - margin[1];
+            const double below = row == 0 ? bottom : level.low[1] + row * level.side;
             const double above =
-                row == level.rows - 1 ? top : level.low[1] + (row + 1) * level.side + margin[1];
+                row == level.rows - 1 ? top : level.low[1] + (row + 1) * level.side;
             widen_by_band(low, high, a, b, below, above);
             widen_by_band(low, high, b, c, below, above);
             widen_by_band(low, high, c, a, below, above);
-            used &=
-                bits_between(column_at(low - margin[0], level), column_at(high + margin[0], level));
+            used &= bits_between(column_at(low, level), column_at(high, level));
         }
         const Cell* cells = &cells_[level.first + row * level.columns];
         for (; used != 0; used &= used - 1) {

@@ -37,16 +37,17 @@ MeshLocator::MeshLocator(std::span<const PlanPosition> vertices,
                          std::span<const Triangle> triangles)
     : vertices_(vertices), triangles_(triangles) {
     check_mesh(vertices, triangles);
-    std::vector<PlanPosition> corners;
+    std::vector<PlanBox> boxes;
+    boxes.reserve(triangles.size());
+    PlanBox frame = kNoBox;
     for (const Triangle& triangle : triangles) {
-        for (const PlanPosition& corner : corners_of(triangle))
-            corners.push_back(corner);
+        boxes.push_back(box_around(corners_of(triangle)));
+        frame = frame.united(boxes.back());
     }
-    tiles_ = PlanTiles(box_around(corners), triangles.size());
+    tiles_ = PlanTiles(frame, triangles.size());
     triangles_at_ = bucketize<std::int32_t>(tiles_.size(), [&](const auto& put) {
-        for (std::size_t t = 0; t < triangles.size(); ++t) {
-            const PlanBox box = box_around(std::span(corners).subspan(3 * t, 3));
-            tiles_.for_each(tiles_.span(box),
+        for (std::size_t t = 0; t < boxes.size(); ++t) {
+            tiles_.for_each(tiles_.span(boxes[t]),
                             [&](std::size_t tile) { put(tile, static_cast<std::int32_t>(t)); });
         }
     });

@@ -6,15 +6,6 @@
 
 namespace realmodel::spatial {
 
-PlanBox box_around(std::span<const PlanPosition> positions) {
-    PlanBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    for (const auto& [x, y] : positions) {
-        box = {std::min(box.low_x, x), std::min(box.low_y, y), std::max(box.high_x, x),
-               std::max(box.high_y, y)};
-    }
-    return box;
-}
-
 PlanTiles::PlanTiles(const PlanBox& frame, std::size_t count) : frame_(frame) {
     const double width = frame.width(), height = frame.height();
     const auto wanted = static_cast<double>(std::clamp<std::size_t>(count, 1, 1U << 26));

@@ -18,6 +18,11 @@ struct PlanBox {
     double low_x = 0, low_y = 0, high_x = 0, high_y = 0;
     double width() const { return high_x - low_x; }
     double height() const { return high_y - low_y; }
+    /// The box around both.
+    PlanBox united(const PlanBox& other) const {
+        return {std::min(low_x, other.low_x), std::min(low_y, other.low_y),
+                std::max(high_x, other.high_x), std::max(high_y, other.high_y)};
+    }
     PlanBox widened(double by) const { return {low_x - by, low_y - by, high_x + by, high_y + by}; }
     bool contains(const PlanPosition& p) const {
         return p[0] >= low_x && p[0] <= high_x && p[1] >= low_y && p[1] <= high_y;
@@ -30,8 +35,16 @@ struct PlanBox {
     }
 };
 
-/// The box around some positions, at least one.
-PlanBox box_around(std::span<const PlanPosition> positions);
+/// A box around nothing.
+inline constexpr PlanBox kNoBox{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+
+/// The box around some positions.
+inline PlanBox box_around(std::span<const PlanPosition> positions) {
+    PlanBox box = kNoBox;
+    for (const auto& [x, y] : positions)
+        box = box.united({x, y, x, y});
+    return box;
+}
 
 /// Tiles from column `left` to `right` and row `low` to `high`, both included.
 struct TileSpan {

@@ -2,7 +2,6 @@
 #include "spatial/small_boxes.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/index.hpp"
 
@@ -22,12 +21,9 @@ constexpr double kSmall = 2.0;
 }  // namespace
 
 PlanBox box_around(const std::vector<PlanBox>& boxes, const std::vector<std::int32_t>& chosen) {
-    PlanBox around{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    for (const std::int32_t i : chosen) {
-        const PlanBox& box = boxes[static_cast<std::size_t>(i)];
-        around = {std::min(around.low_x, box.low_x), std::min(around.low_y, box.low_y),
-                  std::max(around.high_x, box.high_x), std::max(around.high_y, box.high_y)};
-    }
+    PlanBox around = kNoBox;
+    for (const std::int32_t i : chosen)
+        around = around.united(boxes[static_cast<std::size_t>(i)]);
     return around;
 }
 

@@ -2,7 +2,6 @@
 #include "realmodel/strata/stack.hpp"
 
 #include <memory>
-#include <utility>
 
 #include "realmodel/base/page_store.hpp"
 #include "strata/blocks.hpp"

@@ -196,7 +196,7 @@ TEST(RegionMesh, RandomStars) {
         }
         SCOPED_TRACE(round);
         try {
-            check_rings(std::vector<Ring>{star, hole});
+            triangulate_region(std::vector<Ring>{star, hole});
         } catch (const InputError&) {
             continue;  // three corners may reach round the center
         }

@@ -23,8 +23,8 @@ namespace realmodel::meshing {
 /// Returns corner numbers, counter-clockwise, counting through the rings; corners at one place keep
 /// their own numbers. All corners are used but those that repeat the one before; corners in one
 /// line stay corners. Rings go either way round. Holes may touch the outline, one another and
-/// themselves in points. Whether rings cross is not looked for (check_rings does): triangles may
-/// overlap then.
+/// themselves in points. Whether rings cross is not looked for (triangulate_region does): triangles
+/// may overlap then.
 ///
 /// Every triangle has positive area, so together they cover each place as often as the rings wind
 /// round it: once. Where ears of positive area run out (a hole that touches an edge between its

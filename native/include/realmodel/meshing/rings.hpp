@@ -43,7 +43,4 @@ struct RingTriangulation {
 RingTriangulation triangulate_region(std::span<const Ring> rings,
                                      const Progress* progress = nullptr);
 
-/// Only the check of triangulate_region.
-void check_rings(std::span<const Ring> rings);
-
 }  // namespace realmodel::meshing

@@ -46,7 +46,7 @@ ConstrainedTriangulation constrained_delaunay(
 
 /// Triangulates what lies inside an odd number of rings (outlines, holes, islands in holes alike)
 /// without adding a vertex. Vertices: the distinct corners in order of appearance. Rings may touch
-/// in points, themselves too. @throws InputError as check_rings does (see rings.hpp).
+/// in points, themselves too. @throws InputError as triangulate_region does (see rings.hpp).
 PlanarMesh triangulate_rings(std::span<const Ring> rings);
 
 }  // namespace realmodel::meshing

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "interpolation/data_points.hpp"
 #include "interpolation/dsi/staged_sweep.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "strata/overlay/envelope.hpp"
 
-#include <cassert>
 #include <cmath>
 
 #include "realmodel/base/errors.hpp"
