@@ -3,12 +3,6 @@
 
 namespace realmodel::exact {
 
-void LocalIds::mark_local_point(PointId id) {
-    points_.mark(id);
-    mark_line_used(points_[id].first);
-    mark_line_used(points_[id].second);
-}
-
 void LocalIds::reserve_ids(PlanArrangement& receiver) {
     receiver_ = &receiver;
     appended_ = receiver.append(lines_.marked().size(), points_.marked().size());

@@ -32,13 +32,14 @@ public:
         table_.reserve(count);
     }
 
-    bool is_marked(SomeId id) const {
-        return local_index(id) < shared_.size() && shared_[local_index(id)] != kNone;
-    }
-    void mark(SomeId id) {
+    /// Marks a thing as needed.
+    /// @return whether it was not marked yet
+    bool mark(SomeId id) {
         make_shared_ids();
-        shared_[local_index(id)] = SomeId(-2);
+        if (shared(id) != kNone) return false;
+        shared(id) = SomeId(-2);
         marked_.push_back(id);
+        return true;
     }
     const std::vector<SomeId>& marked() const { return marked_; }  ///< in the order of marking
     void make_shared_ids() { shared_.resize(things_.size(), kNone); }
@@ -75,10 +76,12 @@ public:
 
     /// Marks a line or point, which may be local, as needed.
     void mark_line_used(LineId id) {
-        if (is_local(id) && !lines_.is_marked(id)) lines_.mark(id);
+        if (is_local(id)) lines_.mark(id);
     }
     void mark_point_used(PointId id) {
-        if (is_local(id) && !points_.is_marked(id)) mark_local_point(id);
+        if (!is_local(id) || !points_.mark(id)) return;
+        mark_line_used(points_[id].first);
+        mark_line_used(points_[id].second);
     }
     /// Appends the marked lines and points to the shared arrangement; the others stay behind.
     /// Nothing new may be found afterwards. In two steps: the ids in the order that is wanted, then
@@ -123,7 +126,6 @@ protected:
     LocalThings<PointId, Point> points_;
 
 private:
-    void mark_local_point(PointId id);
     LineId add_line_by_name(LineId id);
     PointId add_point_by_name(PointId id);
     Point with_shared_lines(PointId id);
