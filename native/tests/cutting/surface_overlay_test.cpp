@@ -101,7 +101,7 @@ TEST(SurfaceOverlay, AnInnerPointIsInItsRegionAndInNoHole) {
         int within = 0;
         for (std::size_t r = 0; r < cut.overlay.size(); ++r) {
             if (!cut.overlay.of_cutter(r)) continue;
-            const NodeId inner = cut.overlay.inner_point(r);
+            const exact::SpacePointId inner = cut.overlay.inner_point(r);
             const Position p = cut.overlay.points().rounded(inner);
             const bool in_cube = p[0] > 0 && p[0] < 1 && p[1] > 0 && p[1] < 1;
             EXPECT_EQ(in_cube, cut.overlay.loops(r).size() == 1);

@@ -18,8 +18,8 @@ protected:
         steep = g.add_plane(
             {g.add_space_vertex(e, -4), g.add_space_vertex(f, 5), g.add_space_vertex(c, 2)});
         g.freeze_vertices();
-        edge = line_of(g.add_edge(a, b));
-        across = line_of(g.add_edge(d, c));
+        edge = g.add_edge(a, b).id();
+        across = g.add_edge(d, c).id();
     }
     PlanArrangement g;
     const VertexId a = g.add_vertex(0, 0), b = g.add_vertex(4, 0), c = g.add_vertex(2, 3),
@@ -33,7 +33,7 @@ TEST_F(FourPlanes, AboveACornerItIsTheSpaceVertexThere) {
     const LocalArrangement scope(g);
     EXPECT_EQ(scope.height_name(north, a), scope.height_name(south, a));
     EXPECT_EQ(scope.height_name(north, a), (HeightName{s, s}));
-    EXPECT_EQ(scope.height_name(north, d), (HeightName{-1, north}));
+    EXPECT_EQ(scope.height_name(north, d), (HeightName(north)));
 }
 
 TEST_F(FourPlanes, OnAnEdgeItIsTheEdgeFromBothSides) {
@@ -41,32 +41,32 @@ TEST_F(FourPlanes, OnAnEdgeItIsTheEdgeFromBothSides) {
     const PointId at = scope.crossing(edge, across);
     EXPECT_EQ(scope.height_name(north, at), (HeightName{s, t}));
     EXPECT_EQ(scope.height_name(south, at), (HeightName{s, t}));
-    EXPECT_EQ(scope.height_name(level, at), (HeightName{-1, level}));
+    EXPECT_EQ(scope.height_name(level, at), (HeightName(level)));
 }
 
 TEST_F(FourPlanes, WhereAnEdgePiercesAPlaneThePlaneHasTheEdgesName) {
     LocalArrangement scope(g);
-    const PointId at = scope.crossing(edge, line_of(scope.trace(south, level)));
+    const PointId at = scope.crossing(edge, scope.trace(south, level).id());
     EXPECT_EQ(scope.height_name(level, at), (HeightName{s, t}));
     EXPECT_EQ(scope.height_name(south, at), (HeightName{s, t}));
     EXPECT_EQ(scope.height_name(north, at), (HeightName{s, t}));
-    EXPECT_EQ(scope.height_name(steep, at), (HeightName{-1, steep}));
+    EXPECT_EQ(scope.height_name(steep, at), (HeightName(steep)));
 }
 
 TEST_F(FourPlanes, OnATraceItIsTheFirstOfItsPlanes) {
     LocalArrangement scope(g);
-    const PointId at = scope.crossing(across, line_of(scope.trace(steep, level)));
-    EXPECT_EQ(scope.height_name(level, at), (HeightName{-1, level}));
-    EXPECT_EQ(scope.height_name(steep, at), (HeightName{-1, level}));
+    const PointId at = scope.crossing(across, scope.trace(steep, level).id());
+    EXPECT_EQ(scope.height_name(level, at), (HeightName(level)));
+    EXPECT_EQ(scope.height_name(steep, at), (HeightName(level)));
 }
 
 TEST_F(FourPlanes, WhereTracesMeetItIsThePlaneTheyHaveInCommon) {
     LocalArrangement scope(g);
     const PointId at =
-        scope.crossing(line_of(scope.trace(north, steep)), line_of(scope.trace(steep, level)));
+        scope.crossing(scope.trace(north, steep).id(), scope.trace(steep, level).id());
     for (const PlaneId plane : {north, level, steep})
-        EXPECT_EQ(scope.height_name(plane, at), (HeightName{-1, steep}));
-    EXPECT_EQ(scope.height_name(south, at), (HeightName{-1, south}));
+        EXPECT_EQ(scope.height_name(plane, at), (HeightName(steep)));
+    EXPECT_EQ(scope.height_name(south, at), (HeightName(south)));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST_F(ASquare, SidesAreSeenAlongTheLine) {
     LocalArrangement scope(g);
     EXPECT_EQ(scope.side(ac, d), 1);
     EXPECT_EQ(scope.side(ac, b), -1);
-    EXPECT_EQ(scope.side(opposite(ac), b), 1);
+    EXPECT_EQ(scope.side(ac.reversed(), b), 1);
     EXPECT_EQ(scope.side(ac, middle), 0);
 }
 
@@ -45,7 +45,7 @@ TEST_F(ASquare, ATraceIsPositiveWhereTheUpperPlaneIsHigher) {
     const DirectedLine trace = scope.trace(east, level);  // x = 1
     EXPECT_EQ(scope.side(trace, b), 1);
     EXPECT_EQ(scope.side(trace, a), -1);
-    EXPECT_EQ(scope.trace(level, east), opposite(trace));
+    EXPECT_EQ(scope.trace(level, east), trace.reversed());
     EXPECT_EQ(scope.compare_heights(east, level, c), 1);
     EXPECT_EQ(scope.compare_heights(level, east, c), -1);
     EXPECT_EQ(scope.compare_heights(east, north, middle), 0);
@@ -53,12 +53,12 @@ TEST_F(ASquare, ATraceIsPositiveWhereTheUpperPlaneIsHigher) {
 
 TEST_F(ASquare, CrossingsAtAVertexAreThatVertex) {
     LocalArrangement scope(g);
-    EXPECT_EQ(scope.crossing(line_of(ab), line_of(ac)), PointId{a});
+    EXPECT_EQ(scope.crossing(ab.id(), ac.id()), PointId{a});
     // an end of one on the other
-    EXPECT_EQ(scope.crossing(line_of(bd), line_of(am)), PointId{middle});
-    EXPECT_EQ(scope.crossing(line_of(am), line_of(bd)), PointId{middle});
+    EXPECT_EQ(scope.crossing(bd.id(), am.id()), PointId{middle});
+    EXPECT_EQ(scope.crossing(am.id(), bd.id()), PointId{middle});
     // the diagonals cross in the vertex in the middle, which is an end of neither
-    const PointId at = scope.crossing(line_of(ac), line_of(bd));
+    const PointId at = scope.crossing(ac.id(), bd.id());
     EXPECT_TRUE(scope.same_place(at, middle));
     EXPECT_TRUE(scope.same_place(middle, at));
     EXPECT_FALSE(scope.same_place(at, a));
@@ -66,29 +66,29 @@ TEST_F(ASquare, CrossingsAtAVertexAreThatVertex) {
 
 TEST_F(ASquare, APlaceHasOneNameByTheSameLinesAndIsTheSameByOthers) {
     LocalArrangement scope(g);
-    const LineId x1 = line_of(scope.trace(east, level)), y1 = line_of(scope.trace(north, level));
+    const LineId x1 = scope.trace(east, level).id(), y1 = scope.trace(north, level).id();
     const PointId at = scope.crossing(x1, y1);
     EXPECT_EQ(scope.crossing(y1, x1), at);
     EXPECT_EQ(scope.rounded(at), (std::array{1.0, 1.0}));
-    const PointId other = scope.crossing(x1, line_of(ac));
+    const PointId other = scope.crossing(x1, ac.id());
     EXPECT_TRUE(scope.same_place(at, other));
     EXPECT_EQ(scope.compare(0, at, other), 0);
 }
 
 TEST_F(ASquare, LinesAreTheSameWhereTheyRunThroughTheSamePlaces) {
     LocalArrangement scope(g);
-    const LineId diagonal = line_of(scope.trace(east, north));  // x = y
-    EXPECT_TRUE(scope.same_line(diagonal, line_of(ac)));
-    EXPECT_TRUE(scope.same_line(line_of(ac), diagonal));
-    EXPECT_FALSE(scope.same_line(diagonal, line_of(bd)));
-    EXPECT_EQ(scope.direction_signs(line_of(ac)), (std::array{1, 1}));
-    EXPECT_EQ(scope.direction_signs(line_of(bd)), (std::array{-1, 1}));
+    const LineId diagonal = scope.trace(east, north).id();  // x = y
+    EXPECT_TRUE(scope.same_line(diagonal, ac.id()));
+    EXPECT_TRUE(scope.same_line(ac.id(), diagonal));
+    EXPECT_FALSE(scope.same_line(diagonal, bd.id()));
+    EXPECT_EQ(scope.direction_signs(ac.id()), (std::array{1, 1}));
+    EXPECT_EQ(scope.direction_signs(bd.id()), (std::array{-1, 1}));
     EXPECT_EQ(scope.direction_signs(diagonal), (std::array{-1, -1}));  // the higher one on its left
 }
 
 TEST_F(ASquare, CompareIsTheWayFromTheFirstToTheSecond) {
     LocalArrangement scope(g);
-    const PointId at = scope.crossing(line_of(scope.trace(east, level)), line_of(bd));  // (1, 3)
+    const PointId at = scope.crossing(scope.trace(east, level).id(), bd.id());  // (1, 3)
     EXPECT_EQ(scope.compare(0, a, at), 1);
     EXPECT_EQ(scope.compare(1, at, middle), -1);
     EXPECT_EQ(scope.compare(1, at, at), 0);
@@ -97,10 +97,10 @@ TEST_F(ASquare, CompareIsTheWayFromTheFirstToTheSecond) {
 TEST(LocalArrangement, ACrossingLiesOnAThirdLineThoughItsDoublesDoNot) {
     const ThreeLinesThroughAThird lines;
     LocalArrangement scope(lines.g);
-    const PointId at = scope.crossing(line_of(lines.one), line_of(lines.two));
+    const PointId at = scope.crossing(lines.one.id(), lines.two.id());
     EXPECT_EQ(scope.side(lines.three, at), 0);
     EXPECT_GT(scope.exact_decisions(), 0U);
-    EXPECT_TRUE(scope.same_place(at, scope.crossing(line_of(lines.two), line_of(lines.three))));
+    EXPECT_TRUE(scope.same_place(at, scope.crossing(lines.two.id(), lines.three.id())));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ protected:
         east = plane(0, 4, 0);
         north = plane(0, 0, 4);
         g.freeze_vertices();
-        edge = line_of(g.add_edge(b, c));
+        edge = g.add_edge(b, c).id();
     }
     PlanArrangement g;
     const VertexId a = g.add_vertex(0, 0), b = g.add_vertex(4, 0), c = g.add_vertex(0, 4);
@@ -30,9 +30,9 @@ protected:
 
 TEST_F(ThreePlanes, WhatIsFoundStaysLocalUntilItIsCommitted) {
     LocalArrangement scope(g);
-    const LineId trace = line_of(scope.trace(east, level));
+    const LineId trace = scope.trace(east, level).id();
     const PointId at = scope.crossing(trace, edge);
-    EXPECT_EQ(scope.line(trace).kind, Line::Kind::kTrace);
+    EXPECT_FALSE(scope.line(trace).is_edge());
     EXPECT_EQ(scope.point(at).x, 1);
     EXPECT_EQ(scope.point(at).y, 3);
     EXPECT_EQ(g.line_count(), 1U);
@@ -42,18 +42,18 @@ TEST_F(ThreePlanes, WhatIsFoundStaysLocalUntilItIsCommitted) {
 TEST_F(ThreePlanes, ATraceHasOneNameWhicheverPlaneComesFirst) {
     LocalArrangement scope(g);
     const DirectedLine up = scope.trace(east, level), down = scope.trace(level, east);
-    EXPECT_EQ(line_of(up), line_of(down));
-    EXPECT_NE(is_reversed(up), is_reversed(down));
-    const LineId other = line_of(scope.trace(north, east));
-    EXPECT_NE(other, line_of(up));
-    EXPECT_EQ(PlaneId{scope.line(other).first}, east);
-    EXPECT_EQ(PlaneId{scope.line(other).second}, north);
+    EXPECT_EQ(up.id(), down.id());
+    EXPECT_NE(up.is_reversed(), down.is_reversed());
+    const LineId other = scope.trace(north, east).id();
+    EXPECT_NE(other, up.id());
+    EXPECT_EQ(scope.line(other).planes()[0], east);
+    EXPECT_EQ(scope.line(other).planes()[1], north);
 }
 
 TEST_F(ThreePlanes, AMarkedPointTakesItsLinesAlongAndTheRestStaysBehind) {
     LocalArrangement scope(g);
-    const LineId unused = line_of(scope.trace(east, north)), x1 = line_of(scope.trace(east, level)),
-                 y1 = line_of(scope.trace(north, level));
+    const LineId unused = scope.trace(east, north).id(), x1 = scope.trace(east, level).id(),
+                 y1 = scope.trace(north, level).id();
     scope.crossing(unused, edge);
     const PointId at = scope.crossing(x1, y1);
     scope.mark_point_used(at);
@@ -65,8 +65,8 @@ TEST_F(ThreePlanes, AMarkedPointTakesItsLinesAlongAndTheRestStaysBehind) {
     EXPECT_EQ(own.y, 1);
     EXPECT_EQ(own.first, scope.shared_line(x1));
     EXPECT_EQ(own.second, scope.shared_line(y1));
-    EXPECT_EQ(PlaneId{g.line(own.first).second}, east);
-    EXPECT_EQ(PlaneId{g.line(own.second).second}, north);
+    EXPECT_EQ(g.line(own.first).planes()[1], east);
+    EXPECT_EQ(g.line(own.second).planes()[1], north);
     EXPECT_EQ(g.line_count(), 3U);
 }
 
@@ -74,7 +74,7 @@ TEST_F(ThreePlanes, ACommittedPointIsTheSameForOthers) {
     PointId shared;
     {
         LocalArrangement scope(g);
-        const PointId at = scope.crossing(line_of(scope.trace(east, level)), edge);
+        const PointId at = scope.crossing(scope.trace(east, level).id(), edge);
         scope.mark_point_used(at);
         scope.commit(g);
         shared = scope.shared_point(at);
@@ -82,24 +82,24 @@ TEST_F(ThreePlanes, ACommittedPointIsTheSameForOthers) {
     LocalArrangement other(g);
     EXPECT_EQ(other.side(other.trace(east, level), shared), 0);
     EXPECT_EQ(other.side(other.trace(north, level), shared), 1);
-    EXPECT_TRUE(other.same_place(other.crossing(edge, line_of(other.trace(level, east))), shared));
+    EXPECT_TRUE(other.same_place(other.crossing(edge, other.trace(level, east).id()), shared));
 }
 
 TEST_F(ThreePlanes, DirectionsSurviveTheCommit) {
     LocalArrangement scope(g);
     const DirectedLine up = scope.trace(east, level), down = scope.trace(level, east);
-    scope.mark_line_used(line_of(up));
+    scope.mark_line_used(up.id());
     scope.commit(g);
     const DirectedLine shared_up = scope.shared_directed(up);
-    EXPECT_EQ(scope.shared_directed(down), opposite(shared_up));
-    EXPECT_EQ(is_reversed(shared_up), is_reversed(up));
+    EXPECT_EQ(scope.shared_directed(down), shared_up.reversed());
+    EXPECT_EQ(shared_up.is_reversed(), up.is_reversed());
     LocalArrangement other(g);
     EXPECT_EQ(other.side(shared_up, b), 1);  // where it is higher
 }
 
 TEST_F(ThreePlanes, WhatWasNotMarkedIsAddedUnderItsNameOnce) {
     LocalArrangement first(g), second(g);
-    const LineId one = line_of(first.trace(east, level)), same = line_of(second.trace(level, east));
+    const LineId one = first.trace(east, level).id(), same = second.trace(level, east).id();
     first.commit(g);
     second.commit(g);
     EXPECT_EQ(g.line_count(), 1U);

@@ -18,7 +18,7 @@ double crossing_of_axis(double from, double to, double more) {
     const VertexId west = g.add_vertex(-4, 0), east = g.add_vertex(8, 0),
                    south = g.add_vertex(from, -1), north = g.add_vertex(to, 1 + more);
     g.freeze_vertices();
-    const LineId axis = line_of(g.add_edge(west, east)), across = line_of(g.add_edge(south, north));
+    const LineId axis = g.add_edge(west, east).id(), across = g.add_edge(south, north).id();
     LocalArrangement scope(g);
     const auto at = scope.rounded(scope.crossing(axis, across));
     EXPECT_EQ(at[1], 0);
@@ -79,8 +79,8 @@ public:
             {g.add_space_vertex(a, from), g.add_space_vertex(b, to), g.add_space_vertex(c, 7)});
         const VertexId south = g.add_vertex(1, -1), north = g.add_vertex(1, 1);
         g.freeze_vertices();
-        edge = line_of(g.add_edge(a, b));
-        across = line_of(g.add_edge(south, north));
+        edge = g.add_edge(a, b).id();
+        across = g.add_edge(south, north).id();
     }
     double height() const {
         LocalArrangement scope(g);
@@ -112,7 +112,7 @@ double key_slope(double less_x, double less_y) {
     PlanArrangement g;
     const VertexId from = g.add_vertex(-less_x, -less_y), to = g.add_vertex(2, 1);
     g.freeze_vertices();
-    const LineId line = line_of(g.add_edge(from, to));
+    const LineId line = g.add_edge(from, to).id();
     LocalArrangement scope(g);
     const auto key = scope.line_key(line);
     EXPECT_EQ(key[0], 0);
@@ -134,8 +134,8 @@ TEST(Rounding, LinesThroughTheSamePlacesHaveOneKey) {
     const VertexId o = g.add_vertex(0, 0), a = g.add_vertex(0, 1), b = g.add_vertex(3, 2),
                    c = g.add_vertex(9, 4), d = g.add_vertex(9, 5);
     g.freeze_vertices();
-    const LineId ab = line_of(g.add_edge(a, b)), bc = line_of(g.add_edge(b, c)),
-                 ad = line_of(g.add_edge(a, d)), oa = line_of(g.add_edge(o, a));
+    const LineId ab = g.add_edge(a, b).id(), bc = g.add_edge(b, c).id(),
+                 ad = g.add_edge(a, d).id(), oa = g.add_edge(o, a).id();
     LocalArrangement scope(g);
     // x - 3 y + 3 = 0, by its larger coefficient
     EXPECT_EQ(scope.line_key(ab), (std::array{0.0, -1.0 / 3, -1.0}));

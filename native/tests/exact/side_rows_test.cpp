@@ -69,10 +69,10 @@ TEST_F(BesideADiagonal, BitsBeyondARowAreNotSet) {
 
 TEST_F(BesideADiagonal, ARowOfPointsHasTheSidesOfEach) {
     const DirectedLine trace = scope.trace(low, high);
-    const PointId crossing = scope.crossing(line_of(diagonal.line), line_of(upright.line));
+    const PointId crossing = scope.crossing(diagonal.line.id(), upright.line.id());
     PointRow points_of_all_kinds = row(11);
     points_of_all_kinds.add(scope, crossing);
-    for (const DirectedLine line : {diagonal.line, upright.line, trace, opposite(trace)}) {
+    for (const DirectedLine line : {diagonal.line, upright.line, trace, trace.reversed()}) {
         const Sides sides = sides_of(scope, {line, crossing, crossing}, points_of_all_kinds);
         for (std::size_t i = 0; i < 12; ++i)
             EXPECT_EQ(sign(sides, i), scope.side(line, points_of_all_kinds.point[i]));
@@ -82,10 +82,10 @@ TEST_F(BesideADiagonal, ARowOfPointsHasTheSidesOfEach) {
 TEST_F(BesideADiagonal, ARowOfLinesHasTheSidesOfEach) {
     const DirectedLine trace = scope.trace(low, high);
     LineRow lines;
-    const PointId crossing = scope.crossing(line_of(diagonal.line), line_of(upright.line));
-    for (const DirectedEdge& edge : {diagonal, DirectedEdge{opposite(diagonal.line), far, origin},
+    const PointId crossing = scope.crossing(diagonal.line.id(), upright.line.id());
+    for (const DirectedEdge& edge : {diagonal, DirectedEdge{diagonal.line.reversed(), far, origin},
                                      upright, DirectedEdge{trace, crossing, crossing},
-                                     DirectedEdge{opposite(trace), crossing, crossing}})
+                                     DirectedEdge{trace.reversed(), crossing, crossing}})
         lines.add(scope, edge);
     points.push_back(crossing);
     for (const PointId point : points) {
@@ -99,7 +99,7 @@ TEST_F(BesideADiagonal, ARowOfLinesHasTheSidesOfEach) {
 TEST(SideRows, APointOnALineThoughItsDoublesAreNotIsOnNoSide) {
     const ThreeLinesThroughAThird lines;
     LocalArrangement scope(lines.g);
-    const PointId at = scope.crossing(line_of(lines.one), line_of(lines.two));
+    const PointId at = scope.crossing(lines.one.id(), lines.two.id());
     PointRow points;
     points.add(scope, lines.a);
     points.add(scope, at);
@@ -124,7 +124,7 @@ TEST_F(BesideADiagonal, BeyondTheReachOfTheVerticesSidesAreExactToo) {
     other.freeze_vertices();
     const DirectedEdge ab{other.add_edge(a, b), a, b}, cd{other.add_edge(c, d), c, d};
     LocalArrangement beyond(other);
-    const PointId at = beyond.crossing(line_of(ab.line), line_of(cd.line));
+    const PointId at = beyond.crossing(ab.line.id(), cd.line.id());
     PointRow points_beyond;
     points_beyond.add(beyond, at);
     EXPECT_FALSE(points_beyond.within);
