@@ -65,12 +65,12 @@ public:
 
     /// Where a key will be looked for first, nothing where there is no table yet: to be fetched
     /// some time before it is inserted, as memory takes its time.
-    const void* place(const Key& key) const {
+    const void* slot_of(const Key& key) const {
         return slots_.empty() ? nullptr : &slots_[hash(key) & mask_];
     }
     /// Fetches that. (Calls that do nothing else are left out by g++, so this and what calls it
     /// must be inlined.)
-    [[gnu::always_inline]] void prefetch(const Key& key) const { __builtin_prefetch(place(key)); }
+    [[gnu::always_inline]] void prefetch(const Key& key) const { __builtin_prefetch(slot_of(key)); }
 
     /// Makes room for so many keys at once.
     void reserve(std::size_t count) {

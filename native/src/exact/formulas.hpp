@@ -16,7 +16,7 @@ struct LineCoefficients {
     Number a, b, c;
 };
 
-/// X / W and Y / W are a place relative to an origin.
+/// X / W and Y / W are a position relative to an origin.
 template <class Number>
 struct Homogeneous {
     Number x, y, w;
@@ -70,8 +70,8 @@ Homogeneous<Number> cross(const LineCoefficients<Number>& l, const LineCoefficie
 
 /// A point of a scope relative to a plan vertex.
 template <class Number, class Arithmetic>
-Homogeneous<Number> place(const Arithmetic& in, const LocalArrangement& scope, PointId id,
-                          VertexId origin) {
+Homogeneous<Number> position_of(const Arithmetic& in, const LocalArrangement& scope, PointId id,
+                                VertexId origin) {
     if (scope.is_vertex(id)) {
         const VertexId v = scope.vertex(id);
         return {in.dx(v, origin), in.dy(v, origin), Number(1)};

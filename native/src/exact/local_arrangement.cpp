@@ -69,7 +69,7 @@ int LocalArrangement::exact_side(const Line& line, PointId point) {
         }
         const VertexId origin = anchor(shared_, line);
         const auto l = line_coefficients<Number>(in, shared_, line, origin);
-        const auto h = place<Number>(in, *this, point, origin);
+        const auto h = position_of<Number>(in, *this, point, origin);
         const Number value = l.a * h.x + l.b * h.y + l.c * h.w;
         return is_known(value) ? std::optional(sign_of(value) * sign_of(h.w)) : std::nullopt;
     });
@@ -218,8 +218,8 @@ int LocalArrangement::compare(int axis, PointId a, PointId b) {
     return exactly(shared_, [&](const auto& in, auto number) -> std::optional<int> {
         using Number = decltype(number);
         const VertexId origin = origin_of(*this, a);
-        const auto p = place<Number>(in, *this, a, origin);
-        const auto q = place<Number>(in, *this, b, origin);
+        const auto p = position_of<Number>(in, *this, a, origin);
+        const auto q = position_of<Number>(in, *this, b, origin);
         const Number &from = axis == 0 ? p.x : p.y, &to = axis == 0 ? q.x : q.y;
         const Number difference = to * p.w - from * q.w;
         if (!is_known(difference)) return std::nullopt;

@@ -47,9 +47,9 @@ public:
     /// Whether a point lies to the right of a trace by more than a difference of heights and many
     /// times what rounding makes of it.
     bool is_right_by(const LineFilter& trace, PointId id, double difference) const;
-    /// Whether two points are in the same place.
+    /// Whether two points are in the same position.
     bool same_place(PointId a, PointId b);
-    /// Whether two lines run through the same places.
+    /// Whether two lines run through the same positions.
     bool same_line(LineId a, LineId b);
     /// Signs of the direction (x, y) in which a line runs.
     std::array<int, 2> direction_signs(LineId line);
@@ -65,7 +65,8 @@ public:
     /// Where two planes are equally high; positive where `upper` is above `lower`.
     DirectedLine trace(PlaneId upper, PlaneId lower);
 
-    /// The doubles nearest to a point's true coordinates: the same for every way to name the place.
+    /// The doubles nearest to a point's true coordinates: the same for every way to name the
+    /// position.
     std::array<double, 2> rounded(PointId point);
     /// By what the height of a plane above a point is known; planes that are equally high may still
     /// have different names.
@@ -82,7 +83,7 @@ public:
     /// The same of a plane whose height there is known by a name.
     double rounded_height(PlaneId plane, const HeightName& name, PointId point,
                           const NearPoint& near);
-    /// Slope and offset of a line, rounded: equal for lines that run through the same places.
+    /// Slope and offset of a line, rounded: equal for lines that run through the same positions.
     std::array<double, 3> line_key(LineId line);
 
     /// Counts signs that were found without `side`.

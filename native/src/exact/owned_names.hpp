@@ -38,7 +38,7 @@ public:
     }
 
     /// What will be read first, to be fetched some time before, as memory takes its time.
-    const void* place(std::int32_t owner) const {
+    const void* slot_of(std::int32_t owner) const {
         const auto o = static_cast<std::size_t>(owner);
         return o < last_.size() ? &last_[o] : nullptr;
     }

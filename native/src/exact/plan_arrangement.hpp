@@ -103,7 +103,7 @@ private:
 };
 
 /// An input edge by the space vertices over the ends of its plan line, a vertex as an edge from it
-/// to itself, or a plane: what tells in which place something lies, or how high.
+/// to itself, or a plane: what tells in which position something lies, or how high.
 class EdgeOrPlane {
 public:
     EdgeOrPlane() = default;  ///< neither
@@ -302,7 +302,7 @@ public:
         space_table_.prefetch(height_key(plan, z));
     }
     [[gnu::always_inline]] void prefetch_edge(VertexId from, VertexId to) const {
-        __builtin_prefetch(edges_of_vertex_.place(std::min(from, to).number()));
+        __builtin_prefetch(edges_of_vertex_.slot_of(std::min(from, to).number()));
     }
 
     std::size_t vertex_count() const { return vertex_count_; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where constructed points and heights become doubles, always the nearest ones: equal however they
-// are computed and whichever way a place, a height or a line is named. So the quickest way that is
-// sure of its answer may give it: extended precision, then twice that of doubles, then GMP.
+// are computed and whichever way a position, a height or a line is named. So the quickest way that
+// is sure of its answer may give it: extended precision, then twice that of doubles, then GMP.
 
 #include "exact/arithmetic.hpp"
 #include "exact/extended_interval.hpp"
@@ -82,7 +82,7 @@ double LocalArrangement::rounded_height(PlaneId plane_id, PointId id, const Near
     {
         const BallArithmetic in{shared_};
         const auto n = plane_normal<DoubleDoubleInterval>(in, shared_, plane_id);
-        const auto h = place<DoubleDoubleInterval>(in, *this, id, corner.plan);
+        const auto h = position_of<DoubleDoubleInterval>(in, *this, id, corner.plan);
         const auto z =
             (DoubleDoubleInterval(corner.z) - (n.a * h.x + n.b * h.y) / (n.c * h.w)).rounded();
         if (z) return *z;
@@ -91,7 +91,7 @@ double LocalArrangement::rounded_height(PlaneId plane_id, PointId id, const Near
     return exactly(shared_, [&](const auto& in, auto number) -> std::optional<double> {
         using Number = decltype(number);
         const auto n = plane_normal<Number>(in, shared_, plane_id);
-        const auto h = place<Number>(in, *this, id, corner.plan);
+        const auto h = position_of<Number>(in, *this, id, corner.plan);
         const Number w = n.c * h.w;
         const Number z = in.height(corner.z) * w - n.a * h.x - n.b * h.y;
         if (!is_known(z)) return std::nullopt;

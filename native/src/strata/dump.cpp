@@ -112,11 +112,11 @@ std::array<Position, 2> across_box(const PlanArrangement& geometry, LineId line)
 }  // namespace
 
 void dump_envelope(const PlanArrangement& geometry, const Envelope& envelope, const char* path) {
-    dump_polygons(geometry, envelope.outlines, envelope.plane, envelope.layer, path);
+    dump_polygons(geometry, envelope.outlines, envelope.plane, envelope.surface, path);
 }
 
 void dump_faces(const PlanArrangement& geometry, const FaceList& faces, const char* path) {
-    dump_polygons(geometry, faces.polygons, faces.plane, faces.layer, path);
+    dump_polygons(geometry, faces.polygons, faces.plane, faces.surface, path);
 }
 
 void dump_arrangement(const PlanArrangement& geometry, const char* path) {

@@ -134,8 +134,8 @@ TEST(Rounding, LinesThroughTheSamePlacesHaveOneKey) {
     const VertexId o = g.add_vertex(0, 0), a = g.add_vertex(0, 1), b = g.add_vertex(3, 2),
                    c = g.add_vertex(9, 4), d = g.add_vertex(9, 5);
     g.freeze_vertices();
-    const LineId ab = g.add_edge(a, b).id(), bc = g.add_edge(b, c).id(),
-                 ad = g.add_edge(a, d).id(), oa = g.add_edge(o, a).id();
+    const LineId ab = g.add_edge(a, b).id(), bc = g.add_edge(b, c).id(), ad = g.add_edge(a, d).id(),
+                 oa = g.add_edge(o, a).id();
     LocalArrangement scope(g);
     // x - 3 y + 3 = 0, by its larger coefficient
     EXPECT_EQ(scope.line_key(ab), (std::array{0.0, -1.0 / 3, -1.0}));

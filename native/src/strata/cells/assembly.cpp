@@ -15,17 +15,17 @@ constexpr std::size_t kFaces = 1 << 13;  // copied at a time
 /// The faces on surfaces, which come first; those that only have a cell above are seen from below.
 class SurfaceFaces {
 public:
-    SurfaceFaces(const FaceList& faces, const ConformedFaces& loops, int threads,
+    SurfaceFaces(const FaceList& faces, const ConformedFaces& conformed, int threads,
                  const Progress* progress)
-        : faces_(faces), loops_(loops), threads_(threads), progress_(progress) {
+        : faces_(faces), conformed_(conformed), threads_(threads), progress_(progress) {
         first_corner_.resize((faces.size() + kFaces - 1) / kFaces);
         parallel_ranges(
             faces.size(), kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
-                const std::uint32_t first = loops.face_offsets[begin],
-                                    last = loops.face_offsets[end];
-                const auto taken =
-                    std::count_if(loops.vertices.begin() + first, loops.vertices.begin() + last,
-                                  [](std::int32_t v) { return v >= 0; });
+                const std::uint32_t first = conformed.face_offsets[begin],
+                                    last = conformed.face_offsets[end];
+                const auto taken = std::count_if(conformed.vertices.begin() + first,
+                                                 conformed.vertices.begin() + last,
+                                                 [](std::int32_t v) { return v >= 0; });
                 first_corner_[begin / kFaces] =
                     static_cast<std::size_t>(taken + (late_from(last) - late_from(first)));
             });
@@ -37,14 +37,15 @@ public:
     void copy(const std::vector<std::int32_t>& surface_of_plane, CellComplex& complex) const {
         parallel_ranges(
             faces_.size(), kFaces, threads_, progress_, [&](std::size_t begin, std::size_t end) {
-                auto late = late_from(loops_.face_offsets[begin]);
+                auto late = late_from(conformed_.face_offsets[begin]);
                 const auto start = complex.face_vertices.begin();
                 auto next = start + static_cast<std::ptrdiff_t>(first_corner_[begin / kFaces]);
                 for (std::size_t f = begin; f < end; ++f) {
                     const auto face = next;
-                    for (auto e = loops_.face_offsets[f]; e < loops_.face_offsets[f + 1]; ++e) {
-                        if (loops_.vertices[e] >= 0) *next++ = loops_.vertices[e];
-                        for (; late != loops_.inserted.end() && late->entry == e; ++late)
+                    for (auto e = conformed_.face_offsets[f]; e < conformed_.face_offsets[f + 1];
+                         ++e) {
+                        if (conformed_.vertices[e] >= 0) *next++ = conformed_.vertices[e];
+                        for (; late != conformed_.inserted.end() && late->entry == e; ++late)
                             *next++ = late->vertex;
                     }
                     complex.face_offsets[f] = face - start;
@@ -63,12 +64,12 @@ private:
     /// The first late vertex of an entry, or of one after it.
     std::vector<InsertedVertex>::const_iterator late_from(std::uint32_t entry) const {
         return std::lower_bound(
-            loops_.inserted.begin(), loops_.inserted.end(), entry,
+            conformed_.inserted.begin(), conformed_.inserted.end(), entry,
             [](const InsertedVertex& late, std::uint32_t e) { return late.entry < e; });
     }
 
     const FaceList& faces_;
-    const ConformedFaces& loops_;
+    const ConformedFaces& conformed_;
     int threads_;
     const Progress* progress_;
     std::vector<std::size_t> first_corner_;  ///< of so many faces each
@@ -100,10 +101,10 @@ void copy_walls(const WallBatch& walls, std::size_t face, std::size_t corner,
 }  // namespace
 
 CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
-                     ConformedFaces loops, std::vector<WallBatch> walls,
+                     ConformedFaces conformed, std::vector<WallBatch> walls,
                      Array<std::int32_t> cell_block, int threads, const Progress* progress) {
     CellComplex complex;
-    complex.vertices = std::move(loops.positions);
+    complex.vertices = std::move(conformed.positions);
     complex.cell_block = std::move(cell_block);
     std::vector<std::size_t> first_wall, first_corner;
     for (const WallBatch& batch : walls) {
@@ -111,7 +112,7 @@ CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& sur
         first_corner.push_back(batch.vertices.size());
     }
     const std::size_t face_count = faces.size() + count_before(first_wall);
-    const SurfaceFaces surface_faces(faces, loops, threads, progress);
+    const SurfaceFaces surface_faces(faces, conformed, threads, progress);
     const std::size_t corners_of_faces = surface_faces.corners();
     complex.face_vertices.resize(corners_of_faces + count_before(first_corner));
     complex.face_offsets.resize(face_count + 1);
@@ -119,7 +120,7 @@ CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& sur
     complex.face_cells.resize(face_count);
     complex.face_surface.resize(face_count);
     surface_faces.copy(surface_of_plane, complex);
-    loops = {};
+    conformed = {};
     parallel_chunks(walls.size(), threads, progress, [&](std::size_t batch) {
         copy_walls(walls[batch], faces.size() + first_wall[batch],
                    corners_of_faces + first_corner[batch], complex);

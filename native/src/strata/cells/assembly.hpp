@@ -11,7 +11,7 @@ namespace realmodel::strata {
 /// The complex (docs/geometry.md) from finished faces, conformed faces and walls, which are given
 /// back as they are used.
 CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
-                     ConformedFaces loops, std::vector<WallBatch> walls,
+                     ConformedFaces conformed, std::vector<WallBatch> walls,
                      Array<std::int32_t> cell_block, int threads, const Progress* progress);
 
 }  // namespace realmodel::strata

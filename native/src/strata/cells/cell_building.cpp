@@ -21,8 +21,8 @@ namespace {
 
 /// Faces that conform, and what stands between them.
 struct Conformed {
-    PlanVertices places;
-    ConformedFaces loops;
+    PlanVertices plan_vertices;
+    ConformedFaces conformed;
     FoundWalls walls;
     std::vector<ExtraPoint> crossings;  ///< of columns along lines
     double done = 0;                    ///< of the work
@@ -43,18 +43,19 @@ Conformed conform(exact::PlanArrangement& geometry, const Construction& construc
             c.done += share;
         };
         next(0.2, "joining points");
-        c.places = find_plan_vertices(geometry, faces, c.crossings, threads, progress);
+        c.plan_vertices = find_plan_vertices(geometry, faces, c.crossings, threads, progress);
         next(0.4, "joining edges");
         CollinearEdges lines = find_collinear_edges(
-            geometry, faces, c.places, c.crossings,
+            geometry, faces, c.plan_vertices, c.crossings,
             blocks == nullptr ? &construction.node_is_thick : nullptr, threads, progress);
         next(0.3, "rounding");
-        c.loops = conform_faces(geometry, faces, c.places, lines, threads, progress);
+        c.conformed = conform_faces(geometry, faces, c.plan_vertices, lines, threads, progress);
         next(0.1, "building walls");
         std::optional<BlockLines> of_blocks;
         if (blocks != nullptr)
-            of_blocks.emplace(BlockLines{construction.node_block, c.places, blocks->borders});
-        c.walls = find_walls(geometry, faces, lines, c.loops, of_blocks ? &*of_blocks : nullptr,
+            of_blocks.emplace(
+                BlockLines{construction.node_block, c.plan_vertices, blocks->borders});
+        c.walls = find_walls(geometry, faces, lines, c.conformed, of_blocks ? &*of_blocks : nullptr,
                              threads, progress);
         if (c.walls.missing.empty()) return c;
         c.crossings.insert(c.crossings.end(), c.walls.missing.begin(), c.walls.missing.end());
@@ -86,12 +87,12 @@ CellComplex build_cells(exact::PlanArrangement& geometry, Construction& construc
     FaceList& faces = construction.faces;
     // What comes out takes the memory of what it was made of.
     if (blocks == nullptr) {
-        c.loops.entries = {};
+        c.conformed.entries = {};
         geometry.forget_all();
-        faces.layer = {};
+        faces.surface = {};
     }
     begin_step(progress, c.done, 1.0 - c.done, "putting the cells together");
-    set_vertex_positions(c.places, c.loops, threads, progress);
+    set_vertex_positions(c.plan_vertices, c.conformed, threads, progress);
     Array<std::int32_t> cell_block;
     std::vector<std::int32_t> cell_of_node;
     if (blocks == nullptr) {
@@ -107,18 +108,18 @@ CellComplex build_cells(exact::PlanArrangement& geometry, Construction& construc
         }
     }
     const std::vector<FlatCell> flat =
-        make_distinct(geometry, faces, c.places, c.loops, threads, progress);
+        make_distinct(geometry, faces, c.plan_vertices, c.conformed, threads, progress);
     std::optional<UntouchedTriangles> untouched;
     if (blocks != nullptr) {
         c.walls.walls.assign(1, join_stretches(c.walls.stretches, cell_of_node, faces, c.crossings,
-                                               c.places, c.loops, threads, progress));
-        untouched.emplace(geometry, blocks->wholes, surface_of_plane, faces, c.loops, threads,
+                                               c.plan_vertices, c.conformed, threads, progress));
+        untouched.emplace(geometry, blocks->wholes, surface_of_plane, faces, c.conformed, threads,
                           progress);
     }
-    c.places = {};
+    c.plan_vertices = {};
     if (blocks == nullptr) faces.polygons = {};
     CellComplex complex =
-        assemble(faces, surface_of_plane, std::move(c.loops), std::move(c.walls.walls),
+        assemble(faces, surface_of_plane, std::move(c.conformed), std::move(c.walls.walls),
                  std::move(cell_block), threads, progress);
     if (untouched) untouched->add_to(complex, cell_of_node);
     assert(are_closed(complex));

@@ -14,54 +14,55 @@ namespace realmodel::strata {
 
 namespace {
 
-/// Moves places to free positions beside them.
+/// Moves plan vertices to free positions beside them.
 class Spreader {
 public:
-    Spreader(const exact::PlanArrangement& geometry, const PlanVertices& places)
-        : geometry_(geometry), places_(places) {}
+    Spreader(const exact::PlanArrangement& geometry, const PlanVertices& plan_vertices)
+        : geometry_(geometry), plan_vertices_(plan_vertices) {}
 
-    bool movable(std::size_t place) const {
-        return !geometry_.is_vertex(places_.representative[place]);
+    bool movable(std::size_t vertex) const {
+        return !geometry_.is_vertex(plan_vertices_.representative[vertex]);
     }
-    const PlanPosition& at(std::size_t place) const {
+    const PlanPosition& at(std::size_t vertex) const {
         if (!moved_.empty()) {
-            const auto moved = moved_.find(place);
+            const auto moved = moved_.find(vertex);
             if (moved != moved_.end()) return moved->second;
         }
-        return places_.position[place];
+        return plan_vertices_.position[vertex];
     }
-    /// The places that were moved, and where to.
+    /// The plan vertices that were moved, and where to.
     const std::map<std::size_t, PlanPosition>& moved() const { return moved_; }
 
-    /// Gives places in equal positions positions of their own.
+    /// Gives plan vertices in equal positions positions of their own.
     void separate() {
         // input vertices come first among equals, so these are crossings
-        for (const PlanVertexId place : places_.coincident)
-            move(static_cast<std::size_t>(place), [](int, int) { return true; });
+        for (const PlanVertexId vertex : plan_vertices_.coincident)
+            move(static_cast<std::size_t>(vertex), [](int, int) { return true; });
     }
 
-    /// Moves a place by as little as possible, but along the given axis.
-    void move_along(std::size_t place, int axis) {
-        move(place, [axis](int x, int y) { return (axis == 0 ? x : y) != 0; });
+    /// Moves a plan vertex by as little as possible, but along the given axis.
+    void move_along(std::size_t vertex, int axis) {
+        move(vertex, [axis](int x, int y) { return (axis == 0 ? x : y) != 0; });
     }
 
 private:
     bool take(const PlanPosition& position) {
-        if (std::binary_search(places_.position.begin(), places_.position.end(), position))
+        if (std::binary_search(plan_vertices_.position.begin(), plan_vertices_.position.end(),
+                               position))
             return false;
         return taken_.insert(position).second;
     }
 
     template <class Allowed>
-    void move(std::size_t place, const Allowed& allowed) {
-        const PlanPosition from = at(place);
+    void move(std::size_t vertex, const Allowed& allowed) {
+        const PlanPosition from = at(vertex);
         for (int reach = 1;; ++reach) {
             for (int x = -reach; x <= reach; ++x) {
                 for (int y = -reach; y <= reach; ++y) {
                     if (std::max(std::abs(x), std::abs(y)) != reach || !allowed(x, y)) continue;
                     const PlanPosition to{moved_by_ulps(from[0], x), moved_by_ulps(from[1], y)};
                     if (!take(to)) continue;
-                    moved_[place] = to;
+                    moved_[vertex] = to;
                     return;
                 }
             }
@@ -69,9 +70,9 @@ private:
     }
 
     const exact::PlanArrangement& geometry_;
-    const PlanVertices& places_;
+    const PlanVertices& plan_vertices_;
     std::map<std::size_t, PlanPosition> moved_;
-    std::set<PlanPosition> taken_;  ///< besides the places' own positions
+    std::set<PlanPosition> taken_;  ///< besides the plan vertices' own positions
 };
 
 struct Extent {
@@ -85,13 +86,13 @@ struct Extent {
     bool is_flat(std::size_t axis) const { return low[axis] == high[axis]; }
 };
 
-/// Finds cells whose places all have one x, or one y, and spreads them.
+/// Finds cells whose plan vertices all have one x, or one y, and spreads them.
 class FlatCells {
 public:
-    FlatCells(const FaceList& faces, const PlanVertices& places, Spreader& spreader, int threads,
-              const Progress* progress)
+    FlatCells(const FaceList& faces, const PlanVertices& plan_vertices, Spreader& spreader,
+              int threads, const Progress* progress)
         : faces_(faces),
-          places_(places),
+          plan_vertices_(plan_vertices),
           spreader_(spreader),
           threads_(threads),
           progress_(progress) {}
@@ -104,25 +105,25 @@ public:
         find_faces();
         extents_.assign(cells_.size(), {});
         for_each_corner(
-            [&](std::size_t i, std::size_t place) { extents_[i].include(spreader_.at(place)); });
+            [&](std::size_t i, std::size_t vertex) { extents_[i].include(spreader_.at(vertex)); });
         return std::any_of(extents_.begin(), extents_.end(),
                            [](const Extent& e) { return e.is_flat(0) || e.is_flat(1); });
     }
-    /// Spreads those found last; false where no place of them may move.
+    /// Spreads those found last; false where none of their plan vertices may move.
     bool spread() {
         std::vector<std::array<std::int64_t, 2>> to_move(cells_.size(), {-1, -1});
         bool any = false;
-        for_each_corner([&](std::size_t i, std::size_t place) {
+        for_each_corner([&](std::size_t i, std::size_t vertex) {
             for (std::size_t axis = 0; axis < 2; ++axis) {
-                if (!extents_[i].is_flat(axis) || !spreader_.movable(place)) continue;
-                to_move[i][axis] = std::max(to_move[i][axis], static_cast<std::int64_t>(place));
+                if (!extents_[i].is_flat(axis) || !spreader_.movable(vertex)) continue;
+                to_move[i][axis] = std::max(to_move[i][axis], static_cast<std::int64_t>(vertex));
                 any = true;
             }
         });
         for (const auto& of_cell : to_move) {
             for (int axis = 0; axis < 2; ++axis) {
-                const std::int64_t place = of_cell[static_cast<std::size_t>(axis)];
-                if (place >= 0) spreader_.move_along(static_cast<std::size_t>(place), axis);
+                const std::int64_t vertex = of_cell[static_cast<std::size_t>(axis)];
+                if (vertex >= 0) spreader_.move_along(static_cast<std::size_t>(vertex), axis);
             }
         }
         return any;
@@ -138,8 +139,8 @@ public:
     }
 
 private:
-    std::size_t place_of(const Corner& corner) const {
-        return index(places_.of_point[index(corner.point)]);
+    std::size_t vertex_of(const Corner& corner) const {
+        return index(plan_vertices_.of_point[index(corner.point)]);
     }
 
     /// Asks for what will be read of the faces after one: mostly that of two corners.
@@ -148,17 +149,17 @@ private:
             const std::size_t f = std::min(face + ahead, faces_.size() - 1);
             return faces_.polygons.corners.data() + faces_.polygons.offsets[f];
         };
-        prefetch(&places_.of_point[index(first_corner(24)->point)]);
+        prefetch(&plan_vertices_.of_point[index(first_corner(24)->point)]);
         const Corner* const near = first_corner(12);
-        prefetch(&places_.position[place_of(near[0])]);
-        prefetch(&places_.position[place_of(near[1])]);
+        prefetch(&plan_vertices_.position[vertex_of(near[0])]);
+        prefetch(&plan_vertices_.position[vertex_of(near[1])]);
     }
 
     bool is_flat(PolygonView face) const {
-        const PlanPosition& first = spreader_.at(place_of(face[0]));
+        const PlanPosition& first = spreader_.at(vertex_of(face[0]));
         bool same_x = true, same_y = true;
         for (std::size_t i = 1; i < face.size() && (same_x || same_y); ++i) {
-            const PlanPosition& next = spreader_.at(place_of(face[i]));
+            const PlanPosition& next = spreader_.at(vertex_of(face[i]));
             same_x = same_x && next[0] == first[0];
             same_y = same_y && next[1] == first[1];
         }
@@ -205,17 +206,17 @@ private:
         });
     }
 
-    /// Calls visit(i, place) for every corner of every face of the i-th of the cells.
+    /// Calls visit(i, vertex) for every corner of every face of the i-th of the cells.
     template <class Visit>
     void for_each_corner(const Visit& visit) const {
         for (const auto& [i, face] : of_cells_) {
             for (const Corner& corner : faces_.polygons[face])
-                visit(i, place_of(corner));
+                visit(i, vertex_of(corner));
         }
     }
 
     const FaceList& faces_;
-    const PlanVertices& places_;
+    const PlanVertices& plan_vertices_;
     Spreader& spreader_;
     int threads_;
     const Progress* progress_;
@@ -227,24 +228,25 @@ private:
 }  // namespace
 
 std::vector<FlatCell> make_distinct(const exact::PlanArrangement& geometry, const FaceList& faces,
-                                    const PlanVertices& places, ConformedFaces& loops, int threads,
-                                    const Progress* progress) {
-    Spreader spreader(geometry, places);
+                                    const PlanVertices& plan_vertices, ConformedFaces& conformed,
+                                    int threads, const Progress* progress) {
+    Spreader spreader(geometry, plan_vertices);
     spreader.separate();
-    // Moving one cell's place may flatten its neighbor; a few rounds settle it.
+    // Moving one cell's vertex may flatten its neighbor; a few rounds settle it.
     constexpr int kRounds = 16;
-    FlatCells flat(faces, places, spreader, threads, progress);
+    FlatCells flat(faces, plan_vertices, spreader, threads, progress);
     std::vector<FlatCell> left;
     for (int round = 0; flat.find(); ++round) {
         if (round < kRounds && flat.spread()) continue;
         left = flat.found();
         break;
     }
-    for (const auto& [place, position] : spreader.moved()) {
-        for (auto v = loops.vertex_offsets[place]; v < loops.vertex_offsets[place + 1]; ++v) {
-            auto& vertex = loops.positions[static_cast<std::size_t>(v)];
-            vertex[0] = position[0];
-            vertex[1] = position[1];
+    for (const auto& [vertex, position] : spreader.moved()) {
+        for (auto v = conformed.vertex_offsets[vertex]; v < conformed.vertex_offsets[vertex + 1];
+             ++v) {
+            auto& moved = conformed.positions[static_cast<std::size_t>(v)];
+            moved[0] = position[0];
+            moved[1] = position[1];
         }
     }
     return left;

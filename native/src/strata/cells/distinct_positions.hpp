@@ -20,7 +20,7 @@ struct FlatCell {
 /// likewise. (The heights on each vertical are different already, see conform_faces.)
 /// @return the cells that are flat still, after some rounds or because nothing of them may move
 std::vector<FlatCell> make_distinct(const exact::PlanArrangement& geometry, const FaceList& faces,
-                                    const PlanVertices& places, ConformedFaces& loops, int threads,
-                                    const Progress* progress);
+                                    const PlanVertices& places, ConformedFaces& conformed,
+                                    int threads, const Progress* progress);
 
 }  // namespace realmodel::strata

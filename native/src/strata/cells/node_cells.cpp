@@ -24,10 +24,10 @@ bool is_high(const std::array<double, 3>& lower, const std::array<double, 3>& up
 /// Calls emit(wall) with the walls between cells.
 template <class Emit>
 void for_each_wall(std::span<const WallStretch> stretches,
-                   const std::vector<std::int32_t>& cell_of_node, const ConformedFaces& loops,
+                   const std::vector<std::int32_t>& cell_of_node, const ConformedFaces& conformed,
                    const Emit& emit) {
     const auto position = [&](std::int32_t v) -> const std::array<double, 3>& {
-        return loops.positions[static_cast<std::size_t>(v)];
+        return conformed.positions[static_cast<std::size_t>(v)];
     };
     const auto cell = [&](std::int32_t node) {
         return node < 0 ? kOutsideCell : cell_of_node[static_cast<std::size_t>(node)];
@@ -51,20 +51,21 @@ void for_each_wall(std::span<const WallStretch> stretches,
 /// Keeps some of the vertices.
 /// @return the new number of each, -1 of those that are gone
 std::vector<std::int32_t> keep_vertices(const std::vector<std::uint8_t>& is_needed,
-                                        ConformedFaces& loops, int threads,
+                                        ConformedFaces& conformed, int threads,
                                         const Progress* progress) {
     std::vector<std::int32_t> number(is_needed.size(), -1);
     std::int32_t count = 0;
     for (std::size_t v = 0; v < is_needed.size(); ++v) {
         if (is_needed[v] == 0) continue;
-        loops.positions[static_cast<std::size_t>(count)] = loops.positions[v];
+        conformed.positions[static_cast<std::size_t>(count)] = conformed.positions[v];
         number[v] = count++;
     }
-    loops.positions.resize(static_cast<std::size_t>(count));
-    parallel_ranges(loops.vertices.size(), kEntries, threads, progress,
+    conformed.positions.resize(static_cast<std::size_t>(count));
+    parallel_ranges(conformed.vertices.size(), kEntries, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t e = begin; e < end; ++e)
-                            loops.vertices[e] = number[static_cast<std::size_t>(loops.vertices[e])];
+                            conformed.vertices[e] =
+                                number[static_cast<std::size_t>(conformed.vertices[e])];
                     });
     return number;
 }
@@ -119,22 +120,22 @@ std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
 
 WallBatch join_stretches(std::span<const WallStretch> stretches,
                          const std::vector<std::int32_t>& cell_of_node, const FaceList& faces,
-                         std::span<const ExtraPoint> crossings, const PlanVertices& places,
-                         ConformedFaces& loops, int threads, const Progress* progress) {
-    std::vector<std::uint8_t> is_needed(loops.positions.size(), 0), may_bend(is_needed);
+                         std::span<const ExtraPoint> crossings, const PlanVertices& plan_vertices,
+                         ConformedFaces& conformed, int threads, const Progress* progress) {
+    std::vector<std::uint8_t> is_needed(conformed.positions.size(), 0), may_bend(is_needed);
     for (std::size_t c = 0; c < faces.polygons.corners.size(); ++c)
-        is_needed[static_cast<std::size_t>(loops.vertices[loops.entries.first(c)])] = 1;
+        is_needed[static_cast<std::size_t>(conformed.vertices[conformed.entries.first(c)])] = 1;
     for (const ExtraPoint& e : crossings) {
-        const auto place = index(places.of_point[index(e.point)]);
-        std::fill(may_bend.begin() + loops.vertex_offsets[place],
-                  may_bend.begin() + loops.vertex_offsets[place + 1], std::uint8_t{1});
+        const auto vertex = index(plan_vertices.of_point[index(e.point)]);
+        std::fill(may_bend.begin() + conformed.vertex_offsets[vertex],
+                  may_bend.begin() + conformed.vertex_offsets[vertex + 1], std::uint8_t{1});
     }
     for (const WallStretch& s : stretches) {
         for (const std::int32_t v : {s.lower[0], s.lower[1], s.upper[0], s.upper[1]})
             is_needed[static_cast<std::size_t>(v)] |= may_bend[static_cast<std::size_t>(v)];
     }
     const auto for_all = [&](const auto& emit) {
-        for_each_wall(stretches, cell_of_node, loops, emit);
+        for_each_wall(stretches, cell_of_node, conformed, emit);
     };
     for_all([&](const OpenWall& wall) {
         for (const std::int32_t v :
@@ -149,7 +150,7 @@ WallBatch join_stretches(std::span<const WallStretch> stretches,
         walls.sizes.push_back(static_cast<std::int32_t>(walls.vertices.size() - first));
         walls.cells.push_back({wall.left, wall.right});
     });
-    const auto number = keep_vertices(is_needed, loops, threads, progress);
+    const auto number = keep_vertices(is_needed, conformed, threads, progress);
     for (std::int32_t& v : walls.vertices)
         v = number[static_cast<std::size_t>(v)];
     return walls;

@@ -27,7 +27,7 @@ std::vector<std::int32_t> cells_of_nodes(const Construction& construction,
 /// @param crossings  where heights of two columns cross, no face has a corner
 WallBatch join_stretches(std::span<const WallStretch> stretches,
                          const std::vector<std::int32_t>& cell_of_node, const FaceList& faces,
-                         std::span<const ExtraPoint> crossings, const PlanVertices& places,
-                         ConformedFaces& loops, int threads, const Progress* progress);
+                         std::span<const ExtraPoint> crossings, const PlanVertices& plan_vertices,
+                         ConformedFaces& conformed, int threads, const Progress* progress);
 
 }  // namespace realmodel::strata

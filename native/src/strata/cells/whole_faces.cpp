@@ -59,7 +59,7 @@ void add_touched_triangles(PlanArrangement& geometry, const TriangleLinks& links
         outlines, progress);
     for (std::size_t i = 0; i < planes.size(); ++i) {
         const WholeFace& face = wholes.of(planes[i]);
-        faces.add(outlines[i], planes[i], face.layer, face.above, face.below);
+        faces.add(outlines[i], planes[i], face.surface, face.above, face.below);
     }
     for (const auto& [plane, base, node] : wholes.on_base) {
         if (is_touched[index(plane)] == 0) continue;
@@ -71,7 +71,7 @@ void add_touched_triangles(PlanArrangement& geometry, const TriangleLinks& links
 UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
                                        const WholeTriangles& wholes,
                                        const std::vector<std::int32_t>& surface_of_plane,
-                                       const FaceList& faces, const ConformedFaces& loops,
+                                       const FaceList& faces, const ConformedFaces& conformed,
                                        int threads, const Progress* progress)
     : geometry_(geometry),
       wholes_(wholes),
@@ -93,7 +93,7 @@ UntouchedTriangles::UntouchedTriangles(const PlanArrangement& geometry,
                 for (auto c = static_cast<std::size_t>(faces.polygons.offsets[f]); c < last; ++c) {
                     const PointId point = faces.polygons.corners[c].point;
                     if (!geometry.is_vertex(point)) continue;
-                    const std::int32_t number = loops.vertices[loops.entries.first(c)];
+                    const std::int32_t number = conformed.vertices[conformed.entries.first(c)];
                     if (is_base) {
                         if (!of_base_.empty()) set(of_base_[index(point)], number);
                         continue;

@@ -18,10 +18,11 @@ void add_touched_triangles(exact::PlanArrangement& geometry, const TriangleLinks
 /// The whole triangles that are taken as they are.
 class UntouchedTriangles {
 public:
-    /// Finds the vertices that the conformed faces have of them; `loops` are not needed afterwards.
+    /// Finds the vertices that the conformed faces have of them; `conformed` are not needed
+    /// afterwards.
     UntouchedTriangles(const exact::PlanArrangement& geometry, const WholeTriangles& wholes,
                        const std::vector<std::int32_t>& surface_of_plane, const FaceList& faces,
-                       const ConformedFaces& loops, int threads, const Progress* progress);
+                       const ConformedFaces& conformed, int threads, const Progress* progress);
 
     /// Adds them as faces, and the vertices that only they have.
     void add_to(CellComplex& complex, const std::vector<std::int32_t>& cell_of_node);

@@ -29,21 +29,21 @@ struct FacesAtVertices {
 /// tentatively.
 Array<PlanVertexId> vertices_of_entries(const FaceList& faces, const PlanVertices& plan_vertices,
                                         const CollinearEdges& collinear,
-                                        const ConformedFaces& loops, int threads,
+                                        const ConformedFaces& conformed, int threads,
                                         const Progress* progress) {
     const auto& corners = faces.polygons.corners;
-    Array<PlanVertexId> plan_vertex(loops.entries.first(corners.size()));
-    parallel_ranges(corners.size(), 4 * kFaces, threads, progress,
-                    [&](std::size_t begin, std::size_t end) {
-                        loops.entries.for_each(begin, end, [&](std::size_t c, std::size_t entry) {
-                            plan_vertex[entry] = plan_vertices.of_point[index(corners[c].point)];
-                        });
-                    });
+    Array<PlanVertexId> plan_vertex(conformed.entries.first(corners.size()));
+    parallel_ranges(
+        corners.size(), 4 * kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
+            conformed.entries.for_each(begin, end, [&](std::size_t c, std::size_t entry) {
+                plan_vertex[entry] = plan_vertices.of_point[index(corners[c].point)];
+            });
+        });
     parallel_chunks(collinear.passed.size(), threads, progress, [&](std::size_t chunk) {
         const PassedVertices& passed = collinear.passed[chunk];
         auto next = passed.vertices.begin();
         for (const PassedVertices::Edge& edge : passed.edges) {
-            PlanVertexId* to = plan_vertex.begin() + loops.entries.first(edge.corner);
+            PlanVertexId* to = plan_vertex.begin() + conformed.entries.first(edge.corner);
             for (std::uint32_t n = edge.count; n > 0; --n, ++next)
                 *++to = edge.is_tentative != 0 ? ~*next : *next;
         }
@@ -52,8 +52,9 @@ Array<PlanVertexId> vertices_of_entries(const FaceList& faces, const PlanVertice
     return plan_vertex;
 }
 
-std::uint32_t first_entry(const FaceList& faces, const ConformedFaces& loops, std::size_t face) {
-    return loops.entries.first(static_cast<std::size_t>(faces.polygons.offsets[face]));
+std::uint32_t first_entry(const FaceList& faces, const ConformedFaces& conformed,
+                          std::size_t face) {
+    return conformed.entries.first(static_cast<std::size_t>(faces.polygons.offsets[face]));
 }
 
 /// Counts entries on each plan vertex. Which of a plan vertex's entries comes first depends on
@@ -92,8 +93,8 @@ private:
 /// Sorts the entries by plan vertex.
 /// @param plan_vertex  of each entry; replaced by its index among the sorted ones
 FacesAtVertices sort_by_vertex(const FaceList& faces, Array<PlanVertexId>& plan_vertex,
-                               std::size_t plan_vertices, const ConformedFaces& loops, int threads,
-                               const Progress* progress) {
+                               std::size_t plan_vertices, const ConformedFaces& conformed,
+                               int threads, const Progress* progress) {
     VertexCounts counts(plan_vertices, plan_vertex.size(), threads, progress);
     const auto vertex_of = [&](std::size_t entry) {
         const PlanVertexId p = plan_vertex[entry];
@@ -111,11 +112,11 @@ FacesAtVertices sort_by_vertex(const FaceList& faces, Array<PlanVertexId>& plan_
     on.values = Array<std::int32_t>(plan_vertex.size());
     parallel_ranges(
         faces.size(), kFaces, threads, progress, [&](std::size_t begin, std::size_t end) {
-            std::size_t i = first_entry(faces, loops, begin);
-            const std::size_t last = first_entry(faces, loops, end) - 1;
+            std::size_t i = first_entry(faces, conformed, begin);
+            const std::size_t last = first_entry(faces, conformed, end) - 1;
             for (std::size_t f = begin; f < end; ++f) {
                 const PlaneId plane = faces.plane[f];
-                for (const std::size_t next = first_entry(faces, loops, f + 1); i < next; ++i) {
+                for (const std::size_t next = first_entry(faces, conformed, f + 1); i < next; ++i) {
                     counts.prefetch(vertex_of(std::min(i + 32, last)));
                     const std::uint32_t at = counts.counts()[vertex_of(i)] + counts.number(i);
                     on.values[at] = code_of(plane, plan_vertex[i] < 0);
@@ -149,10 +150,10 @@ FacesAtVertices sort_by_vertex(const FaceList& faces, Array<PlanVertexId>& plan_
 
 /// Finds the heights on each plan vertex and replaces planes by ranks.
 void find_heights(const PlanArrangement& geometry, const PlanVertices& plan_vertices,
-                  FacesAtVertices& on, ConformedFaces& loops, int threads,
+                  FacesAtVertices& on, ConformedFaces& conformed, int threads,
                   const Progress* progress) {
-    loops.vertex_offsets = Array<std::int32_t>(plan_vertices.size() + 1);
-    loops.heights.resize((plan_vertices.size() + kTogether - 1) / kTogether);
+    conformed.vertex_offsets = Array<std::int32_t>(plan_vertices.size() + 1);
+    conformed.heights.resize((plan_vertices.size() + kTogether - 1) / kTogether);
     parallel_ranges(plan_vertices.size(), kTogether, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         VertexHeights heights_there(geometry);
@@ -165,54 +166,55 @@ void find_heights(const PlanArrangement& geometry, const PlanVertices& plan_vert
                                                 on.values.begin() + on.offsets[p + 1]});
                             const auto& found = heights_there.heights();
                             all.insert(all.end(), found.begin(), found.end());
-                            loops.vertex_offsets[p] = static_cast<std::int32_t>(found.size());
+                            conformed.vertex_offsets[p] = static_cast<std::int32_t>(found.size());
                         }
-                        loops.heights[begin / kTogether].assign(
+                        conformed.heights[begin / kTogether].assign(
                             all.begin(), all.end());  // without room for more
                     });
-    running_totals(loops.vertex_offsets, INT32_MAX, threads, progress);
+    running_totals(conformed.vertex_offsets, INT32_MAX, threads, progress);
 }
 
 /// What follows asks for faces, not for their corners.
-void number_faces(const FaceList& faces, ConformedFaces& loops, int threads,
+void number_faces(const FaceList& faces, ConformedFaces& conformed, int threads,
                   const Progress* progress) {
-    loops.face_offsets = Array<std::uint32_t>(faces.size() + 1);
+    conformed.face_offsets = Array<std::uint32_t>(faces.size() + 1);
     parallel_ranges(faces.size() + 1, kFaces, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t f = begin; f < end; ++f)
-                            loops.face_offsets[f] = first_entry(faces, loops, f);
+                            conformed.face_offsets[f] = first_entry(faces, conformed, f);
                     });
 }
 
 /// From here on the edges on lines name their first entries: what follows asks for nothing else of
 /// a corner.
-void name_entries(CollinearEdges& collinear, const ConformedFaces& loops, int threads,
+void name_entries(CollinearEdges& collinear, const ConformedFaces& conformed, int threads,
                   const Progress* progress) {
     parallel_ranges(collinear.edges.size(), kEntries, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t e = begin; e < end; ++e)
                             collinear.edges[e].begin =
-                                loops.entries.first(collinear.edges[e].begin);
+                                conformed.entries.first(collinear.edges[e].begin);
                     });
 }
 
 /// The vertices that the left edge of a pair took up, for the right one.
-void add_inserted_vertices(const CollinearEdges& collinear, ConformedFaces& loops, int threads,
+void add_inserted_vertices(const CollinearEdges& collinear, ConformedFaces& conformed, int threads,
                            const Progress* progress) {
     std::vector<std::vector<InsertedVertex>> found(collinear.matched.size());
     parallel_chunks(found.size(), threads, progress, [&](std::size_t chunk) {
         for (const MatchedPair& pair : collinear.matched[chunk].passing) {
-            const std::uint32_t first = loops.entries.first(pair.left) + 1;
-            for (std::uint32_t e = loops.entries.first(pair.left + 1); e-- > first;) {
-                if (loops.vertices[e] >= 0)
-                    found[chunk].push_back({loops.entries.first(pair.right), loops.vertices[e]});
+            const std::uint32_t first = conformed.entries.first(pair.left) + 1;
+            for (std::uint32_t e = conformed.entries.first(pair.left + 1); e-- > first;) {
+                if (conformed.vertices[e] >= 0)
+                    found[chunk].push_back(
+                        {conformed.entries.first(pair.right), conformed.vertices[e]});
             }
         }
     });
     for (const auto& some : found)
-        loops.inserted.insert(loops.inserted.end(), some.begin(), some.end());
+        conformed.inserted.insert(conformed.inserted.end(), some.begin(), some.end());
     std::stable_sort(
-        loops.inserted.begin(), loops.inserted.end(),
+        conformed.inserted.begin(), conformed.inserted.end(),
         [](const InsertedVertex& a, const InsertedVertex& b) { return a.entry < b.entry; });
 }
 
@@ -221,54 +223,56 @@ void add_inserted_vertices(const CollinearEdges& collinear, ConformedFaces& loop
 ConformedFaces conform_faces(const PlanArrangement& geometry, const FaceList& faces,
                              const PlanVertices& plan_vertices, CollinearEdges& collinear,
                              int threads, const Progress* progress) {
-    ConformedFaces loops;
-    loops.entries =
+    ConformedFaces conformed;
+    conformed.entries =
         CornerOffsets(collinear.passed, faces.polygons.corners.size(), threads, progress);
-    loops.vertices = vertices_of_entries(faces, plan_vertices, collinear, loops, threads, progress);
+    conformed.vertices =
+        vertices_of_entries(faces, plan_vertices, collinear, conformed, threads, progress);
     collinear.passed = {};
-    name_entries(collinear, loops, threads, progress);
-    FacesAtVertices on =
-        sort_by_vertex(faces, loops.vertices, plan_vertices.size(), loops, threads, progress);
-    find_heights(geometry, plan_vertices, on, loops, threads, progress);
+    name_entries(collinear, conformed, threads, progress);
+    FacesAtVertices on = sort_by_vertex(faces, conformed.vertices, plan_vertices.size(), conformed,
+                                        threads, progress);
+    find_heights(geometry, plan_vertices, on, conformed, threads, progress);
     parallel_ranges(plan_vertices.size(), kTogether, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t p = begin; p < end; ++p) {
                             for (auto i = on.offsets[p]; i < on.offsets[p + 1]; ++i)
-                                on.values[i] += on.values[i] < 0 ? 0 : loops.vertex_offsets[p];
+                                on.values[i] += on.values[i] < 0 ? 0 : conformed.vertex_offsets[p];
                         }
                     });
-    parallel_ranges(loops.vertices.size(), kEntries, threads, progress,
+    parallel_ranges(conformed.vertices.size(), kEntries, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         const auto vertex = [&](std::size_t i) -> const std::int32_t& {
-                            return on.values[static_cast<std::uint32_t>(loops.vertices[i])];
+                            return on.values[static_cast<std::uint32_t>(conformed.vertices[i])];
                         };
                         for (std::size_t i = begin; i < end; ++i) {
                             prefetch(&vertex(std::min(i + 32, end - 1)));
-                            loops.vertices[i] = vertex(i);
+                            conformed.vertices[i] = vertex(i);
                         }
                     });
     on = {};
-    number_faces(faces, loops, threads, progress);
-    add_inserted_vertices(collinear, loops, threads, progress);
-    return loops;
+    number_faces(faces, conformed, threads, progress);
+    add_inserted_vertices(collinear, conformed, threads, progress);
+    return conformed;
 }
 
-void set_vertex_positions(const PlanVertices& plan_vertices, ConformedFaces& loops, int threads,
+void set_vertex_positions(const PlanVertices& plan_vertices, ConformedFaces& conformed, int threads,
                           const Progress* progress) {
-    loops.positions.resize(static_cast<std::size_t>(loops.vertex_offsets[plan_vertices.size()]));
+    conformed.positions.resize(
+        static_cast<std::size_t>(conformed.vertex_offsets[plan_vertices.size()]));
     parallel_ranges(plan_vertices.size(), kTogether, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
-                        auto& heights = loops.heights[begin / kTogether];
+                        auto& heights = conformed.heights[begin / kTogether];
                         auto z = heights.begin();
                         for (std::size_t p = begin; p < end; ++p) {
                             const auto [x, y] = plan_vertices.position[p];
-                            for (auto v = loops.vertex_offsets[p]; v < loops.vertex_offsets[p + 1];
-                                 ++v)
-                                loops.positions[static_cast<std::size_t>(v)] = {x, y, *z++};
+                            for (auto v = conformed.vertex_offsets[p];
+                                 v < conformed.vertex_offsets[p + 1]; ++v)
+                                conformed.positions[static_cast<std::size_t>(v)] = {x, y, *z++};
                         }
                         heights = {};
                     });
-    loops.heights = {};
+    conformed.heights = {};
 }
 
 }  // namespace realmodel::strata

@@ -38,7 +38,7 @@ ConformedFaces conform_faces(const exact::PlanArrangement& geometry, const FaceL
                              int threads, const Progress* progress);
 
 /// Gives the vertices their positions, which takes the heights.
-void set_vertex_positions(const PlanVertices& plan_vertices, ConformedFaces& loops, int threads,
+void set_vertex_positions(const PlanVertices& plan_vertices, ConformedFaces& conformed, int threads,
                           const Progress* progress);
 
 }  // namespace realmodel::strata

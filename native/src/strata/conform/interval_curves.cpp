@@ -14,11 +14,11 @@ namespace realmodel::strata {
     const std::ptrdiff_t left = collinear_.edges.end() - 1 - edge;
     const LineEdge& far = edge[std::min<std::ptrdiff_t>(24, left)];
     const auto face = static_cast<std::size_t>(far.face);
-    prefetch(&loops_.face_offsets[face]);
+    prefetch(&conformed_.face_offsets[face]);
     prefetch(&faces_.above[face]);
     prefetch(&faces_.below[face]);
     const LineEdge& near = edge[std::min<std::ptrdiff_t>(8, left)];
-    prefetch(&loops_.vertices[near.begin]);
+    prefetch(&conformed_.vertices[near.begin]);
 }
 
 /// Ascending; where two curves start at one vertex the lower end comes first, and of equal
@@ -27,10 +27,10 @@ bool IntervalCurves::before(const Curve& a, const Curve& b) const {
     if (a.start != b.start) return a.start < b.start;
     if (a.end != b.end) return a.end < b.end;
     if (a.left != b.left) return b.left;
-    const auto layer = [&](const Curve& curve) {
-        return faces_.layer[static_cast<std::size_t>(curve.face)];
+    const auto surface = [&](const Curve& curve) {
+        return faces_.surface[static_cast<std::size_t>(curve.face)];
     };
-    return std::pair(layer(a), a.face) < std::pair(layer(b), b.face);
+    return std::pair(surface(a), a.face) < std::pair(surface(b), b.face);
 }
 
 void IntervalCurves::collect(std::size_t number) {
@@ -72,12 +72,12 @@ void IntervalCurves::add_curves(const LineEdge& edge) {
     Curve curve{0, 0, edge.face, faces_.above[face], faces_.below[face], left};
     const std::int32_t steps = std::abs(edge.to - edge.from);
     std::uint32_t entry = edge.begin;
-    std::int32_t vertex = loops_.vertices[entry];
+    std::int32_t vertex = conformed_.vertices[entry];
     std::int32_t interval = left ? edge.from : edge.from - 1;
     for (std::int32_t s = 0; s < steps; ++s) {
         ++entry;
-        if (entry == loops_.face_offsets[face + 1]) entry = loops_.face_offsets[face];
-        const std::int32_t next = loops_.vertices[entry];
+        if (entry == conformed_.face_offsets[face + 1]) entry = conformed_.face_offsets[face];
+        const std::int32_t next = conformed_.vertices[entry];
         curve.start = left ? vertex : next;
         curve.end = left ? next : vertex;
         assert(curve.start >= 0 && curve.end >= 0);

@@ -23,8 +23,8 @@ struct Curve {
 class IntervalCurves {
 public:
     IntervalCurves(const FaceList& faces, const CollinearEdges& collinear,
-                   const ConformedFaces& loops)
-        : faces_(faces), collinear_(collinear), loops_(loops) {}
+                   const ConformedFaces& conformed)
+        : faces_(faces), collinear_(collinear), conformed_(conformed) {}
 
     /// Puts the curves of a line in order of intervals, and those of each in order of height.
     void collect(std::size_t number);
@@ -44,7 +44,7 @@ private:
 
     const FaceList& faces_;
     const CollinearEdges& collinear_;
-    const ConformedFaces& loops_;
+    const ConformedFaces& conformed_;
     std::vector<Curve> curves_;
     std::vector<std::uint32_t> begins_, free_;  ///< curves of each interval, and where more go
 };

@@ -14,7 +14,8 @@ namespace realmodel::strata {
 /// A face edge on its line.
 struct LineEdge {
     std::int32_t from, to;  ///< its ends, counted along the line; at first, the plan vertices there
-    std::uint32_t begin;  ///< the corner, of all faces, that it leaves; for loops: its first entry
+    std::uint32_t
+        begin;  ///< the corner, of all faces, that it leaves; for conformed: its first entry
     std::int32_t face;
 };
 

@@ -15,7 +15,7 @@ using exact::PlanArrangement;
 
 namespace {
 
-constexpr std::size_t kTracks = 1 << 10;  // worked on at a time
+constexpr std::size_t kLines = 1 << 10;  // worked on at a time
 
 /// What the walls of some lines are found in.
 struct Batch {
@@ -28,9 +28,12 @@ struct Batch {
 /// The walls of one line after another.
 class LineWalls {
 public:
-    LineWalls(const FaceList& faces, const CollinearEdges& tracks, const ConformedFaces& loops,
-              const BlockLines* blocks, Batch& batch)
-        : loops_(loops), blocks_(blocks), curves_(faces, tracks, loops), batch_(batch) {}
+    LineWalls(const FaceList& faces, const CollinearEdges& collinear,
+              const ConformedFaces& conformed, const BlockLines* blocks, Batch& batch)
+        : conformed_(conformed),
+          blocks_(blocks),
+          curves_(faces, collinear, conformed),
+          batch_(batch) {}
 
     void process(std::size_t line) {
         const auto emit = [&](const OpenWall& wall) {
@@ -98,18 +101,18 @@ private:
     }
 
     bool may_have_walls(const Curve& curve) {
-        const PlanVertices& places = blocks_->places;
+        const PlanVertices& plan_vertices = blocks_->plan_vertices;
         const std::size_t from = place_of(curve.start), to = place_of(curve.end);
-        const PlanPosition &p = places.position[from], &q = places.position[to];
+        const PlanPosition &p = plan_vertices.position[from], &q = plan_vertices.position[to];
         const TileSpan span =
             blocks_->borders.tiles().span({std::min(p[0], q[0]), std::min(p[1], q[1]),
                                            std::max(p[0], q[0]), std::max(p[1], q[1])});
         return blocks_->borders.near(span) &&
-               blocks_->borders.run_between(batch_.scope, places.representative[from],
-                                            places.representative[to], span);
+               blocks_->borders.run_between(batch_.scope, plan_vertices.representative[from],
+                                            plan_vertices.representative[to], span);
     }
     std::size_t place_of(std::int32_t vertex) const {
-        const auto& first = loops_.vertex_offsets;
+        const auto& first = conformed_.vertex_offsets;
         return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), vertex) -
                                         first.begin()) -
                1;
@@ -133,17 +136,18 @@ private:
         }
     }
 
-    const ConformedFaces& loops_;
+    const ConformedFaces& conformed_;
     const BlockLines* blocks_;
     IntervalCurves curves_;
     Batch& batch_;
     WallJoining joining_;
 };
 
-/// The walls of tracks on which all edges are pairs.
+/// The walls of lines on which all edges are pairs.
 class PlannedWalls {
 public:
-    PlannedWalls(const ConformedFaces& loops, WallBatch& walls) : loops_(loops), walls_(walls) {}
+    PlannedWalls(const ConformedFaces& conformed, WallBatch& walls)
+        : conformed_(conformed), walls_(walls) {}
 
     void add(const MatchedEdges& matched) {
         const std::uint32_t *next = matched.corners.begin(), *const end = matched.corners.end();
@@ -152,8 +156,8 @@ public:
                 const auto corner = [&](std::ptrdiff_t further) {
                     return next[std::min(further + ahead, end - 1 - next)];
                 };
-                loops_.entries.prefetch(corner(64));
-                prefetch(&loops_.vertices[loops_.entries.first(corner(32))]);
+                conformed_.entries.prefetch(corner(64));
+                prefetch(&conformed_.vertices[conformed_.entries.first(corner(32))]);
             }
             next = collect(next, wall.above, upper_);
             next = collect(next, wall.beneath, lower_);
@@ -169,12 +173,12 @@ private:
                                  std::vector<std::int32_t>& vertices) const {
         vertices.clear();
         for (std::uint32_t i = 0; i < count; ++i, ++corner) {
-            const std::uint32_t end = loops_.entries.first(*corner + 1);
-            for (std::uint32_t e = loops_.entries.first(*corner); e < end; ++e) {
-                if (loops_.vertices[e] >= 0) vertices.push_back(loops_.vertices[e]);
+            const std::uint32_t end = conformed_.entries.first(*corner + 1);
+            for (std::uint32_t e = conformed_.entries.first(*corner); e < end; ++e) {
+                if (conformed_.vertices[e] >= 0) vertices.push_back(conformed_.vertices[e]);
             }
         }
-        vertices.push_back(loops_.vertices[loops_.entries.first(*corner)]);
+        vertices.push_back(conformed_.vertices[conformed_.entries.first(*corner)]);
         return corner + 1;
     }
 
@@ -209,29 +213,29 @@ private:
         return {upper_.size() - 1, lower_.size() - 1};
     }
 
-    const ConformedFaces& loops_;
+    const ConformedFaces& conformed_;
     WallBatch& walls_;
     std::vector<std::int32_t> upper_, lower_;
 };
 
 }  // namespace
 
-FoundWalls find_walls(PlanArrangement& geometry, const FaceList& faces, CollinearEdges& tracks,
-                      const ConformedFaces& loops, const BlockLines* blocks, int threads,
+FoundWalls find_walls(PlanArrangement& geometry, const FaceList& faces, CollinearEdges& collinear,
+                      const ConformedFaces& conformed, const BlockLines* blocks, int threads,
                       const Progress* progress) {
-    const std::size_t chunks = (tracks.size() + kTracks - 1) / kTracks;
+    const std::size_t chunks = (collinear.size() + kLines - 1) / kLines;
     FoundWalls found;
     found.walls.resize(chunks);
     std::vector<std::unique_ptr<Batch>> batches(chunks);  // of which more is asked below
-    parallel_ranges(tracks.size(), kTracks, threads, progress,
+    parallel_ranges(collinear.size(), kLines, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         auto batch = std::make_unique<Batch>(geometry);
-                        LineWalls of_line(faces, tracks, loops, blocks, *batch);
+                        LineWalls of_line(faces, collinear, conformed, blocks, *batch);
                         for (std::size_t t = begin; t < end; ++t)
                             of_line.process(t);
-                        found.walls[begin / kTracks] = std::move(batch->walls);
+                        found.walls[begin / kLines] = std::move(batch->walls);
                         if (blocks != nullptr || !batch->found.missing.empty())
-                            batches[begin / kTracks] = std::move(batch);
+                            batches[begin / kLines] = std::move(batch);
                     });
     for (const auto& batch : batches) {
         if (batch == nullptr) continue;
@@ -243,13 +247,13 @@ FoundWalls find_walls(PlanArrangement& geometry, const FaceList& faces, Collinea
         found.stretches.insert(found.stretches.end(), own.stretches.begin(), own.stretches.end());
     }
     if (!found.missing.empty()) return {std::move(found.missing), {}, {}, {}};
-    found.walls.resize(chunks + tracks.matched.size());
-    parallel_chunks(tracks.matched.size(), threads, progress, [&](std::size_t chunk) {
-        const MatchedEdges matched = std::move(tracks.matched[chunk]);
+    found.walls.resize(chunks + collinear.matched.size());
+    parallel_chunks(collinear.matched.size(), threads, progress, [&](std::size_t chunk) {
+        const MatchedEdges matched = std::move(collinear.matched[chunk]);
         WallBatch& batch = found.walls[chunks + chunk];
         batch.sizes.reserve(matched.walls.size());
         batch.cells.reserve(matched.walls.size());
-        PlannedWalls(loops, batch).add(matched);
+        PlannedWalls(conformed, batch).add(matched);
     });
     return found;
 }

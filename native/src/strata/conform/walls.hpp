@@ -22,7 +22,7 @@ struct WallStretch {
 /// What is asked besides where nodes become the cells of blocks.
 struct BlockLines {
     const Array<std::int32_t>& node_block;
-    const PlanVertices& places;
+    const PlanVertices& plan_vertices;
     const BorderEdges& borders;
 };
 
@@ -42,7 +42,7 @@ struct FoundWalls {
 /// is, and so do the nodes above and below it. If nothing is missing, the matched edges are given
 /// back on the way.
 FoundWalls find_walls(exact::PlanArrangement& geometry, const FaceList& faces,
-                      CollinearEdges& tracks, const ConformedFaces& loops, const BlockLines* blocks,
-                      int threads, const Progress* progress);
+                      CollinearEdges& collinear, const ConformedFaces& conformed,
+                      const BlockLines* blocks, int threads, const Progress* progress);
 
 }  // namespace realmodel::strata

@@ -90,7 +90,7 @@ Overlaid BlockEnvelope::overlay_exactly(const FacetView& facets, const SurfaceTi
             wholes_.is_exact[index(whole_[f])] = 1;
             // until it turns out to be kept or sealed as it is
             wholes_.is_in_parts[index(whole_[f])] = kMayStayWhole;
-            envelope.add_facet(outlines[i], whole_[f], face.layer, whole_block_[f]);
+            envelope.add_facet(outlines[i], whole_[f], face.surface, whole_block_[f]);
             envelope.add_face(outlines[i], face.above);
             continue;
         }

@@ -21,13 +21,13 @@ void pass(PoolStart& start, const PolygonPool& pool) {
 
 /// Lists as long as the faces, facets or pieces that they are of.
 auto lists_of(FaceList& faces) {
-    return std::tie(faces.plane, faces.layer, faces.above, faces.below);
+    return std::tie(faces.plane, faces.surface, faces.above, faces.below);
 }
 auto lists_of(PiecesBelow& below) {
     return std::tie(below.polygon, below.node_above);
 }
 auto lists_of(Envelope& envelope) {
-    return std::tie(envelope.plane, envelope.layer, envelope.block_beneath);
+    return std::tie(envelope.plane, envelope.surface, envelope.block_beneath);
 }
 template <class Lists, class Do>
 void for_each(const Lists& lists, const Do& act) {
@@ -173,7 +173,7 @@ void ChunkJoining::put(std::size_t c) {
                 chunk.node_is_thick);
     strata::put(faces.polygons, at.face, chunk.faces.polygons, scope);
     strata::put(faces.plane, at.face.polygon, chunk.faces.plane);
-    strata::put(faces.layer, at.face.polygon, chunk.faces.layer);
+    strata::put(faces.surface, at.face.polygon, chunk.faces.surface);
     strata::put(faces.above, at.face.polygon, chunk.faces.above);
     std::transform(chunk.faces.below.begin(), chunk.faces.below.end(),
                    faces.below.begin() + static_cast<std::ptrdiff_t>(at.face.polygon), shared_node);
@@ -184,7 +184,7 @@ void ChunkJoining::put(std::size_t c) {
     }
     strata::put(next_.outlines, at.facet, chunk.kept.outlines, scope);
     strata::put(next_.plane, at.facet.polygon, chunk.kept.plane);
-    strata::put(next_.layer, at.facet.polygon, chunk.kept.layer);
+    strata::put(next_.surface, at.facet.polygon, chunk.kept.surface);
     strata::put(next_.block_beneath, at.facet.polygon, chunk.kept.block_beneath);
     for (std::size_t f = 1; f < chunk.kept.face_offsets.size(); ++f) {
         next_.face_offsets[at.facet.polygon + f] =

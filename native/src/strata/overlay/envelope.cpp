@@ -26,7 +26,7 @@ void Construction::seal(const Envelope& envelope, std::size_t facet, std::int32_
     const auto [begin, end] = envelope.faces_of(facet);
     for (std::size_t f = begin; f < end; ++f) {
         if (node == kOutsideCell && envelope.face_above[f] == kOutsideCell) continue;
-        faces.add(envelope.face_polygons[f], envelope.plane[facet], envelope.layer[facet],
+        faces.add(envelope.face_polygons[f], envelope.plane[facet], envelope.surface[facet],
                   envelope.face_above[f], node);
     }
 }

@@ -20,16 +20,16 @@ inline constexpr std::int32_t kOutsideCell = -1;
 struct FaceList {
     PolygonPool polygons;
     Array<PlaneId> plane;
-    Array<std::int32_t> layer;  ///< number of the surface that the face lies on, -1 the base
-    Array<std::int32_t> above;  ///< node, or kOutsideCell
+    Array<std::int32_t> surface;  ///< number of the surface that the face lies on, -1 the base
+    Array<std::int32_t> above;    ///< node, or kOutsideCell
     Array<std::int32_t> below;
 
     std::size_t size() const { return plane.size(); }
-    void add(PolygonView polygon, PlaneId in_plane, std::int32_t in_layer, std::int32_t node_above,
-             std::int32_t node_below) {
+    void add(PolygonView polygon, PlaneId in_plane, std::int32_t in_surface,
+             std::int32_t node_above, std::int32_t node_below) {
         polygons.add(polygon);
         plane.push_back(in_plane);
-        layer.push_back(in_layer);
+        surface.push_back(in_surface);
         above.push_back(node_above);
         below.push_back(node_below);
     }
@@ -41,7 +41,7 @@ struct FaceList {
 struct Envelope {
     PolygonPool outlines;
     Array<PlaneId> plane;               ///< kSky, kOutside, or the plane of a triangle
-    Array<std::int32_t> layer;          ///< surface of the facet, -1 for the sky
+    Array<std::int32_t> surface;        ///< surface of the facet, -1 for the sky
     Array<std::int32_t> block_beneath;  ///< the last surface seen here, -1 the sky
     Array<std::int64_t> face_offsets{0};
     PolygonPool face_polygons;
@@ -52,17 +52,17 @@ struct Envelope {
         return {static_cast<std::size_t>(face_offsets[facet]),
                 static_cast<std::size_t>(face_offsets[facet + 1])};
     }
-    void add_facet(PolygonView outline, PlaneId in_plane, std::int32_t in_layer,
+    void add_facet(PolygonView outline, PlaneId in_plane, std::int32_t in_surface,
                    std::int32_t block) {
         outlines.add(outline);
         plane.push_back(in_plane);
-        layer.push_back(in_layer);
+        surface.push_back(in_surface);
         block_beneath.push_back(block);
         face_offsets.push_back(face_offsets.back());
     }
     /// Adds a facet of another envelope, with its faces.
     void add_facet_of(const Envelope& other, std::size_t facet, std::int32_t block) {
-        add_facet(other.outlines[facet], other.plane[facet], other.layer[facet], block);
+        add_facet(other.outlines[facet], other.plane[facet], other.surface[facet], block);
         const auto [begin, end] = other.faces_of(facet);
         for (std::size_t f = begin; f < end; ++f)
             add_face(other.face_polygons[f], other.face_above[f]);

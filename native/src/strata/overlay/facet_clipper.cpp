@@ -66,7 +66,7 @@ bool FacetClipper::meets(PolygonView window) {
 
 /// Finds where the corners of facet and window lie against the lines of the other; false where one
 /// of these lines has all of one to its left and nothing of the other. Corners come first: more of
-/// the polygons of a layer meet in a corner than along a line.
+/// the polygons of a tiling meet in a corner than along a line.
 bool FacetClipper::compare(PolygonView window) {
     const std::uint32_t all = exact::all_of_row(facet_.size());
     std::uint32_t reached = 0, beside = all;

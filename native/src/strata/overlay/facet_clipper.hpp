@@ -9,10 +9,10 @@
 
 namespace realmodel::strata {
 
-/// Cuts one facet after another with the polygons of a layer. The common part of two convex
+/// Cuts one facet after another with the polygons of a tiling. The common part of two convex
 /// polygons follows from where the corners of each lie against the lines of the other, without a
-/// question about a crossing; and polygons of a layer have corners and lines in common, so what was
-/// found of these is kept for as long as the facet lasts.
+/// question about a crossing; and polygons of a tiling have corners and lines in common, so what
+/// was found of these is kept for as long as the facet lasts.
 class FacetClipper {
 public:
     explicit FacetClipper(LocalArrangement& scope) : scope_(scope), clipper_(scope) {}

@@ -117,7 +117,7 @@ private:
             if (piece.side == Side::kBelow) {
                 add_below(pieces, piece, kOutsideCell);
             } else {
-                result_.kept.add_facet(pieces.outline(piece), kSky, envelope_.layer[facet],
+                result_.kept.add_facet(pieces.outline(piece), kSky, envelope_.surface[facet],
                                        envelope_.block_beneath[facet]);
             }
         }
@@ -155,7 +155,7 @@ private:
                 add_below(pieces, piece, node);
             } else {
                 result_.kept.add_facet(
-                    outline, envelope_.plane[facet], envelope_.layer[facet],
+                    outline, envelope_.plane[facet], envelope_.surface[facet],
                     piece.side == Side::kNotBelow ? number_ : envelope_.block_beneath[facet]);
             }
             const bool only_one = end - begin == 1;  // then it is the facet
@@ -175,7 +175,7 @@ private:
 
     /// Finishes a face of the facet: the node beneath it is known now.
     void seal(std::size_t facet, std::size_t face, PolygonView outline, std::int32_t node) {
-        result_.faces.add(outline, envelope_.plane[facet], envelope_.layer[facet],
+        result_.faces.add(outline, envelope_.plane[facet], envelope_.surface[facet],
                           envelope_.face_above[face], node);
     }
 

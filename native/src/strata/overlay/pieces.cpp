@@ -60,12 +60,12 @@ bool same_corners(PolygonView a, PolygonView b) {
 /// that surfaces have in common and where the frame is filled around equal borders, it is the only
 /// one; whether so is the result.
 bool PieceFinder::find_candidates(PolygonView outline) {
-    const auto polygon = [&](std::size_t i) { return layer_.polygons[i]; };
-    if (expected_ < layer_.polygons.size() && same_corners(outline, polygon(expected_))) {
+    const auto polygon = [&](std::size_t i) { return tiling_.polygons[i]; };
+    if (expected_ < tiling_.polygons.size() && same_corners(outline, polygon(expected_))) {
         candidates_.assign(1, static_cast<std::int32_t>(expected_++));
         return true;
     }
-    layer_.grid.candidates(scope_, outline, candidates_);
+    tiling_.grid.candidates(scope_, outline, candidates_);
     for (const std::int32_t c : candidates_) {
         if (!same_corners(outline, polygon(static_cast<std::size_t>(c)))) continue;
         candidates_.assign(1, c);
@@ -79,14 +79,14 @@ std::span<const std::int32_t> PieceFinder::overlapping(PolygonView outline) {
     if (find_candidates(outline)) return {candidates_.begin(), candidates_.end()};
     overlapping_.clear();
     for (const std::int32_t c : candidates_) {
-        if (clipper_.overlap(outline, layer_.polygons[static_cast<std::size_t>(c)])) {
+        if (clipper_.overlap(outline, tiling_.polygons[static_cast<std::size_t>(c)])) {
             overlapping_.push_back(c);
         }
     }
     return {overlapping_.begin(), overlapping_.end()};
 }
 
-/// Begins with a facet; true where one polygon of the layer is all that it meets, which is added.
+/// Begins with a facet; true where one polygon of the tiling is all that it meets, which is added.
 bool PieceFinder::begin(const Facet& facet) {
     pieces_.clear();
     if (find_candidates(facet.outline)) {
@@ -132,12 +132,12 @@ const Pieces& PieceFinder::find_for_split(PolygonView outline, PlaneId plane) {
     return pieces_;
 }
 
-/// Whether a polygon of the layer is nowhere below the facet where they meet, as far as heights and
-/// floating point tell.
+/// Whether a polygon of the tiling is nowhere below the facet where they meet, as far as heights
+/// and floating point tell.
 bool PieceFinder::is_higher(std::int32_t polygon, const Facet& facet) const {
-    const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
+    const PlaneId surface = tiling_.plane[static_cast<std::size_t>(polygon)];
     if (!surface.has_value()) return false;
-    const HeightRange heights = layer_.heights[static_cast<std::size_t>(polygon)];
+    const HeightRange heights = tiling_.heights[static_cast<std::size_t>(polygon)];
     if (heights.low >= facet.heights.high) return true;
     if (heights.high < facet.heights.high) return false;  // most that are not higher
     const auto trace = scope_.shared().trace_filter(surface, facet.plane);
@@ -149,14 +149,14 @@ bool PieceFinder::is_higher(std::int32_t polygon, const Facet& facet) const {
 /// Adds what a facet has in common with a polygon, which may be nothing.
 void PieceFinder::add_common(std::int32_t polygon, PolygonView common, const Facet& facet) {
     if (common.empty()) return;
-    const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
+    const PlaneId surface = tiling_.plane[static_cast<std::size_t>(polygon)];
     if (!surface.has_value()) {
         add(polygon, Side::kAbsent, common);
     } else if (!facet.plane.has_value()) {
         add(polygon, facet.plane == kSky ? Side::kBelow : Side::kNotBelow, common);
     } else {
         // both are parts of triangles, so most are sorted by the heights of the corners
-        const HeightRange heights = layer_.heights[static_cast<std::size_t>(polygon)];
+        const HeightRange heights = tiling_.heights[static_cast<std::size_t>(polygon)];
         if (heights.high < facet.heights.low) {
             add(polygon, Side::kBelow, common);
         } else if (heights.low >= facet.heights.high) {
@@ -188,7 +188,7 @@ void PieceFinder::note_room(PlaneId surface, const Facet& facet, const HeightRan
 }
 
 void PieceFinder::classify(std::int32_t polygon, PlaneId facet_plane, PolygonView common) {
-    const PlaneId surface = layer_.plane[static_cast<std::size_t>(polygon)];
+    const PlaneId surface = tiling_.plane[static_cast<std::size_t>(polygon)];
     bool lower = false, higher = false;
     signs_.clear();
     if (surface != facet_plane) {
@@ -250,7 +250,7 @@ bool PieceGrouping::joined(const Pieces& pieces, const Edge& a, const Edge& b) {
     if (!a.below || !b.below || a.thin || b.thin) return false;
     const auto plane = [&](const Edge& e) {
         const Piece& piece = pieces.list[static_cast<std::size_t>(e.piece)];
-        return layer_.plane[static_cast<std::size_t>(piece.polygon)];
+        return tiling_.plane[static_cast<std::size_t>(piece.polygon)];
     };
     return scope_.compare_heights(plane(a), plane(b), a.from) == 0 &&
            scope_.compare_heights(plane(a), plane(b), a.to) == 0;

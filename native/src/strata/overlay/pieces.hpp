@@ -18,15 +18,15 @@ enum class Side : std::int8_t {
     kAbsent     ///< there is no surface
 };
 
-/// The common part of a facet and one polygon of the layer.
+/// The common part of a facet and one polygon of the tiling.
 struct Piece {
-    std::int32_t polygon;  ///< of the layer
+    std::int32_t polygon;  ///< of the tiling
     Side side;
     std::int64_t first;  ///< corners within Pieces::corners
     std::int64_t last;
 };
 
-/// The overlay of one facet with the layer: convex pieces that tile the facet.
+/// The overlay of one facet with the tiling: convex pieces that tile the facet.
 struct Pieces {
     Array<Piece> list;
     Array<Corner> corners;
@@ -47,8 +47,8 @@ struct Pieces {
 /// Finds the pieces of facets, one after another, in one thread's scope.
 class PieceFinder {
 public:
-    PieceFinder(LocalArrangement& scope, const SurfaceTiling& layer)
-        : scope_(scope), clipper_(scope), facet_clipper_(scope), layer_(layer) {}
+    PieceFinder(LocalArrangement& scope, const SurfaceTiling& tiling)
+        : scope_(scope), clipper_(scope), facet_clipper_(scope), tiling_(tiling) {}
 
     /// Pieces of the facet with this outline and plane. All that there is lies below the sky, and
     /// none of it below a void.
@@ -56,7 +56,7 @@ public:
     /// The same, but pieces have no outlines where heights tell that the surface is nowhere below
     /// the facet: it stays as it is.
     const Pieces& find_for_split(PolygonView outline, PlaneId plane);
-    /// Polygons of the layer that share an area with the outline.
+    /// Polygons of the tiling that share an area with the outline.
     std::span<const std::int32_t> overlapping(PolygonView outline);
 
 private:
@@ -71,7 +71,7 @@ private:
                 !plane.has_value() ? HeightRange{} : heights_of(scope_.shared(), plane)};
     }
     PolygonView outline_of(std::int32_t polygon) const {
-        return layer_.polygons[static_cast<std::size_t>(polygon)];
+        return tiling_.polygons[static_cast<std::size_t>(polygon)];
     }
     bool is_higher(std::int32_t polygon, const Facet& facet) const;
     void note_room(PlaneId surface, const Facet& facet, const HeightRange& heights,
@@ -87,7 +87,7 @@ private:
     LocalArrangement& scope_;
     Clipper clipper_;
     FacetClipper facet_clipper_;
-    const SurfaceTiling& layer_;
+    const SurfaceTiling& tiling_;
     Pieces pieces_;
     std::vector<std::int8_t> signs_;  ///< of surface less facet at the corners of a piece
     Array<std::int32_t> candidates_, overlapping_, higher_;
@@ -99,8 +99,8 @@ private:
 /// a cell of its own (each is a column under one plane over one plane, which never does).
 class PieceGrouping {
 public:
-    PieceGrouping(LocalArrangement& scope, const SurfaceTiling& layer)
-        : scope_(scope), layer_(layer) {}
+    PieceGrouping(LocalArrangement& scope, const SurfaceTiling& tiling)
+        : scope_(scope), tiling_(tiling) {}
 
     /// group[i] is the cell of piece i, numbered from 0 in order of first piece; -1 if not below.
     /// Returns the number of cells.
@@ -121,7 +121,7 @@ private:
     void collect_edges(const Pieces& pieces);
 
     LocalArrangement& scope_;
-    const SurfaceTiling& layer_;
+    const SurfaceTiling& tiling_;
     std::vector<Edge> edges_;
     std::vector<std::int32_t> parent_;
     std::vector<std::uint8_t> is_joined_;  ///< for each edge

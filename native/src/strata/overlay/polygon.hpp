@@ -28,7 +28,7 @@ struct Corner {
 using Polygon = std::vector<Corner>;
 using PolygonView = std::span<const Corner>;
 
-/// Copies the corners of a polygon to another place, those of triangles and of most pieces by a few
+/// Copies the corners of a polygon to other memory, those of triangles and of most pieces by a few
 /// instructions: a call for each costs more than its corners.
 inline void copy_corners(PolygonView from, Corner* to) {
     const auto copy_two = [&](std::size_t at) {

@@ -12,7 +12,7 @@ namespace realmodel::strata {
 struct WholeFace {
     static constexpr std::int32_t kUnset = -2;
     std::int32_t above = kUnset, below = kUnset;  ///< nodes, or kOutsideCell
-    std::int32_t layer = -1;                      ///< number of the surface that it is of
+    std::int32_t surface = -1;                    ///< number of the surface that it is of
 
     bool is_set() const { return below != kUnset; }
     bool is_face() const { return is_set() && (above >= 0 || below >= 0); }

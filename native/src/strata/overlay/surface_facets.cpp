@@ -46,7 +46,7 @@ public:
         at_.add_facet(outline);
         envelope_.outlines.offsets[facet + 1] = static_cast<std::int64_t>(at_.corners);
         envelope_.plane[facet] = plane;
-        envelope_.layer[facet] = number_;
+        envelope_.surface[facet] = number_;
         envelope_.block_beneath[facet] = number_;
         envelope_.face_offsets[facet + 1] = static_cast<std::int64_t>(at_.faces);
     }
@@ -69,7 +69,7 @@ void resize(Envelope& envelope, const EnvelopeSize& size) {
     envelope.outlines.offsets.resize(size.facets + 1);
     envelope.outlines.corners.resize(size.corners);
     envelope.plane.resize(size.facets);
-    envelope.layer.resize(size.facets);
+    envelope.surface.resize(size.facets);
     envelope.block_beneath.resize(size.facets);
     envelope.face_offsets.resize(size.facets + 1);
     envelope.face_polygons.offsets.resize(size.faces + 1);

@@ -136,7 +136,7 @@ private:
     const Progress* progress_;
     const BlockTiling* tiling_ = nullptr;
     std::vector<TileContent> surface_tiles_, facet_tiles_;
-    std::vector<std::uint8_t> is_unclear_;   ///< of each tile: exact triangles or parts meet it
+    std::vector<std::uint8_t> is_unclear_;  ///< of each tile: exact triangles or parts meet it
     std::vector<std::uint8_t>
         is_same_;  ///< of each plane, for raised surfaces: a facet, a triangle
 };

@@ -90,7 +90,8 @@ std::vector<std::array<std::int32_t, 2>> single_edges(const Mesh& mesh, const Pr
 
 /// The edges that one triangle only has in plan, ascending.
 std::vector<PlanEdge> border_of(const Mesh& mesh, const Progress* progress) {
-    // first by number, which leaves few; then by place, for vertices that are given several times
+    // first by number, which leaves few; then by position, for vertices that are given several
+    // times
     const auto once = single_edges(mesh, progress);
     std::vector<PlanEdge> edges;
     for (const auto& [a, b] : once)

@@ -14,12 +14,13 @@ namespace realmodel::strata {
 
 /// Input whose borders run through each other's vertices.
 ///
-/// Meshes of one outline with different edge lengths have their border vertices at different places
-/// of its straight edges, each off the line by a unit in the last place: slivers of rounding size
-/// would lie all along the border. So every edge that borders a surface or a region is divided at
-/// the border vertices that lie within rounding of it (in every mesh that has this edge), and the
-/// triangles at it with the edge; the borders then coincide exactly. Where all vertices lie exactly
-/// on the line nothing is divided, and no triangle is where one of its parts would turn over.
+/// Meshes of one outline with different edge lengths have their border vertices at different
+/// positions of its straight edges, each off the line by a unit in the last place: slivers of
+/// rounding size would lie all along the border. So every edge that borders a surface or a region
+/// is divided at the border vertices that lie within rounding of it (in every mesh that has this
+/// edge), and the triangles at it with the edge; the borders then coincide exactly. Where all
+/// vertices lie exactly on the line nothing is divided, and no triangle is where one of its parts
+/// would turn over.
 struct JoinedBorders {
     std::vector<StackInput> rocks;  ///< views of the meshes below; all coordinates snapped
     std::deque<std::vector<double>> vertices;

@@ -122,7 +122,7 @@ EnteredVertices enter_vertices(PlanArrangement& geometry, const SurfaceView& sur
     };
     for (std::size_t round = 0; round < count + 2 * kAhead; ++round) {
         poll(progress, round);
-        // the space vertex of one, the plan vertex of a later one, the place of an even later one
+        // the space vertex of one, the plan vertex of a later one, the slot of an even later one
         if (is_to_enter(round, 2 * kAhead)) {
             const Entering& e = ahead[round % ahead.size()];
             entered.plan[round - 2 * kAhead] = e.plan;

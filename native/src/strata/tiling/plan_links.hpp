@@ -23,7 +23,7 @@ struct PlanLinks {
     /// Across edge i, from corner i to corner i + 1: the one triangle that passes it the other way,
     /// where there is no third; -1 where there is none.
     std::vector<std::array<std::int32_t, 3>> neighbor;
-    /// The border in the sense of homology: how often a place is covered changes only here.
+    /// The border in the sense of homology: how often a position is covered changes only here.
     std::vector<BorderEdge> border;
 };
 

@@ -31,16 +31,16 @@ struct FoundFacets {
     PolygonPool outlines;
     std::vector<PlaneId> plane;
     std::vector<std::int32_t>
-        polygon;  ///< of the surface that was laid over, -1 for the older layer
+        polygon;  ///< of the surface that was laid over, -1 for the older tiling
 };
 
-void append(FoundFacets& found, std::size_t i, SurfaceTiling& layer) {
+void append(FoundFacets& found, std::size_t i, SurfaceTiling& tiling) {
     Polygon outline(found.outlines[i].begin(), found.outlines[i].end());
     for (Corner& corner : outline) {
         corner = {found.scope.shared_point(corner.point), found.scope.shared_directed(corner.line)};
     }
-    layer.polygons.add(outline);
-    layer.plane.push_back(found.plane[i]);
+    tiling.polygons.add(outline);
+    tiling.plane.push_back(found.plane[i]);
 }
 
 /// Calls work(facet of `older`, finder, found) for every facet, in parallel; results in order.

@@ -33,37 +33,37 @@ PlanTriangle plan_of(const PlanArrangement& geometry, const UsedTriangle& triang
 }
 
 /// Void triangles (plane `empty`) where nothing is covered.
-void add_empty(PlanArrangement& geometry, SurfaceTiling& layer, const FrameTriangles& filling,
+void add_empty(PlanArrangement& geometry, SurfaceTiling& tiling, const FrameTriangles& filling,
                PlaneId empty) {
     for (std::size_t t = 0; t < filling.triangles.size(); ++t) {
         if (filling.covered[t] != 0) continue;
-        add_triangle(geometry, layer.polygons, filling.triangles[t]);
-        layer.plane.push_back(empty);
+        add_triangle(geometry, tiling.polygons, filling.triangles[t]);
+        tiling.plane.push_back(empty);
     }
 }
 
-[[noreturn]] void refuse_pair(LocalArrangement& scope, const SurfaceTiling& layer,
+[[noreturn]] void refuse_pair(LocalArrangement& scope, const SurfaceTiling& tiling,
                               const std::vector<UsedTriangle>& triangles, std::size_t one,
                               std::size_t other, int index) {
     Clipper clipper(scope);
-    const PolygonView common = clipper.intersect(layer.polygons[one], layer.polygons[other]);
-    std::array<double, 3> place{0, 0, 0};
+    const PolygonView common = clipper.intersect(tiling.polygons[one], tiling.polygons[other]);
+    std::array<double, 3> position{0, 0, 0};
     const auto share = 1.0 / static_cast<double>(common.size());
     for (const Corner& corner : common) {
         const auto& p = scope.point(corner.point);
-        place[0] += p.x * share;
-        place[1] += p.y * share;
-        place[2] += scope.rounded_height(layer.plane[one], corner.point) * share;
+        position[0] += p.x * share;
+        position[1] += p.y * share;
+        position[2] += scope.rounded_height(tiling.plane[one], corner.point) * share;
     }
     throw InputError("double_valued",
                      "triangles " + std::to_string(triangles[one].number) + " and " +
                          std::to_string(triangles[other].number) +
                          " overlap in plan: the surface has two heights there",
-                     index, {triangles[one].number, triangles[other].number}, place);
+                     index, {triangles[one].number, triangles[other].number}, position);
 }
 
 /// Names the first two triangles that overlap; to be called where there are some.
-[[noreturn]] void refuse_overlap(const PlanArrangement& geometry, const SurfaceTiling& layer,
+[[noreturn]] void refuse_overlap(const PlanArrangement& geometry, const SurfaceTiling& tiling,
                                  const std::vector<UsedTriangle>& triangles, int index, int threads,
                                  const Progress* progress) {
     constexpr std::size_t kChunk = 1024;
@@ -74,20 +74,21 @@ void add_empty(PlanArrangement& geometry, SurfaceTiling& layer, const FrameTrian
             Array<std::int32_t> candidates;
             const std::size_t end = std::min(triangles.size(), (chunk + 1) * kChunk);
             for (std::size_t t = chunk * kChunk; t < end; ++t) {
-                layer.grid.candidates(scope, layer.polygons[t], candidates);
+                tiling.grid.candidates(scope, tiling.polygons[t], candidates);
                 for (const std::int32_t c : candidates) {
                     const auto other = static_cast<std::size_t>(c);
-                    if (other > t && clipper.overlap(layer.polygons[t], layer.polygons[other])) {
-                        refuse_pair(scope, layer, triangles, t, other, index);
+                    if (other > t && clipper.overlap(tiling.polygons[t], tiling.polygons[other])) {
+                        refuse_pair(scope, tiling, triangles, t, other, index);
                     }
                 }
             }
         });
-    throw std::logic_error("a surface covers a place twice, yet no two of its triangles overlap");
+    throw std::logic_error(
+        "a surface covers a position twice, yet no two of its triangles overlap");
 }
 
-/// Where triangles that turn counter-clockwise lie in the frame; nothing where they cover a place
-/// twice.
+/// Where triangles that turn counter-clockwise lie in the frame; nothing where they cover a
+/// position twice.
 std::optional<FrameTriangles> cover_frame(const PlanArrangement& geometry,
                                           const std::vector<BorderEdge>& border,
                                           const Frame& frame) {
@@ -163,10 +164,10 @@ SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
                                   const std::vector<UsedTriangle>& triangles,
                                   const SurfacePlan& plan, const PolygonPool& similar, int index,
                                   int threads, const Progress* progress) {
-    SurfaceTiling layer;
+    SurfaceTiling tiling;
     const PlaneId first = make_planes(geometry, triangles, threads, progress);
-    layer.plane.resize(triangles.size());
-    std::iota(layer.plane.begin(), layer.plane.end(), first);
+    tiling.plane.resize(triangles.size());
+    std::iota(tiling.plane.begin(), tiling.plane.end(), first);
     add_outlines(
         geometry, triangles.size(), [&](std::size_t t) { return plan_of(geometry, triangles[t]); },
         [&](std::size_t t, std::size_t i) {
@@ -174,38 +175,38 @@ SurfaceTiling make_surface_tiling(PlanArrangement& geometry,
             return n >= 0 && static_cast<std::size_t>(n) < t ? n : kNoOutline;
         },
         [&](std::size_t t) { return t < similar.size() ? similar[t] : PolygonView(); },
-        layer.polygons, progress);
+        tiling.polygons, progress);
     if (!plan.filling) {
-        layer.index(geometry, threads, progress);
-        refuse_overlap(geometry, layer, triangles, index, threads, progress);
+        tiling.index(geometry, threads, progress);
+        refuse_overlap(geometry, tiling, triangles, index, threads, progress);
     }
-    add_empty(geometry, layer, *plan.filling, kVoid);
-    layer.index(geometry, threads, progress);
+    add_empty(geometry, tiling, *plan.filling, kVoid);
+    tiling.index(geometry, threads, progress);
     parallel_ranges(
         triangles.size(), kRange, threads, progress, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = begin; t < end; ++t) {
                 bool runs_on = true;
                 for (std::size_t i = 0; i < 3 && runs_on; ++i) {
                     const std::int32_t n = plan.links.neighbor[t][i];
-                    runs_on = n >= 0 && meet_in_height(geometry, layer.plane[t], i,
-                                                       layer.plane[static_cast<std::size_t>(n)]);
+                    runs_on = n >= 0 && meet_in_height(geometry, tiling.plane[t], i,
+                                                       tiling.plane[static_cast<std::size_t>(n)]);
                 }
-                layer.runs_on[t] = runs_on ? 1 : 0;
+                tiling.runs_on[t] = runs_on ? 1 : 0;
             }
         });
-    return layer;
+    return tiling;
 }
 
 SurfaceTiling make_region_tiling(PlanArrangement& geometry,
                                  const std::vector<PlanTriangle>& triangles,
                                  const FrameTriangles& filling) {
-    SurfaceTiling layer;
+    SurfaceTiling tiling;
     for (const PlanTriangle& triangle : triangles) {
-        add_triangle(geometry, layer.polygons, triangle);
-        layer.plane.push_back(kSky);
+        add_triangle(geometry, tiling.polygons, triangle);
+        tiling.plane.push_back(kSky);
     }
-    add_empty(geometry, layer, filling, kOutside);
-    return layer;
+    add_empty(geometry, tiling, filling, kOutside);
+    return tiling;
 }
 
 }  // namespace realmodel::strata

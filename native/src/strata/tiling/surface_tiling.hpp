@@ -13,7 +13,7 @@
 
 namespace realmodel::strata {
 
-/// Planes that are none: where a layer has no surface, what lies above all surfaces, and what lies
+/// Planes that are none: where a tiling has no surface, what lies above all surfaces, and what lies
 /// outside the region.
 inline constexpr PlaneId kVoid{-1};
 inline constexpr PlaneId kSky{-2};
@@ -26,8 +26,8 @@ struct HeightRange {
 HeightRange heights_of(const exact::PlanArrangement& geometry, PlaneId plane);
 
 /// One surface as a set of convex plan polygons that tile the whole frame: its triangles, and void
-/// triangles where it has none. So every plan point lies in one polygon of every layer, and cutting
-/// away what a surface does not cover needs no operation of its own.
+/// triangles where it has none. So every plan point lies in one polygon of every tiling, and
+/// cutting away what a surface does not cover needs no operation of its own.
 struct SurfaceTiling {
     PolygonPool polygons;
     std::vector<PlaneId> plane;  ///< of each polygon, kVoid where there is no surface
@@ -65,7 +65,7 @@ bool meet_in_height(const exact::PlanArrangement& geometry, PlaneId plane, std::
 /// How a surface lies in plan.
 struct SurfacePlan {
     PlanLinks links;
-    /// The frame around its triangles; nothing where they cover a place twice.
+    /// The frame around its triangles; nothing where they cover a position twice.
     std::optional<FrameTriangles> filling;
 };
 
@@ -78,9 +78,9 @@ std::vector<SurfacePlan> plan_surfaces(const exact::PlanArrangement& geometry,
 PlaneId make_planes(exact::PlanArrangement& geometry, const std::vector<UsedTriangle>& triangles,
                     int threads, const Progress* progress);
 
-/// The layer of a checked surface. `similar`: outlines that some of the triangles may have at the
+/// The tiling of a checked surface. `similar`: outlines that some of the triangles may have at the
 /// same numbers, whose lines are then known.
-/// @throws InputError kind double_valued, with the two triangles and a place in both
+/// @throws InputError kind double_valued, with the two triangles and a position in both
 SurfaceTiling make_surface_tiling(exact::PlanArrangement& geometry,
                                   const std::vector<UsedTriangle>& triangles,
                                   const SurfacePlan& plan, const PolygonPool& similar, int index,

@@ -12,20 +12,21 @@ namespace {
 /// first edge a vertex is inserted, and another one was only tentative.
 struct Conforming {
     SmallFaces small{{0, 1}};
-    ConformedFaces loops;
+    ConformedFaces conformed;
     std::vector<std::int32_t> surface_of_plane{8, 9};
 
     Conforming() {
         small.add(1, {0, 4, 1}, kOutsideCell, 0);
         small.add(0, {0, 4, 1}, 0, kOutsideCell);
-        loops.face_offsets = {0, 3, 7};
-        loops.vertices = {0, 1, 2, 3, -1, 4, 5};
-        loops.inserted = {{4, 6}};
-        loops.positions = {{0, 0, 1}, {1, 1.5, 1}, {0, 1, 1}, {0, 0, 0},
-                           {1, 1.5, 0}, {0, 1, 0}, {0.5, 0.75, 0}};
+        conformed.face_offsets = {0, 3, 7};
+        conformed.vertices = {0, 1, 2, 3, -1, 4, 5};
+        conformed.inserted = {{4, 6}};
+        conformed.positions = {{0, 0, 1},   {1, 1.5, 1}, {0, 1, 1},     {0, 0, 0},
+                               {1, 1.5, 0}, {0, 1, 0},   {0.5, 0.75, 0}};
     }
     CellComplex assembled(std::vector<WallBatch> walls = {}) {
-        return assemble(small.faces, surface_of_plane, loops, std::move(walls), {5}, 1, nullptr);
+        return assemble(small.faces, surface_of_plane, conformed, std::move(walls), {5}, 1,
+                        nullptr);
     }
     static std::vector<std::int32_t> face(const CellComplex& complex, std::size_t f) {
         return {complex.face_vertices.begin() + complex.face_offsets[f],
@@ -45,11 +46,11 @@ TEST(Assembly, AFaceIsCounterClockwiseFromOutsideItsFirstCell) {
 
 TEST(Assembly, TentativeVerticesAreLeftOutAndInsertedOnesFollowTheirEntry) {
     Conforming c;
-    c.loops.inserted = {{3, 6}};
+    c.conformed.inserted = {{3, 6}};
     EXPECT_EQ(Conforming::face(c.assembled(), 1), (std::vector<std::int32_t>{5, 4, 6, 3}));
-    c.loops.inserted = {{6, 6}};
+    c.conformed.inserted = {{6, 6}};
     EXPECT_EQ(Conforming::face(c.assembled(), 1), (std::vector<std::int32_t>{6, 5, 4, 3}));
-    c.loops.inserted = {};
+    c.conformed.inserted = {};
     EXPECT_EQ(Conforming::face(c.assembled(), 1), (std::vector<std::int32_t>{5, 4, 3}));
 }
 

@@ -26,14 +26,13 @@ TEST(CellComponents, AreNamedAfterTheirLowestCell) {
 TEST(CellComponents, RefuseCellsThatAreNotThere) {
     const std::vector<Sides> beyond{{0, -1}, {0, 2}};
     const std::vector<std::int32_t> block{0, 0};
-    for (const auto& call : {+[](const std::vector<Sides>& faces,
-                                 const std::vector<std::int32_t>& blocks) {
-             cell_components(faces, blocks, nullptr);
-         },
-                             +[](const std::vector<Sides>& faces,
-                                 const std::vector<std::int32_t>& blocks) {
-                                 cell_sides(faces, blocks.size(), nullptr);
-                             }}) {
+    for (const auto& call :
+         {+[](const std::vector<Sides>&faces, const std::vector<std::int32_t>&blocks) {
+              cell_components(faces, blocks, nullptr);
+          },
+          +[](const std::vector<Sides>&faces, const std::vector<std::int32_t>&blocks) {
+              cell_sides(faces, blocks.size(), nullptr);
+          }}) {
         try {
             call(beyond, block);
             FAIL() << "accepted";

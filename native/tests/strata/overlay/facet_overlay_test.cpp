@@ -35,7 +35,7 @@ TEST(FacetOverlay, ClosesAColumnUnderEachFacet) {
     for (std::size_t f = 0; f < 2; ++f) {
         EXPECT_EQ(c.made.faces.above[f], kOutsideCell);
         EXPECT_EQ(c.made.faces.below[f], static_cast<std::int32_t>(f));
-        EXPECT_EQ(c.made.faces.layer[f], 1);
+        EXPECT_EQ(c.made.faces.surface[f], 1);
     }
     // the surface is the envelope now, each of its triangles a facet with one face
     EXPECT_EQ(c.blocks_beneath(), (std::vector<std::int32_t>{0, 0}));
@@ -60,7 +60,7 @@ TEST(FacetOverlay, WhatWasErodedLeavesTheFacetOverItsBlock) {
     EXPECT_TRUE(c.made.faces.size() == 0);
     EXPECT_EQ(c.blocks_beneath(), (std::vector<std::int32_t>{0, 0}));
     for (std::size_t f = 0; f < c.envelope.size(); ++f) {
-        EXPECT_EQ(c.envelope.layer[f], c.envelope.plane[f].has_value() ? 1 : -1);
+        EXPECT_EQ(c.envelope.surface[f], c.envelope.plane[f].has_value() ? 1 : -1);
     }
 }
 
@@ -74,7 +74,7 @@ TEST(FacetOverlay, WhereSurfacesCrossBothAreDivided) {
         EXPECT_EQ(thick, 0);
     std::array<int, 2> facets{0, 0};  // of the younger and the older one
     for (std::size_t f = 0; f < c.envelope.size(); ++f) {
-        if (c.envelope.plane[f].has_value()) ++facets[c.envelope.layer[f] == 1 ? 0 : 1];
+        if (c.envelope.plane[f].has_value()) ++facets[c.envelope.surface[f] == 1 ? 0 : 1];
     }
     EXPECT_GT(facets[0], 0);
     EXPECT_GT(facets[1], 0);
