@@ -22,7 +22,7 @@ enum class CellKind {
 // What a face lies on, where that is no surface.
 inline constexpr std::int32_t kWall = -1;  ///< a vertical wall
 inline constexpr std::int32_t kBase = -2;  ///< the flat base
-/// What a cut laid bare (realmodel/cutting): it lies between the two halves.
+/// The face that a cut made (realmodel/cutting): it lies between the two halves.
 inline constexpr std::int32_t kCutFace = -3;
 
 /// A view of a cell complex: polyhedral cells that share faces (docs/geometry.md), wherever the

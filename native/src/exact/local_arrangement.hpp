@@ -37,7 +37,7 @@ public:
     int side(DirectedLine line, PointId point);
     /// The sign of the height of plane `upper` less that of plane `lower` above a point.
     int compare_heights(PlaneId upper, PlaneId lower, PointId point);
-    /// The same with the filter of their trace at hand; the trace itself need not exist.
+    /// The same with a given filter of their trace; the trace itself need not exist.
     int compare_heights(PlaneId upper, PlaneId lower, const LineFilter& trace, PointId point);
     /// Whether a point lies to the left of a line, or a trace, that need not exist; where floating
     /// point does not tell, it says no.

@@ -24,7 +24,7 @@ PlanBox around(const PlanBox& a, const PlanBox& b) {
             std::max(a.high_y, b.high_y)};
 }
 
-/// The surfaces of all rock masses, and how their triangles hang together.
+/// The surfaces of all rock masses, and how their triangles are connected.
 struct Surfaces {
     TriangleLinks links;
     std::vector<std::vector<BlockTiling>> of_rock;  ///< oldest first

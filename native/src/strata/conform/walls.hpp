@@ -26,7 +26,7 @@ struct BlockLines {
     const BorderEdges& borders;
 };
 
-/// What stands on lines.
+/// What was found on lines.
 struct FoundWalls {
     /// Points that lines must pass first, where columns left and right of one cross in height; then
     /// there is nothing else.
@@ -37,7 +37,7 @@ struct FoundWalls {
 };
 
 /// Finds the walls between columns, or where `blocks` are given the walls between different blocks
-/// and the nodes that hang together. Where a border runs along a line all faces on both its sides
+/// and the nodes that are connected. Where a border runs along a line all faces on both its sides
 /// are there, and what is between them is compared; elsewhere a face goes on beyond the line as it
 /// is, and so do the nodes above and below it. If nothing is missing, the matched edges are given
 /// back on the way.

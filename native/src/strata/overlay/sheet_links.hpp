@@ -46,7 +46,7 @@ struct SealedFacets {
 };
 
 /// Links sealed facets with the surface beneath them, which they were never overlaid with.
-/// Neighboring triangles of facets hang together, and so do the triangles beneath them: one link
+/// Neighboring triangles of facets are connected, and so are the triangles beneath them: one link
 /// for each connected part of them is enough.
 /// @param filter  which compared `tiling` with the facets
 /// @param node_above  of each triangle of the tiling that is below

@@ -7,7 +7,7 @@ namespace realmodel::strata {
 
 namespace {
 
-/// Adds the facets of a bound that the filter found to stand in a given way.
+/// Adds the facets of a bound that the filter found to be in a given standing.
 void add_standing(const BlockTiling& bound, const std::vector<Standing>& standing, Standing wanted,
                   BlockTiling& to) {
     for (std::size_t f = 0; f < bound.size(); ++f) {

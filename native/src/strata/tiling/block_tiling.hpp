@@ -31,7 +31,7 @@ struct BlockTiling {
     }
 };
 
-/// How the triangles of surfaces hang together in space.
+/// How the triangles of surfaces are connected in space.
 struct TriangleLinks {
     /// Of each plane: across edge i, from corner i to corner i + 1, the only other triangle of its
     /// surface there, at the same heights; -1 where a wall may stand.

@@ -18,7 +18,7 @@ struct BorderEdge {
     std::int32_t net;  ///< passes from low to high less passes from high to low
 };
 
-/// How triangles that turn counter-clockwise in plan hang together.
+/// How triangles that turn counter-clockwise in plan are connected.
 struct PlanLinks {
     /// Across edge i, from corner i to corner i + 1: the one triangle that passes it the other way,
     /// where there is no third; -1 where there is none.

@@ -49,7 +49,7 @@ struct UsedTriangle {
     std::array<exact::SpaceId, 3> corner;  ///< counter-clockwise in plan
 };
 
-/// A checked surface, and how its triangles hang together in plan.
+/// A checked surface, and how its triangles are connected in plan.
 struct EnteredSurface {
     std::vector<UsedTriangle> triangles;
     PlanLinks links;
