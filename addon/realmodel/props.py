@@ -97,7 +97,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
         description="Unit of the model's lengths; files in other units are brought to it",
         items=units.ITEMS,
         default=MODEL_UNIT,
-        update=changes.setting,
+        update=changes.model_unit,
     )
     project_file: StringProperty(
         name="Project file",
