@@ -23,8 +23,11 @@ def _from_1(scene):
 
 
 def _from_2(scene):
-    """Scenes had Blender's usual unit, whatever the unit of the model."""
+    """Scenes had Blender's usual unit, whatever the unit of the model; entries of the library had one ID."""
     units.set_up(scene, scene.realmodel.units)
+    with settings.filling():
+        for entry in scene.realmodel.library:
+            entry.known_id = entry.id
 
 
 _STEPS = (_from_0, _from_1, _from_2)  # step n makes version n + 1 of version n

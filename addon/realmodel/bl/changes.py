@@ -2,7 +2,7 @@
 """What follows when a setting is changed by hand or by a script: each update callback is one function
 here."""
 
-from . import display, live, settings, units
+from . import display, live, region_size, settings, units
 
 
 def setting(row, _context):
@@ -48,6 +48,7 @@ def region(rock, context):
         return
     rock.region_stored = rock.region_stamp = ""
     rock.region_area = -1.0
+    region_size.ask()
     setting(rock, context)
 
 
