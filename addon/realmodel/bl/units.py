@@ -63,7 +63,9 @@ def volume_text(scene, row):
 
 def full_volume_text(scene, row):
     """The same with every cubic unit."""
-    return _text(scene, results.volume(row), 3, lambda value: f"{value:,.{0 if abs(value) >= 1000.0 else 3}f}")
+    return _text(
+        scene, results.volume(row), 3, lambda value: f"{value:,.{0 if abs(value) >= 1000.0 else 3}f}"
+    )
 
 
 def total_volume_text(scene):

@@ -61,7 +61,7 @@ class REALMODEL_UL_library(bpy.types.UIList):
 
 
 def result_columns(layout):
-    """The columns of the table of blocks: name, volume, share of all. The usual sidebar has room for them, and
+    """The columns of the table of blocks: name, volume, share of all. The usual sidebar has room for them and
     for the list's scroll bar."""
     split = layout.split(factor=0.42)
     name, rest = split.row(), split.split(factor=0.66)
