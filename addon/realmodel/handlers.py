@@ -49,6 +49,7 @@ def _loaded(*_arguments):
     migrate_all()
     display.opened()
     live.switched()
+    region_size.ask()
 
 
 @persistent
@@ -67,7 +68,13 @@ def _before_saving(*_arguments):
             composed = project_settings.compose(scene, _depsgraph(scene), whole=False)
             stored_project.store(scene, project_settings.read_project(composed))
         except RealModelError as error:
-            print(f"RealModel: scene '{scene.name}': its project is not stored: {error}")
+            _tell(f"scene '{scene.name}': its project is not stored in the .blend: {error}")
+
+
+def _tell(text):
+    """The panel shows it, and whoever reads the console."""
+    print(f"RealModel: {text}")
+    bpy.context.window_manager.realmodel.problem = text
 
 
 def _depsgraph(scene):
@@ -100,7 +107,7 @@ def migrate_all():
         try:
             versioning.migrate(scene)
         except RealModelError as error:
-            print(f"RealModel: scene '{scene.name}': {error}")
+            _tell(f"scene '{scene.name}': {error}")
 
 
 @persistent

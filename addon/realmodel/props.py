@@ -38,8 +38,9 @@ class RealModelProperty(bpy.types.PropertyGroup):
         name="ID",
         description="Number by which surfaces name this property; each entry has its own",
         default=1,
-        update=library_rows.changed,
+        update=library_rows.id_changed,
     )
+    known_id: IntProperty(options={"HIDDEN"})
     name: StringProperty(
         name="Name",
         description="Name of the rock; the material of its blocks is called so",
@@ -97,7 +98,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
         description="Unit of the model's lengths; files in other units are brought to it",
         items=units.ITEMS,
         default=MODEL_UNIT,
-        update=changes.setting,
+        update=changes.model_unit,
     )
     project_file: StringProperty(
         name="Project file",

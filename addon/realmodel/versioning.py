@@ -5,7 +5,7 @@ Version 0 is a scene that build_model.py wrote: it has the stored project and th
 tests/data/versions has a file of each version.
 """
 
-from .bl import adoption, method_settings, plan_mesh, settings
+from .bl import adoption, method_settings, plan_mesh, settings, units
 
 
 def _from_0(scene):
@@ -22,7 +22,15 @@ def _from_1(scene):
                 method_settings.take_up_nested_variogram(surface)
 
 
-_STEPS = (_from_0, _from_1)  # step n makes version n + 1 of version n
+def _from_2(scene):
+    """Scenes had Blender's usual unit, whatever the unit of the model; entries of the library had one ID."""
+    units.set_up(scene, scene.realmodel.units)
+    with settings.filling():
+        for entry in scene.realmodel.library:
+            entry.known_id = entry.id
+
+
+_STEPS = (_from_0, _from_1, _from_2)  # step n makes version n + 1 of version n
 
 
 def needs_migration(scene):

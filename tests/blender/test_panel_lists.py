@@ -62,6 +62,13 @@ class Rocks(PanelCase):
     def test_region_of_a_mesh_is_its_border(self):
         self.assertAlmostEqual(self.region_area(sheet("r", 3.0)), 1e4, places=2)
 
+    def test_a_new_region_is_measured_without_the_panel(self):
+        ops.rock_add()
+        self.model.rocks[0].region = outline("r", SQUARE)
+        self.assertTrue(bpy.app.timers.is_registered(region_size._measure_all))
+        region_size._measure_all()
+        self.assertAlmostEqual(self.model.rocks[0].region_area, 1e4, places=2)
+
     def test_an_open_region_is_refused(self):
         stack(0.0, 10.0)
         self.model.rocks[0].region = outline("r", SQUARE, cyclic=False)
@@ -276,6 +283,24 @@ class Surfaces(PanelCase):
 
 
 class Library(PanelCase):
+    def test_another_id_goes_to_all_that_has_the_property(self):
+        stack(0.0, 10.0)
+        ops.library_add(name="Sand")
+        ops.library_add(name="Clay")
+        self.model.rocks[0].surfaces[1].property_id = 1
+        ops.build()
+        material = bpy.data.objects["S1 block"].data.materials[0]
+        self.model.library[0].id = 7
+        self.assertEqual(self.model.rocks[0].surfaces[1].property_id, 7)
+        self.assertEqual(self.model.results[0].property_id, 7)
+        self.assertEqual(material["realmodel_property"], 7)
+        self.assertEqual(bpy.data.objects["S1 block"]["realmodel_property"], 7)
+        ops.build()
+        self.assertEqual(bpy.data.objects["S1 block"].data.materials[0], material)
+        for taken in (2, 0, -1):  # another entry's, and what is no ID
+            self.model.library[0].id = taken
+            self.assertEqual([entry.id for entry in self.model.library], [7, 2])
+
     def test_add_edit_remove(self):
         stack(0.0, 10.0)
         ops.library_add(name="Sand")

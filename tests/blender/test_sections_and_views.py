@@ -153,9 +153,9 @@ class Cuts(Case):
 
 class Viewed(Case):
     def view(self):
-        from realmodel.bl.display import viewpoints
+        from realmodel.bl import viewports
 
-        return viewpoints.spaces(bpy.context)[0].region_3d
+        return viewports.spaces(bpy.context)[0].region_3d
 
 
 class Views(Viewed):

@@ -7,11 +7,9 @@ import sys
 from pathlib import Path
 
 import bpy
-import numpy as np
-from mathutils import Vector
 
 from ..core import OutputFailed
-from . import picture, scene
+from . import picture, scene, viewports
 
 
 def write_scene(model):
@@ -25,7 +23,7 @@ def write_scene(model):
     project = scene.write_model(current, model)
     if not bpy.data.filepath:
         _remove_startup_objects(current, project)
-    frame_viewports(current)
+    viewports.frame(current, viewports.all_spaces())
 
 
 def save_blend(path):
@@ -90,25 +88,3 @@ def _remove_startup_objects(current, project):
     for store in (bpy.data.meshes, bpy.data.lights, bpy.data.cameras, bpy.data.materials):
         for datablock in [datablock for datablock in store if not datablock.users]:
             store.remove(datablock)
-
-
-def frame_viewports(current):
-    """Turn the 3D viewports of the file to the model, and let them see that far."""
-    corners = [
-        item.matrix_world @ Vector(corner)
-        for item in scene.model_objects(current)
-        for corner in item.bound_box
-    ]
-    if not corners:
-        return
-    corners = np.array(corners)
-    middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-    diagonal = float(np.linalg.norm(np.ptp(corners, axis=0)))
-    for screen in bpy.data.screens:
-        for area in screen.areas:
-            for space in area.spaces:
-                if space.type == "VIEW_3D":
-                    space.clip_start, space.clip_end = diagonal / 1e4, diagonal * 10.0
-                    space.region_3d.view_location = middle
-                    space.region_3d.view_distance = diagonal
-                    space.region_3d.view_rotation = picture.view_rotation().to_quaternion()

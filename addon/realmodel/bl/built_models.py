@@ -7,7 +7,9 @@ the model itself is not there and is built again when somebody asks for it.
 
 import secrets
 
-_MOST_KEPT = 4
+import numpy as np
+
+MOST_BYTES = 1 << 30  # that kept models may take; the newest stays, however large
 _models = {}  # (stamp, cells) -> realmodel.core.Model, the oldest first
 
 
@@ -16,10 +18,16 @@ def remember(model, stamp=None):
     cells."""
     stamp = stamp or new_stamp()
     _models.pop((stamp, model.cell_kind), None)
-    while len(_models) >= _MOST_KEPT:
-        _models.pop(next(iter(_models)))
     _models[stamp, model.cell_kind] = model
+    total = sum(map(_bytes_of, _models.values()))
+    while total > MOST_BYTES and len(_models) > 1:
+        total -= _bytes_of(_models.pop(next(iter(_models))))
     return stamp
+
+
+def _bytes_of(model):
+    """The memory that the arrays of a model take."""
+    return sum(value.nbytes for value in vars(model).values() if isinstance(value, np.ndarray))
 
 
 def new_stamp():

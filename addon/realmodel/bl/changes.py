@@ -2,13 +2,20 @@
 """What follows when a setting is changed by hand or by a script: each update callback is one function
 here."""
 
-from . import display, live, settings
+from . import display, live, region_size, settings, units
 
 
 def setting(row, _context):
     """Any setting that the model depends on."""
     if not settings.is_filling():
         live.touch(row.id_data)
+
+
+def model_unit(group, _context):
+    """Another unit of the model's lengths."""
+    if not settings.is_filling():
+        units.set_up(group.id_data, group.units)
+        live.touch(group.id_data)
 
 
 def colouring(row, _context):
@@ -41,6 +48,7 @@ def region(rock, context):
         return
     rock.region_stored = rock.region_stamp = ""
     rock.region_area = -1.0
+    region_size.ask()
     setting(rock, context)
 
 

@@ -40,7 +40,8 @@ def add(scene, entry):
     """A row for one realmodel.core.Property."""
     row = scene.realmodel.library.add()
     with settings.filling():
-        row.id, row.name = entry.id, entry.name
+        row.id = row.known_id = entry.id
+        row.name = entry.name
         for key in _TEXTS:
             setattr(row, key, getattr(entry, key) or "")
         if entry.density is not None:
@@ -71,8 +72,32 @@ def hex_colour(color):
     return "#" + "".join(f"{round(255 * min(max(channel, 0.0), 1.0)):02x}" for channel in color)
 
 
+def id_changed(row, _context):
+    """What has a property keeps it under its new ID. One that is no ID, or another entry's, is not taken."""
+    if settings.is_filling() or row.id == row.known_id:
+        return
+    scene, old = row.id_data, row.known_id
+    with settings.filling():
+        if row.id < 1 or sum(other.id == row.id for other in scene.realmodel.library) > 1:
+            row.id = old
+            return
+        row.known_id = row.id
+        for material in scene_materials(scene, old):
+            material[materials.KEY] = row.id
+        for _, surface in settings.surface_rows(scene):
+            if surface.property_id == old:
+                surface.property_id = row.id
+        for block in scene.realmodel.results:
+            if block.property_id == old:
+                block.property_id = row.id
+    for item in scene.objects:
+        if item.get(materials.KEY) == old:
+            item[materials.KEY] = row.id
+    live.touch(scene)
+
+
 def changed(row, _context):
-    """A name or an ID was changed."""
+    """A name was changed."""
     if not settings.is_filling():
         _update_material(row)
         live.touch(row.id_data)

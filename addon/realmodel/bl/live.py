@@ -41,7 +41,7 @@ def is_working():
 
 def changed(scene, depsgraph):
     """Blender has evaluated changed objects."""
-    from . import plan_mesh
+    from . import plan_mesh, region_size
 
     group = scene.realmodel
     if _at_work or not len(group.rocks):
@@ -52,6 +52,7 @@ def changed(scene, depsgraph):
     for rock in group.rocks:
         if rock.region is not None and _names(rock.region) & edited:
             rock.region_area = -1.0
+            region_size.ask()
             touch(scene)
         if any(_names(item) & edited for item in plan_mesh.objects(rock)):
             touch(scene)
@@ -97,10 +98,10 @@ def _finish(name, job, changed_at):
     except Cancelled:
         return
     except Exception as error:
-        _tell(error)
+        _tell(bpy.data.scenes.get(name), error)
     else:
         measured[name] = time.perf_counter() - changed_at
-        _tell(None)
+        _tell(None, None)
 
 
 @contextmanager
@@ -130,20 +131,20 @@ def _begin(name, _changed_at):
             built_scene.check_modes(scene)
             job = build_job.BuildJob(scene, layer.depsgraph, "blocks", whole=False)
     except Exception as error:
-        _tell(error)
+        _tell(scene, error)
         return None
     job.start(is_short=measured.get(name, 0.0) < _SHORT_SECONDS)
     return job
 
 
-def _tell(error):
-    """The panel shows what is wrong, or no longer is; nothing is selected or moved for it."""
+def _tell(scene, error):
+    """The panel shows what is wrong with the model of a scene, or no longer is; nothing is selected or moved
+    for it."""
     from . import problems, viewports
 
-    context = bpy.context
-    problems.forget(context)
-    if error is not None:
-        problems.remember(context, error)
+    problems.forget()
+    if scene is not None:
+        problems.remember(scene, error)
     viewports.redraw()
 
 

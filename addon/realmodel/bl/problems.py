@@ -14,16 +14,16 @@ from . import build_job, display, project_settings, shapes, viewports
 _FRAMED = 0.05  # of the object's size, at least, around a bad place
 
 
-def forget(context):
-    activity = context.window_manager.realmodel
+def forget():
+    activity = bpy.context.window_manager.realmodel
     activity.problem = activity.problem_object = activity.problem_triangles = activity.problem_place = ""
 
 
-def remember(context, error):
-    """Keeps what is to be shown of a refusal."""
-    activity = context.window_manager.realmodel
+def remember(scene, error):
+    """Keeps what is to be shown of a refusal of a scene's model."""
+    activity = bpy.context.window_manager.realmodel
     activity.problem = build_job.message(error)
-    row = build_job.refused_surface(context.scene, error)
+    row = build_job.refused_surface(scene, error)
     item = None if row is None else (row.object if row.source == "MESH_OBJECT" else row.interface)
     if project_settings.in_use(item) and error.triangles:
         activity.problem_object = item.name
@@ -37,7 +37,7 @@ def has_place(context):
 
 
 def show(context):
-    """Selects the bad triangles of the last refusal in edit mode, and turns the viewports to them.
+    """Selects the bad triangles of the last refusal in edit mode, and turns the viewport to them.
 
     Raises InputRefused where they are not there any more.
     """
@@ -62,7 +62,7 @@ def show(context):
     context.view_layer.objects.active = item
     bpy.ops.object.mode_set(mode="EDIT")
     _select_faces(context, item, chosen)
-    _frame(places, max(item.dimensions) * _FRAMED)
+    _frame(context, places, max(item.dimensions) * _FRAMED)
 
 
 def _open_eyes(layer, item):
@@ -89,13 +89,12 @@ def _select_faces(context, item, chosen):
     bmesh.update_edit_mesh(item.data, loop_triangles=False, destructive=False)
 
 
-def _frame(places, least):
+def _frame(context, places, least):
     if not len(places):
         return
     low, high = places.min(axis=0), places.max(axis=0)
     size = max(float(np.linalg.norm(high - low)), least)
-    for area in viewports.areas():
-        view = area.spaces.active.region_3d
-        view.view_location = Vector((low + high) / 2)
-        view.view_distance = 2.5 * size
-        area.tag_redraw()
+    for space in viewports.spaces(context):
+        space.region_3d.view_location = Vector((low + high) / 2)
+        space.region_3d.view_distance = 2.5 * size
+    viewports.redraw()

@@ -25,6 +25,7 @@ from . import (
     settings,
     shapes,
     stored_arrays,
+    units,
 )
 from .origin import KEY as ORIGIN_KEY
 
@@ -287,6 +288,7 @@ def fill(scene, project, stored=False):
         for rock in project.rocks:
             add_rock(group, rock)
         group.stage = settings.last_stage(scene)
+    units.set_up(scene, project.units)
     library_rows.fill(scene, project.library)
 
 

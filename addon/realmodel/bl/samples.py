@@ -12,6 +12,7 @@ _PLACES = (Path(__file__).resolve().parents[1], Path(__file__).resolve().parents
 _LABELS = {
     "two_layers": ("Two layers", "The smallest project: two surfaces from points, one erosion"),
     "haut_barr": ("Haut-Barr", "A castle hill of eleven surfaces, cut by erosion into separate bodies"),
+    "gravel_plain": ("Gravel plain", "A valley filled with gravel, from boreholes"),
 }
 _items = []  # Blender does not keep the texts of dynamic enums itself
 

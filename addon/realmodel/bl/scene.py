@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..core import polygon_mesh
-from . import materials, meshes, origin, stored_project, uncertainty, versions
+from . import materials, meshes, origin, stored_project, uncertainty, units, versions
 
 TAG = "realmodel"
 ROCK = "realmodel_rock"
@@ -93,6 +93,7 @@ def write_model(scene, model):
             earlier = earlier_names.get(_identity(made), name)
             give_name(bpy.data.objects, made, earlier if is_name_of(earlier, name) else name)
             give_name(bpy.data.meshes, made.data, made.name)
+    units.set_up(scene, model.project.units)
     scene[stored_project.KEY] = stored
     scene[origin.KEY] = [float(value) for value in model_origin]
     return project

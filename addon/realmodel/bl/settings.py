@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-VERSION = 2  # of the settings; versioning.py brings older ones up to it
+VERSION = 3  # of the settings; versioning.py brings older ones up to it
 
 _quiet = 0  # how many blocks of code fill in settings at the moment
 

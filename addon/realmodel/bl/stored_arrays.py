@@ -13,7 +13,7 @@ import numpy as np
 from ..core import InputRefused
 
 _BROKEN = (KeyError, TypeError, ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
-_MOST_KEPT = 256
+_MOST_BYTES = 256 << 20  # that arrays read lately may take; the newest stay, however large
 _unpacked = {}  # by digest of the text: arrays read lately, not to be written to
 
 
@@ -44,10 +44,15 @@ def unpack(text):
             ) from error
         for array in arrays.values():
             array.flags.writeable = False
-        while len(_unpacked) >= _MOST_KEPT:
-            _unpacked.pop(next(iter(_unpacked)))
         _unpacked[key] = arrays
+        total = sum(map(_bytes_of, _unpacked.values()))
+        while total > _MOST_BYTES and len(_unpacked) > 1:
+            total -= _bytes_of(_unpacked.pop(next(iter(_unpacked))))
     return _unpacked[key]
+
+
+def _bytes_of(arrays):
+    return sum(array.nbytes for array in arrays.values())
 
 
 def forget():

@@ -1,47 +1,97 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures as people read them, in the units that the scene is set to."""
+"""Units: one unit of a scene is one unit of its model, and quantities as people read them."""
 
-import bpy
+import math
 
 from ..core.units import METRES
 from . import results
 
-_DIGITS = 5
 _NAMES = {
-    "mm": "Millimetres",
-    "cm": "Centimetres",
-    "m": "Metres",
-    "km": "Kilometres",
+    "mm": "Millimeters",
+    "cm": "Centimeters",
+    "m": "Meters",
+    "km": "Kilometers",
     "in": "Inches",
     "ft": "Feet (international)",
-    "us-ft": "Survey feet of the United States",
+    "us-ft": "US survey feet",
     "yd": "Yards",
     "mi": "Miles",
 }
 ITEMS = tuple((unit, unit, _NAMES.get(unit, unit)) for unit in METRES)  # of a menu
 
+# What Blender shows lengths in. It has no yards; of a survey foot it only knows the size.
+_LENGTH_UNITS = {
+    "mm": "MILLIMETERS",
+    "cm": "CENTIMETERS",
+    "m": "METERS",
+    "km": "KILOMETERS",
+    "in": "INCHES",
+    "ft": "FEET",
+    "us-ft": "FEET",
+    "yd": "FEET",
+    "mi": "MILES",
+}
+_IMPERIAL = frozenset(("in", "ft", "us-ft", "yd", "mi"))
+_SYMBOLS = {"us-ft": "ft (US)"}
+_POWERS = ("", "", "²", "³")
+
+
+def set_up(scene, unit):
+    """Makes one unit of a scene one unit of its model: Blender then shows and reads lengths right. Where it
+    is that already, what the user has chosen to see stays."""
+    shown, scale = scene.unit_settings, float(METRES[unit])
+    if math.isclose(shown.scale_length, scale, rel_tol=1e-6):
+        return
+    shown.scale_length = scale
+    if shown.system != "NONE":
+        shown.system = "IMPERIAL" if unit in _IMPERIAL else "METRIC"
+        shown.length_unit = _LENGTH_UNITS[unit]
+
 
 def length_text(scene, value):
-    return _text(scene, "LENGTH", value, 1)
+    return _text(scene, value, 1)
 
 
 def area_text(scene, value):
-    return _text(scene, "AREA", value, 2)
+    return _text(scene, value, 2)
 
 
 def volume_text(scene, row):
     """The volume of a row of the results."""
-    return _text(scene, "VOLUME", results.volume(row), 3)
+    return _text(scene, results.volume(row), 3)
+
+
+def full_volume_text(scene, row):
+    """The same with every cubic unit."""
+    return _text(
+        scene, results.volume(row), 3, lambda value: f"{value:,.{0 if abs(value) >= 1000.0 else 3}f}"
+    )
 
 
 def total_volume_text(scene):
-    return _text(scene, "VOLUME", sum(results.volume(row) for row in scene.realmodel.results), 3)
+    return _text(scene, sum(results.volume(row) for row in scene.realmodel.results), 3)
 
 
-def _text(scene, category, value, power):
-    unit = scene.unit_settings
-    if unit.system == "NONE":
-        return f"{value:.{_DIGITS}g}"
-    return bpy.utils.units.to_string(
-        unit.system, category, value * unit.scale_length**power, precision=_DIGITS, compatible_unit=False
-    )
+def number_text(value):
+    """A number of four significant digits or more: thousands apart, millions as "38.9 M"."""
+    size = abs(value)
+    if size < 999.95:
+        return f"{value:.4g}"
+    if size < 999_999.5:
+        return f"{value:,.0f}"
+    millions = value / 1e6
+    if size >= 1e15:
+        return f"{value:.3e}"
+    return f"{millions:.4g} M" if abs(millions) < 999.95 else f"{millions:,.0f} M"
+
+
+def _text(scene, value, power, number=number_text):
+    """A quantity in the unit of the model, or where the scene is set to the other system in its base unit."""
+    unit, system = scene.realmodel.units, scene.unit_settings.system
+    shown = unit
+    if system == "METRIC" and unit in _IMPERIAL:
+        shown = "m"
+    elif system == "IMPERIAL" and unit not in _IMPERIAL:
+        shown = "ft"
+    factor = float((METRES[unit] / METRES[shown]) ** power)
+    return f"{number(value * factor)} {_SYMBOLS.get(shown, shown)}{_POWERS[power]}"

@@ -1,13 +1,65 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The 3D viewports on the screens."""
+"""The 3D viewports on the screens.
+
+What a user asks for in one viewport happens in that one: its `space_data` is the context's. Scripts and
+background mode have none; then it happens in all of them.
+"""
 
 import bpy
+import numpy as np
+from mathutils import Vector
+
+from . import picture, scene
 
 
 def areas():
     """The areas of all 3D viewports that are on a screen."""
     for window in bpy.context.window_manager.windows:
         yield from (area for area in window.screen.areas if area.type == "VIEW_3D")
+
+
+def spaces(context):
+    """The viewport that a context belongs to; else those of the windows, or of all screens where there is no
+    window."""
+    space = context.space_data
+    if space is not None and space.type == "VIEW_3D":
+        return [space]
+    return [area.spaces.active for area in areas()] or all_spaces()
+
+
+def all_spaces():
+    """The viewports of all screens of the file."""
+    return [
+        space
+        for screen in bpy.data.screens
+        for area in screen.areas
+        for space in area.spaces
+        if space.type == "VIEW_3D"
+    ]
+
+
+def still_open(remembered):
+    """Those viewports of some that are still there, by their pointers."""
+    return [space for space in all_spaces() if space.as_pointer() in remembered]
+
+
+def frame(current, shown):
+    """Turns viewports to the model of a scene, and lets them see that far."""
+    corners = [
+        item.matrix_world @ Vector(corner)
+        for item in scene.model_objects(current)
+        for corner in item.bound_box
+    ]
+    if not corners:
+        return
+    corners = np.array(corners)
+    middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+    diagonal = float(np.linalg.norm(np.ptp(corners, axis=0)))
+    for space in shown:
+        space.clip_start, space.clip_end = diagonal / 1e4, diagonal * 10.0
+        space.region_3d.view_location = middle
+        space.region_3d.view_distance = diagonal
+        space.region_3d.view_rotation = picture.view_rotation().to_quaternion()
 
 
 def redraw():

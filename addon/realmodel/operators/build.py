@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import batch, build_job, built_scene, live, problems, viewports
+from ..bl import build_job, built_scene, live, problems, viewports
 from ..core import Cancelled, RealModelError
 from .reporting import Reporting, needed_model
 
@@ -20,7 +20,9 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
 
     _job = None
     _timer = None
-    _had_blocks = False
+    _scene = ""  # whose model is built, and whether it is its first one
+    _is_first = False
+    _spaces = ()  # pointers of the viewports that are turned to a first model
 
     @classmethod
     def poll(cls, context):
@@ -28,8 +30,8 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
 
     def act(self, context):
         live.stop_work()
-        problems.forget(context)
-        self._had_blocks = len(context.scene.realmodel.results) > 0
+        problems.forget()
+        self._remember_view(context)
         built_scene.check_modes(context.scene)
         job = build_job.BuildJob(context.scene, context.evaluated_depsgraph_get())
         self._tell_done(job.run())
@@ -38,8 +40,8 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
         if bpy.app.background or context.window is None:
             return self.execute(context)
         live.stop_work()
-        problems.forget(context)
-        self._had_blocks = len(context.scene.realmodel.results) > 0
+        problems.forget()
+        self._remember_view(context)
         try:
             built_scene.check_modes(context.scene)
             self._job = build_job.BuildJob(context.scene, context.evaluated_depsgraph_get())
@@ -109,20 +111,25 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
 
     def _refused(self, context, error):
         self.report({"ERROR"}, build_job.message(error))
-        problems.remember(context, error)
-        if problems.has_place(context):
-            problems.show(context)
+        problems.remember(bpy.data.scenes.get(self._scene, context.scene), error)
         viewports.redraw()
         return {"CANCELLED"}
 
+    def _remember_view(self, context):
+        self._scene = context.scene.name
+        self._is_first = len(context.scene.realmodel.results) == 0
+        self._spaces = [space.as_pointer() for space in viewports.spaces(context)]
+
     def _tell_done(self, model):
-        if not self._had_blocks:
-            batch.frame_viewports(bpy.context.scene)
+        scene = bpy.data.scenes.get(self._scene)
+        if self._is_first and scene is not None:
+            viewports.frame(scene, viewports.still_open(self._spaces))
         present = sum(block.cells > 0 for block in model.blocks)
         for warning in model.warnings:
             self.report({"WARNING"}, str(warning))
         seconds = sum(model.timings.values())
-        self.report({"INFO"}, f"Built {present} blocks in {seconds:.2f} s")
+        blocks = "1 block" if present == 1 else f"{present} blocks"
+        self.report({"INFO"}, f"Built {blocks} in {seconds:.2f} s")
 
 
 running = []  # the jobs of builds that are shown with progress

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from ..bl import built_scene, live, project_settings, samples, settings
+from ..bl import built_scene, live, project_settings, region_size, samples, settings
 from ..bl.origin import KEY as ORIGIN_KEY
 from ..core import InputRefused, load_project
 from ..core.project_writer import save_project
@@ -73,6 +73,7 @@ def _open(scene, path):
     project = with_arrays(load_project(path))
     _begin(scene, project.name)
     project_settings.fill(scene, project)
+    region_size.ask()
     live.touch(scene)
 
 

@@ -61,22 +61,28 @@ class REALMODEL_UL_library(bpy.types.UIList):
 
 
 def result_columns(layout):
-    """The columns of the table of blocks: name, volume, share, parts. The usual sidebar has room for them."""
-    split = layout.split(factor=0.33)
-    name, rest = split.row(), split.split(factor=0.62)
-    volume, figures = rest.row(), rest.split(factor=0.55)
-    return name, volume, figures.row(), figures.row()
+    """The columns of the table of blocks: name, volume, share of all. The usual sidebar has room for them and
+    for the list's scroll bar."""
+    split = layout.split(factor=0.42)
+    name, rest = split.row(), split.split(factor=0.66)
+    volume, share = rest.row(), rest.row()
+    share.alignment = "RIGHT"
+    return name, volume, share
+
+
+def share_text(row):
+    """The share of a block in the volume of all, in whole percent."""
+    return f"{row.share:.0f}" if row.share >= 1.0 or not row.volume else "< 1"
 
 
 class REALMODEL_UL_results(YoungestOnTop, bpy.types.UIList):
     """Blocks, the youngest on top."""
 
     def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_name):
-        name, volume, share, parts = result_columns(layout)
+        name, volume, share = result_columns(layout)
         name.label(text=item.name)
-        volume.label(text=units.volume_text(context.scene, item) if item.volume else "none left")
-        share.label(text=f"{item.share:.0f}" if item.share >= 1.0 or not item.volume else "< 1")
-        parts.label(text=str(item.components) if item.components else "")
+        volume.label(text=units.volume_text(context.scene, item) if item.volume else "eroded")
+        share.label(text=share_text(item))
 
 
 CLASSES = (REALMODEL_UL_rocks, REALMODEL_UL_surfaces, REALMODEL_UL_library, REALMODEL_UL_results)

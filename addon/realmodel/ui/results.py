@@ -17,14 +17,30 @@ class REALMODEL_PT_results(TabPanel, bpy.types.Panel):
         if not len(group.results):
             hint(layout, "Build the model first; its blocks and their volumes are listed here.")
             return
-        for column, heading in zip(result_columns(layout), ("Block", "Volume", "%", "Parts"), strict=True):
+        for column, heading in zip(result_columns(layout), ("Block", "Volume", "%"), strict=True):
             column.label(text=heading)
         layout.template_list("REALMODEL_UL_results", "", group, "results", group, "active_result", rows=4)
-        layout.label(text=f"Together {units.total_volume_text(context.scene)}")
+        if 0 <= group.active_result < len(group.results):
+            column = layout.box().column(align=True)
+            for line in _block_lines(context.scene, group.results[group.active_result]):
+                column.label(text=line)
+        layout.label(text=f"Total {units.total_volume_text(context.scene)}")
         layout.operator("realmodel.copy_table", icon="COPYDOWN")
         line = layout.row(align=True)
         line.operator("realmodel.export", text="Export...", icon="EXPORT")
         line.operator("realmodel.report", text="Report...", icon="TEXT")
+
+
+def _block_lines(scene, row):
+    """What there is to say of a block."""
+    yield row.name
+    if not row.volume:
+        yield "Eroded: nothing of it is left"
+        return
+    yield f"{units.full_volume_text(scene, row)}  ({row.share:.2f} %)"
+    if row.components:
+        cells = f"{row.cells:,} cell" + ("s" if row.cells != 1 else "")
+        yield f"{row.components:,} part" + ("s" if row.components != 1 else "") + f", {cells}"
 
 
 CLASSES = (REALMODEL_PT_results,)

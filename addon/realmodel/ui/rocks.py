@@ -43,8 +43,6 @@ def _draw_density(layout, rock):
     column.prop(rock, "edges_by", text="Triangles")
     if rock.edges_by == "LENGTH":
         column.prop(rock, "edge_length", text="Length")
-        if rock.region_area < 0.0:
-            region_size.ask()
         count = region_size.expected_triangles(rock)
         if count is not None:
             hint(layout, f"gives about {_rounded(count):,} triangles a surface")

@@ -43,20 +43,18 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
 
 
 def _stage(layout, scene):
-    """The slider of the stage, the number that can be keyframed beside it, and what the number means."""
+    """The slider of the stage with the dot that keyframes it, and what the number means."""
     group, last = scene.realmodel, settings.last_stage(scene)
     slider = props_stage.name_of(last)
     if slider is None:
-        layout.prop(group, "stage", text=f"Stage of {last}")
+        layout.prop(group, "stage")
     else:
         row = layout.row(align=True)
-        row.prop(group.stage_slider, slider, text=f"Stage of {last}", slider=True)
-        number = row.row(align=True)
-        number.scale_x = 0.4
-        number.prop(group, "stage", text="")
+        row.prop(group.stage_slider, slider, text="Stage", slider=True)
+        row.prop_decorator(group, "stage")
     rows = [surface for _, surface in settings.surface_rows(scene)]
     if group.stage < last and len(group.rocks) == 1 and group.stage < len(rows):
-        hint(layout, f"just after {rows[group.stage].name}")
+        hint(layout, f"just after {rows[group.stage].name} ({group.stage} of {last})")
 
 
 class _OfABuiltModel:

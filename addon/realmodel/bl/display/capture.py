@@ -99,7 +99,7 @@ def _render(context, path, size):
     current = context.scene
     stage = picture.Stage()
     try:
-        found = viewpoints.spaces(context)
+        found = viewports.spaces(context)
         space = found[0] if found else None
         triangles = _put_bodies(stage, current, size, space)
         if not len(triangles):

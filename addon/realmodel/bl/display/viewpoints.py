@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the 3D viewports look from: the six standard views, previous and next, the whole model in the frame.
+"""Where a 3D viewport looks from: the six standard views, previous and next, the whole model in the frame.
 
-All 3D viewports of a screen are turned, so it works from scripts and in background mode, where the turned
-viewport is what `capture` looks through.
+In background mode the turned viewport is what `capture` looks through.
 """
 
 from dataclasses import dataclass
@@ -53,19 +52,8 @@ class _View:
         view.view_distance = self.distance
 
 
-def spaces(context):
-    """The 3D viewports that are turned: those of the context's screens, or of all where there are none."""
-    screens = [window.screen for window in context.window_manager.windows]
-    found = [space for screen in screens for space in _of_screen(screen)]
-    return found or [space for screen in bpy.data.screens for space in _of_screen(screen)]
-
-
-def _of_screen(screen):
-    return [area.spaces.active for area in screen.areas if area.type == "VIEW_3D"]
-
-
 def _needed_spaces(context):
-    found = spaces(context)
+    found = viewports.spaces(context)
     if not found:
         raise InputRefused("there is no 3D viewport", advice="open one")
     return found

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is kept in memory is bounded by its size."""
+
+import unittest
+from unittest import mock
+
+import numpy as np
+from realmodel.bl import built_models, stored_arrays
+
+
+class _Model:
+    cell_kind = "columns"
+
+    def __init__(self, size):
+        self.vertices = np.zeros(size, np.uint8)
+
+
+class KeptModels(unittest.TestCase):
+    def setUp(self):
+        built_models.forget()
+        self.addCleanup(built_models.forget)
+
+    def kept(self):
+        return [model.vertices.nbytes for model in built_models._models.values()]
+
+    def test_the_oldest_go_where_all_are_too_large(self):
+        with mock.patch.object(built_models, "MOST_BYTES", 100):
+            for size in (40, 50, 30):
+                built_models.remember(_Model(size))
+            self.assertEqual(self.kept(), [50, 30])
+            built_models.remember(_Model(1000))  # the newest stays, however large
+            self.assertEqual(self.kept(), [1000])
+
+    def test_many_small_ones_stay(self):
+        for _ in range(20):
+            built_models.remember(_Model(1))
+        self.assertEqual(len(self.kept()), 20)
+
+    def test_arrays_of_files_likewise(self):
+        stored_arrays.forget()
+        self.addCleanup(stored_arrays.forget)
+        texts = [stored_arrays.pack(a=np.full(100, n, np.uint8)) for n in range(3)]
+        with mock.patch.object(stored_arrays, "_MOST_BYTES", 250):
+            for text in texts:
+                stored_arrays.unpack(text)
+        self.assertEqual([a["a"][0] for a in stored_arrays._unpacked.values()], [1, 2])
