@@ -13,7 +13,7 @@ MOST = 100  # a model with more surfaces has the number field alone
 
 DESCRIPTION = (
     "Replay deposition and erosion: 0 shows the oldest surface only, the last stage the whole model. "
-    "The dot beside the slider keyframes it"
+    "The number beside the slider can be keyframed"
 )
 
 

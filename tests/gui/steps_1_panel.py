@@ -182,7 +182,8 @@ def undo_the_edit(walk):
 
 
 def show_a_bad_place(walk):
-    """A surface that is folded over is refused, and the place stands selected in edit mode."""
+    """A surface that is folded over is refused, and the mode stays; the place is selected in edit mode when it
+    is asked for."""
     item = model().rocks[0].surfaces[-1].interface
     before = volumes()
     middle = np.mean([v.co[:2] for v in item.data.vertices], axis=0)
@@ -191,18 +192,21 @@ def show_a_bad_place(walk):
     nearest.co.x += 6.0 * model().rocks[0].edge_length
     item.data.update()
     yield from walk.command("build")
+    yield lambda: "overlap in plan" in bpy.context.window_manager.realmodel.problem
+    yield walk.redrawn(2)
+    assert bpy.context.mode == "OBJECT"
+    assert volumes() == before
+    walk.over_viewport()
+    walk.key("ESC")  # the report stands open in front of everything until it is read
+    yield walk.redrawn(2)
+    yield from walk.command("show the place")
     yield lambda: bpy.context.mode == "EDIT_MESH"
     yield walk.redrawn(2)
     walk.shot("bad_place")
-    assert "overlap in plan" in bpy.context.window_manager.realmodel.problem
-    assert volumes() == before
     bpy.ops.object.mode_set(mode="OBJECT")
     assert 0 < sum(p.select for p in item.data.polygons) < len(item.data.polygons) / 2
     item.data.vertices[kept[0]].co.x = kept[1]
     item.data.update()
-    walk.over_viewport()
-    walk.key("ESC")  # the report stands open in front of everything until it is read
-    yield walk.redrawn(2)
 
 
 def save_and_open(walk):

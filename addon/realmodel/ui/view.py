@@ -43,7 +43,7 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
 
 
 def _stage(layout, scene):
-    """The slider of the stage with the dot that keyframes it, and what the number means."""
+    """The slider of the stage, the number that can be keyframed beside it, and what the number means."""
     group, last = scene.realmodel, settings.last_stage(scene)
     slider = props_stage.name_of(last)
     if slider is None:
@@ -51,7 +51,9 @@ def _stage(layout, scene):
     else:
         row = layout.row(align=True)
         row.prop(group.stage_slider, slider, text="Stage", slider=True)
-        row.prop_decorator(group, "stage")
+        number = row.row(align=True)
+        number.scale_x = 0.6
+        number.prop(group, "stage", text="")
     rows = [surface for _, surface in settings.surface_rows(scene)]
     if group.stage < last and len(group.rocks) == 1 and group.stage < len(rows):
         hint(layout, f"just after {rows[group.stage].name} ({group.stage} of {last})")
