@@ -77,7 +77,8 @@ class ModelInFeet(PanelCase):
         self.open("ft")
         ops.build()
         row = self.model.results[0]
-        self.assertEqual(units.volume_text(self.scene, row), "40 M ft³")
+        self.assertEqual(units.volume_text(self.scene, row), "40 M")
+        self.assertEqual(units.unit_text(self.scene, 3), "ft³")
         self.assertEqual(units.full_volume_text(self.scene, row), "40,000,000 ft³")
         self.assertEqual(units.total_volume_text(self.scene), "40 M ft³")
         self.assertEqual(units.area_text(self.scene, 1e6), "1 M ft²")

@@ -182,8 +182,8 @@ def undo_the_edit(walk):
 
 
 def show_a_bad_place(walk):
-    """A surface that is folded over is refused, and the mode stays; the place is selected in edit mode when it
-    is asked for."""
+    """A surface that is folded over is refused, and the mode stays; the place is selected in edit mode by a
+    command."""
     item = model().rocks[0].surfaces[-1].interface
     before = volumes()
     middle = np.mean([v.co[:2] for v in item.data.vertices], axis=0)

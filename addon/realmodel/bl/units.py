@@ -57,12 +57,12 @@ def area_text(scene, value):
 
 
 def volume_text(scene, row):
-    """The volume of a row of the results."""
-    return _text(scene, results.volume(row), 3)
+    """The volume of a row without its unit, which `unit_text` gives once for a whole column."""
+    return number_text(results.volume(row) * _shown(scene, 3)[1])
 
 
 def full_volume_text(scene, row):
-    """The same with every cubic unit."""
+    """The volume of a row with every cubic unit."""
     return _text(
         scene, results.volume(row), 3, lambda value: f"{value:,.{0 if abs(value) >= 1000.0 else 3}f}"
     )
@@ -85,13 +85,23 @@ def number_text(value):
     return f"{millions:.4g} M" if abs(millions) < 999.95 else f"{millions:,.0f} M"
 
 
+def unit_text(scene, power):
+    """The unit of lengths (power 1), areas or volumes, as it is shown."""
+    return _shown(scene, power)[0]
+
+
 def _text(scene, value, power, number=number_text):
-    """A quantity in the unit of the model, or where the scene is set to the other system in its base unit."""
+    unit, factor = _shown(scene, power)
+    return f"{number(value * factor)} {unit}"
+
+
+def _shown(scene, power):
+    """The unit of the model, or where the scene is set to the other system its base unit; and the factor to
+    it."""
     unit, system = scene.realmodel.units, scene.unit_settings.system
     shown = unit
     if system == "METRIC" and unit in _IMPERIAL:
         shown = "m"
     elif system == "IMPERIAL" and unit not in _IMPERIAL:
         shown = "ft"
-    factor = float((METRES[unit] / METRES[shown]) ** power)
-    return f"{number(value * factor)} {_SYMBOLS.get(shown, shown)}{_POWERS[power]}"
+    return f"{_SYMBOLS.get(shown, shown)}{_POWERS[power]}", float((METRES[unit] / METRES[shown]) ** power)

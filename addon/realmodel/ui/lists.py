@@ -64,9 +64,9 @@ def result_columns(layout):
     """The columns of the table of blocks: name, volume, share of all. The usual sidebar has room for them and
     for the list's scroll bar."""
     split = layout.split(factor=0.42)
-    name, rest = split.row(), split.split(factor=0.66)
+    name, rest = split.row(), split.split(factor=0.7)
     volume, share = rest.row(), rest.row()
-    share.alignment = "RIGHT"
+    volume.alignment = share.alignment = "RIGHT"
     return name, volume, share
 
 

@@ -17,7 +17,8 @@ class REALMODEL_PT_results(TabPanel, bpy.types.Panel):
         if not len(group.results):
             hint(layout, "Build the model first; its blocks and their volumes are listed here.")
             return
-        for column, heading in zip(result_columns(layout), ("Block", "Volume", "%"), strict=True):
+        headings = ("Block", units.unit_text(context.scene, 3), "%")
+        for column, heading in zip(result_columns(layout), headings, strict=True):
             column.label(text=heading)
         layout.template_list("REALMODEL_UL_results", "", group, "results", group, "active_result", rows=4)
         if 0 <= group.active_result < len(group.results):
