@@ -75,6 +75,11 @@ public:
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                static_cast<std::size_t>(column);
     }
+    TileSpan span_of(std::size_t tile) const {
+        const auto column = static_cast<std::int32_t>(tile % columns()),
+                   row = static_cast<std::int32_t>(tile / columns());
+        return {column, column, row, row};
+    }
     template <class Visit>
     void for_each(const TileSpan& span, const Visit& visit) const {
         for (std::int32_t r = span.low; r <= span.high; ++r) {

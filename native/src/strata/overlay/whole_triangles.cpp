@@ -317,13 +317,20 @@ void WholeTriangleFilter::cover(const FacetView& facets) {
 }
 
 SurfaceTiling WholeTriangleFilter::exact_part(PlanArrangement& geometry, const TriangleLinks& links,
-                                              const FacetView& facets) {
+                                              const FacetView& facets, bool with_void) {
     const BlockTiling& tiling = *tiling_;
     const std::size_t triangles = tiling.whole.size();
     std::vector<std::uint8_t> is_needed(tiles().size(), 0);
     for (std::size_t f = 0; f < facets.size(); ++f) {
-        if (facet[f] != Standing::kExact || !facets.plane(f).has_value()) continue;
-        tiles().for_each(facet_at[f].span, [&](std::size_t tile) { is_needed[tile] = 1; });
+        if (facet[f] != Standing::kExact) continue;
+        if (facets.plane(f).has_value()) {
+            tiles().for_each(facet_at[f].span, [&](std::size_t tile) { is_needed[tile] = 1; });
+        } else if (with_void) {  // which fills the frame: only where something else may be, too
+            tiles().for_each(facet_at[f].span, [&](std::size_t tile) {
+                if (facets.cover[tile] != Cover::kFacets || borders_.near(tiles().span_of(tile)))
+                    is_needed[tile] = 1;
+            });
+        }
     }
     polygon.assign(tiling.size(), -1);
     parallel_ranges(triangles, 2 * kChunk, threads_, progress_,

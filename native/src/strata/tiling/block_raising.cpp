@@ -76,7 +76,7 @@ BlockBound BlockRaising::cover(const BlockBound& older, const BlockTiling& newer
                                const BlockTiling& /* the one begun with */) {
     const FacetView facets = view(older);
     filter_.cover(facets);
-    const SurfaceTiling part = filter_.exact_part(geometry_, links_, facets);
+    const SurfaceTiling part = filter_.exact_part(geometry_, links_, facets, true);
     BlockBound covered{newer, older.cover};
     covered.tiling.empty.clear();
     add_standing(older.tiling, filter_.facet, Standing::kUncovered, covered.tiling);
