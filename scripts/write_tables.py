@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the tables of docs/reference/project_file.md that follow from the registries of the add-on: rules, methods
-and options. A test compares them (tests/core/test_documents.py).
+"""Writes the tables of docs/reference/project_file.md that follow from the registries of the add-on: rules,
+methods and options. A test compares them (tests/core/test_documents.py).
 
     python3 scripts/write_tables.py
 """
