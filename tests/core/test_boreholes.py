@@ -152,7 +152,7 @@ def test_a_project_of_boreholes(write, tmp_path):
     model = build(project)
     assert model.volume == pytest.approx(16 * 9)
     assert [len(surface.points) for surface in model.project.rocks[0].surfaces] == [3, 4]
-    assert any("met gravel, which is no surface" in str(warning) for warning in model.warnings)
+    assert any("picks of gravel, which no surface" in str(warning) for warning in model.warnings)
     assert build(model.project).volume == model.volume
 
 
@@ -161,9 +161,9 @@ def test_a_project_of_boreholes(write, tmp_path):
     [
         ("3", 8, "must be a file or a table"),
         ('{ collars = "c.csv" }', 8, "key 'picks' is missing"),
-        ('{ collars = "no.csv", picks = "p.csv" }', 8, "there is no file"),
+        ('{ collars = "no.csv", picks = "p.csv" }', 8, "file not found"),
         ('{ pick = "p.csv" }', 8, "did you mean 'picks'?"),
-        ('{ picks = "p.csv", columns = { deep = "x" } }', 8, "names a column 'deep'"),
+        ('{ picks = "p.csv", columns = { deep = "x" } }', 8, "unknown column 'deep'"),
         ('{ picks = "p.csv", columns = { depth = true } }', 8, "a name or a number"),
         ('{ picks = "p.csv", units = "feet" }', 8, "unknown unit"),
     ],
@@ -182,7 +182,7 @@ def test_a_surface_that_no_hole_met(write):
     files = Boreholes(write("p.csv", PICKS), write("c.csv", COLLARS))
     square = [[0, 0], [4, 0], [4, 4], [0, 4]]
     rock = Rock("r", [Surface("silt")], square, edge_length=1.0, base_elevation=0.0, boreholes=files)
-    with pytest.raises(InputRefused, match="surface 'silt': the boreholes did not meet it"):
+    with pytest.raises(InputRefused, match="surface 'silt': it has no points, and no borehole"):
         build(Project("x", [rock]))
     rock.boreholes = None
     with pytest.raises(InputRefused, match="neither points nor a mesh"):

@@ -257,7 +257,7 @@ def test_a_project(write, tmp_path):
     clay = model.project.rocks[0].surfaces[0].points
     np.testing.assert_allclose(clay, [[600, 700, -150], [100, 200, 30]], **NEAR)
     for wrong, words in (
-        (given.replace("s.csv", "no.csv"), "there is no file"),
+        (given.replace("s.csv", "no.csv"), "file not found"),
         (given.replace("negative", "down"), "'downward_dip' must be"),
         (given.replace('"s.csv"', "3"), "survey"),
     ):

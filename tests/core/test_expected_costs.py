@@ -92,7 +92,7 @@ def test_progress_goes_by_the_expected_shares(cells, own):
     assert shares[-1] == 1.0
     expected = expected_shares(project, cells)
     cutting = [share for share, text in told if text == "intersecting and cutting"]
-    after = [share for share, text in told if text == "putting the model together"]
+    after = [share for share, text in told if text == "assembling the model"]
     assert cutting
     assert min(cutting) >= expected.read
     assert max(cutting) <= expected.intersect + 1e-12

@@ -211,7 +211,7 @@ def test_point_files_from_python(write):
     project = Project("x", [Rock("r", [surface], square, edge_length=1.0, base_elevation=-9.0)])
     assert build(project).volume == pytest.approx(16 * (4.25 + 9))
     surface.points = PointFile(path, where=[1])
-    with pytest.raises(InputRefused, match="'where' must say"):
+    with pytest.raises(InputRefused, match="'where' must be"):
         check_project(project)
 
 

@@ -347,10 +347,10 @@ def test_regions_of_the_project_file(write, tmp_path):
 @pytest.mark.parametrize(
     ("region", "line", "words"),
     [
-        ('{ file = "no.shp" }', 5, "there is no file"),
+        ('{ file = "no.shp" }', 5, "file not found"),
         ('{ layer = "a" }', 5, "key 'file' is missing"),
         ('{ file = "r.wkt", layers = "a" }', 5, "did you mean 'layer'?"),
-        ('{ file = "r.wkt", where = 3 }', 5, "'where' must say"),
+        ('{ file = "r.wkt", where = 3 }', 5, "'where' must be"),
         ('{ file = "r.wkt", where = { a = 3 } }', None, "no attributes"),
         ('{ file = "r.wkt", units = "feet" }', 5, "unknown unit"),
         ('"POLYGON ((0 0, 4 4, 4 0, 0 4))"', 5, "region, outline: the outline crosses itself at (2, 2)"),

@@ -125,13 +125,13 @@ def check_columns(columns) -> None:
         if isinstance(column, str) and column.strip():
             continue
         if isinstance(column, bool) or not isinstance(column, int) or not 1 <= column <= 100_000:
-            raise ReadingRefused("columns", f"{said}, not {column!r}", "numbers of columns count from 1")
+            raise ReadingRefused("columns", f"{said}, not {column!r}", "column numbers start at 1")
 
 
 def check_where(where) -> None:
     advice = "write where = { val = 60 }"
     if not isinstance(where, Mapping):
-        raise ReadingRefused("where", f"'where' must say what columns hold, not {where!r}", advice)
+        raise ReadingRefused("where", f"'where' must be a table of columns and values, not {where!r}", advice)
     for column, values in where.items():
         if not list_of(values) or not all(_is_value(value) for value in list_of(values)):
             what = f"'where' must give a number or text for '{column}', not {values!r}"
