@@ -18,42 +18,40 @@ SOURCES = {
     "5.2": "Debian unstable, in a chroot",
 }
 PAGE = """<!-- SPDX-License-Identifier: GPL-3.0-or-later -->
-# Which Blender RealModel runs in
+# Compatibility
 
-Blender 3.4 to 5.2 on Linux x86-64 that has Python 3.11, 3.13 or 3.14 inside, and NumPy 1.24 or newer (1.x and
-2.x), on a system with glibc 2.35 and GCC 11's libstdc++ or newer (Debian 12, Ubuntu 22.04, Fedora 36 and
-what came after them).
+RealModel runs in Blender 3.4 to 5.2 on Linux x86-64, with the Python 3.11, 3.13 or 3.14 of Blender and NumPy 1.24 or newer
+(1.x and 2.x). The system needs glibc 2.35 and the libstdc++ of GCC 11, or newer: Debian 12, Ubuntu 22.04, Fedora 36 and later
+ones.
 
-## What was tried
+## Tested
 
-The zip that `scripts/package.sh` makes, in each Blender that can be had from Debian and PyPI. This table
-was written by `scripts/test_blender_versions.sh`; run as root, it does all of it again.
+The zip of `scripts/package.sh`, in each Blender that Debian and PyPI provide. `scripts/test_blender_versions.sh` wrote this
+table; run it as root to test again.
 
 {table}
 
 - *zip valid*: `blender --command extension validate`, which Blender has from 4.2 on.
-- *installed*: as a user does, into an empty home: Preferences > Add-ons > Install and a tick as an add-on;
-  `blender --command extension install-file` as an extension. Then Blender is started again.
-- *first use*: open an example, build, volumes as those of the exact model to 1e-4, export, a picture that
-  shows the layers, save, open, clear, build again, disable: nothing is left.
-- *without module*: the native modules taken away: the add-on enables, its panel says what is missing and
-  what to do, opening and building refuse with the same words and change nothing, the rest works.
-- *tests*: `tests/blender`, run on what was in the zip.
+- *installed*: into an empty home, as an add-on with Preferences > Add-ons > Install, or as an extension with
+  `blender --command extension install-file`. Then Blender is started again.
+- *first use*: open an example, build, compare the volumes with the exact model (1e-4), export, render a picture that shows the
+  layers, save, open, clear, build again, disable without leaving anything behind.
+- *without module*: without the native modules the add-on can be enabled, its panel says what is missing and what to do,
+  opening and building are refused with the same message and change nothing, and everything else works.
+- *tests*: `tests/blender`, with the files of the zip.
 {compiled}
 ## Differences between the versions
 
-They are all in `addon/realmodel/bl/versions.py`, each with the version it begins at.
+All are in `addon/realmodel/bl/versions.py`, each with the version in which it begins.
 
-## What was not tried
+## Not tested
 
-- Official builds of Blender from blender.org. Those of 4.1 and newer have Python 3.11 or 3.13 inside, and
-  modules for both are in the zip. Those of 3.4 to 4.0 have Python 3.10, which RealModel does not run in:
-  the add-on refuses to be enabled there and says so; Debian's 3.4 has 3.11.
-- Windows and macOS. The zip has no modules for them. CMake should get through there - options of Linux's
-  linker are given on Linux only, what reads `/proc` does without it - but it was run neither there nor with
-  their compilers. It asks for g++ or clang++ (on Windows of MinGW or LLVM): the exact arithmetic needs
-  numbers of 128 bits, which MSVC does not have. On Windows, where `long` has 32 bits, compiling then stops at
-  a `static_assert` that says what has to be written first.
+- Official builds of Blender from blender.org. Version 4.1 and newer contain Python 3.11 or 3.13, for which the zip has modules.
+  Versions 3.4 to 4.0 contain Python 3.10, in which RealModel does not run: the add-on cannot be enabled there and says why.
+  (Debian's Blender 3.4 contains Python 3.11.)
+- Windows and macOS. The zip has no modules for them. The native part needs g++ or clang++ (on Windows from MinGW or LLVM),
+  because the exact arithmetic uses 128-bit integers, which MSVC lacks. On Windows, where `long` has 32 bits, compiling stops at
+  a `static_assert` that names what is missing.
 """
 
 

@@ -170,7 +170,7 @@ def test_keys_of_the_project_file(write):
     [
         ("", "columns = 3", 13, "three columns"),
         ("", 'columns = ["a", "b"]', 13, "three columns"),
-        ("", "columns = [0, 1, 2]", 13, "count from 1"),
+        ("", "columns = [0, 1, 2]", 13, "column numbers start at 1"),
         ("", "where = 60", 13, "where = { val = 60 }"),
         ("", "where = { val = true }", 13, "a number or text for 'val'"),
         ("", "where = { val = [] }", 13, "a number or text for 'val'"),
@@ -198,7 +198,7 @@ def test_keys_that_make_no_sense(write, top, surface, line, words):
 def test_keys_need_a_file_of_points(write):
     text = KEYS.format(top="", surface="where = { val = 1 }").replace('points = "all.csv"', "value = 3")
     path = write("p.toml", text.replace('"plane"', '"constant"'))
-    with pytest.raises(InputRefused, match="and there is none") as raised:
+    with pytest.raises(InputRefused, match="needs a file of points") as raised:
         load_project(path)
     assert raised.value.line == 13
 

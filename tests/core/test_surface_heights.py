@@ -168,7 +168,7 @@ def test_in_a_project_file(written):
         (
             'mesh = "m.off"\nminimum_thickness = 1\n',
             14,
-            "a ready mesh is not interpolated, so 'minimum_thickness' has no meaning here",
+            "'minimum_thickness' has no effect, as a mesh is not interpolated",
         ),
     ],
 )
@@ -181,7 +181,7 @@ def test_refused_at_the_line(written, write, text, line, words):
 
 
 def test_minimum_thickness_of_the_oldest():
-    with pytest.raises(InputRefused, match="the oldest surface has none beneath it"):
+    with pytest.raises(InputRefused, match="there is no surface beneath it"):
         build(rock(Surface("a", method="constant", options={"value": 1}, minimum_thickness=1)))
 
 
