@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the tables of the documents that follow from the add-on: rules, methods and options from its registries,
-operators and settings from its sources. A test compares them (tests/core/test_documents.py).
+"""Writes the tables of the documents that follow from the add-on: rules, methods and options from its
+registries, operators from its sources. A test compares them (tests/core/test_documents.py).
 
     python3 scripts/write_tables.py
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes docs/reference/compatibility.md from what scripts/test_blender_versions.sh found.
+"""Writes the table in docs/reference/compatibility.md from what scripts/test_blender_versions.sh found.
 
     python3 compatibility_page.py RESULTS PAGE
 
@@ -17,42 +17,7 @@ SOURCES = {
     "4.5": "PyPI, module `bpy`",
     "5.2": "Debian unstable, in a chroot",
 }
-PAGE = """<!-- SPDX-License-Identifier: GPL-3.0-or-later -->
-# Compatibility
-
-RealModel runs in Blender 3.4 to 5.2 on Linux x86-64, with the Python 3.11, 3.13 or 3.14 of Blender and NumPy 1.24 or newer
-(1.x and 2.x). The system needs glibc 2.35 and the libstdc++ of GCC 11, or newer: Debian 12, Ubuntu 22.04, Fedora 36 and later
-ones.
-
-## Tested
-
-The zip of `scripts/package.sh`, in each Blender that Debian and PyPI provide. `scripts/test_blender_versions.sh` wrote this
-table; run it as root to test again.
-
-{table}
-
-- *zip valid*: `blender --command extension validate`, which Blender has from 4.2 on.
-- *installed*: into an empty home, as an add-on with Preferences > Add-ons > Install, or as an extension with
-  `blender --command extension install-file`. Then Blender is started again.
-- *first use*: open an example, build, compare the volumes with the exact model (1e-4), export, render a picture that shows the
-  layers, save, open, clear, build again, disable without leaving anything behind.
-- *without module*: without the native modules the add-on can be enabled, its panel says what is missing and what to do,
-  opening and building are refused with the same message and change nothing, and everything else works.
-- *tests*: `tests/blender`, with the files of the zip.
-{compiled}
-## Differences between the versions
-
-All are in `addon/realmodel/bl/versions.py`, each with the version in which it begins.
-
-## Not tested
-
-- Official builds of Blender from blender.org. Version 4.1 and newer contain Python 3.11 or 3.13, for which the zip has modules.
-  Versions 3.4 to 4.0 contain Python 3.10, in which RealModel does not run: the add-on cannot be enabled there and says why.
-  (Debian's Blender 3.4 contains Python 3.11.)
-- Windows and macOS. The zip has no modules for them. The native part needs g++ or clang++ (on Windows from MinGW or LLVM),
-  because the exact arithmetic uses 128-bit integers, which MSVC lacks. On Windows, where `long` has 32 bits, compiling stops at
-  a `static_assert` that names what is missing.
-"""
+MARKED = re.compile(r"(<!-- versions begin -->\n).*?(<!-- versions end -->)", re.DOTALL)
 
 
 def status(folder, step):
@@ -121,8 +86,9 @@ def main(results, page):
     folders = {version: Path(results) / version for version in SOURCES}
     rows = [row(version, folder) for version, folder in folders.items() if folder.is_dir()]
     lines = ["| " + " | ".join(cells) + " |" for cells in [head, ["---"] * len(head), *rows]]
-    text = PAGE.format(table="\n".join(lines), compiled=compiled(folders["5.2"]))
-    Path(page).write_text(text, encoding="utf-8")
+    table = "\n".join(lines) + "\n" + compiled(folders["5.2"])
+    text = Path(page).read_text(encoding="utf-8")
+    Path(page).write_text(MARKED.sub(lambda found: found[1] + table + found[2], text), encoding="utf-8")
     print(f"Wrote {page}")
 
 
