@@ -15,7 +15,12 @@ ROOT = Path(__file__).resolve().parents[1]
 ADDON = ROOT / "addon" / "realmodel"
 DOCUMENTS = [
     ROOT / "docs" / name
-    for name in ("reference/project_file.md", "reference/operators.md", "guide/sculpted_strata.md")
+    for name in (
+        "reference/project_file.md",
+        "reference/operators.md",
+        "guide/sculpted_strata.md",
+        "guide/tour.md",
+    )
 ]
 TABLE = re.compile(r"(<!-- table of (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 

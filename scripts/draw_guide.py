@@ -1,0 +1,237 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes the pictures of docs/guide in a real window under Xvfb, and makes them small.
+
+    build/venv/bin/python scripts/draw_guide.py [NAME ...]      (default: all; it needs Pillow)
+
+Each function in PICTURES is one chapter: it sets up a scene with the operators that the guide names and
+keeps pictures. docs/images/walk.png is the contact sheet that scripts/test.sh --only gui left, if any.
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+IMAGES = ROOT / "docs" / "images" / "guide"
+SAMPLES = ROOT / "blend_samples"
+SIZE = (1900, 1400)
+SCALE = 1.5  # of the interface, so that its letters are sharp in print
+COLORS = 128  # of a picture in its palette
+
+
+def main(names):
+    """Outside Blender: runs this file in a window, then gives each picture a palette."""
+    size = f"{SIZE[0]}x{SIZE[1]}"
+    command = ["xvfb-run", "-a", "-s", f"-screen 0 {size}x24", "blender", "--factory-startup"]
+    command += ["--enable-event-simulate", "--window-geometry", "0", "0", *map(str, SIZE)]
+    command += ["-P", __file__, "--", *names]
+    done = subprocess.run(command, cwd=ROOT, check=False)
+    for path in sorted(IMAGES.glob("*.png")):
+        shrink(path, path)
+    sheet = ROOT / "build" / "gui" / "contact_sheet.png"
+    if sheet.is_file():
+        shrink(sheet, ROOT / "docs" / "images" / "walk.png")
+    return done.returncode
+
+
+def shrink(source, target):
+    """Writes a picture with a palette; one that has a palette already stays as it is."""
+    from PIL import Image
+
+    with Image.open(source) as picture:
+        if picture.mode != "P":
+            picture.convert("RGB").quantize(COLORS, dither=Image.Dither.NONE).save(target, optimize=True)
+
+
+# -- in Blender
+
+
+def begin(names):
+    """Registers the add-on and runs the chapters, one after another."""
+    import bpy
+
+    sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "tests" / "gui")]
+    import realmodel
+    from driver import Walk
+
+    preferences = bpy.context.preferences
+    preferences.view.show_splash = False
+    preferences.view.ui_scale = SCALE
+    realmodel.register()
+    TAB.update({cls: set(getattr(cls, "bl_options", ())) for cls in tab_panels()})
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    chapters = [(draw.__name__, lambda walk, draw=draw: chapter(walk, draw)) for draw in CHAPTERS]
+    Walk(IMAGES).run([c for c in chapters if not names or c[0] in names], at_end)
+
+
+def at_end(walk):
+    if walk.failure:
+        print(walk.failure, flush=True)
+    os._exit(1 if walk.failure else 0)
+
+
+def chapter(walk, draw):
+    """One chapter in a new file with an empty scene, and the tab open in the sidebar. In the first one panels
+    are open or closed as users find them; in the others all are open."""
+    import bpy
+
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    yield walk.redrawn(2)
+    for item in list(bpy.data.objects):
+        bpy.data.objects.remove(item)
+    for cls, options in TAB.items():
+        cls.bl_options = options - (set() if draw is start else {"DEFAULT_CLOSED"})
+    yield from show_panels(walk)
+    walk.area.spaces.active.show_region_ui = True
+    yield lambda: walk.region("UI").width > 50
+    yield from open_tab(walk)
+    yield from draw(walk)
+
+
+TAB = {}  # the panels of the tab in their order, and their options
+
+
+def tab_panels():
+    """The panels of the tab, a parent before its children."""
+    import bpy
+
+    kinds = bpy.types.Panel.__subclasses__()
+    found = [cls for cls in kinds if getattr(cls, "bl_category", "") == "RealModel" and cls.is_registered]
+    return sorted(found, key=lambda cls: hasattr(cls, "bl_parent_id"))
+
+
+def open_tab(walk):
+    """Opens the tab RealModel of the sidebar; the names of the tabs stand at its right border."""
+    drawn = []
+    panel = next(iter(TAB))
+    before = panel.draw
+
+    def draw(self, context):
+        drawn.append(True)
+        before(self, context)
+
+    panel.draw = draw
+    region = walk.region("UI")
+    for down in range(30, region.height - 30, 30):
+        walk.click(region.x + region.width - 10, region.y + region.height - down)
+        yield walk.redrawn()
+        if drawn:
+            break
+    panel.draw = before
+    if not drawn:
+        raise AssertionError("the tab RealModel was not found")
+    walk.over_viewport()
+    yield walk.redrawn()
+
+
+def keep(walk, name, region=None, panels=()):
+    """Keeps a picture of a region of the 3D viewport, or of the whole window, as NAME.png. panels: of the
+    sidebar these alone, open; their idnames end so."""
+    if panels:
+        yield from show_panels(walk, panels)
+    yield walk.redrawn(3)
+    picture = walk.shot(name)
+    walk.pictures.pop().unlink()
+    if region is not None:
+        part = walk.region(region)
+        picture = picture[part.y : part.y + part.height, part.x : part.x + part.width]
+    if region == "UI":
+        picture = without_tabs(picture)
+    write(picture, IMAGES / f"{name}.png")
+
+
+def without_tabs(picture):
+    """The sidebar without the names of its tabs, and without the empty part below its panels."""
+    width = picture.shape[1] - int(30 * SCALE)
+    picture = picture[:, :width]
+    background = picture[2, width // 2]
+    drawn = (abs(picture[:, 10:-10] - background) > 0.02).any(axis=(1, 2))
+    lowest = int(drawn.argmax())
+    return picture[max(lowest - 8, 0) :]
+
+
+def write(picture, path):
+    """(height, width, 3) from 0 to 1, the bottom row first, to a PNG."""
+    import bpy
+    import numpy as np
+
+    height, width = picture.shape[:2]
+    image = bpy.data.images.new("picture", width, height)
+    image.colorspace_settings.name = "Non-Color"
+    opaque = np.ones((height, width, 1), np.float32)
+    image.pixels.foreach_set(np.concatenate([picture, opaque], axis=2).astype(np.float32).ravel())
+    image.filepath_raw, image.file_format = str(path), "PNG"
+    image.save()
+    bpy.data.images.remove(image)
+
+
+def show_panels(walk, names=()):
+    """Registers these panels of the tab alone, so that no other takes room; none given: all."""
+    import bpy
+
+    for cls in reversed(list(TAB)):
+        if cls.is_registered:
+            bpy.utils.unregister_class(cls)
+    for cls in TAB:
+        if not names or cls.bl_idname.removeprefix("REALMODEL_PT_") in names:
+            bpy.utils.register_class(cls)
+    yield walk.redrawn(3)
+
+
+def build(walk):
+    """Builds as a press of the button does, and waits."""
+    import bpy
+
+    with viewport(walk):
+        bpy.ops.realmodel.build("EXEC_DEFAULT")
+    yield walk.redrawn(3)
+
+
+def viewport(walk):
+    import bpy
+
+    return bpy.context.temp_override(window=walk.window, area=walk.area, region=walk.region("WINDOW"))
+
+
+def example(walk, name):
+    import bpy
+
+    with viewport(walk):
+        bpy.ops.realmodel.open_sample(sample=name)
+    if not len(bpy.context.scene.realmodel.results):
+        yield from build(walk)
+    frame(walk)
+    yield walk.redrawn(3)
+
+
+def frame(walk):
+    import bpy
+    from realmodel.bl import picture
+
+    walk.area.spaces.active.region_3d.view_rotation = picture.view_rotation().to_quaternion()
+    walk.area.spaces.active.region_3d.view_perspective = "PERSP"
+    for item in bpy.context.selected_objects:
+        item.select_set(False)
+    with viewport(walk):
+        bpy.ops.realmodel.view_all()
+
+
+# -- chapters
+
+
+def start(walk):
+    """The tab in a new file, and with a model."""
+    yield from keep(walk, "start", "UI")
+    yield from example(walk, "haut_barr")
+    yield from keep(walk, "window")
+
+
+CHAPTERS = (start,)
+
+if __name__ == "__main__":
+    if "bpy" in sys.modules:
+        begin(sys.argv[sys.argv.index("--") + 1 :])
+    else:
+        sys.exit(main(sys.argv[1:]))
