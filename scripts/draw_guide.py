@@ -218,17 +218,188 @@ def frame(walk):
         bpy.ops.realmodel.view_all()
 
 
+def side_by_side(pictures, name, columns, smaller=1):
+    """Keeps several pictures of one size as one, so many times smaller, with white lines between them."""
+    import numpy as np
+
+    tiles = []
+    for picture in pictures:
+        height, width = (size // smaller * smaller for size in picture.shape[:2])
+        blocks = picture[:height, :width].reshape(height // smaller, smaller, width // smaller, smaller, 3)
+        tiles.append(np.pad(blocks.mean(axis=(1, 3)), ((4, 4), (4, 4), (0, 0)), constant_values=1.0))
+    rows = [np.concatenate(tiles[n : n + columns], axis=1) for n in range(0, len(tiles), columns)]
+    write(np.concatenate(rows[::-1]), IMAGES / f"{name}.png")
+
+
+def viewport_picture(walk):
+    """(height, width, 3) the viewport without its tools."""
+    picture = walk.shot("part")
+    walk.pictures.pop().unlink()
+    part = walk.region("WINDOW")
+    return picture[part.y : part.y + part.height, part.x : part.x + part.width]
+
+
 # -- chapters
 
 
 def start(walk):
-    """The tab in a new file, and with a model."""
+    """The tab in a new file, and the window with an example."""
     yield from keep(walk, "start", "UI")
     yield from example(walk, "haut_barr")
     yield from keep(walk, "window")
 
 
-CHAPTERS = (start,)
+def tour(walk):
+    """Each panel by itself."""
+    import bpy
+
+    yield from example(walk, "haut_barr")
+    group = bpy.context.scene.realmodel
+    group.active_result = len(group.results) - 4
+    group.rocks[0].active_surface = 2
+    for name in ("build", "results", "view", "surfaces", "rocks", "library"):
+        yield from keep(walk, name, "UI", [name])
+
+
+def modes(walk):
+    """The display modes, a stage, moved apart, cut open: docs/images/view_modes.png."""
+    import bpy
+
+    yield from show_panels(walk, ["start"])
+    walk.area.spaces.active.show_region_ui = False
+    yield from example(walk, "haut_barr")
+    group = bpy.context.scene.realmodel
+    pictures = []
+    for mode in ("POINTS", "LINES", "AREAS", "SURFACES", "POLYHEDRA", "BLOCKS"):
+        group.display = mode
+        yield from settled(walk)
+        pictures.append(viewport_picture(walk))
+    group.display = "BLOCKS"
+    group.stage = 5
+    yield from settled(walk)
+    pictures.append(viewport_picture(walk))
+    group.stage, group.explode = len(group.rocks[0].surfaces) - 1, 0.4
+    yield from settled(walk)
+    pictures.append(viewport_picture(walk))
+    group.explode = 0.0
+    bpy.ops.realmodel.section_plane(axis="Y")
+    yield from settled(walk)
+    pictures.append(viewport_picture(walk))
+    side_by_side(pictures, "../view_modes", 3, 2)
+    for stage in (3, 6, 10):
+        bpy.context.scene.realmodel.view.use_section = False
+        group.stage = stage
+        yield from settled(walk)
+        pictures.append(viewport_picture(walk))
+    side_by_side(pictures[-3:], "stages", 3, 2)
+
+
+def settled(walk):
+    """Nothing is being made any more, and all of it was drawn."""
+    import bpy
+    from realmodel.bl.display import cuts, preparing
+
+    yield walk.redrawn(2)
+    yield lambda: not preparing.is_working(bpy.context.scene) and not cuts.is_working(bpy.context.scene)
+    yield walk.redrawn(3)
+
+
+def csv(walk):
+    """Two tables of points become a model."""
+    import bpy
+
+    for name in ("clay", "ground"):
+        bpy.ops.realmodel.surface_add(filepath=str(SAMPLES / "two_layers" / f"{name}.csv"))
+    frame(walk)
+    yield from keep(walk, "csv_points", panels=["start", "surfaces"])
+    rock = bpy.context.scene.realmodel.rocks[0]
+    bpy.ops.realmodel.region_around()
+    rock.edge_length = 4.0
+    rock.use_base, rock.base_elevation = True, 0.0
+    yield from keep(walk, "csv_rocks", "UI", ["rocks"])
+    yield from build(walk)
+    frame(walk)
+    yield from keep(walk, "csv_built", panels=["build", "results"])
+
+
+def grid(name, height, size, strength, seed):
+    """A grid with a Displace modifier, as an artist makes it."""
+    import bpy
+
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=60, y_subdivisions=60, size=size, location=(0, 0, height))
+    item = bpy.context.active_object
+    item.name = name
+    texture = bpy.data.textures.new(name, "CLOUDS")
+    texture.noise_scale = 0.35 * size + 0.1 * seed
+    modifier = item.modifiers.new("Displace", "DISPLACE")
+    modifier.texture, modifier.strength, modifier.mid_level = texture, strength, 0.5
+    return item
+
+
+def sculpt(walk):
+    """Three grids become strata."""
+    import bpy
+
+    for number, (name, height, strength) in enumerate((("clay", 0, 2), ("sand", 1, 3), ("ground", 2, 6))):
+        grid(name, height, 12.0, strength, number)
+    for item in bpy.data.objects:
+        item.select_set(True)
+    look(walk, bpy.data.objects)
+    yield from keep(walk, "sculpt_grids", "WINDOW", ["start"])
+    bpy.ops.realmodel.from_selected()
+    yield from build(walk)
+    frame(walk)
+    yield from keep(walk, "sculpt_built", panels=["build", "surfaces"])
+
+
+def look(walk, items):
+    """Turns the viewport to objects."""
+    import bpy
+    from realmodel.bl import picture
+
+    walk.area.spaces.active.region_3d.view_rotation = picture.view_rotation().to_quaternion()
+    for item in items:
+        item.select_set(True)
+    with viewport(walk):
+        bpy.ops.view3d.view_selected()
+
+
+def section(walk):
+    """A model cut open by a plane."""
+    import bpy
+
+    yield from example(walk, "gravel_plain")
+    bpy.ops.realmodel.section_plane(axis="Y")
+    yield from settled(walk)
+    yield from keep(walk, "section_plane", panels=["view", "view_section"])
+
+
+def quarry(walk):
+    """A pit as the youngest surface."""
+    import bpy
+    import numpy as np
+
+    yield from example(walk, "two_layers")
+    group = bpy.context.scene.realmodel
+    ground = group.rocks[0].surfaces[-1].interface
+    heights = np.array([vertex.co[:] for vertex in ground.data.vertices])
+    middle, top = heights.mean(axis=0), heights[:, 2].max()
+    bpy.ops.mesh.primitive_grid_add(
+        x_subdivisions=40, y_subdivisions=40, size=44.0, location=(*middle[:2], 0)
+    )
+    pit = bpy.context.active_object
+    pit.name = "pit"
+    for vertex in pit.data.vertices:
+        away = max(abs(vertex.co.x), abs(vertex.co.y))
+        vertex.co.z = top - 9.0 + max(0.0, away - 12.0) * 1.2
+    bpy.ops.realmodel.surface_add(use_object=True)
+    yield from build(walk)
+    pit.hide_set(True)
+    frame(walk)
+    yield from keep(walk, "quarry", panels=["surfaces", "results"])
+
+
+CHAPTERS = (start, tour, modes, csv, sculpt, section, quarry)
 
 if __name__ == "__main__":
     if "bpy" in sys.modules:

@@ -78,7 +78,9 @@ class Links(HTMLParser):
 def test_the_guide_is_there_and_its_links_lead_somewhere(unpacked):
     pages = {path.resolve(): Links(path) for path in (unpacked / "realmodel" / "docs").rglob("*.html")}
     guide = unpacked / "realmodel" / "docs" / "guide"
-    assert {"index.html", "install.html", "tour.html", "troubleshooting.html"} <= {p.name for p in guide.iterdir()}
+    assert {"index.html", "install.html", "tour.html", "troubleshooting.html"} <= {
+        p.name for p in guide.iterdir()
+    }
     followed = 0
     for page, links in pages.items():
         for address in links.addresses:
