@@ -400,13 +400,13 @@ def test_an_estimate_builds_nothing(layers, out):
     project = layers([0, 1, 3])
     done = run(project, "--estimate", cwd=out)
     assert done.returncode == 0, done.stderr
-    assert "triangles of all surfaces  6" in done.stdout
-    assert "cells (columns)" in done.stdout
+    assert "triangles of all surfaces      6" in done.stdout
+    assert "memory while building columns  at most" in done.stdout
     assert "refused" not in done.stdout
     assert not names(out)
     done = run(project, "--estimate", "--cells", "blocks", "--memory", "1e-6")
     assert done.returncode == 0
-    assert "cells (blocks)             about 2" in done.stdout
+    assert "memory while building blocks" in done.stdout
     assert "would be refused" in done.stdout
 
 

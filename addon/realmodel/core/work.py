@@ -35,7 +35,6 @@ class Work:
         self._control = None
         self._start, self._end = 0.0, 1.0
         self._share = 0.0
-        self._pace: Callable[[float], float] | None = None
         self._told = 0.0
         self._text = ""
         self._cancelled = False
@@ -50,15 +49,6 @@ class Work:
             self._start, self._end, self._share, self._text = start, end, 0.0, text
         yield
         self.step(1.0)
-
-    @contextmanager
-    def paced(self, pace: Callable[[float], float]):
-        """Native calls within whose counted fraction goes to the share of their time by `pace`."""
-        with self._lock:
-            self._pace = pace
-        yield
-        with self._lock:
-            self._pace = None
 
     def step(self, share: float) -> None:
         """Tells the share done of the present phase. Raises Cancelled where the caller asked to stop."""
@@ -96,8 +86,7 @@ class Work:
         with self._lock:
             share = self._share
             if self._control is not None:
-                counted = self._control.fraction
-                share = max(share, counted if self._pace is None else self._pace(counted))
+                share = max(share, self._control.fraction)
             self._told = max(self._told, self._start + (self._end - self._start) * share)
             return self._told, self._text
 
