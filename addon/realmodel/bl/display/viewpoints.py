@@ -52,16 +52,9 @@ class _View:
         view.view_distance = self.distance
 
 
-def _needed_spaces(context):
-    found = viewports.spaces(context)
-    if not found:
-        raise InputRefused("there is no 3D viewport", advice="open one")
-    return found
-
-
 def turn(context, direction):
     """Looks along an axis, without perspective, at the whole model. direction: a key of DIRECTIONS."""
-    found = _needed_spaces(context)
+    found = viewports.spaces(context)
     _remember(found[0])
     for space in found:
         view = space.region_3d
@@ -74,7 +67,7 @@ def turn(context, direction):
 
 def frame(context):
     """Brings the whole model into the frame. Raises InputRefused where there is none."""
-    found = _needed_spaces(context)
+    found = viewports.spaces(context)
     if len(model_points(context.scene)) == 0:
         raise InputRefused("there is no model to be seen", advice="build one first")
     _remember(found[0])
@@ -87,7 +80,7 @@ def frame(context):
 def step(context, by):
     """Goes back (by -1) or forth (+1) among the views that were left. Raises InputRefused at the ends."""
     global _at
-    found = _needed_spaces(context)
+    found = viewports.spaces(context)
     _remember(found[0])
     if not 0 <= _at + by < len(_history):
         which = "an earlier" if by < 0 else "a later"
