@@ -4,7 +4,7 @@
     build/tools/bin/python make_zip.py FOLDER MODULE...
 
 FOLDER: where realmodel-VERSION-linux-x64.zip goes. MODULE: the native modules, one for each Python.
-The zip is written whole or not at all, and the same files give the same bytes. The documents become web pages,
+The zip is written whole or not at all, and the same files give the same bytes. Documents become web pages,
 for which markdown-it-py is needed.
 """
 
