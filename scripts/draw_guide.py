@@ -19,6 +19,7 @@ SAMPLES = ROOT / "blend_samples"
 SIZE = (1900, 1400)
 SCALE = 1.5  # of the interface, so that its letters are sharp in print
 COLORS = 128  # of a picture in its palette
+WIDEST = 1200  # pixels
 
 
 def main(names):
@@ -41,8 +42,11 @@ def shrink(source, target):
     from PIL import Image
 
     with Image.open(source) as picture:
-        if picture.mode != "P":
-            picture.convert("RGB").quantize(COLORS, dither=Image.Dither.NONE).save(target, optimize=True)
+        if picture.mode == "P":
+            return
+        small = picture.convert("RGB")
+        small.thumbnail((WIDEST, 10 * WIDEST), Image.Resampling.LANCZOS)
+        small.quantize(COLORS, dither=Image.Dither.NONE).save(target, optimize=True)
 
 
 # -- in Blender
@@ -59,6 +63,7 @@ def begin(names):
     preferences = bpy.context.preferences
     preferences.view.show_splash = False
     preferences.view.ui_scale = SCALE
+    preferences.system.use_region_overlap = False
     realmodel.register()
     TAB.update({cls: set(getattr(cls, "bl_options", ())) for cls in tab_panels()})
     IMAGES.mkdir(parents=True, exist_ok=True)
@@ -84,7 +89,10 @@ def chapter(walk, draw):
     for cls, options in TAB.items():
         cls.bl_options = options - (set() if draw is start else {"DEFAULT_CLOSED"})
     yield from show_panels(walk)
-    walk.area.spaces.active.show_region_ui = True
+    space = walk.area.spaces.active
+    space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_axis_y = False
+    space.overlay.show_cursor = space.show_gizmo = False
+    space.show_region_ui, space.show_region_toolbar = True, False
     yield lambda: walk.region("UI").width > 50
     yield from open_tab(walk)
     yield from draw(walk)
@@ -127,19 +135,20 @@ def open_tab(walk):
 
 
 def keep(walk, name, region=None, panels=()):
-    """Keeps a picture of a region of the 3D viewport, or of the whole window, as NAME.png. panels: of the
-    sidebar these alone, open; their idnames end so."""
+    """Keeps a picture of a region of the 3D viewport, or of all of it with the sidebar, as NAME.png. panels:
+    of the sidebar these alone, open; their idnames end so."""
     if panels:
         yield from show_panels(walk, panels)
     yield walk.redrawn(3)
-    picture = walk.shot(name)
+    picture = seen(walk, walk.area if region is None else walk.region(region))
+    write(without_tabs(picture) if region == "UI" else picture, IMAGES / f"{name}.png")
+
+
+def seen(walk, part):
+    """(height, width, 3) a part of the window as it is on the screen."""
+    picture = walk.shot("part")
     walk.pictures.pop().unlink()
-    if region is not None:
-        part = walk.region(region)
-        picture = picture[part.y : part.y + part.height, part.x : part.x + part.width]
-    if region == "UI":
-        picture = without_tabs(picture)
-    write(picture, IMAGES / f"{name}.png")
+    return picture[part.y : part.y + part.height, part.x : part.x + part.width]
 
 
 def without_tabs(picture):
@@ -231,14 +240,6 @@ def side_by_side(pictures, name, columns, smaller=1):
     write(np.concatenate(rows[::-1]), IMAGES / f"{name}.png")
 
 
-def viewport_picture(walk):
-    """(height, width, 3) the viewport without its tools."""
-    picture = walk.shot("part")
-    walk.pictures.pop().unlink()
-    part = walk.region("WINDOW")
-    return picture[part.y : part.y + part.height, part.x : part.x + part.width]
-
-
 # -- chapters
 
 
@@ -273,24 +274,24 @@ def modes(walk):
     for mode in ("POINTS", "LINES", "AREAS", "SURFACES", "POLYHEDRA", "BLOCKS"):
         group.display = mode
         yield from settled(walk)
-        pictures.append(viewport_picture(walk))
+        pictures.append(seen(walk, walk.region("WINDOW")))
     group.display = "BLOCKS"
     group.stage = 5
     yield from settled(walk)
-    pictures.append(viewport_picture(walk))
+    pictures.append(seen(walk, walk.region("WINDOW")))
     group.stage, group.explode = len(group.rocks[0].surfaces) - 1, 0.4
     yield from settled(walk)
-    pictures.append(viewport_picture(walk))
+    pictures.append(seen(walk, walk.region("WINDOW")))
     group.explode = 0.0
     bpy.ops.realmodel.section_plane(axis="Y")
     yield from settled(walk)
-    pictures.append(viewport_picture(walk))
+    pictures.append(seen(walk, walk.region("WINDOW")))
     side_by_side(pictures, "../view_modes", 3, 2)
     for stage in (3, 6, 10):
         bpy.context.scene.realmodel.view.use_section = False
         group.stage = stage
         yield from settled(walk)
-        pictures.append(viewport_picture(walk))
+        pictures.append(seen(walk, walk.region("WINDOW")))
     side_by_side(pictures[-3:], "stages", 3, 2)
 
 
@@ -374,6 +375,24 @@ def section(walk):
     yield from keep(walk, "section_plane", panels=["view", "view_section"])
 
 
+def trim_above(item, ground):
+    """Ends a mesh where it comes out of the ground, whose vertices are given (N, 3)."""
+    import bmesh
+    import numpy as np
+
+    mesh = bmesh.new()
+    mesh.from_mesh(item.data)
+    out = []
+    for vertex in mesh.verts:
+        place = np.array(item.matrix_world @ vertex.co)
+        nearest = ground[np.hypot(*(ground[:, :2] - place[:2]).T).argmin()]
+        if place[2] > nearest[2] + 1.5:
+            out.append(vertex)
+    bmesh.ops.delete(mesh, geom=out, context="VERTS")
+    mesh.to_mesh(item.data)
+    mesh.free()
+
+
 def quarry(walk):
     """A pit as the youngest surface."""
     import bpy
@@ -392,6 +411,7 @@ def quarry(walk):
     for vertex in pit.data.vertices:
         away = max(abs(vertex.co.x), abs(vertex.co.y))
         vertex.co.z = top - 9.0 + max(0.0, away - 12.0) * 1.2
+    trim_above(pit, heights)
     bpy.ops.realmodel.surface_add(use_object=True)
     yield from build(walk)
     pit.hide_set(True)

@@ -114,6 +114,21 @@ def test_messages_in_the_guide_exist():
                 assert any(part in text for text in texts()), f"no message has '{part}'"
 
 
+@functools.cache
+def sources():
+    folders = ("addon", "native", "scripts", "tests", "blend_samples")
+    files = [path for folder in folders for path in (ROOT / folder).rglob("*.*")]
+    return ["/" + path.relative_to(ROOT).as_posix() for path in [*files, *ROOT.glob("*.py")]]
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_sources_that_are_named_exist(document):
+    names = re.findall(r"`([\w./]+\.(?:py|cpp|hpp|sh|inl))`", document.read_text(encoding="utf-8"))
+    names = [name for name in names if "NAME" not in name and "shared" not in name]
+    missing = {name for name in names if not any(path.endswith("/" + name) for path in sources())}
+    assert not missing, f"{document.name} names {sorted(missing)}"
+
+
 def commands(document):
     for text in COMMAND.findall(document.read_text(encoding="utf-8")):
         yield shlex.split(text.replace("\\\n", " "))
