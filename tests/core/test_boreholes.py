@@ -57,11 +57,11 @@ def test_tables(write, collars, picks, keys):
     assert list(met.points) == ["clay", "sand"]
     assert met.points["clay"].tolist() == CLAY
     assert met.points["sand"].tolist() == SAND
-    assert any("1 picks without a depth" in text for text in met.warnings) == (
+    assert any("1 picks have no depth" in text for text in met.warnings) == (
         ",sand,\n" in picks or "sand,\r" in picks or ";sand;\n" in picks or "sand\t\n" in picks
     )
     if collars and "B5" in collars:
-        assert any("no surface was met in B5" in text for text in met.warnings)
+        assert any("no picks for B5" in text for text in met.warnings)
 
 
 @pytest.mark.parametrize("entry", ["-", "NA", "n/a", "NR", "NaN", "null"])
@@ -72,7 +72,7 @@ def test_words_for_a_surface_that_was_not_reached(write, entry):
     }
     met = read_boreholes(Boreholes(**files))
     assert met.points["sand"].tolist() == SAND
-    assert any("1 picks without a depth" in text for text in met.warnings)
+    assert any("1 picks have no depth" in text for text in met.warnings)
 
 
 def test_inclined_holes_are_told(write):
@@ -100,16 +100,16 @@ def test_units(write):
         (COLLARS, PICKS + "B1,clay,x\n", "p.csv", 8, "depth is not a number: 'x'"),
         (COLLARS, PICKS + "B1,,3\n", "p.csv", 8, "no name"),
         (COLLARS, PICKS + "B1,clay\n", "p.csv", 8, "3 values are needed, there are 2"),
-        (COLLARS + "B1,0,0,11\n", PICKS, "c.csv", 7, "another collar further up"),
+        (COLLARS + "B1,0,0,11\n", PICKS, "c.csv", 7, "has two collars"),
         (
             COLLARS.replace("z", "q"),
             PICKS,
             "c.csv",
             1,
-            'no column z; say which it is: columns = { z = "..." }',
+            'no column z; name it: columns = { z = "..." }',
         ),
         (COLLARS, PICKS.replace("surface", "what"), "p.csv", 1, "no column surface"),
-        (COLLARS, PICKS.replace("depth", "deep"), "p.csv", 2, "neither a column depth nor"),
+        (COLLARS, PICKS.replace("depth", "deep"), "p.csv", 2, "neither a column for depth nor"),
         (None, PICKS, "p.csv", 2, "no column x"),
         (COLLARS, "hole,surface,depth\n", "p.csv", None, "no picks"),
         (COLLARS, "hole,surface,depth\nB1,clay,inf\n", "p.csv", 2, "not a finite"),

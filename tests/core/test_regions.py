@@ -254,7 +254,7 @@ def test_layers_of_geopackages(tmp_path, write):
     for layer, words in ((None, "it has 2 layers; say which"), ("lake", "no layer 'lake'; it has lakes")):
         with pytest.raises(InputRefused, match=words):
             read_region(MapLayer(path, layer))
-    with pytest.raises(InputRefused, match="it is no GeoPackage"):
+    with pytest.raises(InputRefused, match="it is not a GeoPackage"):
         read_region(MapLayer(write("r.wkt", WKT[0]), "lakes"))
     write_geopackage(path, {"lakes": [(packaged(RINGS)[:-9], "", 0)]})
     with pytest.raises(InputRefused, match="layer 'lakes', feature 1: its geometry cannot be read"):

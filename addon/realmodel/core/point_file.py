@@ -29,7 +29,7 @@ class PointFile:
     where: {column or attribute: value, or a list of them}; only rows or features that hold it count.
     separator: one character; " " stands for any blanks and tabs; None: told from the file.
     decimal: "." or ","; None: told from the file.
-    nodata: what stands for no value, a number, a text or a list of such; points without a value are left out.
+    nodata: no-data values: a number, a text or a list of them; such points are left out.
     units: of the file, "ft" for all three coordinates, or {"xy": "m", "z": "ft"}; None: those of the model.
     height: the attribute of features that holds their height; None: the z of their positions.
     layer: of a GeoPackage, needed where it has several.
