@@ -32,7 +32,11 @@ def _all(settings, update, updates):
 def _property(setting, update):
     given = {"name": setting.label, "description": setting.tip, "options": set(), "update": update}
     if setting.kind == "word":
-        return EnumProperty(**given, items=items(setting.words), default=setting.default or "NONE")
+        return EnumProperty(
+            **given,
+            items=items(setting.words),
+            default=setting.default or next(iter(setting.words)) or "NONE",
+        )
     if setting.kind in ("text", *_SEARCH):
         if setting.kind in _SEARCH:
             given["search"] = _SEARCH[setting.kind]

@@ -17,7 +17,7 @@ def of_model(model):
         for surface in rock.surfaces:
             vertices, triangles = model.surface(number)
             heights = vertices[np.unique(triangles), 2] if len(triangles) else np.zeros(1)
-            whole = _plan_area(vertices, triangles) if surface.interpolated or rock.region is None else 0.0
+            whole = plan_area(vertices, triangles) if surface.interpolated or rock.region is None else 0.0
             figures = {
                 "points": len(surface.points) if surface.points is not None else None,
                 "triangles": len(triangles),
@@ -68,7 +68,8 @@ def _next(values, first, last):
     return found
 
 
-def _plan_area(vertices, triangles):
+def plan_area(vertices, triangles):
+    """The area of triangles, seen from above."""
     a, b, c = (vertices[triangles[:, k], :2] for k in range(3))
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     return float(np.abs(ux * vy - uy * vx).sum() / 2)

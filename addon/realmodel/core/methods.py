@@ -59,7 +59,6 @@ EXTRAPOLATE: Words = {
 _DRIFTS: Words = {"linear": ("Linear", "A plane"), "quadratic": ("Quadratic", "A second-order surface")}
 _NEIGHBOURS = Setting(
     DEFAULT_NEIGHBOURS,
-    check.neighbours,
     "whole",
     "Neighbors",
     "Number of nearest points in plan used at each node; 0: all",
@@ -73,7 +72,6 @@ _NEIGHBOURHOOD = {
     "neighbours": _NEIGHBOURS,
     "octants": Setting(
         0,
-        check.octants,
         "whole",
         "Per Octant",
         "Maximum number of points from each of eight sectors; 0: no limit",
@@ -82,11 +80,11 @@ _NEIGHBOURHOOD = {
     ),
     "radius": Setting(
         None,
-        check.optional_positive,
         "length",
         "Search Radius",
         "Points farther away are not used; 0: no limit",
         low=0.0,
+        above=0.0,
         zero_is_none=True,
         fold="search",
     ),
@@ -94,7 +92,7 @@ _NEIGHBOURHOOD = {
 # None: DEFAULT_NEIGHBOURS, or with a variogram that is fitted twice as many, which tells points better.
 _NEIGHBOURHOOD_OF_KRIGING = {
     **_NEIGHBOURHOOD,
-    "neighbours": replace(_NEIGHBOURS, default=None, check=check.optional_neighbours),
+    "neighbours": replace(_NEIGHBOURS, default=None),
 }
 
 
@@ -102,7 +100,6 @@ def _anisotropy(prefix: str, tip: str) -> Setting:
     """The anisotropy of a variogram or of one of its structures; prefix: of its properties."""
     return Setting(
         None,
-        check.anisotropy,
         "table",
         "Anisotropy",
         parts={
@@ -111,6 +108,7 @@ def _anisotropy(prefix: str, tip: str) -> Setting:
                 tip="Range along the azimuth divided by the range across it",
                 start=2.0,
                 low=0.001,
+                above=0.0,
                 name=f"{prefix}ratio",
             ),
             "azimuth": Setting(
@@ -127,7 +125,7 @@ def _anisotropy(prefix: str, tip: str) -> Setting:
 
 
 def _range(tip: str, name: str) -> Setting:
-    return Setting(kind="length", label="Range", tip=tip, start=100.0, low=0.0, name=name)
+    return Setting(kind="length", label="Range", tip=tip, start=100.0, low=0.0, above=0.0, name=name)
 
 
 STRUCTURE = {  # of a nested variogram, beside its anisotropy
@@ -135,39 +133,38 @@ STRUCTURE = {  # of a nested variogram, beside its anisotropy
         "spherical", kind="word", label="Model", tip="Model of this structure", words=VARIOGRAMS
     ),
     "range": _range("Practical range of this structure", "range"),
-    "sill": Setting(label="Sill", tip="Variance that this structure contributes", start=1.0, low=0.0),
+    "sill": Setting(
+        label="Sill", tip="Variance that this structure contributes", start=1.0, low=0.0, above=0.0
+    ),
     "anisotropy": _anisotropy("", "Give this structure its own anisotropy; off: that of the variogram"),
+}
+_PARTS = {
+    "model": Setting(
+        kind="word", label="Variogram", tip="Variogram model", words=VARIOGRAMS, name="variogram_model"
+    ),
+    "range": _range("Practical range: the distance at which correlation vanishes", "variogram_range"),
+    "sill": Setting(
+        label="Sill",
+        tip="Variance between points farther apart than the range, including the nugget",
+        start=1.0,
+        low=0.0,
+        above=0.0,
+        name="variogram_sill",
+    ),
+    "nugget": Setting(
+        0.0,
+        label="Nugget",
+        tip="Variance at distance zero; 0: every point is honored",
+        low=0.0,
+        name="variogram_nugget",
+    ),
 }
 _VARIOGRAM = {
     "variogram": Setting(
-        None,
-        check.variogram,
-        "table",
-        "Variogram",
-        parts={
-            "model": Setting(
-                "spherical",
-                kind="word",
-                label="Variogram",
-                tip="Variogram model",
-                words=VARIOGRAMS,
-                name="variogram_model",
-            ),
-            "range": _range("Practical range: the distance at which correlation vanishes", "variogram_range"),
-            "sill": Setting(
-                label="Sill",
-                tip="Variance between points farther apart than the range, including the nugget",
-                start=1.0,
-                low=0.0,
-                name="variogram_sill",
-            ),
-            "nugget": Setting(
-                label="Nugget",
-                tip="Variance at distance zero; 0: every point is honored",
-                low=0.0,
-                name="variogram_nugget",
-            ),
-        },
+        kind="table",
+        label="Variogram",
+        check=check.variogram(_PARTS, STRUCTURE),
+        parts=_PARTS,
         unset="fitted",
         more='`{model = "spherical", range = 60, sill = 4, nugget = 0}`, or nested: `{nugget = 0, '
         "structures = [{model, range, sill, anisotropy}, ...]}`",
@@ -180,7 +177,6 @@ _VARIOGRAM = {
 _EXTRAPOLATE = {
     "extrapolate": Setting(
         "method",
-        check.one_of(*EXTRAPOLATE),
         "word",
         "Extrapolation",
         "What happens beyond the points",
@@ -194,7 +190,7 @@ _EXTRAPOLATE = {
 def _other_surface(label: str, tip: str, empty: str) -> Setting:
     """An option that may name another surface, and need not."""
     tip = f"{tip}Name of another surface of this rock mass, or an elevation; empty: {empty}"
-    return Setting(None, check.optional_surface, "surface", label, tip, unset=empty)
+    return Setting(None, "surface", label, tip, unset=empty)
 
 
 METHODS: dict[str, Method] = {
@@ -214,7 +210,6 @@ METHODS: dict[str, Method] = {
         {
             "drift": Setting(
                 "linear",
-                check.one_of(*_DRIFTS),
                 "word",
                 "Drift",
                 "Form of the trend",
@@ -237,11 +232,11 @@ METHODS: dict[str, Method] = {
             **_NEIGHBOURHOOD,
             "power": Setting(
                 2.0,
-                check.positive,
                 label="Power",
                 tip="Exponent of the distance: higher values give near points more weight",
                 start=2.0,
                 low=0.01,
+                above=0.0,
                 more="above 0",
             ),
             **_EXTRAPOLATE,
@@ -258,7 +253,6 @@ METHODS: dict[str, Method] = {
             **_NEIGHBOURHOOD,
             "smoothing": Setting(
                 0.0,
-                check.not_negative,
                 label="Smoothing",
                 tip="0: the surface passes through every point; higher: smoother",
                 low=0.0,
@@ -274,11 +268,11 @@ METHODS: dict[str, Method] = {
         {
             "weight": Setting(
                 None,
-                check.optional_positive,
                 label="Weight",
                 tip="Weight of a point against the roughness of one node",
                 start=1.0,
                 low=1e-9,
+                above=0.0,
                 switch=("Approximate Points", "The surface need not pass exactly through the points"),
                 unset="points hold",
             ),
@@ -309,18 +303,16 @@ METHODS: dict[str, Method] = {
         "plain.plane",
         {
             "dip": Setting(
-                None,
-                check.dip,
                 label="Dip",
                 tip="Angle below the horizontal, in degrees",
                 low=0.0,
                 high=89.999,
+                below=90.0,
                 switch=("Fixed Dip", "Set the dip; off: fitted to the points"),
                 unset="fitted",
             ),
             "dip_direction": Setting(
                 0.0,
-                check.number,
                 label="Dip Direction",
                 tip="Azimuth of the dip, in degrees clockwise from north (+Y)",
                 beside="dip",
@@ -337,7 +329,6 @@ METHODS: dict[str, Method] = {
         {
             "value": Setting(
                 None,
-                check.optional_number,
                 "length",
                 "Elevation",
                 "Elevation of the whole surface",
@@ -357,15 +348,14 @@ METHODS: dict[str, Method] = {
         {
             "to": Setting(
                 None,
-                check.surface,
                 "surface",
                 "Parallel To",
                 "Name of another surface of this rock mass, or an elevation",
+                check=check.surface,
                 unset="needed",
             ),
             "thickness": Setting(
                 None,
-                check.optional_number,
                 "length",
                 "Thickness",
                 "Distance above the other surface; negative: below it",
@@ -388,7 +378,6 @@ THICKNESS_METHODS = tuple(
 # Of any of the methods above: only now are they all there.
 _THICKNESS_METHOD = Setting(
     _SPREAD_BY,
-    check.one_of(*THICKNESS_METHODS),
     "word",
     "Thickness Method",
     "How the thickness is interpolated between the points",
@@ -433,4 +422,7 @@ def checked_options(method: str, options: Mapping) -> dict:
             option=option,
             advice=f"options of {method} are {', '.join(known)}",
         )
-    return {name: option.check(name, options.get(name, option.default)) for name, option in known.items()}
+    return {
+        name: check.checked(name, setting, options.get(name, setting.default))
+        for name, setting in known.items()
+    }

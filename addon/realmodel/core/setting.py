@@ -12,22 +12,21 @@ Words = Mapping[str, tuple[str, str]]  # label and tooltip in the panel, by word
 
 @dataclass(frozen=True)
 class Setting:
-    """default: its value where it is not given. check(name, value) returns the value as it is used, or raises
-    InputRefused.
+    """default: its value where it is not given. kind: "number", "length", "whole", "word" (one of `words`),
+    "text", "surface" (the name of another one, or an elevation), "column" (of a file), "layer", "table" (of
+    `parts`), "columns" (of the x, y and z of a file), and "other", with code of its own wherever it is used.
+    above, below: bounds that it does not reach; else it is at least low. check(name, value) instead of these
+    returns the value as it is used, or raises OptionRefused.
 
-    For the panel: kind, one of "number", "length", "whole", "word", "text", "surface" (the name of another
-    one, or an elevation), "column" (of a file), "layer", "table" (of `parts`) and "other" (which has
-    properties and rows of its own, or none); label and tip; words, of the kind "word"; start, low and high:
-    the value before it is given, and its bounds. switch: label and tip of a tick, off where the setting is
-    not given; beside: the setting whose tick this one shares. zero_is_none: 0 in the panel means that it is
-    not given. name, switch_name: of the properties, where they are not the key and "use_" with the key.
-    fold: the fold of the panel that it is in.
+    For the panel: label and tip; start, low and high: the value before it is given, and its bounds. switch:
+    label and tip of a tick, off where the setting is not given; beside: the setting whose tick this one
+    shares. zero_is_none: 0 in the panel means that it is not given. name, switch_name: of the properties,
+    where they are not the key and "use_" with the key. fold: the fold of the panel that it is in.
     For the documents: needed, whether and where; unset, what None means; more, what there is to say beside
     the tip. A setting without either has its row in the document alone.
     """
 
     default: object = None
-    check: Callable[[str, object], object] | None = None
     kind: str = "number"
     label: str = ""
     tip: str = ""
@@ -35,6 +34,9 @@ class Setting:
     start: float = 0.0
     low: float | None = None
     high: float | None = None
+    above: float | None = None
+    below: float | None = None
+    check: Callable[[str, object], object] | None = None
     switch: tuple[str, str] | None = None
     beside: str | None = None
     zero_is_none: bool = False

@@ -12,7 +12,7 @@ from ..errors import InputRefused
 from ..map_layer import MapLayer
 from .geopackage import connect, is_geopackage
 from .map_input import is_map_layer, read_shapes
-from .point_input import head_of
+from .point_input import RASTER_FORMATS, head_of
 from .points import KNOWN, Table, open_table
 from .shapes import NothingSelected
 from .table_layout import fields
@@ -23,8 +23,11 @@ _NOTHING = "\0"  # no attribute is called so, and none has it
 
 def column_names(file: Path, layer: str | None = None) -> list[str]:
     """The names of the columns of a table, or numbers from 1 where it has no header; or of the attributes of
-    the features of a layer. Raises InputRefused."""
-    if is_map_layer(file, head_of(file)):
+    the features of a layer; none of a raster. Raises InputRefused."""
+    head = head_of(file)
+    if any(known.begins(head) for known in RASTER_FORMATS):
+        return []
+    if is_map_layer(file, head):
         return list(_nothing_selected(file, layer, _NOTHING).names)
     table = open_table(file, None, (), {}, KNOWN)
     row = next(_rows(table), [])
