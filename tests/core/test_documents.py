@@ -184,9 +184,16 @@ def test_pictures_of_the_algorithm_are_what_their_script_draws(monkeypatch):
         assert (images / name).read_bytes() == svg.encode(), f"{name}: run scripts/draw_algorithm.py"
 
 
+def test_the_project_that_is_shown_is_the_example():
+    shown = (ROOT / "docs" / "reference" / "project_file.md").read_text(encoding="utf-8")
+    project = (ROOT / "blend_samples" / "two_layers" / "project.toml").read_text(encoding="utf-8")
+    written = "\n".join(line for line in project.splitlines() if not line.startswith("#")).strip()
+    assert f"```toml\n{written}\n```" in shown
+
+
 def test_tables_are_what_the_add_on_says():
     write_tables = runpy.run_path(str(ROOT / "scripts" / "write_tables.py"))
     texts = {path.name: path.read_text(encoding="utf-8") for path in write_tables["DOCUMENTS"]}
-    assert sum(text.count("<!-- table of ") for text in texts.values()) == 6
+    assert sum(text.count("<!-- table of ") for text in texts.values()) == 10
     for name, text in texts.items():
         assert write_tables["written"](text) == text, f"{name}: run scripts/write_tables.py"
