@@ -140,7 +140,7 @@ def _keys(settings, text):
 
 
 def written(text):
-    """The text of a document with its tables as the add-on has them. Raises KeyError for a key without row."""
+    """The text of a document with its tables as the add-on has them. Raises KeyError for a key not there."""
     from realmodel.core.schema import PROJECT, READING, ROCK, SURFACE
 
     tables = {
