@@ -155,8 +155,9 @@ def without_tabs(picture):
     """The sidebar without the names of its tabs, and without the empty part below its panels."""
     width = picture.shape[1] - int(30 * SCALE)
     picture = picture[:, :width]
-    background = picture[2, width // 2]
+    background = picture[8, width // 2]
     drawn = (abs(picture[:, 10:-10] - background) > 0.02).any(axis=(1, 2))
+    drawn[:12] = False  # the border of the region
     lowest = int(drawn.argmax())
     return picture[max(lowest - 8, 0) :]
 

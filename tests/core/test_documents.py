@@ -94,13 +94,22 @@ def texts():
     return found
 
 
+def is_label(text):
+    """Whether a label of the add-on is so, such as f"Save {name}..." with some name."""
+    return text in texts() or any(
+        text.startswith(start) and text.endswith("...") and text[len(start) : -3] in texts()
+        for start in texts()
+        if start.endswith(" ")
+    )
+
+
 @pytest.mark.parametrize(
     "document", sorted((ROOT / "docs" / "guide").glob("*.md")), ids=lambda path: path.name
 )
 def test_labels_in_the_guide_exist(document):
     """Labels are bold; a path to one, such as **Open Example > Two Layers**, has several."""
     labels = LABEL.findall(document.read_text(encoding="utf-8"))
-    missing = {part for label in labels for part in label.split(" > ") if part not in texts()}
+    missing = {part for label in labels for part in label.split(" > ") if not is_label(part)}
     assert not missing, f"{document.name}: no such label: {sorted(missing)}"
 
 
