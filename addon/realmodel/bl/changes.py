@@ -2,7 +2,7 @@
 """What follows when a setting is changed by hand or by a script: each update callback is one function
 here."""
 
-from . import display, live, region_size, settings, units
+from . import data_objects, display, live, region_size, settings, units
 
 
 def setting(row, _context):
@@ -49,6 +49,7 @@ def region(rock, context):
     rock.region_stored = rock.region_stamp = ""
     rock.region_area = -1.0
     region_size.ask()
+    data_objects.update(rock.id_data)
     setting(rock, context)
 
 
@@ -59,6 +60,7 @@ def source(surface, context):
     surface.interface_digest = surface.reading = ""
     if surface.source != "MESH_OBJECT":
         surface.stored_stamp = ""
+    data_objects.update(surface.id_data)
     setting(surface, context)
 
 
@@ -69,6 +71,7 @@ def reading(surface):
     surface.interface_digest = ""
     if surface.filepath:
         surface.stored = surface.stored_stamp = ""
+    data_objects.update(surface.id_data)
     setting(surface, None)
 
 

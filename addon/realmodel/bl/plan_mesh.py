@@ -44,6 +44,18 @@ def set_kind(row, number):
     _keep(row, **({"edge_length": AUTO} if number == 1 else {"triangles": count}))
 
 
+def propose_edge_length(row, points):
+    """An edge length of 1, 2 or 5 times a power of ten by the extent of points (P, 3), where none is given:
+    some ten thousand triangles."""
+    extent = math.hypot(*np.ptp(points[:, :2], axis=0)) if len(points) else 0.0
+    if row.edge_length > 0.0 or row.mesh_options or not extent > 0.0:
+        return
+    least = extent / 100.0
+    power = 10.0 ** math.floor(math.log10(least))
+    with settings.filling():
+        settings.set_number(row, "edge_length", next(n * power for n in (1, 2, 5, 10) if n * power >= least))
+
+
 def triangles(row):
     return _instead_of_length(row).get("triangles", _USUAL_COUNT)
 

@@ -134,6 +134,16 @@ def _name(column):
     return column.strip().strip('"')
 
 
+def columns(given):
+    """The columns of "X, Y, Z" or "2, 3, 5", by name or number."""
+    return _values(given)
+
+
+def value(text):
+    """What an entry of a table is compared as: a number, or its text."""
+    return _value(text)
+
+
 def named_columns(given):
     """{name: column} of "hole = BHID; depth = 3"."""
     found = {}

@@ -155,8 +155,8 @@ def fit_warnings(variogram: Variogram, points: np.ndarray) -> list[str]:
     extent = float(np.hypot(*np.ptp(points[:, :2], axis=0)))
     if variogram.range > extent > 0 and pairs >= _FEW_PAIRS:
         warnings.append(
-            f"the fitted variogram has its range, {variogram.range:.4g}, beyond the extent of the points, "
-            f"{extent:.4g}: its sill, and variances far from points, are extrapolated; the heights may "
-            f'follow a trend, as method = "universal_kriging" has it'
+            f"the fitted range, {variogram.range:.4g}, is beyond the extent of the points, {extent:.4g}: "
+            f"variances far from points are extrapolated; if the heights follow a trend, give "
+            f'method = "universal_kriging"'
         )
     return warnings

@@ -8,7 +8,9 @@ from . import (
     boreholes,
     build,
     files,
+    imports,
     library,
+    origin,
     plan_mesh,
     results,
     rocks,
@@ -21,8 +23,10 @@ from . import (
 
 _MODULES = (
     start,
+    origin,
     rocks,
     plan_mesh,
+    imports,
     surfaces,
     boreholes,
     variograms,

@@ -28,7 +28,7 @@ def hint(layout, text):
         column.label(text=line)
 
 
-def _letters():
+def letters():
     """How many letters fit into a line of the sidebar that is being drawn."""
     region = bpy.context.region
     if region is None:
@@ -42,7 +42,7 @@ _UNIT = re.compile(r"(?<=\d) (?=(?:[mck]?m[²³]?|%|ft|mi|yd|in)(?!\w))")  # bet
 def wrapped(text, taken=0):
     """The lines of a text, none longer than about the width of the sidebar, of which something else has
     `taken` so many letters; a number stays with its unit."""
-    width = max(_letters() - taken, 12)
+    width = max(letters() - taken, 12)
     lines, line = [], ""
     for word in _UNIT.sub("\u00a0", text).split(" "):
         if line and len(line) + 1 + len(word) > width:

@@ -11,7 +11,7 @@ from .panel import TabPanel, hint
 class REALMODEL_PT_results(TabPanel, bpy.types.Panel):
     bl_label = "Results"
     bl_idname = "REALMODEL_PT_results"
-    bl_order = 6
+    bl_order = 3
 
     def draw_in(self, layout, context, group):
         if not len(group.results):

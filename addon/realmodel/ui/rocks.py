@@ -10,7 +10,7 @@ from .panel import TabPanel, hint
 class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
     bl_label = "Rock Masses"
     bl_idname = "REALMODEL_PT_rocks"
-    bl_order = 1
+    bl_order = 5
 
     def draw_in(self, layout, context, group):
         if not len(group.rocks):
@@ -29,6 +29,7 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
             layout.prop(rock, "region_file", text="or file")
             if rock.region_stored and not rock.region_file:
                 hint(layout, "Its outline is kept in the .blend.")
+        layout.operator("realmodel.region_around", icon="SHADING_BBOX")
         if method_settings.interpolates(rock):
             _draw_density(layout, rock)
         base = layout.row(heading="Base")

@@ -11,7 +11,7 @@ from .panel import TabPanel, hint, wrapped
 class REALMODEL_PT_surfaces(TabPanel, bpy.types.Panel):
     bl_label = "Surfaces"
     bl_idname = "REALMODEL_PT_surfaces"
-    bl_order = 2
+    bl_order = 4
 
     def draw_in(self, layout, context, _group):
         rock = settings.active_rock(context.scene)
@@ -33,9 +33,9 @@ class REALMODEL_PT_surfaces(TabPanel, bpy.types.Panel):
                 "No surface yet. Begin with the oldest: from a file of points or a mesh, or from a mesh.",
             )
         line = layout.column(align=True)
-        line.operator("realmodel.surface_add", text="Add from File...", icon="FILE_FOLDER")
+        line.operator("realmodel.surface_add", text="Import Surfaces...", icon="IMPORT")
         line.operator("realmodel.surface_add", text="Add Active Mesh", icon="OBJECT_DATA").use_object = True
-        line.operator("realmodel.boreholes_read", text="Read Boreholes...", icon="EMPTY_SINGLE_ARROW")
+        line.operator("realmodel.boreholes_read", text="Import Boreholes...", icon="EMPTY_SINGLE_ARROW")
         surface = settings.active_surface(context.scene)
         if surface is not None:
             _draw_surface(layout, context, surface)

@@ -14,7 +14,7 @@ _WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
 class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
     bl_label = "View"
     bl_idname = "REALMODEL_PT_view"
-    bl_order = 4
+    bl_order = 2
 
     def draw_in(self, layout, context, group):
         if not len(group.results):
