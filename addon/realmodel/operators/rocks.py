@@ -8,7 +8,7 @@ from mathutils.geometry import convex_hull_2d
 
 from ..bl import built_scene, data_objects, live, project_settings, settings, shapes
 from ..core import InputRefused
-from .reporting import Reporting, needed_rock
+from .reporting import Reporting, a_rock
 
 
 class REALMODEL_OT_rock_add(Reporting, bpy.types.Operator):
@@ -40,10 +40,11 @@ class REALMODEL_OT_rock_remove(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.rock_remove"
     bl_label = "Remove Rock Mass"
+    needs = (a_rock,)
 
     def act(self, context):
         scene, group = context.scene, context.scene.realmodel
-        row = needed_rock(context)
+        row = settings.active_rock(scene)
         built_scene.remove_rock(scene, row)
         with settings.filling():
             group.rocks.remove(list(group.rocks).index(row))
@@ -58,10 +59,11 @@ class REALMODEL_OT_rock_copy(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.rock_copy"
     bl_label = "Copy Rock Mass"
+    needs = (a_rock,)
 
     def act(self, context):
         group = context.scene.realmodel
-        number = list(group.rocks).index(needed_rock(context))
+        number = list(group.rocks).index(settings.active_rock(context.scene))
         row = group.rocks.add()
         source = group.rocks[number]
         settings.copy_row(source, row)
@@ -81,6 +83,7 @@ class REALMODEL_OT_region_around(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.region_around"
     bl_label = "Region Around Points"
+    needs = (a_rock,)
 
     shape: EnumProperty(
         name="Shape",
@@ -112,7 +115,7 @@ class REALMODEL_OT_region_around(Reporting, bpy.types.Operator):
 
     def act(self, context):
         scene, group = context.scene, context.scene.realmodel
-        row = needed_rock(context)
+        row = settings.active_rock(context.scene)
         if self.rock >= 0:
             if self.rock >= len(group.rocks):
                 raise InputRefused(f"there is no rock mass {self.rock}", advice="they are counted from 0")

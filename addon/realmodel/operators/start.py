@@ -23,10 +23,10 @@ from ..bl import (
 )
 from ..bl.display import cuts
 from ..bl.origin import KEY as ORIGIN_KEY
-from ..core import BuildFailed, InputRefused, load_project
+from ..core import BuildFailed, load_project
 from ..core.project_writer import save_project
 from ..core.rock_input import with_arrays
-from .reporting import Reporting, needed_path
+from .reporting import Reporting, any_surface, needed_path, not_building, selected_meshes
 
 
 def _begin(current, name):
@@ -58,10 +58,7 @@ class Replacing(Reporting):
 
     _asked = False
 
-    @classmethod
-    def poll(cls, context):
-        cls.poll_message_set("A build is running: cancel it first")
-        return not context.window_manager.realmodel.running
+    needs = (not_building,)
 
     def comes(self, context):
         """What comes in the place of the model: "open Haut-Barr"."""
@@ -182,14 +179,10 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
 
     bl_idname = "realmodel.save_project"
     bl_label = "Save RealModel Project"
-    bl_options = {"REGISTER"}
+    needs = (any_surface,)
 
     filename_ext = ".toml"
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
-
-    @classmethod
-    def poll(cls, context):
-        return settings.has_rows(context.scene)
 
     def act(self, context):
         path = project_settings.absolute(needed_path(self.filepath, "the project"))
@@ -210,6 +203,7 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
 
     bl_idname = "realmodel.from_selected"
     bl_label = "Model from Selected Meshes"
+    needs = (not_building, selected_meshes)
 
     add_base: BoolProperty(
         name="Base",
@@ -219,8 +213,6 @@ class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
 
     def act(self, context):
         chosen = _chosen(context)
-        if not chosen:
-            raise InputRefused("no mesh object is selected", advice="select the surfaces of your model first")
         for item in chosen:
             shapes.require_open(item)
         depsgraph = context.evaluated_depsgraph_get()
