@@ -283,6 +283,11 @@ class Surfaces(PanelCase):
 
 
 class Library(PanelCase):
+    def without_properties(self):
+        self.model.library.clear()
+        for row in self.model.rocks[0].surfaces:
+            row.property_id = 0
+
     def test_another_id_goes_to_all_that_has_the_property(self):
         stack(0.0, 10.0)
         ops.library_add(name="Sand")
@@ -302,7 +307,7 @@ class Library(PanelCase):
 
     def test_add_edit_remove(self):
         stack(0.0, 10.0)
-        self.model.library.clear()
+        self.without_properties()
         ops.library_add(name="Sand")
         ops.library_add(name="Clay")
         self.assertEqual([(e.id, e.name) for e in self.model.library], [(1, "Sand"), (2, "Clay")])
@@ -344,7 +349,7 @@ class Library(PanelCase):
 
     def test_assign_to_selected_blocks(self):
         stack(0.0, 10.0, 20.0)
-        self.model.library.clear()
+        self.without_properties()
         self.refused(ops.assign_property, "the library is empty")
         ops.library_add(name="Sand")
         ops.build()
@@ -354,7 +359,7 @@ class Library(PanelCase):
         ops.assign_property()
         item = bpy.data.objects["S2 block"]
         self.assertEqual((item["realmodel_property"], item.data.materials[0].name), (1, "Sand"))
-        self.assertEqual([s.property_id for s in self.model.rocks[0].surfaces], [1, 2, 1])
+        self.assertEqual([s.property_id for s in self.model.rocks[0].surfaces], [0, 0, 1])
         self.assertEqual(bpy.data.objects["S2"]["realmodel_property"], 1)
         ops.build()
         self.assertEqual(bpy.data.objects["S2 block"].data.materials[0].name, "Sand")

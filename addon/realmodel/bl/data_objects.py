@@ -13,7 +13,7 @@ import numpy as np
 
 from ..core import InputRefused, PointFile, RealModelError
 from ..core.readers import read_point_file, read_region
-from . import project_settings, reading_text, settings, stored_arrays
+from . import display, project_settings, reading_text, settings, stored_arrays
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin
 
@@ -46,6 +46,8 @@ def update(scene, read=None):
     if collection is not None and not len(collection.objects):
         bpy.data.collections.remove(collection)
     place(scene)
+    if len(scene.realmodel.results):
+        display.exaggeration_changed(scene)
 
 
 def objects(scene):

@@ -171,19 +171,24 @@ class REALMODEL_OT_show_problem(Reporting, bpy.types.Operator):
         problems.show(context)
 
 
-class REALMODEL_OT_dismiss(bpy.types.Operator):
+def a_message(context):
+    told = context.window_manager.realmodel.problem or context.scene.realmodel.warnings
+    return None if told else "there is no message"
+
+
+class REALMODEL_OT_dismiss(Reporting, bpy.types.Operator):
     """Take the message out of the panel; the report of the model keeps its warnings"""
 
     bl_idname = "realmodel.dismiss"
     bl_label = "Dismiss Message"
     bl_options = {"REGISTER", "INTERNAL"}
+    needs = (a_message,)
 
-    def execute(self, context):
+    def act(self, context):
         if context.window_manager.realmodel.problem:
             problems.forget()
         else:
             context.scene.realmodel.warnings = ""
-        return {"FINISHED"}
 
 
 CLASSES = (

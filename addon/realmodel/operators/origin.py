@@ -5,10 +5,10 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from ..bl import built_scene, data_objects, project_settings, settings, shapes, viewports
+from ..bl import built_scene, data_objects, exaggeration, project_settings, settings, shapes, viewports
 from ..bl.origin import KEY, choose_origin
 from ..core import InputRefused
-from .reporting import Reporting
+from .reporting import Reporting, any_surface, not_building
 from .start import invoke
 
 
@@ -18,6 +18,7 @@ class REALMODEL_OT_move_to_zero(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.move_to_zero"
     bl_label = "Move Model to Scene's Zero"
+    needs = (any_surface, not_building)
 
     def act(self, context):
         current = context.scene
@@ -37,7 +38,7 @@ class REALMODEL_OT_move_to_zero(Reporting, bpy.types.Operator):
             raise InputRefused("the model stands near the zero of the scene")
         current[KEY] = [float(value) for value in new]
         for item in {_top(item) for item in mine}:
-            item.matrix_world = Matrix.Translation(moved) @ item.matrix_world
+            item.matrix_basis = Matrix.Translation(moved) @ item.matrix_basis
         unchanged = [row for row in interfaces if _digest(context, row) == row.interface_digest]
         for mesh in {item.data for item in made}:
             mesh.transform(Matrix.Translation(moved))
@@ -59,7 +60,7 @@ def _digest(context, row):
 
 def _top(item):
     """The object that carries another along, or itself."""
-    while item.parent is not None:
+    while item.parent is not None and exaggeration.KEY not in item.parent:
         item = item.parent
     return item
 

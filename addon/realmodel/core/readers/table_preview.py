@@ -51,7 +51,7 @@ def preview_table(file: str | Path, columns: Sequence[str | int] | None = None) 
         used = wanted_columns(table, columns)
         found.xyz = tuple(names[n] for n in used if n < count)
     except InputRefused as error:
-        found.problem, used = str(error), []
+        found.problem, used = error.what, []
     splits = []
     for column in range(count):
         if column in used or names.count(names[column]) > 1:
