@@ -2,7 +2,7 @@
 """What follows when a setting is changed by hand or by a script: each update callback is one function
 here."""
 
-from . import data_objects, display, live, region_size, settings, units
+from . import data_objects, display, live, region_size, settings, units, viewports
 
 
 def setting(row, _context):
@@ -50,6 +50,8 @@ def region(rock, context):
     rock.region_area = -1.0
     region_size.ask()
     data_objects.update(rock.id_data)
+    if context is not None and len(shown := data_objects.objects(rock.id_data)) == 1:
+        viewports.frame_items(shown, viewports.spaces(context))  # the first that is to be seen
     setting(rock, context)
 
 

@@ -66,7 +66,12 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
         description="Name of the surface; empty: that of its file or object",
         options={"SKIP_SAVE"},
     )
-    filepath: StringProperty(name="File", description="File with its points or its mesh", subtype="FILE_PATH")
+    filepath: StringProperty(
+        name="File",
+        description="File with its points or its mesh",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},  # with a path, as of a dropped file, no file browser opens
+    )
     directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
     files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
     use_object: BoolProperty(
@@ -94,7 +99,6 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
         search=lambda self, _context, _text: [name for p in self._previews for name in p.splits],
         options={"SKIP_SAVE"},
     )
-    looked: BoolProperty(options={"SKIP_SAVE", "HIDDEN"})  # the files were chosen, their dialog is next
     filter_glob: StringProperty(
         default=";".join(
             f"*{ending}" for ending in (*MESH_ENDINGS, *TABLE_ENDINGS, *RASTER_ENDINGS, *MAP_ENDINGS)
@@ -103,11 +107,13 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
     )
     filename_ext = ""
     _browses = False
+    _folder = ""  # of the last files that were chosen
     _previews = ()
 
     def act(self, context):
         if self._browses:
-            chosen = {"filepath": self.filepath, "directory": self.directory, "looked": True}
+            type(self)._folder = os.path.dirname(self.filepath)
+            chosen = {"filepath": self.filepath, "directory": self.directory}
             chosen["files"] = [{"name": file.name} for file in self.files]
             invoke(bpy.ops.realmodel.surface_add, self, **chosen)
             return
@@ -135,9 +141,9 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
     def invoke(self, context, event):
         if self.use_object or self.empty:
             return self.execute(context)
-        if not self.looked:
+        if not self._paths():
             self._browses = True
-            folder = os.path.dirname(self.filepath or bpy.data.filepath) or os.path.expanduser("~")
+            folder = self._folder or os.path.dirname(bpy.data.filepath) or os.path.expanduser("~")
             self.filepath = os.path.join(folder, "")  # no name of a .blend as a proposal
             return ImportHelper.invoke(self, context, event)
         self._previews = list(self._looked_at())
@@ -285,3 +291,20 @@ def arrived(context, rock, places, read=None):
 
 
 CLASSES = (REALMODEL_OT_surface_add,)
+
+
+if hasattr(bpy.types, "FileHandler"):  # from Blender 4.1 on
+
+    class REALMODEL_FH_surfaces(bpy.types.FileHandler):
+        """Tables and meshes that are dropped into the viewport become surfaces"""
+
+        bl_idname = "REALMODEL_FH_surfaces"
+        bl_label = "RealModel surfaces"
+        bl_import_operator = "realmodel.surface_add"
+        bl_file_extensions = ";".join((*TABLE_ENDINGS, *MESH_ENDINGS))
+
+        @classmethod
+        def poll_drop(cls, context):
+            return context.area is not None and context.area.type == "VIEW_3D"
+
+    CLASSES = (*CLASSES, REALMODEL_FH_surfaces)

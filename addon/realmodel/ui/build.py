@@ -4,20 +4,16 @@
 import bpy
 
 from ..bl import method_settings, notices, settings
-from .panel import TabPanel, hint, letters, wrapped
+from .panel import OfAModel, TabPanel, hint, letters, wrapped
 
 _FOLDED = 3  # lines of warnings that are shown until they are unfolded
 _ICON = 5  # letters that are as wide as an icon and the border of a box
 
 
-class REALMODEL_PT_build(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_build(OfAModel, TabPanel, bpy.types.Panel):
     bl_label = "Build"
     bl_idname = "REALMODEL_PT_build"
     bl_order = 1
-
-    @classmethod
-    def poll(cls, context):
-        return context.scene.realmodel.exists
 
     def draw_in(self, layout, context, group):
         activity = context.window_manager.realmodel

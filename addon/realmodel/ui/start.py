@@ -4,7 +4,7 @@
 import bpy
 
 from ..bl import native
-from .panel import TabPanel, hint, wrapped
+from .panel import OfAModel, TabPanel, hint, wrapped
 
 
 class REALMODEL_PT_start(TabPanel, bpy.types.Panel):
@@ -52,15 +52,11 @@ class REALMODEL_MT_start(bpy.types.Menu):
         layout.operator("realmodel.save_project", text="Save Project...", icon="FILE_TICK")
 
 
-class REALMODEL_PT_start_origin(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_start_origin(OfAModel, TabPanel, bpy.types.Panel):
     bl_label = "Units and Origin"
     bl_idname = "REALMODEL_PT_start_origin"
     bl_parent_id = "REALMODEL_PT_start"
     bl_options = {"DEFAULT_CLOSED"}
-
-    @classmethod
-    def poll(cls, context):
-        return context.scene.realmodel.exists
 
     def draw_in(self, layout, _context, group):
         layout.prop(group, "units")
