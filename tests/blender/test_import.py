@@ -75,7 +75,7 @@ class Files(Imported):
         ops.surface_add(filepath=str(path), split=True)
         rock = self.model.rocks[0]
         self.assertEqual([s.name for s in rock.surfaces], ["Base", "Clay", "Top sand"])
-        self.assertEqual(rock.surfaces[1].where, "Horizon = Clay")
+        self.assertEqual([(f.column, f.value) for f in rock.surfaces[1].filters], [("Horizon", "Clay")])
         ops.region_around()
         for surface in rock.surfaces:
             surface.method = "plane"
@@ -94,8 +94,15 @@ class Files(Imported):
         ops.surface_add(filepath=str(path), split_column="val", columns="east, north, up")
         surfaces = self.model.rocks[0].surfaces
         self.assertEqual(sorted(s.name for s in surfaces), ["v 0", "v 60"])
-        self.assertEqual({s.columns for s in surfaces}, {"east, north, up"})
+        self.assertEqual({(s.column_x, s.column_y, s.column_z) for s in surfaces}, {("east", "north", "up")})
         self.assertEqual(len(self.clouds()["v 60 points"].data.vertices), 20)
+
+    def test_columns_that_are_not_three(self):
+        path = self.table("a.csv", grid(1.0))
+        self.refused(ops.surface_add, "three columns", filepath=str(path), columns="x, y")
+        ops.surface_add(filepath=str(path))
+        self.model.rocks[0].surfaces[0].column_x = "x"  # two are to follow
+        self.assertEqual(self.clouds(), {})
 
     def test_what_is_imported_goes_with_its_surface(self):
         ops.surface_add(filepath=str(self.table("a.csv", grid(1.0))))

@@ -105,7 +105,9 @@ def _read_points(scene, row):
 def file_key(row):
     """What tells the file of a surface, and how it is read, from another."""
     path = project_settings.absolute(row.filepath)
-    return f"{path} {row.reading} {stored_arrays.file_stamp(path)}" if path is not None else ""
+    if path is None:
+        return ""
+    return f"{path} {reading_text.options(row)} {stored_arrays.file_stamp(path)}"
 
 
 def _wanted(scene, read):
@@ -120,7 +122,10 @@ def _wanted(scene, read):
             )
         for row in rock.surfaces:
             if row.source == "POINTS_FILE" and (row.filepath or row.stored):
-                key = file_key(row)
+                try:
+                    key = file_key(row)
+                except RealModelError:  # only some of the columns are set yet
+                    continue
                 found[f"points {rock.name} / {row.name} {key or _checksum(row.stored)}"] = (
                     f"{row.name} points",
                     lambda row=row, key=key: _cloud(scene, row, read.get(key)),

@@ -8,11 +8,11 @@ import bpy
 
 from ..core.errors import number_list
 
-# Settings as project files have them, and the property of a surface that has the label of each.
+# Settings as project files have them, and the property of a surface with the label of each, or the label.
 _LABELS = {
     "method": "method",
-    "columns": "columns",
-    "where": "where",
+    "columns": "Columns",
+    "where": "Filters",
     "separator": "separator",
     "decimal": "decimal",
     "nodata": "nodata",
@@ -59,7 +59,8 @@ def in_panel_words(text):
         names = names[key].fixed_type.properties
 
     def setting(found):
-        label = names[_LABELS[found[1]]].name if _LABELS[found[1]] in names else found[1].capitalize()
+        key = _LABELS[found[1]]
+        label = names[key].name if key in names else key
         values = [_value(found[1], value, names) for value in found.groups()[1:] if value]
         return f"set {label} to {' or '.join(values)}"
 

@@ -2,7 +2,6 @@
 """Surfaces from files, of which tables are looked at first, and from objects."""
 
 import contextlib
-import json
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,6 +24,7 @@ from ..bl import (
 )
 from ..core import InputRefused, MeshFile, PointFile
 from ..core.errors import HeightsMissing
+from ..core.point_file import ReadingRefused
 from ..core.readers import (
     MAP_ENDINGS,
     MESH_ENDINGS,
@@ -130,7 +130,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
                     row.source, row.object = "MESH_OBJECT", surface.item
                 elif surface.path is not None:
                     row.source, row.filepath = surface.source, str(surface.path)
-                    row.reading = json.dumps(surface.reading) if surface.reading else ""
+                    reading_text.fill(row, surface.reading)
                     if surface.source == "POINTS_FILE" and surface.places is not None:
                         read[data_objects.file_key(row)] = surface.places
             rock.active_surface = len(rock.surfaces) - 1
@@ -220,7 +220,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
             return [_Given(path.stem, "MESH_FILE", path)]
         reading = {}
         if self.columns.strip() and path.suffix.lower() in TABLE_ENDINGS:
-            reading["columns"] = reading_text.columns(self.columns)
+            reading["columns"] = [reading_text.column(name) for name in self.columns.split(",")]
         whole = _Given(path.stem, "POINTS_FILE", path, reading=reading)
         if not (self.split or self.split_column) or path.suffix.lower() not in TABLE_ENDINGS:
             return [whole]
@@ -250,8 +250,13 @@ def _read(surface, unit):
         scale = MeshFile(surface.path).scale(unit)
         surface.places = mesh.vertices * (scale[0], scale[0], scale[1])
         return []
+    given = PointFile(surface.path, **surface.reading)
+    try:
+        given.check()
+    except ReadingRefused as error:
+        raise InputRefused(error.what, file=surface.path, advice=error.advice) from error
     with contextlib.suppress(HeightsMissing):
-        surface.places, told = read_point_file(PointFile(surface.path, **surface.reading), unit)
+        surface.places, told = read_point_file(given, unit)
         return told
     return []
 
