@@ -7,7 +7,7 @@ import bpy
 
 from ..core import BuildFailed, InputRefused, RealModelError, build, work
 from ..core.project import surface_item
-from . import built_models, built_scene, display, meshes, project_settings, settings
+from . import built_models, built_scene, display, meshes, notices, project_settings, settings
 from .threads import threads
 
 
@@ -104,7 +104,7 @@ class BuildJob:
             group.exists = True
             group.version = settings.VERSION
             group.built_stamp = built_models.remember(model)
-            group.warnings = "\n".join(str(warning) for warning in model.warnings)
+            group.warnings = notices.of_model(model)
             if whole:
                 group.stage = last
         display.built(current, prepared.bounds, prepared.stage)

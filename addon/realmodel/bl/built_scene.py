@@ -14,8 +14,12 @@ import numpy as np
 
 from ..core import BuildFailed, polygon_mesh
 from ..core.build import build_stage
+from ..core.build_warning import BuildWarning
+from ..core.errors import place_text
+from ..core.units import length_text
 from . import (
     block_shapes,
+    data_objects,
     display,
     exaggeration,
     library_rows,
@@ -29,7 +33,7 @@ from . import (
     uncertainty,
 )
 from .origin import KEY as ORIGIN_KEY
-from .origin import choose_origin, offsets_from
+from .origin import choose_origin, far_from, offsets_from
 from .stored_project import KEY as PROJECT_KEY
 
 
@@ -59,8 +63,10 @@ def prepare(model, composed, stage=None, threads=0):
     """Prepared arrays of a model; may run in a thread of its own. stage: the one that will be shown, where it
     is not the whole. threads: as for `build`."""
     origin = composed.origin
-    if composed.origin_is_free:
+    if not composed.has_origin and composed.origin_is_free:
         origin = choose_origin(model.surface_vertices)
+    elif (away := far_from(origin, model.surface_vertices)) is not None:
+        origin = _other_origin(model, composed, away)
     prepared = Prepared(model, origin)
     surface = 0
     for r, rock in enumerate(model.project.rocks):
@@ -90,6 +96,20 @@ def prepare(model, composed, stage=None, threads=0):
         found = block_shapes.by_name(at_stage, polygon_mesh.of_blocks(at_stage, origin, threads))
         prepared.stage = (stage, at_stage, found)
     return prepared
+
+
+def _other_origin(model, composed, away):
+    """The origin of a model that lies far from the one it has, and a warning."""
+    text = f"the model lay {length_text(away, model.project.units)} from the zero of the scene"
+    if not composed.origin_is_free:
+        text += (
+            ", where Blender's numbers are coarse: use Start > Units and Origin > Move Model to Scene's Zero"
+        )
+        model.warnings.append(BuildWarning(text.replace(" lay ", " lies "), "origin"))
+        return composed.origin
+    origin = choose_origin(model.surface_vertices)
+    model.warnings.append(BuildWarning(f"{text}: it has got another origin, {place_text(origin)}", "origin"))
+    return origin
 
 
 def shapes_to_come(current, prepared, composed):
@@ -163,9 +183,22 @@ def put(current, prepared, composed, in_place=False):
             scene.give_name(bpy.data.materials, material, name)
             materials.set_colour(material, colour)
         _keep(current, prepared)
+        moved = project_settings.model_origin(current) - prepared.origin
         current[ORIGIN_KEY] = [float(value) for value in prepared.origin]
+        if moved.any():
+            move_helpers(current, moved)
         if PROJECT_KEY in current:
             del current[PROJECT_KEY]  # made anew when the file is saved
+
+
+def move_helpers(current, moved):
+    """What stands beside a model goes with it: its section plane and sections, the objects of its data."""
+    items = [item for item in current.objects if item.get(scene.TAG) == "section"]
+    if (plane := current.realmodel.view.plane) is not None and plane.get(scene.TAG) == "view":
+        items.append(plane)
+    for item in items:
+        item.location = np.array(item.location) + moved
+    data_objects.place(current)
 
 
 def _keep(current, prepared):

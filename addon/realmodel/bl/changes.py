@@ -2,7 +2,18 @@
 """What follows when a setting is changed by hand or by a script: each update callback is one function
 here."""
 
-from . import display, live, method_settings, reading_text, region_size, settings, surface_figures, units
+from . import (
+    data_objects,
+    display,
+    live,
+    method_settings,
+    reading_text,
+    region_size,
+    settings,
+    surface_figures,
+    units,
+    viewports,
+)
 
 
 def setting(row, _context):
@@ -55,6 +66,9 @@ def region(rock, context):
     rock.region_stored = rock.region_stamp = ""
     rock.region_area = -1.0
     region_size.ask()
+    data_objects.update(rock.id_data)
+    if context is not None and len(shown := data_objects.objects(rock.id_data)) == 1:
+        viewports.frame_items(shown, viewports.spaces(context))  # the first that is to be seen
     setting(rock, context)
 
 
@@ -67,6 +81,7 @@ def source(surface, context):
         reading_text.fill(surface, {})
     if surface.source != "MESH_OBJECT":
         surface.stored_stamp = ""
+    data_objects.update(surface.id_data)
     setting(surface, context)
 
 
@@ -78,6 +93,7 @@ def reading(row, context):
     surface.interface_digest = ""
     if surface.filepath:
         surface.stored = surface.stored_stamp = ""
+    data_objects.update(surface.id_data)
     setting(surface, context)
 
 
