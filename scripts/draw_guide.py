@@ -29,7 +29,7 @@ def main(names):
     command += ["--enable-event-simulate", "--window-geometry", "0", "0", *map(str, SIZE)]
     command += ["-P", __file__, "--", *names]
     done = subprocess.run(command, cwd=ROOT, check=False)
-    for path in sorted(IMAGES.glob("*.png")):
+    for path in (*sorted(IMAGES.glob("*.png")), IMAGES.parent / "view_modes.png"):
         shrink(path, path)
     sheet = ROOT / "build" / "gui" / "contact_sheet.png"
     if sheet.is_file():
