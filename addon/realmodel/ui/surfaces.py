@@ -116,10 +116,7 @@ class _OfASurface:
         return surface is not None and cls.shown(surface)
 
 
-class REALMODEL_PT_surface_method(_OfASurface, TabPanel, bpy.types.Panel):
-    bl_label = "Method Options"
-    bl_idname = "REALMODEL_PT_surface_method"
-    bl_parent_id = "REALMODEL_PT_surfaces"
+class _OfAMethod(_OfASurface):
     fold = ""
 
     @classmethod
@@ -140,7 +137,13 @@ class REALMODEL_PT_surface_method(_OfASurface, TabPanel, bpy.types.Panel):
                 setting_rows.draw(layout, surface, key, OPTIONS)
 
 
-class REALMODEL_PT_surface_search(REALMODEL_PT_surface_method):
+class REALMODEL_PT_surface_method(_OfAMethod, TabPanel, bpy.types.Panel):
+    bl_label = "Method Options"
+    bl_idname = "REALMODEL_PT_surface_method"
+    bl_parent_id = "REALMODEL_PT_surfaces"
+
+
+class REALMODEL_PT_surface_search(_OfAMethod, TabPanel, bpy.types.Panel):
     bl_label = "Search"
     bl_idname = "REALMODEL_PT_surface_search"
     bl_parent_id = "REALMODEL_PT_surface_method"
