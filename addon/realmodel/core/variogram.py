@@ -157,19 +157,19 @@ def fit_warnings(variogram: Variogram, points: np.ndarray, has_trend: bool = Fal
     if pairs < _FEW_PAIRS:
         number = "no pair" if pairs == 0 else "1 pair" if pairs == 1 else f"{pairs} pairs"
         warnings.append(
-            f"the variogram is fitted to {number} of points and little more than a guess; give one, or use "
-            f'method = "plane" or "tin"'
+            f"the variogram is fitted to only {number} of points and is hardly more than a guess; set one by "
+            "hand, or use the method 'plane' or 'tin'"
         )
     elif variogram.semivariance(variogram.lags[0]) > _PURE_NUGGET * variogram.sill:
         warnings.append(
-            "the fitted variogram is nearly pure nugget: neighbouring points differ almost as much as "
-            "distant ones, and kriging gives little more than local means; look for errors in the points"
+            "the fitted variogram is nearly pure nugget: neighboring points differ almost as much as "
+            "distant ones, so kriging gives hardly more than local means; check the points for errors"
         )
     extent = float(np.hypot(*np.ptp(points[:, :2], axis=0)))
     if not has_trend and variogram.range > _FAR_RANGE * extent > 0 and pairs >= _FEW_PAIRS:
         warnings.append(
-            f"the fitted range, {variogram.range:.4g}, is far beyond the extent of the points, {extent:.4g}: "
-            f"variances far from points are extrapolated; if the heights follow a trend, give "
-            f'method = "universal_kriging"'
+            f"the range of the fitted variogram, {variogram.range:.4g}, far exceeds the extent of the "
+            f"points, {extent:.4g}: its sill, and variances far from points, are extrapolated; the heights "
+            "may follow a trend: try universal kriging"
         )
     return warnings

@@ -7,6 +7,7 @@ from ..registration import register_modules, unregister_modules
 from . import (
     boreholes,
     build,
+    documentation,
     files,
     imports,
     library,
@@ -36,6 +37,7 @@ _MODULES = (
     results,
     view,
     sections,
+    documentation,
 )
 
 

@@ -215,7 +215,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
     def _of_file(self, path):
         """The surfaces of a file: one, or one for each value of a column."""
         if not path.is_file():
-            raise InputRefused(f"there is no file {path}", advice="check the path")
+            raise InputRefused(f"file not found: {path}", advice="check the path")
         if path.suffix.lower() in MESH_ENDINGS:
             return [_Given(path.stem, "MESH_FILE", path)]
         reading = {}

@@ -116,7 +116,7 @@ class _OfASurface:
         return surface is not None and cls.shown(surface)
 
 
-class _OfAMethod(_OfASurface):
+class _OfTheMethod(_OfASurface):
     fold = ""
 
     @classmethod
@@ -137,13 +137,13 @@ class _OfAMethod(_OfASurface):
                 setting_rows.draw(layout, surface, key, OPTIONS)
 
 
-class REALMODEL_PT_surface_method(_OfAMethod, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_surface_method(_OfTheMethod, TabPanel, bpy.types.Panel):
     bl_label = "Method Options"
     bl_idname = "REALMODEL_PT_surface_method"
     bl_parent_id = "REALMODEL_PT_surfaces"
 
 
-class REALMODEL_PT_surface_search(_OfAMethod, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_surface_search(_OfTheMethod, TabPanel, bpy.types.Panel):
     bl_label = "Search"
     bl_idname = "REALMODEL_PT_surface_search"
     bl_parent_id = "REALMODEL_PT_surface_method"
