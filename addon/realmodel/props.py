@@ -18,7 +18,7 @@ from bpy.props import (
 )
 
 from . import props_rock, props_stage, props_surface, props_view
-from .bl import changes, display, library_rows, results, units
+from .bl import changes, display, results, units
 from .core.units import MODEL_UNIT
 
 DISPLAYS = (
@@ -38,13 +38,13 @@ class RealModelProperty(bpy.types.PropertyGroup):
         name="ID",
         description="Number by which surfaces name this property; each entry has its own",
         default=1,
-        update=library_rows.id_changed,
+        update=changes.property_id,
     )
     known_id: IntProperty(options={"HIDDEN"})
     name: StringProperty(
         name="Name",
         description="Name of the rock; the material of its blocks is called so",
-        update=library_rows.changed,
+        update=changes.property_name,
     )
     color: FloatVectorProperty(
         name="Colour",
@@ -54,7 +54,7 @@ class RealModelProperty(bpy.types.PropertyGroup):
         min=0.0,
         max=1.0,
         default=(0.7019608, 0.7019608, 0.7019608),
-        update=library_rows.colour_changed,
+        update=changes.property_colour,
     )
     has_color: BoolProperty(options={"HIDDEN"})
     rock: StringProperty(name="Rock", description="Kind of rock, such as sandstone")

@@ -23,8 +23,6 @@ class BuildJob:
         """Composes the project. Raises InputRefused."""
         self.scene_name = current.name
         self.cells = cells or current.realmodel.cells.lower()
-        if not len(current.realmodel.rocks):
-            raise InputRefused("there is no rock mass", advice="add one, or open a project file")
         self.composed = project_settings.compose(current, depsgraph, whole)
         group = current.realmodel
         is_stage = len(group.results) and group.stage < settings.last_stage(current)

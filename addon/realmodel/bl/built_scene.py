@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 
 from ..core import BuildFailed, polygon_mesh
-from ..core.build import build_stage
+from ..core.assembly import build_stage
 from . import (
     block_shapes,
     display,

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 import bpy
 
 from ..core import Cancelled
+from . import build_job, built_scene, plan_mesh, problems, region_size, viewports
 from .rested_work import RestedWork
 
 REST_SECONDS = 0.03  # without a change, after which the hand is taken to rest
@@ -41,8 +42,6 @@ def is_working():
 
 def changed(scene, depsgraph):
     """Blender has evaluated changed objects."""
-    from . import plan_mesh, region_size
-
     group = scene.realmodel
     if _at_work or not len(group.rocks):
         return
@@ -118,8 +117,6 @@ def _our_own(scene):
 
 
 def _begin(name, _changed_at):
-    from . import build_job, built_scene
-
     scene = bpy.data.scenes.get(name)
     if scene is None or not scene.realmodel.live:
         return None
@@ -140,8 +137,6 @@ def _begin(name, _changed_at):
 def _tell(scene, error):
     """The panel shows what is wrong with the model of a scene, or no longer is; nothing is selected or moved
     for it."""
-    from . import problems, viewports
-
     problems.forget()
     if scene is not None:
         problems.remember(scene, error)

@@ -2,7 +2,7 @@
 """The model that a scene shows, built again where it is not at hand."""
 
 from ..core import build
-from . import build_job, built_models
+from . import built_models, project_settings
 
 
 def model_of(context, cells="columns"):
@@ -14,8 +14,8 @@ def model_of(context, cells="columns"):
     current = context.scene
     model = built_models.current(current, cells)
     if model is None:
-        job = build_job.BuildJob(current, context.evaluated_depsgraph_get(), cells, whole=False)
-        model = build(job.composed.project, cells=cells)
+        composed = project_settings.compose(current, context.evaluated_depsgraph_get(), whole=False)
+        model = build(composed.project, cells=cells)
         if current.realmodel.built_stamp:
             built_models.remember(model, current.realmodel.built_stamp)
     return model

@@ -76,9 +76,11 @@ def compose(scene, depsgraph, whole=True):
     """
     origin = model_origin(scene)
     group = scene.realmodel
+    if not len(group.rocks):
+        raise InputRefused("there is no rock mass", advice="add one, or open a project file")
     project = Project(group.name, [], library_rows.library_of(scene), units=group.units)
     composed = Composed(project, origin, _origin_is_free(scene))
-    for number, row in enumerate(scene.realmodel.rocks):
+    for number, row in enumerate(group.rocks):
         rock = Rock(row.name, [], mesher=row.mesher)
         plan_mesh.compose(rock, row, depsgraph, origin)
         if row.use_base:

@@ -210,9 +210,7 @@ def _finish(name, job, _changed_at):
         _tell(current, error)
         return
     _tell(current, None)
-    from . import mode_changed
-
-    mode_changed(current)
+    _show(current)
 
 
 def _tell(current, error):
@@ -230,10 +228,17 @@ def forget():
     _halves.clear()
 
 
+def show_with(show):
+    """show(scene) is called when a cut was made that nobody waited for."""
+    global _show
+    _show = show
+
+
 def stop():
     """Ends what is under way."""
     _work.stop()
     forget()
 
 
+_show = None
 _work = RestedWork(REST_SECONDS, _begin, _finish)

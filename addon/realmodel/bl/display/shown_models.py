@@ -6,7 +6,7 @@ only the blocks that differ go to Blender.
 """
 
 from ...core import build, polygon_mesh
-from ...core.build import build_stage
+from ...core.assembly import build_stage
 from .. import block_shapes, built_models, project_settings, settings
 from ..thread_job import threads
 
@@ -31,7 +31,7 @@ class Recipe:
         self.origin = project_settings.model_origin(scene)
         self.model = self._known(scene)
         self._base = None if self.model else built_models.current(scene)
-        self._project = None if self.model or self._base else _composed(scene, self.cells)
+        self._project = None if self.model or self._base else _composed(scene)
         self._is_new = self.model is None
 
     def _known(self, scene):
@@ -108,12 +108,10 @@ def remember_stage(scene, stage, model, shapes):
     _shapes[stamp, stage] = shapes
 
 
-def _composed(scene, cells):
-    from .. import build_job  # which tells this package of its builds
-
+def _composed(scene):
     layer = scene.view_layers[0]
     layer.update()
-    return build_job.BuildJob(scene, layer.depsgraph, cells or "blocks", whole=False).composed.project
+    return project_settings.compose(scene, layer.depsgraph, whole=False).project
 
 
 def _make_room():
