@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measures RealModel beside its peers in one run and writes docs/performance.md; also fits what
+# Measures RealModel beside its peers in one run and writes docs/dev/performance.md; also fits what
 # estimates and progress stand on (addon/realmodel/core/measured_costs.py). On a quiet machine the
 # whole run takes about half an hour and up to 12 GB. Peers that are missing are SKIPPED, and why.
 #

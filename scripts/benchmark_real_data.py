@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Builds real and made stacks, passes each model through the outside check, and tabulates time and memory.
 
-    scripts/benchmark_real_data.py [--write docs/performance.md] [--case NAME]... [--repeat N]
+    scripts/benchmark_real_data.py [--write docs/dev/performance.md] [--case NAME]... [--repeat N]
 
 Every build runs in a process of its own (its peak memory is that process's), once for each kind of
 cells and number of threads; the least of N times is given. Needs NumPy and a built module

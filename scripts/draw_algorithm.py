@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the pictures of docs/algorithm.md: docs/images/algorithm_*.svg.
+"""Draws the pictures of docs/dev/algorithm.md: docs/images/algorithm_*.svg.
 
     python3 scripts/draw_algorithm.py
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the picture of docs/meshing.md: the three meshers on one region, with the quality of their triangles.
+"""The picture of docs/dev/meshing.md: the three meshers on one region, with the quality of the triangles.
 
     PYTHONPATH=addon python scripts/draw_meshers.py [FOLDER]      (default: docs/images)
 

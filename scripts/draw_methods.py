@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the pictures of docs/methods.md: every method on one set of points, made here by formula.
+"""Draws the pictures of docs/reference/methods.md: every method on one set of points, made here by formula.
 
     PYTHONPATH=addon python scripts/draw_methods.py [FOLDER]      (default: docs/images)
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs the Debian packages that RealModel needs and this machine lacks; with nothing missing it
-# does nothing. docs/dependencies.md says what each is for.
+# does nothing. docs/dev/dependencies.md says what each is for.
 #
 #   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|heights|clang|tsan|gui|versions]...      (default: build)
 set -euo pipefail

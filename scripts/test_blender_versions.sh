@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs the zip as a user does in every Blender that can be had here, makes a model with it, runs the
-# tests of tests/blender on what was in the zip, and writes the table in docs/compatibility.md.
+# tests of tests/blender on what was in the zip, and writes the table in docs/reference/compatibility.md.
 #
 #   Blender 3.4    Debian 12's own
 #   Blender 4.3    Debian 13's, in a folder entered with chroot
@@ -171,5 +171,5 @@ for version in "${versions[@]}"; do
     step "$version" suite suite
     if [[ $version == 5.2 && -n $native ]]; then step "$version" compile compile; fi
 done
-/usr/bin/python3 "$root/scripts/packaging/compatibility_page.py" "$results" "$root/docs/compatibility.md" || exit 1
+/usr/bin/python3 "$root/scripts/packaging/compatibility_page.py" "$results" "$root/docs/reference/compatibility.md" || exit 1
 ((failed == 0))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the tables of docs/project_file.md that follow from the add-on's registries: rules, methods and
-their options. A test compares them (tests/core/test_documents.py).
+"""Writes the tables of docs/reference/project_file.md that follow from the registries of the add-on: rules,
+methods and options. A test compares them (tests/core/test_documents.py).
 
     python3 scripts/write_tables.py
 """
@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-DOCUMENT = ROOT / "docs" / "project_file.md"
+DOCUMENT = ROOT / "docs" / "reference" / "project_file.md"
 TABLE = re.compile(r"(<!-- table of (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 

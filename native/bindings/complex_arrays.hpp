@@ -10,7 +10,7 @@
 
 namespace realmodel::bindings {
 
-/// The arrays of a complex as NumPy arrays, under the names of docs/geometry.md; the complex is
+/// The arrays of a complex as NumPy arrays, under the names of docs/dev/geometry.md; the complex is
 /// left without them.
 inline pybind11::dict complex_arrays(CellComplex& complex) {
     pybind11::dict result;

@@ -122,7 +122,7 @@ void bind_cutting(py::module_& module) {
         py::arg("threads") = 0, py::arg("control") = nullptr,
         R"(A model cut by a plane into what lies below and above it (where the normal points).
 
-model: dict of the arrays of docs/geometry.md, and "blocks" (number of blocks) and "cell_kind".
+model: dict of the arrays of docs/dev/geometry.md, and "blocks" (number of blocks) and "cell_kind".
 Returns a dict: "below" and "above", each with the arrays of a model, "volumes" (B,) and "cells"
 (C,) int32, the model's cell that each is part of; "section" as of section_by_plane; "below_touches",
 "above_touches": whether cells of a half use an edge more than twice though the model's do not. Raises

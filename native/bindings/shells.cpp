@@ -88,7 +88,7 @@ Raises InputError kind "bad_index" (items: the polygon).)");
                py::arg("threads") = 0, py::arg("control") = py::none(),
                R"(The blocks of a cell complex as closed meshes of polygons.
 
-The arrays are those of docs/geometry.md; blocks: how many there are; origin: three numbers that are
+The arrays are those of docs/dev/geometry.md; blocks: how many there are; origin: three numbers that are
 taken off the coordinates before they are rounded. shrink: None for the boundary of each block; else
 each cell stands by itself, its own vertices drawn towards their mean by this factor.
 

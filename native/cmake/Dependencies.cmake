@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Libraries the native part stands on (docs/dependencies.md gives the reason of each).
+# Libraries the native part stands on (docs/dev/dependencies.md gives the reason of each).
 # What they bring is collected in the interface target realmodel_dependencies. No public header
 # includes any of them: who uses the library needs them only to link (RealModelConfig.cmake.in).
 

@@ -16,8 +16,8 @@ struct Defect {
 
 using Cells = strata::CellKind;
 
-/// Tests 1 to 4 of docs/geometry.md on the arrays alone: shapes, vertices distinct and in use, no
-/// face repeats a vertex, cells closed (blocks: edges balanced), with positive volume up to
+/// Tests 1 to 4 of docs/dev/geometry.md on the arrays alone: shapes, vertices distinct and in use,
+/// no face repeats a vertex, cells closed (blocks: edges balanced), with positive volume up to
 /// rounding, walls vertical, other faces convex in plan, stated volumes those of the cells.
 std::vector<Defect> complex_defects(const strata::CellComplex& complex, Cells cells);
 

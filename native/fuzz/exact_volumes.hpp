@@ -10,8 +10,8 @@
 namespace realmodel::fuzz {
 
 /// The volume of the block beneath each surface, counted through all rock masses: the closed form
-/// of docs/geometry.md integrated in whole numbers, rounded at the very end. Nothing is shared with
-/// the builder. The plan is divided into convex polygons in each of which every surface is one
+/// of docs/dev/geometry.md integrated in whole numbers, rounded at the very end. Nothing is shared
+/// with the builder. The plan is divided into convex polygons in each of which every surface is one
 /// plane or absent, these along the lines where two planes that are compared are equally high; on
 /// what is left thickness is linear.
 /// @param most  convex polygons after which to give up: nothing is returned then

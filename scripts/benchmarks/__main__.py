@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/benchmark.sh, once everything is built: measures, tells, and writes docs/performance.md."""
+"""scripts/benchmark.sh, once everything is built: measures, tells, and writes docs/dev/performance.md."""
 
 from __future__ import annotations
 
@@ -92,13 +92,13 @@ def _arguments() -> argparse.Namespace:
         "--memory", type=float, default=12.0, metavar="GB", help="most that a process may take"
     )
     parser.add_argument(
-        "--write", type=Path, metavar="F.md", help="page to write (default: docs/performance.md)"
+        "--write", type=Path, metavar="F.md", help="page to write (default: docs/dev/performance.md)"
     )
     given = parser.parse_args()
     if given.fit:
         given.only = [*(given.only or []), "fit"]
     if given.write is None and not given.quick:
-        given.write = Path("docs/performance.md")
+        given.write = Path("docs/dev/performance.md")
     if given.write is not None:
         given.write = ROOT / given.write  # what is relative is so to the project, not to this folder
     return given

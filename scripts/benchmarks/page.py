@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""docs/performance.md: each run rewrites its own part of the page, between two marks, and leaves the rest."""
+"""docs/dev/performance.md: each run rewrites its own part of the page, between two marks, only."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes docs/compatibility.md from what scripts/test_blender_versions.sh found.
+"""Writes docs/reference/compatibility.md from what scripts/test_blender_versions.sh found.
 
     python3 compatibility_page.py RESULTS PAGE
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scene that docs/project_file.md promises, read back from a saved .blend."""
+"""The scene that docs/reference/project_file.md promises, read back from a saved .blend."""
 
 import tempfile
 import unittest

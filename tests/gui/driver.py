@@ -5,6 +5,7 @@ Steps are generators. They yield a condition - a function without arguments - an
 slow the machine is; a condition that does not hold in time ends the walk.
 """
 
+import threading
 import time
 import traceback
 
@@ -29,6 +30,7 @@ class Walk:
         self.passed = []
         self.failure = None
         self._draws = 0
+        self._screenshot = None
 
     # -- running
 
@@ -157,12 +159,33 @@ class Walk:
 
     def shot(self, name):
         """A screenshot of the window, kept as NN_name.png; returns (height, width, 3) from 0 to 1, the bottom
-        row first."""
-        path = self.folder / f"{len(self.pictures):02d}_{name}.png"
+        row first. Waits for all threads: see `shot_while_working`."""
+        for thread in threading.enumerate():
+            if thread is not threading.current_thread():
+                thread.join(PATIENCE)
+        path = self._next_picture(name)
         with bpy.context.temp_override(window=self.window, screen=self.window.screen, area=self.area):
             bpy.ops.screen.screenshot(filepath=str(path))
-        self.pictures.append(path)
         return read_picture(path)
+
+    def shot_while_working(self, name):
+        """`shot` while other threads run Python, by a key. bpy.ops inside of temp_override then ends Blender
+        now and then: other threads run during the operator, which looks into the dictionary of the override
+        without holding Python's lock (Blender 3.4)."""
+        path = self._next_picture(name)
+        if self._screenshot is None:
+            keymap = bpy.context.window_manager.keyconfigs.addon.keymaps.new("Window")
+            self._screenshot = keymap.keymap_items.new("screen.screenshot", "F13", "PRESS")
+        self._screenshot.properties.filepath = str(path)
+        self.over_viewport()
+        self.key("F13")
+        yield path.exists
+        return read_picture(path)
+
+    def _next_picture(self, name):
+        path = self.folder / f"{len(self.pictures):02d}_{name}.png"
+        self.pictures.append(path)
+        return path
 
     def visible_place(self, name):
         """A place of an object that nothing hides: the middle of one of its faces."""

@@ -99,7 +99,7 @@ def cancel_a_build(walk):
     yield lambda: bpy.context.window_manager.realmodel.progress > 0.5 or idle()
     yield walk.redrawn()
     assert not idle(), "the build was over before it could be cancelled"
-    walk.shot("building")
+    yield from walk.shot_while_working("building")
     walk.key("ESC")
     yield idle
     assert volumes() == before

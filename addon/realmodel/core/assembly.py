@@ -109,7 +109,7 @@ def assemble(
 
 
 def _arrays(inputs: list[RockInput], built: dict) -> dict[str, np.ndarray]:
-    """The arrays that docs/geometry.md names; blocks are numbered without those that cannot exist."""
+    """The arrays that docs/dev/geometry.md names; blocks are numbered without those that cannot exist."""
     exists = [
         number > 0 or _first_block(entry) == 0 for entry in inputs for number in range(len(entry.surfaces))
     ]

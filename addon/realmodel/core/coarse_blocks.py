@@ -62,7 +62,7 @@ def _binned(places: Sequence[np.ndarray]) -> np.ndarray:
 
 def _block_intervals(rock: Rock, heights: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
     """For each surface the lower and upper height of the block beneath it in each bin, NaN where there is
-    none: the closed form of docs/geometry.md."""
+    none: the closed form of docs/dev/geometry.md."""
     nothing = np.full(heights.shape[1:], np.nan)
     base = nothing if rock.base_elevation is None else np.full(nothing.shape, float(rock.base_elevation))
     top, floor = base, nothing

@@ -27,7 +27,7 @@ def interpolate(
     """Interpolates scattered points at nodes.
 
     points: (P, 3) float64, model units; None for a method that does without. nodes: (N, 2).
-    method and its options: docs/methods.md.
+    method and its options: docs/reference/methods.md.
     triangles: (T, 3) of the nodes' mesh, where the method works on it.
     neighbours: the nearest in plan that count at a node, 0 for all points; None for the method's own number,
     16, or 32 for kriging with a variogram that is fitted. threads: 0 for all.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The methods that give heights to a planar mesh: one registry (docs/extending.md). From it follow the keys
-of the project file and their checks, the settings and labels of the panel, and the tables of
-docs/project_file.md.
+"""The methods that give heights to a planar mesh: one registry (docs/dev/extending.md). From it follow the
+keys of the project file and their checks, the settings and labels of the panel, and the tables of
+docs/reference/project_file.md.
 
 What a method does with its options is in the package `heights`, one module for each kind.
 """

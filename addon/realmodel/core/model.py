@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The built model: blocks of polyhedral cells that share faces, as flat arrays (docs/geometry.md)."""
+"""The built model: blocks of polyhedral cells that share faces, as flat arrays (docs/dev/geometry.md)."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ from .work import Cancel, Progress, native_module
 
 @dataclass(eq=False)
 class Model:
-    """A built model. The arrays are those of docs/geometry.md, under the same names.
+    """A built model. The arrays are those of docs/dev/geometry.md, under the same names.
 
     `cell_kind` is "columns" or "blocks". `surface_names` go with the global indices of the surfaces.
     `project` holds the arrays that the model was built from, so that nothing is read again.
     `rock_inputs` are what the stack builder took, by rock mass. `timings` are seconds by phase.
-    `is_cut`: it is a half of another model (docs/geometry.md, "Cutting").
+    `is_cut`: it is a half of another model (docs/dev/geometry.md, "Cutting").
     """
 
     vertices: np.ndarray
@@ -114,8 +114,8 @@ class Model:
         progress: Progress | None = None,
         cancel: Cancel | None = None,
     ) -> ValidationReport:
-        """Tests the model as docs/geometry.md says: every cell, face and vertex of it; and whether at about
-        `places` plan places it is what the closed form says. 0 places, or a half: only the first.
+        """Tests the model as docs/dev/geometry.md says: every cell, face and vertex of it; and whether at
+        about `places` plan positions it is what the closed form says. 0 places, or a half: only the first.
 
         seed draws the places. threads: 0 for all that there are; the findings are the same for any number.
         A model that fails is no error here: the report says what is wrong and where.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a surface does to rock that is older, and to what is younger: one registry (docs/extending.md)."""
+"""What a surface does to rock that is older, and to what is younger: one registry (docs/dev/extending.md)."""
 
 from __future__ import annotations
 

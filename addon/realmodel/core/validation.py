@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The proof of a model: the tests of docs/geometry.md, as a report for its reviewer."""
+"""The proof of a model: the tests of docs/dev/geometry.md, as a report for its reviewer."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _DTYPES = {
     "face_surface": np.int32,
     "cell_block": np.int32,
 }
-# By the name of a test: its number in docs/geometry.md, and what it says of the model.
+# By the name of a test: its number in docs/dev/geometry.md, and what it says of the model.
 _SAYS = {
     "arrays": (0, "the arrays fit together: every number that they name is there"),
     "closed": (1, "every cell is closed: its faces use each edge once in each direction"),
@@ -56,7 +56,7 @@ class Offender:
 
 @dataclass(frozen=True)
 class ValidationTest:
-    """One test. number: as in docs/geometry.md (0: that the others can be asked). says: what it says of a
+    """One test. number: as in docs/dev/geometry.md (0: that the others can be asked). says: what it says of a
     model that passes. examined counts cells, faces or what else `unit` is; undecided are those that rounding
     leaves open (a cell thinner than the spacing of doubles, a place as close to an edge): they are counted as
     neither passed nor failed. offenders are the first few that failed."""
@@ -225,7 +225,7 @@ def validate(
 
 
 def _wrong_arrays(model) -> list[str]:
-    """Sentences about arrays of another dtype or shape than docs/geometry.md gives them."""
+    """Sentences about arrays of another dtype or shape than docs/dev/geometry.md gives them."""
     columns = {"vertices": 3, "face_cells": 2}
     wrong = []
     for name, dtype in _DTYPES.items():

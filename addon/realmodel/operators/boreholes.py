@@ -5,12 +5,12 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import borehole_points, live, project_settings, reading_text
+from ..bl import borehole_points, live, project_settings, reading_text, settings
 from ..core import InputRefused
 from ..core.boreholes import COLUMNS, Boreholes
 from ..core.point_file import ReadingRefused
 from ..core.readers import read_boreholes
-from .reporting import Reporting, needed_path, needed_rock
+from .reporting import Reporting, a_rock, needed_path
 
 
 class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
@@ -19,6 +19,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
 
     bl_idname = "realmodel.boreholes_read"
     bl_label = "Read Boreholes"
+    needs = (a_rock,)
 
     filename_ext = ""
     filter_glob: StringProperty(default="*.csv;*.txt;*.dat;*.tsv", options={"HIDDEN"})
@@ -58,7 +59,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     )
 
     def act(self, context):
-        rock = needed_rock(context)
+        rock = settings.active_rock(context.scene)
         picks = project_settings.absolute(needed_path(self.filepath, "the picks"))
         given = Boreholes(
             picks,

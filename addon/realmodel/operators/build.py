@@ -5,7 +5,7 @@ import bpy
 
 from ..bl import build_job, built_scene, live, problems, viewports
 from ..core import Cancelled, RealModelError
-from .reporting import Reporting, needed_model
+from .reporting import Reporting, a_model, building, not_building
 
 _STEP = 0.05  # seconds between two looks at the work
 _SLICE = 0.05  # seconds in which Blender is given meshes, before the window is looked after again
@@ -17,16 +17,13 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.build"
     bl_label = "Build"
+    needs = (not_building,)
 
     _job = None
     _timer = None
     _scene = ""  # whose model is built, and whether it is its first one
     _is_first = False
     _spaces = ()  # pointers of the viewports that are turned to a first model
-
-    @classmethod
-    def poll(cls, context):
-        return not context.window_manager.realmodel.running
 
     def act(self, context):
         live.stop_work()
@@ -135,21 +132,17 @@ class REALMODEL_OT_build(Reporting, bpy.types.Operator):
 running = []  # the jobs of builds that are shown with progress
 
 
-class REALMODEL_OT_cancel(bpy.types.Operator):
+class REALMODEL_OT_cancel(Reporting, bpy.types.Operator):
     """Stop the build that is running; the scene stays as it was"""
 
     bl_idname = "realmodel.cancel"
     bl_label = "Cancel Build"
     bl_options = {"REGISTER"}
+    needs = (building,)
 
-    @classmethod
-    def poll(cls, context):
-        return context.window_manager.realmodel.running
-
-    def execute(self, _context):
+    def act(self, _context):
         for job in running:
             job.cancel()
-        return {"FINISHED"}
 
 
 class REALMODEL_OT_clear(Reporting, bpy.types.Operator):
@@ -157,10 +150,14 @@ class REALMODEL_OT_clear(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.clear"
     bl_label = "Clear Blocks"
+    needs = (a_model,)
 
     def act(self, context):
-        needed_model(context)
         built_scene.clear(context.scene)
+
+
+def _a_bad_place(context):
+    return None if problems.has_place(context) else "no surface was refused by the last build"
 
 
 class REALMODEL_OT_show_problem(Reporting, bpy.types.Operator):
@@ -168,10 +165,7 @@ class REALMODEL_OT_show_problem(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.show_problem"
     bl_label = "Show the Place"
-
-    @classmethod
-    def poll(cls, context):
-        return problems.has_place(context)
+    needs = (_a_bad_place,)
 
     def act(self, context):
         problems.show(context)

@@ -10,7 +10,7 @@ from ..core import UsageError
 from ..core.atomic import Outputs
 from ..core.exporters import WRITERS, save_model, writer_for
 from ..core.exporters.report import write_report
-from .reporting import Reporting, needed_model, needed_path
+from .reporting import Reporting, a_model, needed_path
 
 
 class REALMODEL_OT_export(Reporting, bpy.types.Operator, ExportHelper):
@@ -19,13 +19,13 @@ class REALMODEL_OT_export(Reporting, bpy.types.Operator, ExportHelper):
     bl_idname = "realmodel.export"
     bl_label = "Export Model"
     bl_options = {"REGISTER"}
+    needs = (a_model,)
 
     filename_ext = ".npz"
     check_extension = None  # any of the formats
     filter_glob: StringProperty(default=";".join(f"*{e}" for e in WRITERS), options={"HIDDEN"})
 
     def act(self, context):
-        needed_model(context)
         path = project_settings.absolute(needed_path(self.filepath, "the model"))
         writer_for(path)
         save_model(model_at_hand.model_of(context), path)
@@ -41,12 +41,12 @@ class REALMODEL_OT_report(Reporting, bpy.types.Operator, ExportHelper):
     bl_idname = "realmodel.report"
     bl_label = "Write Report"
     bl_options = {"REGISTER"}
+    needs = (a_model,)
 
     filename_ext = ".json"
     filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
 
     def act(self, context):
-        needed_model(context)
         path = project_settings.absolute(needed_path(self.filepath, "the report"))
         if path.suffix.lower() != ".json":
             raise UsageError(f"{path}: a report ends in .json")

@@ -6,9 +6,9 @@ from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..bl import display, library_rows, live, project_settings, properties_of_blocks, settings
-from ..core import InputRefused, Property, load_library
+from ..core import Property, load_library
 from ..core.project_writer import save_library
-from .reporting import Reporting, needed_path
+from .reporting import Reporting, a_library, needed_path, selected_blocks
 
 
 class REALMODEL_OT_library_add(Reporting, bpy.types.Operator):
@@ -33,11 +33,10 @@ class REALMODEL_OT_library_remove(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.library_remove"
     bl_label = "Remove Property"
+    needs = (a_library,)
 
     def act(self, context):
         group = context.scene.realmodel
-        if not len(group.library):
-            raise InputRefused("the library is empty", advice="there is nothing to remove")
         number = min(group.active_property, len(group.library) - 1)
         gone = group.library[number].id
         with settings.filling():
@@ -81,14 +80,13 @@ class REALMODEL_OT_library_export(Reporting, bpy.types.Operator, ExportHelper):
     bl_idname = "realmodel.library_export"
     bl_label = "Export Library"
     bl_options = {"REGISTER"}
+    needs = (a_library,)
 
     filename_ext = ".toml"
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
 
     def act(self, context):
         library = library_rows.library_of(context.scene)
-        if library is None:
-            raise InputRefused("the library is empty", advice="add a property first")
         path = project_settings.absolute(needed_path(self.filepath, "the library"))
         save_library(library, path)
         self.report({"INFO"}, f"Wrote {len(library)} properties to {path}")
@@ -99,16 +97,13 @@ class REALMODEL_OT_assign_property(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.assign_property"
     bl_label = "Assign to Selected Blocks"
+    needs = (a_library, selected_blocks)
 
     def act(self, context):
         group = context.scene.realmodel
-        if not len(group.library):
-            raise InputRefused("the library is empty", advice="add a property first")
         entry = group.library[min(group.active_property, len(group.library) - 1)]
         selected = set(context.selected_objects)
         rows = [row for row in group.results if row.object in selected]
-        if not rows:
-            raise InputRefused("no block is selected", advice="select blocks of the model first")
         properties_of_blocks.assign(context.scene, rows, entry.id)
         self.report({"INFO"}, f"{entry.name}: {', '.join(row.name for row in rows)}")
 

@@ -9,13 +9,7 @@ from ..bl import live, plan_mesh, project_settings, settings
 from ..core import InputRefused
 from ..core.plan_input import read_constraints
 from ..core.readers import MAP_ENDINGS
-from .reporting import Reporting, needed_path, needed_rock
-
-
-def _mesh_or_curve(context):
-    """The active object where it can give lines, or None."""
-    item = context.active_object
-    return item if item is not None and settings.is_region_object(None, item) else None
+from .reporting import Reporting, a_rock, an_outline_object, needed_path
 
 
 def _removed(rows, index, what):
@@ -29,12 +23,13 @@ class REALMODEL_OT_size_add(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.size_add"
     bl_label = "Add Smaller Triangles"
+    needs = (a_rock,)
 
     def act(self, context):
-        rock, item = needed_rock(context), _mesh_or_curve(context)
+        rock, item = settings.active_rock(context.scene), context.active_object
         with settings.filling():
             row = rock.sizes.add()
-            if item is not None and item != rock.region:
+            if not an_outline_object(context) and item != rock.region:
                 row.at, row.object = "OBJECT", item
             row.length = rock.edge_length / 4.0 or 1.0
         live.touch(context.scene)
@@ -45,11 +40,12 @@ class REALMODEL_OT_size_remove(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.size_remove"
     bl_label = "Remove Smaller Triangles"
+    needs = (a_rock,)
 
     index: IntProperty(name="Number", description="Which of them, counted from 0", min=0)
 
     def act(self, context):
-        _removed(needed_rock(context).sizes, self.index, "entry")
+        _removed(settings.active_rock(context.scene).sizes, self.index, "entry")
         live.touch(context.scene)
 
 
@@ -58,15 +54,12 @@ class REALMODEL_OT_constraint_add(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.constraint_add"
     bl_label = "Add Constraint"
+    needs = (a_rock, an_outline_object)
 
     def act(self, context):
-        rock, item = needed_rock(context), _mesh_or_curve(context)
-        if item is None:
-            raise InputRefused(
-                "the active object has no lines", advice="make a curve or a mesh object active"
-            )
+        rock = settings.active_rock(context.scene)
         with settings.filling():
-            rock.constraints.add().object = item
+            rock.constraints.add().object = context.active_object
         live.touch(context.scene)
 
 
@@ -75,13 +68,14 @@ class REALMODEL_OT_constraint_remove(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.constraint_remove"
     bl_label = "Remove Constraint"
+    needs = (a_rock,)
 
     index: IntProperty(
         name="Number", description="Which of them, counted from 0; -1: all that were read from files", min=-1
     )
 
     def act(self, context):
-        rock = needed_rock(context)
+        rock = settings.active_rock(context.scene)
         if self.index < 0:
             rock.constraints_stored = ""
         else:
@@ -94,6 +88,7 @@ class REALMODEL_OT_constraint_read(Reporting, bpy.types.Operator, ImportHelper):
 
     bl_idname = "realmodel.constraint_read"
     bl_label = "Read Constraints"
+    needs = (a_rock,)
 
     filename_ext = ""
     filter_glob: bpy.props.StringProperty(
@@ -101,7 +96,7 @@ class REALMODEL_OT_constraint_read(Reporting, bpy.types.Operator, ImportHelper):
     )
 
     def act(self, context):
-        rock = needed_rock(context)
+        rock = settings.active_rock(context.scene)
         path = project_settings.absolute(needed_path(self.filepath, "the constraints"))
         if not path.is_file():
             raise InputRefused(f"there is no file {path}", advice="check the path")

@@ -1,17 +1,34 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every operator of the panel shares: errors become reports, and files are looked for."""
+"""What every operator shares: errors become reports, and a poll that says why it cannot be used now.
+
+A need is a function of the context: it returns None where the operator can be used, and else why not, in one
+sentence. Blender shows it at the grayed-out button; in a script it is the text of the RuntimeError. Needs are
+looked at whenever the panel is drawn, so they read nothing but the scene.
+"""
 
 from bpy.props import FloatVectorProperty
 
-from ..bl import build_job, settings
+from ..bl import build_job, settings, viewports
+from ..bl.display import cuts
 from ..core import InputRefused, RealModelError
 
 
 class Reporting:
     """An operator whose `act(context)` may raise RealModelError: it is reported, which is a RuntimeError in a
-    script, and nothing was done."""
+    script, and nothing was done. `needs`: see above."""
 
     bl_options = {"REGISTER", "UNDO"}
+    needs = ()
+
+    @classmethod
+    def poll(cls, context):
+        own = (an_own_scene,) if "UNDO" in cls.bl_options else ()
+        for need in (*own, *cls.needs):
+            reason = need(context)
+            if reason:
+                cls.poll_message_set(reason)
+                return False
+        return True
 
     def execute(self, context):
         try:
@@ -21,31 +38,74 @@ class Reporting:
             return {"CANCELLED"}
 
 
+def an_own_scene(context):
+    scene = context.scene
+    told = f"scene '{scene.name}' is linked from another file; make it local first"
+    return None if scene.library is None else told
+
+
+def a_rock(context):
+    row = settings.active_rock(context.scene)
+    return "there is no rock mass; add one first (Rock Masses, +)" if row is None else None
+
+
+def a_surface(context):
+    row = settings.active_surface(context.scene)
+    return "there is no surface; add one first (Surfaces, +)" if row is None else None
+
+
+def any_surface(context):
+    return (
+        None if settings.has_rows(context.scene) else "the model has no surface; add one first (Surfaces, +)"
+    )
+
+
+def a_model(context):
+    return None if len(context.scene.realmodel.results) else "there is no model yet; press Build first"
+
+
+def a_library(context):
+    return None if len(context.scene.realmodel.library) else "the library is empty; add a property first"
+
+
+def a_section_plane(context):
+    plane = cuts.plane_of(context.scene)
+    return "there is no section plane; add one first (Section Plane)" if plane is None else None
+
+
+def selected_meshes(context):
+    there = any(item.type == "MESH" for item in context.selected_objects)
+    return None if there else "no mesh object is selected; select the surfaces of your model first"
+
+
+def selected_blocks(context):
+    selected = set(context.selected_objects)
+    there = any(row.object in selected for row in context.scene.realmodel.results)
+    return None if there else "no block is selected; select blocks of the model first"
+
+
+def an_outline_object(context):
+    item = context.active_object
+    there = item is not None and settings.is_region_object(None, item)
+    return None if there else "the active object has no lines; make a curve or a mesh object active"
+
+
+def a_viewport(context):
+    return None if viewports.spaces(context) else "there is no 3D viewport; open one"
+
+
+def building(context):
+    return None if context.window_manager.realmodel.running else "nothing is being built"
+
+
+def not_building(context):
+    told = "a model is being built; wait, or cancel the build with Esc"
+    return told if context.window_manager.realmodel.running else None
+
+
 def place_property(description):
     """A property of an operator: a place in the coordinates of the scene."""
     return FloatVectorProperty(name="Location", description=description, subtype="TRANSLATION")
-
-
-def needed_rock(context):
-    """The active rock mass's row. Raises InputRefused."""
-    row = settings.active_rock(context.scene)
-    if row is None:
-        raise InputRefused("there is no rock mass", advice="add one first (Rock masses, +)")
-    return row
-
-
-def needed_surface(context):
-    """The active surface's row. Raises InputRefused."""
-    row = settings.active_surface(context.scene)
-    if row is None:
-        raise InputRefused("there is no surface", advice="add one first (Surfaces, +)")
-    return row
-
-
-def needed_model(context):
-    """Raises InputRefused where nothing was built yet."""
-    if not len(context.scene.realmodel.results):
-        raise InputRefused("there is no model yet", advice="press Build first")
 
 
 def needed_path(path, what):

@@ -4,7 +4,7 @@
 import bpy
 
 from ..bl import results
-from .reporting import Reporting, needed_model
+from .reporting import Reporting, a_model
 
 
 class REALMODEL_OT_copy_table(Reporting, bpy.types.Operator):
@@ -13,9 +13,9 @@ class REALMODEL_OT_copy_table(Reporting, bpy.types.Operator):
     bl_idname = "realmodel.copy_table"
     bl_label = "Copy Table as CSV"
     bl_options = {"REGISTER"}
+    needs = (a_model,)
 
     def act(self, context):
-        needed_model(context)
         context.window_manager.clipboard = results.as_csv(context.scene)
         self.report({"INFO"}, f"Copied {len(context.scene.realmodel.results)} rows")
 

@@ -4,7 +4,7 @@
 import bpy
 
 from ..bl import built_scene, live, settings
-from .reporting import Reporting, needed_rock
+from .reporting import Reporting, a_rock
 
 
 class REALMODEL_OT_rock_add(Reporting, bpy.types.Operator):
@@ -36,10 +36,11 @@ class REALMODEL_OT_rock_remove(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.rock_remove"
     bl_label = "Remove Rock Mass"
+    needs = (a_rock,)
 
     def act(self, context):
         scene, group = context.scene, context.scene.realmodel
-        row = needed_rock(context)
+        row = settings.active_rock(scene)
         built_scene.remove_rock(scene, row)
         with settings.filling():
             group.rocks.remove(list(group.rocks).index(row))
@@ -53,10 +54,11 @@ class REALMODEL_OT_rock_copy(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.rock_copy"
     bl_label = "Copy Rock Mass"
+    needs = (a_rock,)
 
     def act(self, context):
         group = context.scene.realmodel
-        number = list(group.rocks).index(needed_rock(context))
+        number = list(group.rocks).index(settings.active_rock(context.scene))
         row = group.rocks.add()
         source = group.rocks[number]
         settings.copy_row(source, row)

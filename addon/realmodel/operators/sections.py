@@ -5,10 +5,10 @@ import bpy
 from bpy.props import EnumProperty, FloatVectorProperty
 from mathutils import Quaternion, Vector
 
-from ..bl import display, settings
+from ..bl import display, project_settings, settings
 from ..bl.display import cuts, sections
-from ..core import InputRefused, UsageError
-from .reporting import Reporting, needed_model, place_property
+from ..core import UsageError
+from .reporting import Reporting, a_model, a_section_plane, place_property
 
 _UPRIGHT = {"X": (1.0, 0.0, 0.0), "Y": (0.0, -1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
 
@@ -19,6 +19,7 @@ class REALMODEL_OT_section(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.section"
     bl_label = "Make Section"
+    needs = (a_model,)
 
     location: place_property("A point of the plane, in the coordinates of the scene")
     normal: FloatVectorProperty(
@@ -29,22 +30,22 @@ class REALMODEL_OT_section(Reporting, bpy.types.Operator):
     )
 
     def act(self, context):
-        needed_model(context)
         scene = context.scene
         given = any(self.properties.is_property_set(key) for key in ("location", "normal"))
         location, normal = tuple(self.location), tuple(self.normal)
         if not given and cuts.plane_of(scene) is not None:
             context.view_layer.update()
-            location = tuple(cuts.plane_of(scene).matrix_world.translation)
-            normal = tuple(cuts.plane_in_model(scene)[1])
+            point, normal = cuts.plane_in_model(scene)
+            location = tuple(point - project_settings.model_origin(scene))
         if not any(normal):
             raise UsageError("the normal is zero: give the direction that the plane is square to")
         made = sections.add(scene, location, normal)
+        display.exaggeration_changed(scene)
         for item in context.selected_objects:
             item.select_set(False)
         made.select_set(True)
         context.view_layer.objects.active = made
-        self.report({"INFO"}, f"{made.name}: {len(made.data.polygons)} faces")
+        self.report({"INFO"}, f"Section made: see {made.name}, {len(made.data.polygons)} faces")
 
 
 class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
@@ -52,6 +53,7 @@ class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.section_plane"
     bl_label = "Section Plane"
+    needs = (a_model,)
 
     axis: EnumProperty(
         name="Axis",
@@ -64,7 +66,6 @@ class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
     )
 
     def act(self, context):
-        needed_model(context)
         scene = context.scene
         view = scene.realmodel.view
         plane = cuts.plane_of(scene)
@@ -89,16 +90,20 @@ class REALMODEL_OT_section_flip(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.section_flip"
     bl_label = "Flip Section Plane"
+    needs = (a_section_plane,)
 
     def act(self, context):
         plane = cuts.plane_of(context.scene)
-        if plane is None:
-            raise InputRefused("there is no section plane", advice="add one first (Section Plane)")
         location = plane.location.copy()
         plane.matrix_basis = plane.matrix_basis @ Quaternion((0.0, 1.0, 0.0, 0.0)).to_matrix().to_4x4()
         plane.location = location
         context.view_layer.update()
         display.section_changed(context.scene)
+
+
+def _a_cut(context):
+    there = cuts.is_on(context.scene)
+    return None if there else "no cut is shown; add a section plane and switch Show Cut on"
 
 
 class REALMODEL_OT_section_update(Reporting, bpy.types.Operator):
@@ -107,11 +112,9 @@ class REALMODEL_OT_section_update(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.section_update"
     bl_label = "Cut at Section Plane"
+    needs = (a_model, _a_cut)
 
     def act(self, context):
-        needed_model(context)
-        if not cuts.is_on(context.scene):
-            raise InputRefused("no cut is shown", advice="add a section plane and switch Show Cut on")
         cuts.cut_now(context.scene)
         display.mode_changed(context.scene)
 
@@ -121,11 +124,9 @@ class REALMODEL_OT_section_remove(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.section_remove"
     bl_label = "Remove Section Plane"
+    needs = (a_section_plane,)
 
     def act(self, context):
-        plane = cuts.plane_of(context.scene)
-        if plane is None:
-            raise InputRefused("there is no section plane", advice="there is nothing to remove")
         cuts.remove_plane(context.scene)
         display.section_changed(context.scene)
 

@@ -9,10 +9,10 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from ..bl import built_scene, live, project_settings, region_size, samples, settings
 from ..bl.origin import KEY as ORIGIN_KEY
-from ..core import InputRefused, load_project
+from ..core import load_project
 from ..core.project_writer import save_project
 from ..core.rock_input import with_arrays
-from .reporting import Reporting, needed_path
+from .reporting import Reporting, any_surface, needed_path, selected_meshes
 
 
 def _begin(scene, name):
@@ -96,14 +96,10 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
 
     bl_idname = "realmodel.save_project"
     bl_label = "Save RealModel Project"
-    bl_options = {"REGISTER"}
+    needs = (any_surface,)
 
     filename_ext = ".toml"
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
-
-    @classmethod
-    def poll(cls, context):
-        return settings.has_rows(context.scene)
 
     def act(self, context):
         path = project_settings.absolute(needed_path(self.filepath, "the project"))
@@ -124,12 +120,11 @@ class REALMODEL_OT_from_selected(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.from_selected"
     bl_label = "Model from Selected Meshes"
+    needs = (selected_meshes,)
 
     def act(self, context):
         depsgraph = context.evaluated_depsgraph_get()
         chosen = [item for item in context.selected_objects if item.type == "MESH"]
-        if not chosen:
-            raise InputRefused("no mesh object is selected", advice="select the surfaces of your model first")
         ordered = project_settings.oldest_first(chosen, depsgraph)
         scene = context.scene
         origin = project_settings.model_origin(scene)  # the objects stand where it says

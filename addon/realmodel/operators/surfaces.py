@@ -12,7 +12,7 @@ from ..bl import built_scene, live, project_settings, settings
 from ..core import InputRefused, PointFile
 from ..core.errors import HeightsMissing
 from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, RASTER_ENDINGS, read_mesh, read_point_file
-from .reporting import Reporting, needed_surface
+from .reporting import Reporting, a_surface
 from .rocks import add_rock
 
 _TABLE_ENDINGS = (".csv", ".xyz", ".txt", ".dat", ".tsv")
@@ -91,10 +91,11 @@ class REALMODEL_OT_surface_remove(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.surface_remove"
     bl_label = "Remove Surface"
+    needs = (a_surface,)
 
     def act(self, context):
         scene = context.scene
-        row, rock = needed_surface(context), settings.active_rock(scene)
+        row, rock = settings.active_surface(context.scene), settings.active_rock(scene)
         number = list(rock.surfaces).index(row)
         with settings.filling():
             built_scene.release_surface(scene, row)
@@ -109,9 +110,10 @@ class REALMODEL_OT_surface_copy(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.surface_copy"
     bl_label = "Copy Surface"
+    needs = (a_surface,)
 
     def act(self, context):
-        rock, chosen = settings.active_rock(context.scene), needed_surface(context)
+        rock, chosen = settings.active_rock(context.scene), settings.active_surface(context.scene)
         number = list(rock.surfaces).index(chosen)
         row = rock.surfaces.add()
         source = rock.surfaces[number]
@@ -131,6 +133,7 @@ class REALMODEL_OT_surface_move(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.surface_move"
     bl_label = "Move Surface"
+    needs = (a_surface,)
 
     direction: EnumProperty(
         name="Direction",
@@ -142,7 +145,6 @@ class REALMODEL_OT_surface_move(Reporting, bpy.types.Operator):
     )
 
     def act(self, context):
-        needed_surface(context)
         rock = settings.active_rock(context.scene)
         number = rock.active_surface
         target = number + (1 if self.direction == "UP" else -1)
@@ -159,9 +161,10 @@ class REALMODEL_OT_surface_hide(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.surface_hide"
     bl_label = "Hide or Show Surface"
+    needs = (a_surface,)
 
     def act(self, context):
-        row = needed_surface(context)
+        row = settings.active_surface(context.scene)
         row.hide = not row.hide
 
 
@@ -182,11 +185,12 @@ class REALMODEL_OT_surface_property(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.surface_property"
     bl_label = "Property of the Surface"
+    needs = (a_surface,)
 
     property_id: EnumProperty(name="Property", description="The entry of the library", items=_library_items)
 
     def act(self, context):
-        needed_surface(context).property_id = int(self.property_id)
+        settings.active_surface(context.scene).property_id = int(self.property_id)
 
 
 CLASSES = (

@@ -6,7 +6,7 @@ from bpy.props import IntProperty
 
 from ..bl import live, settings
 from ..core import InputRefused
-from .reporting import Reporting, needed_surface
+from .reporting import Reporting, a_surface
 
 
 class REALMODEL_OT_structure_add(Reporting, bpy.types.Operator):
@@ -14,9 +14,10 @@ class REALMODEL_OT_structure_add(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.structure_add"
     bl_label = "Add Part of Variogram"
+    needs = (a_surface,)
 
     def act(self, context):
-        surface = needed_surface(context)
+        surface = settings.active_surface(context.scene)
         with settings.filling():
             surface.fit_variogram = False
             if not len(surface.structures):
@@ -41,11 +42,12 @@ class REALMODEL_OT_structure_remove(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.structure_remove"
     bl_label = "Remove Part of Variogram"
+    needs = (a_surface,)
 
     index: IntProperty(name="Number", description="Which of them, counted from 0", min=0)
 
     def act(self, context):
-        rows = needed_surface(context).structures
+        rows = settings.active_surface(context.scene).structures
         if not 0 <= self.index < len(rows):
             raise InputRefused(f"there is no part {self.index}", advice="they are counted from 0")
         rows.remove(self.index)

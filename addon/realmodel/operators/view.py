@@ -9,7 +9,7 @@ from bpy_extras.io_utils import ExportHelper
 from ..bl import display, project_settings, units
 from ..bl.display import capture, coordinates, modes, viewpoints
 from ..core import InputRefused, UsageError
-from .reporting import Reporting, needed_model, needed_path, place_property
+from .reporting import Reporting, a_model, a_viewport, needed_path, place_property
 
 _LOOKING = {
     "FRONT": ("Front", "From the south"),
@@ -27,6 +27,7 @@ class REALMODEL_OT_view(Reporting, bpy.types.Operator):
     bl_idname = "realmodel.view"
     bl_label = "Look at Model"
     bl_options = {"REGISTER"}
+    needs = (a_viewport,)
 
     direction: EnumProperty(
         name="Direction",
@@ -48,6 +49,7 @@ class REALMODEL_OT_view_previous(Reporting, bpy.types.Operator):
     bl_idname = "realmodel.view_previous"
     bl_label = "Previous View"
     bl_options = {"REGISTER"}
+    needs = (a_viewport,)
 
     def act(self, context):
         viewpoints.step(context, -1)
@@ -59,6 +61,7 @@ class REALMODEL_OT_view_next(Reporting, bpy.types.Operator):
     bl_idname = "realmodel.view_next"
     bl_label = "Next View"
     bl_options = {"REGISTER"}
+    needs = (a_viewport,)
 
     def act(self, context):
         viewpoints.step(context, 1)
@@ -70,6 +73,7 @@ class REALMODEL_OT_view_all(Reporting, bpy.types.Operator):
     bl_idname = "realmodel.view_all"
     bl_label = "Frame Model"
     bl_options = {"REGISTER"}
+    needs = (a_viewport,)
 
     def act(self, context):
         viewpoints.frame(context)
@@ -122,6 +126,7 @@ class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.hide_property"
     bl_label = "Hide or Show Blocks by Property"
+    needs = (a_model,)
 
     property_id: IntProperty(name="Property", description="ID of the property in the library; 0: none given")
     action: EnumProperty(
@@ -137,7 +142,6 @@ class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
     )
 
     def act(self, context):
-        needed_model(context)
         scene = context.scene
         ids = {row.property_id for row in scene.realmodel.results}
         if self.property_id not in ids and self.action != "ALL":
@@ -164,14 +168,13 @@ class REALMODEL_OT_coordinates(Reporting, bpy.types.Operator):
 
     bl_idname = "realmodel.coordinates"
     bl_label = "Coordinates"
-    bl_options = {"REGISTER"}
+    needs = (a_model,)
 
     location: place_property(
         "The place in the coordinates of the scene; where it is not given, the 3D cursor"
     )
 
     def act(self, context):
-        needed_model(context)
         given = self.properties.is_property_set("location")
         place = coordinates.at_point(context.scene, self.location if given else context.scene.cursor.location)
         if place is None:

@@ -25,7 +25,7 @@ inline constexpr std::int32_t kBase = -2;  ///< the flat base
 /// The face that a cut made (realmodel/cutting): it lies between the two halves.
 inline constexpr std::int32_t kCutFace = -3;
 
-/// A view of a cell complex: polyhedral cells that share faces (docs/geometry.md), wherever the
+/// A view of a cell complex: polyhedral cells that share faces (docs/dev/geometry.md), wherever the
 /// arrays come from. Nothing is taken for granted about the numbers inside.
 struct ComplexView {
     std::span<const double> vertices;             ///< 3 V coordinates

@@ -16,7 +16,7 @@ struct Interval {
     double low, high;
 };
 
-/// What the closed form of docs/geometry.md says of one plan place.
+/// What the closed form of docs/dev/geometry.md says of one plan place.
 struct ClosedColumn {
     std::vector<Interval> intervals;                    ///< upwards
     std::vector<std::optional<double>> surface_height;  ///< of the surfaces of all rock masses

@@ -12,7 +12,7 @@ namespace realmodel::validation {
 
 /// How far rounding may have moved a coordinate: this many units in the last place of the largest
 /// coordinate on its axis. Half of one comes from rounding itself; corners that fell together were
-/// moved apart by a few (docs/geometry.md).
+/// moved apart by a few (docs/dev/geometry.md).
 inline constexpr double kRoundingSteps = 16;
 
 /// A unit in the last place, or a little more, of numbers up to this size.

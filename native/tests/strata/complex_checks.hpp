@@ -63,8 +63,9 @@ inline CellComplex build(const std::vector<OwnedSurface>& surfaces,
     return build_stack(input, threads, nullptr);
 }
 
-/// The validity that docs/geometry.md promises: cells closed, vertices distinct and in use, no face
-/// with a vertex twice. With `blocks`, an edge may be used more than twice, as often either way.
+/// The validity that docs/dev/geometry.md promises: cells closed, vertices distinct and in use, no
+/// face with a vertex twice. With `blocks`, an edge may be used more than twice, as often either
+/// way.
 inline void expect_valid(const CellComplex& c, bool blocks = false) {
     ASSERT_EQ(c.face_offsets.size(), c.face_cells.size() + 1);
     ASSERT_EQ(c.face_surface.size(), c.face_cells.size());

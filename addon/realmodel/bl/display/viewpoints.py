@@ -11,8 +11,8 @@ import numpy as np
 from mathutils import Quaternion, Vector
 
 from ...core import InputRefused
-from .. import meshes, viewports
-from . import bodies, modes
+from .. import exaggeration, meshes, viewports
+from . import bodies
 
 _H = 0.5**0.5
 DIRECTIONS = {  # as Blender's own axis views
@@ -52,16 +52,9 @@ class _View:
         view.view_distance = self.distance
 
 
-def _needed_spaces(context):
-    found = viewports.spaces(context)
-    if not found:
-        raise InputRefused("there is no 3D viewport", advice="open one")
-    return found
-
-
 def turn(context, direction):
     """Looks along an axis, without perspective, at the whole model. direction: a key of DIRECTIONS."""
-    found = _needed_spaces(context)
+    found = viewports.spaces(context)
     _remember(found[0])
     for space in found:
         view = space.region_3d
@@ -74,7 +67,7 @@ def turn(context, direction):
 
 def frame(context):
     """Brings the whole model into the frame. Raises InputRefused where there is none."""
-    found = _needed_spaces(context)
+    found = viewports.spaces(context)
     if len(model_points(context.scene)) == 0:
         raise InputRefused("there is no model to be seen", advice="build one first")
     _remember(found[0])
@@ -87,7 +80,7 @@ def frame(context):
 def step(context, by):
     """Goes back (by -1) or forth (+1) among the views that were left. Raises InputRefused at the ends."""
     global _at
-    found = _needed_spaces(context)
+    found = viewports.spaces(context)
     _remember(found[0])
     if not 0 <= _at + by < len(_history):
         which = "an earlier" if by < 0 else "a later"
@@ -133,7 +126,7 @@ def model_points(scene):
         box = np.array(
             [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
         )
-        matrix = np.array(modes.world_matrix(item), np.float64)
+        matrix = np.array(exaggeration.world_matrix(item), np.float64)
         found.append(box @ matrix[:3, :3].T + matrix[:3, 3])
     return np.concatenate(found) if found else np.empty((0, 3))
 

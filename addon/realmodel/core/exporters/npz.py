@@ -14,7 +14,7 @@ _HEADER = 1024  # more than any header of an array
 
 
 def model_arrays(model) -> dict[str, np.ndarray]:
-    """The arrays of docs/geometry.md by name, and what describes blocks, surfaces and rock masses."""
+    """The arrays of docs/dev/geometry.md by name, and what describes blocks, surfaces and rock masses."""
     blocks = model.blocks
     return {
         "vertices": model.vertices,

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ready triangulated surfaces from files: one registry of formats (docs/extending.md). The format is detected
-from what the file holds."""
+"""Ready triangulated surfaces from files: one registry of formats (docs/dev/extending.md). The format is
+detected from the content of the file."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Points from any file that holds some: what kind it is, is told from what it holds. The formats of rasters
-are one registry (docs/extending.md)."""
+are one registry (docs/dev/extending.md)."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ struct TriangleView {
 /// below, or inside, of a closed one is what a way out leaves through it an odd number of times.
 /// Where surface and faces meet is decided exactly, on the model's coordinates and the surface's;
 /// vertices of the model within their own rounding of the surface are taken to lie on it. The
-/// model's cells may overlap by rounding (docs/geometry.md, "Cutting").
+/// model's cells may overlap by rounding (docs/dev/geometry.md, "Cutting").
 /// @throws InputError kinds not_finite, bad_index, no_triangles, bad_model; of open surfaces
 ///         branching, one_sided, ends_inside (it does not part the model; the place), two_sides (a
 ///         place is above one part of it and below another)

@@ -28,7 +28,7 @@ struct RegionView {
     std::span<const std::int32_t> triangles;  ///< 3 T indices
 };
 
-/// What a surface does to what is older, and to what is younger (docs/geometry.md).
+/// What a surface does to what is older, and to what is younger (docs/dev/geometry.md).
 enum class Rule {
     kErosional,     ///< cuts what is older
     kConformable,   ///< only deposits: ends where it meets what is there
@@ -74,9 +74,9 @@ using realmodel::kWall;
 using realmodel::Warning;
 
 /// Replays deposition and erosion: all blocks of rock masses, cell by cell, going down from the
-/// youngest surface of each (docs/architecture.md). Where rock masses share a stretch of border the
-/// wall between them is overlaid from both sides. Every decision is exact on the input; coordinates
-/// are rounded once. The same input gives the same result for any number of threads.
+/// youngest surface of each (docs/dev/architecture.md). Where rock masses share a stretch of border
+/// the wall between them is overlaid from both sides. Every decision is exact on the input;
+/// coordinates are rounded once. The same input gives the same result for any number of threads.
 /// @throws InputError kinds not_finite, bad_index, vertical_triangle, double_valued,
 /// base_not_below,
 ///         rocks_overlap (items: the two rock masses), too_large; surfaces are counted through all

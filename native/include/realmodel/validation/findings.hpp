@@ -46,7 +46,8 @@ struct Findings {
     }
 };
 
-/// A test of the contract (docs/geometry.md) under its name, with what it found and what it cost.
+/// A test of the contract (docs/dev/geometry.md) under its name, with what it found and what it
+/// cost.
 struct TestResult {
     std::string name;
     std::string unit;  ///< of what was examined: cells, faces, vertices, blocks, points

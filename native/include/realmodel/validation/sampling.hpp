@@ -19,11 +19,11 @@ struct ModelInput {
     std::span<const std::int32_t> block_of_surface;
 };
 
-/// Compares a model with the closed form (docs/geometry.md) at about `places` plan places: spread
-/// evenly, in triangles of the input, on faces, and at either side of walls. At each the whole
-/// column of the model is walked through; the closed form is decided exactly there. Tests: places,
-/// surfaces, walls. The arrays must have passed check_topology. The same seed gives the same places
-/// and findings for any number of threads.
+/// Compares a model with the closed form (docs/dev/geometry.md) at about `places` plan places:
+/// spread evenly, in triangles of the input, on faces, and at either side of walls. At each the
+/// whole column of the model is walked through; the closed form is decided exactly there. Tests:
+/// places, surfaces, walls. The arrays must have passed check_topology. The same seed gives the
+/// same places and findings for any number of threads.
 /// @throws Cancelled, InputError (bad_index)
 std::vector<TestResult> check_samples(const ComplexView& model, const ModelInput& input,
                                       std::int64_t places, std::uint64_t seed, int threads,

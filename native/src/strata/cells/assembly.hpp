@@ -8,8 +8,8 @@
 
 namespace realmodel::strata {
 
-/// The complex (docs/geometry.md) from finished faces, conformed faces and walls, which are given
-/// back as they are used.
+/// The complex (docs/dev/geometry.md) from finished faces, conformed faces and walls, which are
+/// given back as they are used.
 CellComplex assemble(const FaceList& faces, const std::vector<std::int32_t>& surface_of_plane,
                      ConformedFaces conformed, std::vector<WallBatch> walls,
                      Array<std::int32_t> cell_block, int threads, const Progress* progress);

@@ -69,7 +69,7 @@ TEST(Rules, APartialSurfaceRaisesTheTopWhereItIs) {
     EXPECT_DOUBLE_EQ(c.volumes[2], 0.75);
 }
 
-/// Block k at one plan point by the recurrence of docs/geometry.md.
+/// Block k at one plan point by the recurrence of docs/dev/geometry.md.
 std::vector<double> thickness(const std::vector<double>& heights, const std::vector<Rule>& rules) {
     std::vector<double> e, before;
     double top = 0, floor = -HUGE_VAL;
