@@ -7,7 +7,7 @@ import bpy
 
 from ..core import BuildFailed, InputRefused, RealModelError, build
 from ..core.project import surface_item
-from . import built_models, built_scene, display, meshes, project_settings, settings
+from . import built_scene, meshes, project_settings, settings
 from .thread_job import ThreadJob, threads
 
 
@@ -102,20 +102,8 @@ class BuildJob:
             raise BuildFailed(
                 f"scene '{self.scene_name}' is gone; build again in the scene that has the model"
             )
-        last = settings.last_stage(current)
-        group = current.realmodel
-        whole = group.stage >= last or not len(group.results)
         built_scene.put(current, prepared, self.composed, in_place)
-        model = prepared.model
-        with settings.filling():
-            group.exists = True
-            group.version = settings.VERSION
-            group.built_stamp = built_models.remember(model)
-            group.warnings = "\n".join(str(warning) for warning in model.warnings)
-            if whole:
-                group.stage = last
-        display.built(current, prepared.bounds, prepared.stage)
-        return model
+        return prepared.model
 
 
 def refused_surface(current, error):

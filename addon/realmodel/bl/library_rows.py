@@ -109,6 +109,18 @@ def update_materials(scene):
         update_material(row)
 
 
+def material_of(scene, property_id):
+    """The material of a property: of the scene's blocks, else one that nothing uses, else a new one.
+    Raises InputRefused for a library that is not valid."""
+    known = scene_materials(scene, property_id) or [
+        m for m in bpy.data.materials if m.get(materials.KEY) == property_id and not (m.users or m.library)
+    ]
+    if known:
+        return known[0]
+    name, colour = materials.name_and_colour(library_of(scene), property_id)
+    return materials.new_material(name, property_id, colour)
+
+
 def scene_materials(scene, property_id):
     """The model's materials of a property that its blocks use."""
     found = {}

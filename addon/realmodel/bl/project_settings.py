@@ -271,11 +271,10 @@ def packed_region(rock):
     return stored_arrays.pack(**{f"ring{n}": ring for n, ring in enumerate(rings)})
 
 
-def fill(scene, project, stored=False):
+def fill(scene, project):
     """Rows for a project, in place of those that are there.
 
-    project: realmodel.core.Project. Files stay files, unless they have been read (stored=True, as
-    `Model.project`): then their arrays are kept.
+    project: realmodel.core.Project. Files stay files; what has been read, as of `Model.project`, is kept.
     """
     group = scene.realmodel
     with settings.filling():

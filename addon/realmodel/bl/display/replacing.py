@@ -70,13 +70,10 @@ def remove(item):
 
 
 def _remove(item):
-    if item.get(scene.TAG) == "block":
-        scene.remove_objects([item])
-        return
-    mesh = item.data
-    bpy.data.objects.remove(item)
-    if mesh is not None and not mesh.users:
-        bpy.data.meshes.remove(mesh)
+    is_block = item.get(scene.TAG) == "block"
+    scene.remove_objects([item])
+    if is_block:
+        scene.remove_unused_materials()
 
 
 def tidy():
