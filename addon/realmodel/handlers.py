@@ -10,7 +10,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import versioning
-from .bl import built_models, display, live, region_size, stored_arrays
+from .bl import caches, display, live, region_size
 from .core import RealModelError
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
@@ -43,9 +43,8 @@ def _patient(handler):
 
 @persistent
 def _loaded(*_arguments):
-    built_models.forget()
-    stored_arrays.forget()
-    display.forget()
+    display.stop()
+    caches.clear()
     migrate_all()
     display.opened()
     live.switched()
@@ -136,5 +135,4 @@ def unregister():
             registered.remove(handler)
     live.stop()
     region_size.stop()
-    built_models.forget()
-    stored_arrays.forget()
+    caches.clear()

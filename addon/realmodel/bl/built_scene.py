@@ -155,13 +155,13 @@ def put(current, prepared, composed, in_place=False):
     model = prepared.model
     check_rows(current, model.project)
     check_modes(current, prepared)
-    created = scene.Created()
+    created = []  # datablocks
     try:
         palette, updates = _palette(current, model, created)
         interfaces = _new_interfaces(current, prepared, composed, created)
         blocks = _new_blocks(current, prepared, created, in_place)
     except BaseException:
-        created.remove()
+        bpy.data.batch_remove(created)
         raise
     group, last = current.realmodel, settings.last_stage(current)
     with settings.filling():
@@ -206,7 +206,7 @@ def _palette(current, model, created):
         there = len(bpy.data.materials)
         palette[property_id] = library_rows.material_of(current, property_id)
         if len(bpy.data.materials) > there:
-            created.materials.append(palette[property_id])
+            created.append(palette[property_id])
         name, colour = materials.name_and_colour(model.project.library, property_id)
         updates.append((name, colour, palette[property_id]))
     return palette, updates
@@ -231,11 +231,11 @@ def _new_interfaces(current, prepared, composed, created):
             mesh = None
             if own is None or digest != row.interface_digest:
                 mesh = meshes.new_mesh(row.name, shape)
-                created.meshes.append(mesh)
+                created.append(mesh)
                 uncertainty.add_attributes(mesh, prepared.told[r, s])
             if own is None:
                 own = bpy.data.objects.new(row.name, mesh)
-                created.objects.append(own)
+                created.append(own)
             found[r, s] = (own, mesh, digest)
     return found
 
@@ -264,23 +264,17 @@ def _new_blocks(current, prepared, created, in_place):
             found.append((item, None))
             continue
         mesh = meshes.new_mesh(block.name, shape)
-        created.meshes.append(mesh)
+        created.append(mesh)
         if item is None:
             item = bpy.data.objects.new(block.name, mesh)
-            created.objects.append(item)
+            created.append(item)
         found.append((item, mesh))
     return found
 
 
-@dataclass
-class _Tree:
-    """The collections of a model: for each rock mass (interfaces, blocks)."""
-
-    rocks: list
-
-
 def _tree(current, project):
-    """The model's collections, linked where they were taken out, new where there are none."""
+    """The model's collections, linked where they were taken out, new where there are none: for each rock mass
+    (interfaces, blocks)."""
     group = current.realmodel
     top = _collection(current, current.collection, group, "collection", project.name, "project")
     rocks = []
@@ -290,7 +284,7 @@ def _tree(current, project):
         for kind in ("interfaces", "blocks"):
             pair.append(_collection(current, parent, row, kind, f"{row.name} {kind}", kind, row.name))
         rocks.append(tuple(pair))
-    return _Tree(rocks)
+    return rocks
 
 
 def _collection(current, parent, row, pointer, name, kind, rock_name=None):
@@ -321,7 +315,7 @@ def _place_interfaces(current, tree, interfaces):
             item[scene.ROCK] = rock.name
             item[scene.SURFACE] = row.name
             item[scene.PROPERTY] = row.property_id
-        _link(current, tree.rocks[r][0], item, move=not adopted)
+        _link(current, tree[r][0], item, move=not adopted)
         if item.library is None and not scene.is_name_of(item.name, row.name):
             scene.give_name(bpy.data.objects, item, row.name)
         row.interface = item
@@ -351,7 +345,7 @@ def _place_blocks(current, prepared, tree, blocks, palette):
         item[scene.SURFACE] = str(model.surface_names[block.surface])
         item[scene.BLOCK] = block.name
         item[scene.PROPERTY] = int(block.property)
-        _link(current, tree.rocks[block.rock][1], item)
+        _link(current, tree[block.rock][1], item)
         kept.append(item)
     scene.remove_objects([item for item in before if item is not None and item not in kept])
     fill_results(current, model, kept)

@@ -12,14 +12,14 @@ from contextlib import contextmanager
 import bpy
 
 from ..core import Cancelled
-from . import build_job, built_scene, plan_mesh, problems, region_size, viewports
+from . import build_job, built_scene, caches, plan_mesh, problems, region_size, viewports
 from .rested_work import RestedWork
 
 REST_SECONDS = 0.03  # without a change, after which the hand is taken to rest
 _SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
 
 _at_work = False  # what Blender tells of now is our own doing
-measured = {}  # by the name of a scene: seconds from the last change to the new blocks
+measured = caches.new()  # by the name of a scene: seconds from the last change to the new blocks
 
 
 def touch(scene):
@@ -87,7 +87,6 @@ def stop_work():
 def stop():
     """Ends everything: the add-on is disabled."""
     _work.stop()
-    measured.clear()
 
 
 def _finish(name, job, changed_at):

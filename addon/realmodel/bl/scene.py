@@ -13,8 +13,6 @@ names that the project gives: `realmodel_rock`, `realmodel_surface` (for a block
 deposited beneath), `realmodel_block`, and `realmodel_property`, the library ID.
 """
 
-from dataclasses import dataclass, field
-
 import bpy
 
 from . import materials
@@ -25,27 +23,6 @@ SURFACE = "realmodel_surface"
 BLOCK = "realmodel_block"
 PROPERTY = "realmodel_property"
 OBJECT_KINDS = ("interface", "block")
-
-
-@dataclass
-class Created:
-    """Datablocks made so far; whatever goes wrong, they can be taken back."""
-
-    objects: list = field(default_factory=list)
-    meshes: list = field(default_factory=list)
-    materials: list = field(default_factory=list)
-    collections: list = field(default_factory=list)
-
-    def remove(self):
-        for made, store in (
-            (self.objects, bpy.data.objects),
-            (self.meshes, bpy.data.meshes),
-            (self.materials, bpy.data.materials),
-            (self.collections, bpy.data.collections),
-        ):
-            for datablock in reversed(made):
-                store.remove(datablock)
-            made.clear()
 
 
 def is_name_of(name, wanted):

@@ -39,7 +39,6 @@ from . import (
     replacing,
     shown_models,
     stages,
-    viewpoints,
 )
 from .visible import show
 
@@ -50,7 +49,6 @@ __all__ = [
     "colours_changed",
     "exaggeration_changed",
     "explode_changed",
-    "forget",
     "frame_changed",
     "let_go",
     "mode_changed",
@@ -62,6 +60,7 @@ __all__ = [
     "show",
     "show_all",
     "stage_changed",
+    "stop",
     "undone",
     "unregister",
 ]
@@ -79,21 +78,14 @@ def register():
 def unregister():
     """Called when the add-on is disabled: no handler of drawing may stay."""
     drawing.unregister()
+    stop()
+
+
+def stop():
+    """Ends what is under way: another file was opened, or the add-on is disabled."""
     cuts.stop()
     preparing.stop()
     replacing.stop()
-    shown_models.forget()
-    viewpoints.forget()
-
-
-def forget():
-    """Another file was opened."""
-    cuts.stop()
-    preparing.stop()
-    replacing.stop()
-    forget_meshes()
-    shown_models.forget()
-    viewpoints.forget()
 
 
 def forget_meshes():

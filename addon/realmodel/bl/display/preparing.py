@@ -111,7 +111,6 @@ def show_with(show_all):
 def stop():
     """Ends what is under way."""
     _work.stop()
-    cells.forget()
     for slices in _slices.values():
         slices.clear()
     _slices.clear()

@@ -7,12 +7,12 @@ only the blocks that differ go to Blender.
 
 from ...core import build, polygon_mesh
 from ...core.assembly import build_stage
-from .. import block_shapes, built_models, project_settings, settings
+from .. import block_shapes, built_models, caches, project_settings, settings
 from ..thread_job import threads
 
 _MOST_CORNERS = 20_000_000  # of the faces of all stages that are kept: about 0.6 GB with their shapes
-_stages = {}  # (stamp, stage, cells) -> realmodel.core.Model, the one that was used last at the end
-_shapes = {}  # (stamp, stage) -> {(rock mass, block): PolygonMesh}
+_stages = caches.new()  # (stamp, stage, cells) -> realmodel.core.Model, the one that was used last at the end
+_shapes = caches.new()  # (stamp, stage) -> {(rock mass, block): PolygonMesh}
 
 
 class Recipe:
