@@ -12,7 +12,6 @@ import numpy as np
 from .blocks import Block, count_blocks
 from .build_options import check_cells, check_stage
 from .build_warning import BuildWarning
-from .expected_costs import stack_pace
 from .rock_input import RockInput
 from .stack_refusals import refused_stack
 from .work import Cancel, Progress, Work, native_module, run
@@ -66,7 +65,7 @@ def intersect(work: Work, inputs, cells: str, threads: int, start: float, end: f
         )
         for entry in inputs
     ]
-    with work.phase(start, end, "intersecting and cutting"), work.paced(stack_pace(inputs, cells)):
+    with work.phase(start, end, "intersecting and cutting"):
         try:
             return work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)
         except native.InputError as error:
