@@ -13,7 +13,8 @@ import realmodel
 from blender_state import empty_file
 from made_projects import interpolated, one_rock, two_rocks
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import batch, model_at_hand
+from realmodel.bl import batch
+from realmodel.bl.display import shown_models
 from realmodel.core import build, load_project
 
 ARRAYS = (
@@ -46,7 +47,7 @@ class BatchBlend(PanelCase):
         for model in (from_files, build(two_rocks()), build(interpolated())):
             with self.subTest(model.project.name):
                 self.opened(model)
-                self.assert_same_model(model, model_at_hand.model_of(bpy.context))
+                self.assert_same_model(model, shown_models.whole(bpy.context.scene))
 
     def test_results_are_exact(self):
         model = build(two_rocks())

@@ -16,6 +16,7 @@ from .build_warning import BuildWarning
 from .cutting import Cut
 from .erosion import Erosion, eroded
 from .errors import UsageError
+from .exporters import save_model
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
@@ -85,8 +86,6 @@ class Model:
 
         Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
         """
-        from .exporters import save_model
-
         save_model(self, path)
 
     def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:

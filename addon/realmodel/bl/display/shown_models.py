@@ -88,6 +88,12 @@ def at_stage(scene, stage, cells=None):
     return model
 
 
+def whole(scene, cells="columns"):
+    """The whole realmodel.core.Model of a scene, made in this thread where it is not at hand. Raises as
+    `at_stage`."""
+    return at_stage(scene, settings.last_stage(scene), cells)
+
+
 def shapes_at_stage(scene, stage):
     """{(rock mass, block): PolygonMesh} at a stage, made in this thread. Raises as `at_stage`."""
     recipe = Recipe(scene, stage)
