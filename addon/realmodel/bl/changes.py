@@ -5,6 +5,7 @@ here."""
 from . import (
     data_objects,
     display,
+    library_rows,
     live,
     method_settings,
     reading_text,
@@ -141,3 +142,24 @@ def section(row, _context):
     """Another section plane, or none."""
     if not settings.is_filling():
         display.section_changed(row.id_data)
+
+
+def property_id(row, _context):
+    """What has a property keeps it under its new ID. One that is no ID, or another entry's, is not taken."""
+    if settings.is_filling() or row.id == row.known_id:
+        return
+    if library_rows.take_id(row):
+        live.touch(row.id_data)
+
+
+def property_name(row, _context):
+    if not settings.is_filling():
+        library_rows.update_material(row)
+        live.touch(row.id_data)
+
+
+def property_colour(row, _context):
+    if not settings.is_filling():
+        row.has_color = True
+        library_rows.update_material(row)
+        display.colours_changed(row.id_data)

@@ -10,21 +10,19 @@ from dataclasses import replace
 
 import numpy as np
 
+from .assembly import assemble, intersect
 from .build_options import CELL_KINDS, check_cells, check_memory, check_stage
-from .build_warning import BuildWarning
 from .estimate import require_memory
 from .method_options import check_threads
-from .model import Block, Model, count_blocks
+from .model import Model
 from .project import Project, check_project
 from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
-from .stack_refusals import refused_stack
 from .work import Cancel, Progress, Work, native_module, run
 
 # Of the time of a build, roughly; a phase that a project does not have has none
 _SHARES = {"read": 0.1, "mesh": 0.05, "interpolate": 0.45, "intersect": 0.38, "merge": 0.02}
-_STAGE_INTERSECTED = 0.99  # of the time of a stage: nothing is read again
 
-__all__ = ["CELL_KINDS", "build", "build_stage"]
+__all__ = ["CELL_KINDS", "build"]
 
 
 def build(
@@ -59,35 +57,6 @@ def build(
     return run(lambda work: _build(work, project, cells, threads, stage, memory), progress, cancel)
 
 
-def build_stage(
-    model: Model,
-    m: int,
-    progress: Progress | None = None,
-    cancel: Cancel | None = None,
-    cells: str | None = None,
-) -> Model:
-    """Model.stage. cells: another kind of cells than the model has; nothing is interpolated again for it."""
-    check_stage(model.project, m)
-    kind = model.cell_kind if cells is None else cells
-    check_cells(kind)
-    inputs = [entry.stage(m) for entry in model.rock_inputs]
-    if kind == model.cell_kind and all(
-        len(entry.surfaces) == len(whole.surfaces)
-        for entry, whole in zip(inputs, model.rock_inputs, strict=True)
-    ):
-        return model
-    given = model.project
-    project = replace(given, rocks=[entry.rock for entry in inputs])
-
-    def task(work: Work) -> Model:
-        built = _intersect(work, inputs, kind, model.threads, 0.0, _STAGE_INTERSECTED)
-        timings = {"intersect": time.perf_counter() - began}
-        return _assemble(work, project, inputs, built, kind, model.threads, timings, _STAGE_INTERSECTED)
-
-    began = time.perf_counter()
-    return run(task, progress, cancel)
-
-
 def _build(
     work: Work, project: Project, cells: str, threads: int, stage: int | None, memory: int | None
 ) -> Model:
@@ -116,9 +85,9 @@ def _build(
             interpolate_rock(work, entry, start, end, threads, stage)
     inputs = taken()
     with timed("intersect"):
-        built = _intersect(work, inputs, cells, threads, ends["interpolate"], ends["intersect"])
+        built = intersect(work, inputs, cells, threads, ends["interpolate"], ends["intersect"])
     given = replace(project, rocks=[entry.rock for entry in inputs])
-    return _assemble(work, given, inputs, built, cells, threads, timings, ends["intersect"])
+    return assemble(Model, work, given, inputs, built, cells, threads, timings, ends["intersect"])
 
 
 def _phase_ends(project: Project) -> dict[str, float]:
@@ -138,6 +107,7 @@ def _parts(start: float, end: float, count: int) -> list[tuple[float, float]]:
     """The stretch from `start` to `end` in equal parts."""
     steps = np.linspace(start, end, count + 1).tolist()
     return list(itertools.pairwise(steps))
+<<<<<<< HEAD
 
 
 def _intersect(work: Work, inputs, cells: str, threads: int, start: float, end: float) -> dict:
@@ -246,3 +216,5 @@ def _warnings(inputs, built: dict, blocks: list[Block]) -> list[BuildWarning]:
             continue
         warnings.append(BuildWarning(text, "no_block", entry.rock.name))
     return warnings
+=======
+>>>>>>> 7ac1030e4bc52f81ae899070f9828fc704d94f86
