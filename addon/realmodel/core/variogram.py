@@ -168,14 +168,8 @@ def fit_warnings(variogram: Variogram, points: np.ndarray, has_trend: bool = Fal
     extent = float(np.hypot(*np.ptp(points[:, :2], axis=0)))
     if not has_trend and variogram.range > _FAR_RANGE * extent > 0 and pairs >= _FEW_PAIRS:
         warnings.append(
-<<<<<<< HEAD
-            f"the fitted range, {variogram.range:.4g}, is far beyond the extent of the points, {extent:.4g}: "
-            f"variances far from points are extrapolated; if the heights follow a trend, give "
-            f'method = "universal_kriging"'
-=======
             f"the range of the fitted variogram, {variogram.range:.4g}, far exceeds the extent of the "
             f"points, {extent:.4g}: its sill, and variances far from points, are extrapolated; the heights "
             "may follow a trend: try universal kriging"
->>>>>>> 7ac1030e4bc52f81ae899070f9828fc704d94f86
         )
     return warnings
