@@ -166,10 +166,11 @@ class RealModelSettings(bpy.types.PropertyGroup):
             ("AGE", "Age", "From the oldest to the youngest"),
             (
                 "UNCERTAINTY",
-                "Uncertainty",
-                "How sure the heights of interpolated surfaces are, with Show: Surfaces. Dark blue: certain; "
-                "yellow: the largest standard deviation of the surface",
+                "Standard Deviation",
+                "Standard deviation of the interpolated elevations of the surface, or of the surface above a block",
             ),
+            ("ELEVATION", "Elevation", "Elevation above the zero of the model's coordinates"),
+            ("THICKNESS", "Thickness", "Vertical thickness of the layer"),
         ),
         update=lambda self, _context: display.colours_changed(self.id_data),
     )

@@ -54,6 +54,32 @@ class RealModelView(bpy.types.PropertyGroup):
         options=set(),
         update=changes.exaggeration,
     )
+    show_legend: BoolProperty(
+        name="Legend",
+        description="Show what the colors mean, in the viewport and in pictures",
+        default=True,
+        options=set(),
+        update=changes.overlay,
+    )
+    show_north: BoolProperty(
+        name="North Arrow",
+        description="Show where north is, in the viewport and in pictures",
+        options=set(),
+        update=changes.overlay,
+    )
+    show_scale: BoolProperty(
+        name="Scale Bar",
+        description="Show a bar of a round length, in the viewport and in pictures",
+        options=set(),
+        update=changes.overlay,
+    )
+    show_axes: BoolProperty(
+        name="Axes",
+        description="Show the coordinates of the model around it, in the viewport and in pictures",
+        options=set(),
+        update=changes.overlay,
+    )
+    shade_limits: FloatVectorProperty(size=2, options={"HIDDEN"})  # values at the ends of the color scale
     cut: StringProperty(options={"HIDDEN"})  # JSON of the plane that the bodies of kind "cut" were made with
     cells_of: StringProperty(options={"HIDDEN"})  # JSON of what the bodies of kind "cells" were made of
     applied: StringProperty(options={"HIDDEN"})  # JSON of the settings that the objects show

@@ -2,7 +2,7 @@
 """What follows when a setting is changed by hand or by a script: each update callback is one function
 here."""
 
-from . import display, live, region_size, settings, units
+from . import display, live, region_size, settings, units, viewports
 
 
 def setting(row, _context):
@@ -94,6 +94,10 @@ def view(row, _context):
     """What is drawn in the display modes."""
     if not settings.is_filling():
         display.mode_changed(row.id_data)
+
+
+def overlay(_row, _context):
+    viewports.redraw()
 
 
 def exaggeration(row, _context):

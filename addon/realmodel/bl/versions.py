@@ -4,6 +4,7 @@
 The rest of the add-on asks this module and never looks at `bpy.app.version` itself.
 """
 
+import blf
 import bpy
 import numpy as np
 
@@ -162,6 +163,14 @@ def plain_colours(scene):
     scene.view_settings.look = "None"
     scene.view_settings.exposure = 0.0
     scene.view_settings.gamma = 1.0
+
+
+def text_size(font, size):
+    """Sets the size of blf's text in pixels; the resolution went in 4.0."""
+    if bpy.app.version >= (4, 0, 0):
+        blf.size(font, size)
+    else:
+        blf.size(font, size, 72)
 
 
 def plain_shader(points):

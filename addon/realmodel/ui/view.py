@@ -25,9 +25,6 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
         if group.display in _WITH_SUBJECT:
             column.prop(group.view, "subject")
         column.prop(group, "color_by")
-        if group.color_by == "UNCERTAINTY":
-            text = "Dark blue: certain; yellow: the largest deviation of each surface, told in Surfaces."
-            hint(layout, text if group.display == "SURFACES" else "Choose Surfaces to see it.")
         _stage(layout, context.scene)
         if preparing.is_working(context.scene):
             hint(layout, "being made ...")
@@ -36,6 +33,9 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
         if group.explode > 0.0:
             column.prop(group, "explode_direction", text="Direction")
         column.prop(group.view, "exaggeration")
+        grid = layout.grid_flow(row_major=True, columns=2, align=True)
+        for name in ("show_legend", "show_north", "show_scale", "show_axes"):
+            grid.prop(group.view, name, toggle=True)
         if group.view.message:
             box = layout.box()
             box.alert = True

@@ -274,7 +274,7 @@ def _applied(scene):
 def _show(scene, has_shapes=False, **wanted):
     """Shows what is wanted: any of the settings that can be animated, by their names. has_shapes: the blocks
     have the shapes of the stage already."""
-    from . import colours, cuts, explosion, modes, preparing, render_marks, replacing, stages
+    from . import colours, cuts, explosion, modes, preparing, render_marks, replacing, shades, stages
 
     group = scene.realmodel
     if not len(group.results) or scene.library is not None:
@@ -300,10 +300,9 @@ def _show(scene, has_shapes=False, **wanted):
         modes.apply(scene, now["display"], now["stage"])
         if replacing.is_rendering():
             render_marks.put(scene, now["display"])
-    if "color_by" in wanted or "stage" in wanted:
+    if "color_by" in wanted or "stage" in wanted or now["color_by"] in shades.TITLES:
         colours.apply(scene)
-    if "color_by" in wanted or "display" in wanted:
-        colours.shade_viewports(now["color_by"], now["display"], _applied(scene))
+        colours.shade_viewports(now["color_by"], _applied(scene))
     if not replacing.is_rendering():
         exaggeration_changed(scene)
     group.view.applied = json.dumps({key: now[key] for key in _ANIMATED})

@@ -9,7 +9,7 @@ from .. import meshes, scene
 from . import replacing
 
 KIND = "realmodel_view"  # on an object: what it is for
-CUT, CELLS, MARKS, PLANE, SECTION = "cut", "cells", "marks", "plane", "section"
+CUT, CELLS, MARKS, PLANE, SECTION, SURVIVING = "cut", "cells", "marks", "plane", "section", "surviving"
 
 
 def of_kind(current, kind):

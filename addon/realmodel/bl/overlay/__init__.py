@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Legend, north arrow, scale bar and axes over the viewport and in every picture: one drawing of the core
+(`core.drawing.overlay`), which `viewport` draws with the graphics card and `rendered` puts before a camera as
+an image."""
+
+import numpy as np
+
+from ...core.drawing.overlay import Eye, Shown, draw_overlay
+from .. import exaggeration, project_settings
+from ..display import colours, explosion
+
+WIDTH = 900.0  # points across the longer side of a picture
+
+
+def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0)):
+    """The Drawing of what a scene's settings ask for, or None where that is nothing.
+
+    projection: (4, 4), from the camera's axes to the picture. view: (4, 4), from the world to these axes.
+    size: of the picture in points. margins: at the left and right what else covers it, in points.
+    """
+    group = scene.realmodel
+    view_settings = group.view
+    if not len(group.results):
+        return None
+    key = colours.key(scene) if view_settings.show_legend else None
+    axes = view_settings.show_axes and group.explode == 0.0
+    if key is None and not (view_settings.show_north or view_settings.show_scale or axes):
+        return None
+    view = np.array(view, np.float64)
+    right, up, back = view[:3, :3] / np.linalg.norm(view[:3, :3], axis=1)[:, None]
+    at = -view[:3, :3].T @ view[:3, 3]
+    eye = Eye(
+        np.array(projection, np.float64) @ view,
+        np.array([*at, 1.0] if is_perspective else [*back, 0.0]),
+        right,
+        up,
+        tuple(size),
+    )
+    origin = project_settings.model_origin(scene)
+    placed = exaggeration.matrix(scene)
+    placed[:3, 3] -= placed[:3, :3] @ origin
+    low, high = explosion.bounds(scene)
+    shown = Shown(low + origin, high + origin, placed, group.units, exaggeration.factor(scene))
+    return draw_overlay(eye, shown, key, view_settings.show_north, view_settings.show_scale, axes, margins)
