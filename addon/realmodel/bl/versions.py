@@ -173,6 +173,13 @@ def text_size(font, size):
         blf.size(font, size, 72)
 
 
+def colored_shader():
+    """The built-in shader of triangles whose corners have colors."""
+    import gpu
+
+    return gpu.shader.from_builtin("SMOOTH_COLOR" if bpy.app.version >= (4, 0, 0) else "3D_SMOOTH_COLOR")
+
+
 def plain_shader(points):
     """The built-in shader of one colour, for points or for lines; its names changed in 4.0 and 4.5."""
     import gpu

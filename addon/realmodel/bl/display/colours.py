@@ -59,12 +59,12 @@ def key(scene):
         colors = layer_values.colors(np.linspace(0.0, 1.0, 64), (0.0, 1.0))
         title = f"{shades.TITLES[by]} ({group.units})"
         return ColorKey(title, limits=(low, high), colors=colors) if high > low else None
-    places, entries = _places(scene), {}
+    places, entries, library = _places(scene), {}, library_rows.library_of(scene)
     for row in reversed(group.results):
         if not stages.present(row) or modes.is_hidden(scene, row):
             continue
         if by == "PROPERTY":
-            name, _ = materials.name_and_colour(library_rows.library_of(scene), row.property_id)
+            name, _ = materials.name_and_colour(library, row.property_id)
             entries.setdefault(name, shown_colour(modes.body_of(scene, row) or row.object))
         else:
             _, colour = _entry(scene, by, row, places)

@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The overlay in 3D viewports, and in pictures of them, by the graphics card."""
 
+from itertools import groupby
+
 import blf
 import bpy
 import numpy as np
 from mathutils import Matrix
 from mathutils.geometry import tessellate_polygon
 
-from ...core.drawing.drawing import ANCHORS, Dots, Line, Polygon, Text
+from ...core.drawing.drawing import ANCHORS, Text
+from ...core.drawing.raster import item_shapes
 from .. import versions
 from . import drawing_for
 
 _FONT = 0  # Blender's own
+_PIXELS = 1.25  # for a point, where Blender's interface is not scaled
 _handle = None
 
 
@@ -21,7 +25,7 @@ def draw():
     scene, region, space = context.scene, context.region, context.space_data
     if not hasattr(scene, "realmodel") or not space.overlay.show_overlays:
         return
-    scale = context.preferences.system.ui_scale
+    scale = _PIXELS * context.preferences.system.ui_scale
     draw_for(scene, region.width, region.height, context.region_data, scale, _margins(context.area, scale))
 
 
@@ -39,55 +43,34 @@ def draw_items(drawing, scale):
     """Draws a Drawing with the lower left corner of what is bound as its own."""
     import gpu  # not there in Blender's background mode before 4.0
 
-    shader = versions.plain_shader(False)
     gpu.state.blend_set("ALPHA")
-    shader.bind()
-    for item in drawing.items:
-        if isinstance(item, Polygon):
-            if item.fill is not None:
-                _triangles(shader, item.rings, item.fill, scale)
-            if item.stroke is not None:
-                for ring in item.rings:
-                    _line(shader, np.concatenate([ring, ring[:1]]), item.stroke, item.width, scale)
-        elif isinstance(item, Line):
-            _line(shader, item.points, item.color, item.width, scale)
-        elif isinstance(item, Text):
-            _text(item, scale)
-            shader.bind()
-        elif isinstance(item, Dots):
-            raise NotImplementedError("an overlay has no dots")
+    for is_text, items in groupby(drawing.items, key=lambda item: isinstance(item, Text)):
+        if is_text:
+            for item in items:
+                _text(item, scale)
+        else:
+            _fill([shape for item in items for shape in item_shapes(item)], scale)
     gpu.state.blend_set("NONE")
-    gpu.state.line_width_set(1.0)
 
 
-def _rgba(color):
-    return (*color, 1.0)[:4]
-
-
-def _batch(shader, kind, points, color, scale, indices=None):
+def _fill(shapes, scale):
+    """Draws shapes (rings, color) at once."""
     from gpu_extras.batch import batch_for_shader
 
-    places = [(x * scale, y * scale, 0.0) for x, y in points]
-    shader.uniform_float("color", _rgba(color))
-    batch_for_shader(shader, kind, {"pos": places}, indices=indices).draw(shader)
-
-
-def _triangles(shader, rings, color, scale):
-    points = np.concatenate(rings)
-    indices = tessellate_polygon([[(x, y, 0.0) for x, y in ring] for ring in rings])
-    _batch(shader, "TRIS", points, color, scale, indices)
-
-
-def _line(shader, points, color, width, scale):
-    import gpu
-
-    gpu.state.line_width_set(max(width * scale, 1.0))
-    _batch(shader, "LINE_STRIP", points, color, scale)
+    places, colors, indices = [], [], []
+    for rings, color in shapes:
+        triangles = np.array(tessellate_polygon([[(x, y, 0.0) for x, y in ring] for ring in rings]))
+        indices += (triangles.reshape(-1, 3) + len(places)).tolist()
+        corners = np.concatenate(rings) * scale
+        places += [(x, y, 0.0) for x, y in corners.tolist()]
+        colors += [(*color, 1.0)[:4]] * len(corners)
+    shader = versions.colored_shader()
+    batch_for_shader(shader, "TRIS", {"pos": places, "color": colors}, indices=indices).draw(shader)
 
 
 def _text(item, scale):
     versions.text_size(_FONT, item.size * scale)
-    blf.color(_FONT, *_rgba(item.color))
+    blf.color(_FONT, *(*item.color, 1.0)[:4])
     left = item.x * scale - ANCHORS[item.anchor] * blf.dimensions(_FONT, item.text)[0]
     blf.position(_FONT, left, item.y * scale, 0.0)
     blf.draw(_FONT, item.text)

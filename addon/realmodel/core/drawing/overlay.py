@@ -232,13 +232,13 @@ def _ticks(drawing: Drawing, eye: Eye, shown: Shown, axis: int, edge, center: np
     widest = max(text_width(text, SIZE) for text in texts)
     for place, text in zip(eye.at(shown.world(at)), texts, strict=True):
         drawing.line([place, place + 4 * out], (0.35, 0.35, 0.35), 0.7)
-        _label(drawing, place + 7 * out + (0.0, (out[1] - 1) * 0.36 * SIZE), text, anchor)
+        _label(drawing, place + 7 * out + np.array([0.0, (out[1] - 1) * 0.36 * SIZE]), text, anchor)
     name = f"{_AXIS_NAMES[axis]} ({shown.unit})"
     if abs(out[0]) > 0.9:  # beside an upright edge there is little room: above it
         away = max(start, stop, key=lambda place: place[1]) + 7 * out + (0.0, 1.6 * SIZE)
     else:
         away = (start + stop) / 2 + out * (12 + abs(out[0]) * widest + abs(out[1]) * 1.4 * SIZE)
-    _label(drawing, away + (0.0, (out[1] - 1) * 0.36 * SIZE), name, anchor)
+    _label(drawing, away + np.array([0.0, (out[1] - 1) * 0.36 * SIZE]), name, anchor)
 
 
 def _label(drawing: Drawing, at: np.ndarray, text: str, anchor: str) -> None:
