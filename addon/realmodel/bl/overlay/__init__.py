@@ -3,6 +3,8 @@
 (`core.drawing.overlay`), which `viewport` draws with the graphics card and `rendered` puts before a camera as
 an image."""
 
+import pickle
+
 import numpy as np
 
 from ...core.drawing.overlay import Eye, Shown, draw_overlay
@@ -10,6 +12,8 @@ from .. import exaggeration, project_settings
 from ..display import colours, explosion
 
 WIDTH = 900.0  # points across the longer side of a picture
+_MOST_KEPT = 8
+_drawings = {}  # by what they are made of: a viewport is drawn again and again
 
 
 def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0)):
@@ -23,9 +27,15 @@ def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0
     if not len(group.results):
         return None
     key = colours.key(scene) if view_settings.show_legend else None
-    axes = view_settings.show_axes and group.explode == 0.0
-    if key is None and not (view_settings.show_north or view_settings.show_scale or axes):
+    wanted = (
+        view_settings.show_north,
+        view_settings.show_scale,
+        view_settings.show_axes and not group.explode,
+    )
+    if key is None and not any(wanted):
         return None
+    if not any(wanted):
+        view = projection = np.eye(4)  # a legend stays the same when the view turns
     view = np.array(view, np.float64)
     right, up, back = view[:3, :3] / np.linalg.norm(view[:3, :3], axis=1)[:, None]
     at = -view[:3, :3].T @ view[:3, 3]
@@ -41,4 +51,10 @@ def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0
     placed[:3, 3] -= placed[:3, :3] @ origin
     low, high = explosion.bounds(scene)
     shown = Shown(low + origin, high + origin, placed, group.units, exaggeration.factor(scene))
-    return draw_overlay(eye, shown, key, view_settings.show_north, view_settings.show_scale, axes, margins)
+    given = (eye, shown, key, *wanted, margins)
+    name = pickle.dumps(given)
+    if name not in _drawings:
+        while len(_drawings) >= _MOST_KEPT:
+            del _drawings[next(iter(_drawings))]
+        _drawings[name] = draw_overlay(*given)
+    return _drawings[name]

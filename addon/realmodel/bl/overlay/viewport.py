@@ -16,6 +16,8 @@ from . import drawing_for
 
 _FONT = 0  # Blender's own
 _PIXELS = 1.25  # for a point, where Blender's interface is not scaled
+_MOST_KEPT = 4
+_batches = []  # (drawing, scale, texts and batches), the last one drawn at the end
 _handle = None
 
 
@@ -43,18 +45,31 @@ def draw_items(drawing, scale):
     """Draws a Drawing with the lower left corner of what is bound as its own."""
     import gpu  # not there in Blender's background mode before 4.0
 
+    if not _batches or _batches[-1][:2] != (drawing, scale):
+        kept = next((entry for entry in _batches if entry[:2] == (drawing, scale)), None)
+        _batches.append(kept or (drawing, scale, list(_prepared(drawing, scale))))
+        del _batches[:-_MOST_KEPT]
+    shader = versions.colored_shader()
     gpu.state.blend_set("ALPHA")
-    for is_text, items in groupby(drawing.items, key=lambda item: isinstance(item, Text)):
-        if is_text:
-            for item in items:
-                _text(item, scale)
+    for item in _batches[-1][2]:
+        if isinstance(item, Text):
+            _text(item, scale)
         else:
-            _fill([shape for item in items for shape in item_shapes(item)], scale)
+            item.draw(shader)
     gpu.state.blend_set("NONE")
 
 
-def _fill(shapes, scale):
-    """Draws shapes (rings, color) at once."""
+def _prepared(drawing, scale):
+    """Texts, and batches of what lies between them."""
+    for is_text, items in groupby(drawing.items, key=lambda item: isinstance(item, Text)):
+        if is_text:
+            yield from items
+        else:
+            yield _batch([shape for item in items for shape in item_shapes(item)], scale)
+
+
+def _batch(shapes, scale):
+    """A gpu batch of shapes (rings, color)."""
     from gpu_extras.batch import batch_for_shader
 
     places, colors, indices = [], [], []
@@ -65,7 +80,7 @@ def _fill(shapes, scale):
         places += [(x, y, 0.0) for x, y in corners.tolist()]
         colors += [(*color, 1.0)[:4]] * len(corners)
     shader = versions.colored_shader()
-    batch_for_shader(shader, "TRIS", {"pos": places, "color": colors}, indices=indices).draw(shader)
+    return batch_for_shader(shader, "TRIS", {"pos": places, "color": colors}, indices=indices)
 
 
 def _text(item, scale):
@@ -100,3 +115,4 @@ def unregister():
     if _handle is not None:
         bpy.types.SpaceView3D.draw_handler_remove(_handle, "WINDOW")
         _handle = None
+    _batches.clear()
