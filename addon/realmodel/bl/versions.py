@@ -173,6 +173,14 @@ def text_size(font, size):
         blf.size(font, size, 72)
 
 
+def let_through(material):
+    """Has Eevee draw what is transparent of a material so; Cycles always does."""
+    if hasattr(material, "surface_render_method"):  # from 4.2 on
+        material.surface_render_method = "BLENDED"
+    else:
+        material.blend_method, material.shadow_method = "BLEND", "NONE"
+
+
 def colored_shader():
     """The built-in shader of triangles whose corners have colors."""
     import gpu

@@ -106,7 +106,7 @@ def forget(scene):
 
 def shown_colour(item):
     """(red, green, blue) of an object's material from 0 to 1, sRGB, as the screen has it."""
-    return tuple(_srgb(channel) for channel in shown_linear(item))
+    return tuple(materials.srgb(channel) for channel in shown_linear(item))
 
 
 def shown_linear(item):
@@ -115,11 +115,6 @@ def shown_linear(item):
     if material is None:
         return materials.linear_colour(materials.NEUTRAL_GREY)
     return tuple(material.diffuse_color[:3])
-
-
-def _srgb(value):
-    value = min(max(value, 0.0), 1.0)
-    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
 
 
 def _coloured(scene):
