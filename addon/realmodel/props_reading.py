@@ -3,7 +3,7 @@
 
 from bpy.props import EnumProperty, StringProperty
 
-from .bl import reading_text
+from .bl import changes, reading_text
 
 
 def _text(key, name, description):
@@ -13,6 +13,7 @@ def _text(key, name, description):
         options={"SKIP_SAVE"},  # it is kept in `reading`
         get=lambda row: reading_text.text(row, key),
         set=lambda row, given: reading_text.set_text(row, key, given),
+        update=changes.reading,
     )
 
 
@@ -24,6 +25,7 @@ def _choice(key, items, name, description):
         options={"SKIP_SAVE"},
         get=lambda row: reading_text.choice(row, key, items),
         set=lambda row, number: reading_text.set_choice(row, key, items, number),
+        update=changes.reading,
     )
 
 

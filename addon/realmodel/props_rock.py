@@ -111,6 +111,7 @@ class RealModelRock(bpy.types.PropertyGroup):
         options={"SKIP_SAVE"},  # it is kept in `edge_length` and `mesh_options`
         get=plan_mesh.kind,
         set=plan_mesh.set_kind,
+        update=changes.setting,
     )
     triangles: IntProperty(
         name="Triangles",
@@ -119,6 +120,7 @@ class RealModelRock(bpy.types.PropertyGroup):
         options={"SKIP_SAVE"},
         get=plan_mesh.triangles,
         set=plan_mesh.set_triangles,
+        update=changes.setting,
     )
     edge_length: FloatProperty(
         name="Edge Length",

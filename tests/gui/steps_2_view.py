@@ -16,7 +16,7 @@ from driver import hue_differs, read_alpha, read_picture
 sys.path.append(str(Path(__file__).resolve().parents[1] / "blender"))
 
 from made_projects import surface
-from realmodel.bl import picture
+from realmodel.bl import viewports
 from realmodel.bl.display import preparing
 from realmodel.core import Library, Project, Property, Rock
 from realmodel.core.project_writer import save_project
@@ -90,7 +90,7 @@ def in_the_viewport(walk):
 
 
 def modes(walk):
-    walk.area.spaces.active.region_3d.view_rotation = picture.view_rotation().to_quaternion()
+    walk.area.spaces.active.region_3d.view_rotation = viewports.view_rotation().to_quaternion()
     with in_the_viewport(walk):
         bpy.ops.realmodel.view_all()
     seen = {}

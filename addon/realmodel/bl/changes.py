@@ -2,7 +2,7 @@
 """What follows when a setting is changed by hand or by a script: each update callback is one function
 here."""
 
-from . import display, live, region_size, settings, units, viewports
+from . import display, library_rows, live, region_size, settings, units, viewports
 
 
 def setting(row, _context):
@@ -62,14 +62,14 @@ def source(surface, context):
     setting(surface, context)
 
 
-def reading(surface):
+def reading(surface, context):
     """A file is to be read in another way: what was read before is worth nothing."""
     if settings.is_filling():
         return
     surface.interface_digest = ""
     if surface.filepath:
         surface.stored = surface.stored_stamp = ""
-    setting(surface, None)
+    setting(surface, context)
 
 
 def hide(surface, _context):
@@ -109,3 +109,24 @@ def section(row, _context):
     """Another section plane, or none."""
     if not settings.is_filling():
         display.section_changed(row.id_data)
+
+
+def property_id(row, _context):
+    """What has a property keeps it under its new ID. One that is no ID, or another entry's, is not taken."""
+    if settings.is_filling() or row.id == row.known_id:
+        return
+    if library_rows.take_id(row):
+        live.touch(row.id_data)
+
+
+def property_name(row, _context):
+    if not settings.is_filling():
+        library_rows.update_material(row)
+        live.touch(row.id_data)
+
+
+def property_colour(row, _context):
+    if not settings.is_filling():
+        row.has_color = True
+        library_rows.update_material(row)
+        display.colours_changed(row.id_data)

@@ -14,9 +14,9 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from ..core import polygon_mesh
-from ..core.drawing.overlay import ColorKey
-from . import block_shapes, materials, meshes, scene, versions
-from .overlay import rendered
+from . import block_shapes, exaggeration, materials, meshes, project_settings, settings, versions
+from .display import shown_models
+from .overlay import drawing_for, legend_share, rendered
 from .viewports import towards, view_rotation
 
 KEY = "realmodel_picture"  # on what is set up here: what it is
@@ -25,7 +25,8 @@ KEY = "realmodel_picture"  # on what is set up here: what it is
 FIELD_OF_VIEW = math.radians(26.0)  # across the longer side of the picture
 MARGIN = 1.06
 OPEN_AZIMUTH = math.radians(125.0)
-_OPENED = (0.36, 0.44, 0.28, 0.5, 0.2, 0.57, 0.12, 0.64)  # of the model, in front of the cut
+_OPENED = np.linspace(0.16, 0.7, 19)  # of the model, in front of the cut
+_SEEN = 1e-3  # of a cut's area: a block that has less is hardly seen in it
 
 # Sun and sky add up to about 1 on a face turned to the sun, so library colors read true there.
 SUN_AZIMUTH = math.radians(112.0)
@@ -42,20 +43,22 @@ TIME_LIMIT = 30.0  # seconds of sampling; a slow machine gets a grainier picture
 FLATTEST = 0.12
 
 
-def set_up(current, points, size, space=None, studio=False):
+def set_up(current, points, size, space=None, studio=False, left=0.0):
     """Gives a scene a camera, light, sky and ground of its own; they are used again the next time. Cameras
     and lights of the user stay.
 
     points: (N, 3) of what is to be seen. size: (width, height) of the picture. space: a 3D viewport that the
     camera is to look as; without one it sees all points. studio: a lamp beside the camera, an even sky and no
-    ground, so that all that faces the eye has its own color.
+    ground, so that all that faces the eye has its own color. left: the part of the picture's width that is
+    kept free where the camera sees all points, for a legend.
     """
     camera = _own(current, "camera", lambda: bpy.data.cameras.new("RealModel Camera"))
     reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
     camera.data.sensor_fit = "HORIZONTAL" if size[0] >= size[1] else "VERTICAL"
     if space is None:
         camera.data.type, camera.data.angle = "PERSP", FIELD_OF_VIEW
-        camera.matrix_world, away = camera_matrix(points, size)
+        camera.data.shift_x = -left / 2 * size[0] / max(size)
+        camera.matrix_world, away = camera_matrix(points, size, left)
     else:
         away = _look_as(camera, space, reach)
     camera.data.clip_start, camera.data.clip_end = away / 1e3, 10.0 * (away + reach)
@@ -85,10 +88,13 @@ def _own(current, kind, data):
 def _look_as(camera, space, reach):
     """Has a camera look as a viewport does; returns how far it is from what the viewport turns around."""
     view, data = space.region_3d, camera.data
+    data.shift_x = 0.0
     is_flat = view.view_perspective == "ORTHO"
     away = view.view_distance + (2.0 * reach if is_flat else 0.0)
     turned = view.view_rotation.to_matrix().to_4x4()
-    camera.matrix_world = Matrix.Translation(view.view_location) @ turned @ Matrix.Translation((0.0, 0.0, away))
+    camera.matrix_world = (
+        Matrix.Translation(view.view_location) @ turned @ Matrix.Translation((0.0, 0.0, away))
+    )
     data.type = "ORTHO" if is_flat else "PERSP"
     data.lens, data.sensor_width, data.sensor_height = space.lens / 2.0, 36.0, 36.0
     data.ortho_scale = view.view_distance * 72.0 / space.lens  # Blender's viewports show 72 mm
@@ -137,7 +143,7 @@ def _ground_mesh(corners):
 def throw_away(current):
     """A scene for one picture: it and all datablocks that are made meanwhile are removed at the end."""
     stores = (bpy.data.objects, bpy.data.meshes, bpy.data.cameras, bpy.data.lights, bpy.data.worlds)
-    stores += (bpy.data.materials, bpy.data.images)
+    stores += (bpy.data.materials, bpy.data.images, bpy.data.collections)
     before = [set(store) for store in stores]
     try:
         yield current
@@ -145,50 +151,39 @@ def throw_away(current):
         bpy.data.scenes.remove(current)
         for store, known in zip(stores, before, strict=True):
             for datablock in [datablock for datablock in store if datablock not in known]:
-                datablock.user_clear()  # Blender counts itself as a user of a render's result
+                if isinstance(datablock, bpy.types.Image):
+                    datablock.user_clear()  # Blender counts itself as a user of a render's result
                 store.remove(datablock)
 
 
-def render_picture(current, model, origin, path, size, samples=SAMPLES, time_limit=TIME_LIMIT):
-    """Renders a scene's model, cut open, to a PNG file.
+def render_picture(current, path, size, samples=SAMPLES, time_limit=TIME_LIMIT):
+    """Renders a scene's model, cut open, to a PNG file; the scene stays as it is.
 
-    model: realmodel.core.Model, whose blocks are in the scene. origin: (3,), which object coordinates lack.
     path: the file, whatever its ending. size: (width, height) in pixels. samples: rays per pixel.
     time_limit: seconds after which no more of them are begun, 0 for no limit. Returns by how much the heights
-    were exaggerated. Raises RuntimeError where there is nothing to see or Blender cannot render or write.
+    were exaggerated. Raises RuntimeError where there is nothing to see or Blender cannot render or write,
+    RealModelError.
     """
-    objects = scene.model_objects(current, "block")
-    if not objects:
+    rows = {(row.rock, row.name): row.object for row in current.realmodel.results if row.object is not None}
+    if not rows:
         raise RuntimeError("there is no block to render: the model is empty")
-    half = _opened(model)
+    origin = project_settings.model_origin(current)
+    half = _opened(shown_models.at_stage(current, settings.last_stage(current)))
     shapes = block_shapes.by_name(half, polygon_mesh.of_blocks(half, origin))
-    low, high = block_shapes.bounds([shape.coordinates for shape in shapes.values()])
-    factor = exaggeration_of(high - low)
-    stretched = np.array([1.0, 1.0, factor])
+    coordinates = np.concatenate([shape.coordinates for shape in shapes.values()])
+    factor = exaggeration_of(np.ptp(coordinates, axis=0))
+    if current.realmodel.view.exaggeration != 1.0:
+        factor = exaggeration.factor(current)
     with throw_away(bpy.data.scenes.new("RealModel picture")) as stage:
-        colors = {}
-        for item in objects:
-            shape = shapes.get((item[scene.ROCK], item[scene.BLOCK]))
-            if shape is None:
-                continue
-            mesh, material = meshes.new_mesh(item.name, shape), item.data.materials[0]
-            mesh.materials.append(material)
-            made = bpy.data.objects.new(item.name, mesh)
+        for key, shape in shapes.items():
+            made = bpy.data.objects.new(key[1], meshes.new_mesh(key[1], shape))
+            made.data.materials.append(rows[key].data.materials[0])
             made.scale.z = factor
             stage.collection.objects.link(made)
-            colors[material.name] = tuple(materials.srgb(channel) for channel in material.diffuse_color[:3])
-        corners = np.concatenate([shape.coordinates for shape in shapes.values()])
-        set_up(stage, corners * stretched, size)
-        key = ColorKey("Property", list(reversed(colors.items())))
-        placed = np.diag([*stretched, 1.0])
-        placed[:3, 3] = -stretched * origin
+        set_up(stage, coordinates * (1.0, 1.0, factor), size, left=legend_share(current, size))
         set_renderer(stage, path, size, samples, time_limit)
-
-        def overlay(_scene, projection, view, *_):
-            wanted = current.realmodel.view if hasattr(current, "realmodel") else None
-            return draw(key, placed, low + origin, high + origin, projection, view)
-
-        rendered.put(stage, draw=overlay)
+        stretched = np.diag([1.0, 1.0, factor, 1.0])
+        rendered.put(stage, lambda _, *eye: drawing_for(current, *eye, stretched=stretched))
         bpy.ops.render.render(write_still=True, scene=stage.name)
     return factor
 
@@ -204,8 +199,8 @@ def exaggeration_of(extent):
 
 
 def _opened(model):
-    """The model without what is before an upright plane: of some planes the one that takes no block away
-    and meets the most."""
+    """The model without what is before an upright plane: of some planes the one that takes the fewest blocks
+    away, meets the most, and of these the smallest in the largest area."""
     ahead = np.array(towards(OPEN_AZIMUTH, 0.0))
     reach = model.vertices @ ahead
     nearest = np.full(len(model.blocks) + 1, np.inf)
@@ -215,23 +210,26 @@ def _opened(model):
     found = []
     for share in _OPENED:
         offset = reach.max() - share * np.ptp(reach)
-        met = np.unique(model.section(offset * ahead, ahead).block)
-        found.append((np.count_nonzero(nearest[:-1] < offset), len(met), offset))
-    best = max(found, key=lambda entry: entry[:2])  # the first of those that are as good
-    return model.cut_by_plane(best[2] * ahead, ahead).below
+        areas = model.section(offset * ahead, ahead).area_by_block()
+        met = areas[areas > _SEEN * areas.sum()]
+        found.append((np.count_nonzero(nearest[:-1] < offset), len(met), met.min(initial=np.inf), offset))
+    return model.cut_by_plane(max(found)[-1] * ahead, ahead).below
 
 
-def camera_matrix(points, size):
+def camera_matrix(points, size, left=0.0):
     """World matrix of a camera that has all points centred in its frame, and its distance.
 
-    points: (N, 3) float64. size: (width, height) in pixels. The place follows from the four planes
+    points: (N, 3) float64. size: (width, height) in pixels. left: the part of
+    the width that is kept free. The place follows from the four planes
     of the frame: in camera axes, z towards the camera, a point is inside where
     |x - cx| <= tx (d - z) and |y - cy| <= ty (d - z).
     """
     rotation = view_rotation()
     axes = np.array(rotation).T
     local = points @ axes.T
-    tangents = np.array(size, float) / max(size) * math.tan(FIELD_OF_VIEW / 2.0) / MARGIN
+    tangents = (
+        np.array([size[0] * (1.0 - left), size[1]]) / max(size) * math.tan(FIELD_OF_VIEW / 2.0) / MARGIN
+    )
     distance, centre = 0.0, []
     for axis, tangent in enumerate(tangents):
         high = (local[:, axis] + tangent * local[:, 2]).max()
@@ -243,7 +241,7 @@ def camera_matrix(points, size):
 
 
 def set_renderer(scene, path, size, samples, time_limit):
-    """Has a scene render a PNG by what renderer this Blender has, in the colours as they are."""
+    """Has a scene render a PNG of a size in pixels."""
     render = scene.render
     render.resolution_x, render.resolution_y = size
     render.resolution_percentage = 100
@@ -251,6 +249,12 @@ def set_renderer(scene, path, size, samples, time_limit):
     render.use_file_extension = False
     render.image_settings.file_format = "PNG"
     render.image_settings.color_mode = "RGB"
+    choose_renderer(scene, samples, time_limit)
+
+
+def choose_renderer(scene, samples, time_limit):
+    """Has a scene render by what renderer this Blender has, in the colors as they are."""
+    render = scene.render
     versions.plain_colours(scene)
     if not versions.cycles_available(scene):
         # Workbench knows the materials' viewport colours; light and shadow are plainer.

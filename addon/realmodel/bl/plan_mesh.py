@@ -14,7 +14,7 @@ import numpy as np
 from ..core import InputRefused
 from ..core.mesh_sizes import AUTO
 from ..core.project import rock_item
-from . import live, settings, shapes, stored_arrays
+from . import settings, shapes, stored_arrays
 
 KINDS = (
     ("LENGTH", "Edge Length", "A length for all edges"),
@@ -65,8 +65,6 @@ def _instead_of_length(row):
 
 def _keep(row, **given):
     row.mesh_options = json.dumps(given) if given else ""
-    if not settings.is_filling():
-        live.touch(row.id_data)
 
 
 def compose(rock, row, depsgraph, origin):

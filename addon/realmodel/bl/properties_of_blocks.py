@@ -19,7 +19,6 @@ def assign(current, rows, property_id):
 def follow_surfaces(current):
     """The blocks take the properties that their surfaces have now."""
     wanted = {(r.name, s.name): s.property_id for r, s in settings.surface_rows(current)}
-    palette = {}
     for row in current.realmodel.results:
         property_id = wanted.get((row.rock, row.surface), row.property_id)
         if property_id == row.property_id:
@@ -27,20 +26,11 @@ def follow_surfaces(current):
         row.property_id = property_id
         if row.object is not None:
             row.object[scene.PROPERTY] = property_id
-            _give_material(row.object, _material(current, property_id, palette))
+            _give_material(row.object, library_rows.material_of(current, property_id))
     for _, surface in settings.surface_rows(current):
         if surface.interface is not None and surface.interface.library is None:
             surface.interface[scene.PROPERTY] = surface.property_id
     display.colours_changed(current)
-
-
-def _material(current, property_id, palette):
-    """The material of a property, one for all blocks that have it."""
-    if property_id not in palette:
-        known = library_rows.scene_materials(current, property_id)
-        name, colour = materials.name_and_colour(library_rows.library_of(current), property_id)
-        palette[property_id] = known[0] if known else materials.new_material(name, property_id, colour)
-    return palette[property_id]
 
 
 def _give_material(item, material):

@@ -77,14 +77,11 @@ def _choice(row, key):
 
 
 def _set(row, key, value):
-    from . import changes
-
     given = options(row)
     given.pop(key, None)
     if value not in ("", [], {}):
         given[key] = value
     row.reading = json.dumps(given) if given else ""
-    changes.reading(row)
 
 
 def _list_text(values):

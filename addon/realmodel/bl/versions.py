@@ -173,6 +173,15 @@ def text_size(font, size):
         blf.size(font, size, 72)
 
 
+def depsgraph(scene):
+    """The dependency graph of a scene's first view layer; one that was never shown has none before an
+    update."""
+    layer = scene.view_layers[0]
+    if layer.depsgraph is None:
+        layer.update()
+    return layer.depsgraph
+
+
 def let_through(material):
     """Has Eevee draw what is transparent of a material so; Cycles always does."""
     if hasattr(material, "surface_render_method"):  # from 4.2 on

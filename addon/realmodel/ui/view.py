@@ -138,7 +138,9 @@ class REALMODEL_PT_view_camera(TabPanel, bpy.types.Panel):
         row.operator("realmodel.view_previous", text="", icon="LOOP_BACK")
         row.operator("realmodel.view_next", text="", icon="LOOP_FORWARDS")
         row.operator("realmodel.view_all", text="Frame", icon="ZOOM_ALL")
-        layout.operator("realmodel.capture", text="Capture...", icon="RENDER_STILL")
+        layout.operator("realmodel.capture", text="Capture...", icon="RESTRICT_RENDER_OFF")
+        layout.operator("realmodel.set_up_picture", icon="CAMERA_DATA")
+        layout.operator("realmodel.render_picture", icon="RENDER_STILL")
 
 
 class REALMODEL_PT_view_coordinates(_OfABuiltModel, TabPanel, bpy.types.Panel):

@@ -23,10 +23,10 @@ def _listed(current, kind):
     return [] if collection is None else [item for item in collection.objects if item.get(KIND) == kind]
 
 
-def put(current, kind, shapes):
+def put(current, kind, shapes, material=None):
     """Makes the bodies of a kind, in place of those that are there.
 
-    shapes: for each block that has one (block object, PolygonMesh).
+    shapes: for each block that has one (block object, PolygonMesh). material: where it is not the block's.
     """
     known = of_kind(current, kind)
     wanted = {block for block, _ in shapes}
@@ -38,7 +38,10 @@ def put(current, kind, shapes):
             replacing.give_shape(item, shape)
         else:
             item = _new(collection, kind, block, meshes.new_mesh(f"{block.name} {kind}", shape))
-        _take_material(item, block)
+        if material is None:
+            _take_material(item, block)
+        elif not len(item.data.materials):
+            item.data.materials.append(material)
 
 
 def _new(collection, kind, block, mesh):

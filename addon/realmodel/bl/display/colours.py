@@ -172,6 +172,11 @@ def _material(name, colour):
     return material
 
 
+def dark():
+    """The material of edges."""
+    return _material("Edges", "#050505")
+
+
 def _of_property(scene, property_id):
     known = library_rows.scene_materials(scene, property_id)
     if known:

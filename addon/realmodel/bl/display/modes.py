@@ -59,6 +59,16 @@ def shown_kinds(mode, subject):
     return mode != "SURFACES", mode == "SURFACES"
 
 
+def shows_something(scene):
+    """Whether anything of the model is in sight."""
+    blocks, interfaces = shown_kinds(scene.realmodel.display, scene.realmodel.view.subject)
+    rows = [row for row in scene.realmodel.results if stages.present(row) and not is_hidden(scene, row)]
+    surfaces = [
+        surface for _, surface in settings.surface_rows(scene) if not surface.hide and surface.interface
+    ]
+    return bool((blocks and rows) or (interfaces and surfaces))
+
+
 def drawn(scene, mode=None):
     """The objects whose points or lines are drawn, in the modes that Blender does not draw itself. mode:
     where it is not the one of the settings."""

@@ -7,7 +7,7 @@ import pickle
 
 import numpy as np
 
-from ...core.drawing.overlay import Eye, Shown, draw_overlay
+from ...core.drawing.overlay import Eye, Shown, draw_overlay, legend_extent
 from .. import exaggeration, project_settings
 from ..display import colours, explosion
 
@@ -16,11 +16,12 @@ _MOST_KEPT = 8
 _drawings = {}  # by what they are made of: a viewport is drawn again and again
 
 
-def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0)):
+def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0), stretched=None):
     """The Drawing of what a scene's settings ask for, or None where that is nothing.
 
     projection: (4, 4), from the camera's axes to the picture. view: (4, 4), from the world to these axes.
-    size: of the picture in points. margins: at the left and right what else covers it, in points.
+    size: of the picture in points. margins: at the left and right what else covers it, in points. stretched:
+    (4, 4), by what the vertical is exaggerated, where it is not as in the scene.
     """
     group = scene.realmodel
     view_settings = group.view
@@ -47,10 +48,11 @@ def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0
         tuple(size),
     )
     origin = project_settings.model_origin(scene)
-    placed = exaggeration.matrix(scene)
+    placed = np.array(exaggeration.matrix(scene) if stretched is None else stretched)
+    factor = float(placed[2, 2])
     placed[:3, 3] -= placed[:3, :3] @ origin
     low, high = explosion.bounds(scene)
-    shown = Shown(low + origin, high + origin, placed, group.units, exaggeration.factor(scene))
+    shown = Shown(low + origin, high + origin, placed, group.units, factor)
     given = (eye, shown, key, *wanted, margins)
     name = pickle.dumps(given)
     if name not in _drawings:
@@ -58,3 +60,9 @@ def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0
             del _drawings[next(iter(_drawings))]
         _drawings[name] = draw_overlay(*given)
     return _drawings[name]
+
+
+def legend_share(scene, size):
+    """The part of a picture's width, of a size in pixels, that the legend of a scene takes at the left."""
+    key = colours.key(scene) if len(scene.realmodel.results) and scene.realmodel.view.show_legend else None
+    return 0.0 if key is None else min(0.4, 1.1 * legend_extent(key)[0] / WIDTH * max(size) / size[0])

@@ -5,33 +5,30 @@ import bpy
 import numpy as np
 
 from ...core.drawing.raster import rasterize
-from .. import meshes, versions
+from .. import exaggeration, meshes, versions
 from . import WIDTH, drawing_for
 
 KEY = "realmodel_overlay"  # on the plane and the image
 _CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-_NEAR = 0.02  # of the way from the camera to what it is for
+_NEAR = 0.01  # of the way from the camera to the zero of the scene
 
 
-def put(scene, away=None, draw=drawing_for):
-    """Puts the overlay of a scene before its camera, in place of the one that is there.
-
-    away: how far the camera is from the model; where that is not known, from the zero of the scene. draw: as
-    `drawing_for`.
-    """
+def put(scene, draw=drawing_for, depsgraph=None):
+    """Puts the overlay of a scene before its camera, in place of the one that is there. draw: as
+    `drawing_for`. depsgraph: the evaluated one, where the camera may be animated."""
     camera, size = scene.camera, _pixels(scene)
     if camera is None or camera.type != "CAMERA" or camera.data.type == "PANO":
         return
-    layer = scene.view_layers[0]
-    layer.update()
+    matrix = exaggeration.world_matrix(camera)
+    if depsgraph is not None:
+        matrix = camera.evaluated_get(depsgraph).matrix_world
+    depsgraph = depsgraph or versions.depsgraph(scene)
     projection = np.array(
-        camera.calc_matrix_camera(layer.depsgraph, x=size[0], y=size[1], scale_x=1.0, scale_y=1.0), np.float64
+        camera.calc_matrix_camera(depsgraph, x=size[0], y=size[1], scale_x=1.0, scale_y=1.0), np.float64
     )
     scale = max(size) / WIDTH
-    view = np.linalg.inv(np.array(camera.matrix_world.normalized(), np.float64))
-    found = draw(
-        scene, projection, view, camera.data.type == "PERSP", (size[0] / scale, size[1] / scale)
-    )
+    view = np.linalg.inv(np.array(matrix.normalized(), np.float64))
+    found = draw(scene, projection, view, camera.data.type == "PERSP", (size[0] / scale, size[1] / scale))
     if found is None:
         remove(scene)
         return
@@ -43,8 +40,7 @@ def put(scene, away=None, draw=drawing_for):
     image.pixels.foreach_set(np.ascontiguousarray(pixels).ravel())
     image.update()
     item.parent = camera
-    away = float(np.linalg.norm(view[:3, 3])) if away is None else away
-    depth = max(1.01 * camera.data.clip_start, _NEAR * away)
+    depth = max(1.01 * camera.data.clip_start, _NEAR * float(np.linalg.norm(view[:3, 3])))
     item.data.vertices.foreach_set("co", _at_depth(projection, depth).astype(np.float32).ravel())
     item.data.update()
 
@@ -92,7 +88,9 @@ def _material(image):
     output = next(node for node in nodes if node.type == "OUTPUT_MATERIAL")
     picture = nodes.new("ShaderNodeTexImage")
     picture.name, picture.image, picture.interpolation, picture.extension = KEY, image, "Linear", "EXTEND"
-    clear, color, mix = (nodes.new(f"ShaderNode{kind}") for kind in ("BsdfTransparent", "Emission", "MixShader"))
+    clear, color, mix = (
+        nodes.new(f"ShaderNode{kind}") for kind in ("BsdfTransparent", "Emission", "MixShader")
+    )
     links.new(picture.outputs["Color"], color.inputs["Color"])
     links.new(picture.outputs["Alpha"], mix.inputs[0])
     links.new(clear.outputs[0], mix.inputs[1])

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from .glyphs import text_width
 
 SIZE = 9.0  # of texts, points
 _MARGIN = 12.0
+_PAD = 0.8 * SIZE
 _PAPER = (1.0, 1.0, 1.0, 0.9)
 _BAR = (12.0, 110.0)  # width, height of a color bar
 _LEAST_AXIS = 40.0  # points: an axis that looks shorter has no ticks
@@ -107,29 +108,32 @@ def _paper(drawing: Drawing, x: float, y: float, width: float, height: float) ->
     drawing.rectangle(x, y, width, height, _PAPER, (0.0, 0.0, 0.0, 0.25), 0.6)
 
 
-def _legend(drawing: Drawing, key: ColorKey, left: float) -> float:
-    """In the lower left corner; returns where it ends at the right. Entries for which there is no room are
-    counted in the last line."""
-    entries, pad = list(key.entries), 0.8 * SIZE
-    most = max(int((drawing.height - 2 * _MARGIN - 4 * SIZE) / (1.5 * SIZE)), 1)
-    if len(entries) > most:
-        entries = [*entries[: most - 1], (f"and {len(entries) - most + 1} more", _PAPER)]
-    title = text_width(key.title, SIZE)
+def legend_extent(key: ColorKey) -> tuple[float, float]:
+    """Width and height of a legend's paper in points."""
     if key.colors is None:
-        width, height = legend_size(entries, SIZE)
+        width, height = legend_size(key.entries, SIZE)
     else:
         values = tick_texts(ticks(*key.limits, max(3, int(_BAR[1] / (2.5 * SIZE)))))
         width, height = _BAR[0] + 6 + max(text_width(text, SIZE) for text in values), _BAR[1] + 0.5 * SIZE
-    width, height = max(width, title) + 2 * pad, height + 1.8 * SIZE + 2 * pad
+    return max(width, text_width(key.title, SIZE)) + 2 * _PAD, height + 1.8 * SIZE + 2 * _PAD
+
+
+def _legend(drawing: Drawing, key: ColorKey, left: float) -> float:
+    """In the lower left corner; returns where it ends at the right. Entries for which there is no room are
+    counted in the last line."""
+    most = max(int((drawing.height - 2 * _MARGIN - 4 * SIZE) / (1.5 * SIZE)), 1)
+    if len(key.entries) > most:
+        more = (f"and {len(key.entries) - most + 1} more", _PAPER)
+        key = replace(key, entries=[*key.entries[: most - 1], more])
+    width, height = legend_extent(key)
     _paper(drawing, left, _MARGIN, width, height)
-    ends = left + width + _MARGIN
-    left, top = left + pad, _MARGIN + height - pad
-    drawing.text(left, top - SIZE, key.title, SIZE)
+    inner, top = left + _PAD, _MARGIN + height - _PAD
+    drawing.text(inner, top - SIZE, key.title, SIZE)
     if key.colors is None:
-        legend(drawing, left, top - 1.8 * SIZE, entries, SIZE)
+        legend(drawing, inner, top - 1.8 * SIZE, key.entries, SIZE)
     else:
-        color_bar(drawing, (left, _MARGIN + pad + 0.4 * SIZE, *_BAR), key.limits, key.colors, size=SIZE)
-    return ends
+        color_bar(drawing, (inner, _MARGIN + _PAD + 0.4 * SIZE, *_BAR), key.limits, key.colors, size=SIZE)
+    return left + width + _MARGIN
 
 
 def _scale_bar(drawing: Drawing, eye: Eye, shown: Shown, left: float, right: float) -> None:
