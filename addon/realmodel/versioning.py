@@ -5,13 +5,15 @@ Version 0 is a scene that build_model.py wrote: it had a stored project and the 
 tests/data/versions has a file of each version.
 """
 
-from .bl import built_scene, method_settings, plan_mesh, settings, stored_project, units
+import json
+
+from .bl import built_scene, method_settings, plan_mesh, reading_text, settings, stored_project, units
 from .bl import scene as model_tree
 from .core import build
 
 
 def _from_0(scene):
-    """The model is built again, in the place of the objects of batch."""
+    """The model is built again, in the place of the objects of batch; its settings are of today."""
     model = build(stored_project.unpack(scene[stored_project.KEY]))
     model_tree.remove_tree(scene)
     built_scene.write_model(scene, model)
@@ -34,7 +36,20 @@ def _from_2(scene):
             entry.known_id = entry.id
 
 
-_STEPS = (_from_0, _from_1, _from_2)  # step n makes version n + 1 of version n
+def _from_3(scene):
+    """How files are read, and how large triangles are, stood in texts."""
+    with settings.filling():
+        for rock in scene.realmodel.rocks:
+            given = json.loads(rock.mesh_options) if rock.mesh_options and not rock.edge_length > 0.0 else {}
+            length = settings.number(rock, "edge_length") or None
+            plan_mesh.set_edges(rock, given.get("edge_length", length), given.get("triangles"))
+            rock.mesh_options = ""
+            for surface in rock.surfaces:
+                reading_text.fill(surface, json.loads(surface.reading) if surface.reading else {})
+                surface.reading = ""
+
+
+_STEPS = (_from_0, _from_1, _from_2, _from_3)  # step n makes version n + 1 of version n
 
 
 def needs_migration(scene):
@@ -49,8 +64,8 @@ def migrate(scene):
     they stay as they were."""
     if not needs_migration(scene) or scene.library is not None:
         return
-    version = scene.realmodel.version if scene.realmodel.exists else 0
-    for step in _STEPS[version:]:
+    steps = _STEPS[scene.realmodel.version :] if scene.realmodel.exists else _STEPS[:1]
+    for step in steps:
         step(scene)
     scene.realmodel.version = settings.VERSION
     scene.pop(stored_project.KEY, None)

@@ -29,6 +29,7 @@ from . import (
     surface_figures,
     uncertainty,
 )
+from .display import visible
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin, offsets_from
 
@@ -338,7 +339,7 @@ def _place_blocks(current, prepared, tree, blocks, palette):
                 meshes.refill(item.data, shape)
         elif item.data != mesh:
             _change_mesh(item, mesh)
-        _give_material(item, palette[int(block.property)])
+        materials.give(item, palette[int(block.property)])
         rock_name = model.project.rocks[block.rock].name
         item[scene.TAG] = "block"
         item[scene.ROCK] = rock_name
@@ -349,15 +350,6 @@ def _place_blocks(current, prepared, tree, blocks, palette):
         kept.append(item)
     scene.remove_objects([item for item in before if item is not None and item not in kept])
     fill_results(current, model, kept)
-
-
-def _give_material(item, material):
-    """The property's material, unless the user has given the block another."""
-    slots = item.data.materials
-    if not len(slots):
-        slots.append(material)
-    elif slots[0] is None or materials.KEY in slots[0]:
-        slots[0] = material
 
 
 def _change_mesh(item, mesh):
@@ -464,7 +456,7 @@ def _release(current, item):
             collection.objects.unlink(item)
     if current not in item.users_scene:
         current.collection.objects.link(item)
-    display.show(current, item, True)
+    visible.show(current, item, True)
 
 
 def remove_rock(current, row):

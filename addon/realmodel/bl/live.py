@@ -119,11 +119,9 @@ def _begin(name, _changed_at):
     scene = bpy.data.scenes.get(name)
     if scene is None or not scene.realmodel.live:
         return None
-    layer = next((w.view_layer for w in bpy.context.window_manager.windows if w.scene == scene), None)
-    layer = layer or scene.view_layers[0]
     try:
         with _our_own(scene):
-            layer.update()
+            layer = viewports.updated_layer(scene)
             built_scene.check_modes(scene)
             job = build_job.BuildJob(scene, layer.depsgraph, "blocks", whole=False)
     except Exception as error:

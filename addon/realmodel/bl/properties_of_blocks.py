@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Another property for blocks that are there: no build is needed for it, only other materials."""
 
-import bpy
-
 from . import display, library_rows, materials, scene, settings
 
 
@@ -26,21 +24,9 @@ def follow_surfaces(current):
         row.property_id = property_id
         if row.object is not None:
             row.object[scene.PROPERTY] = property_id
-            _give_material(row.object, library_rows.material_of(current, property_id))
+            materials.give(row.object, library_rows.material_of(current, property_id))
     for _, surface in settings.surface_rows(current):
         if surface.interface is not None and surface.interface.library is None:
             surface.interface[scene.PROPERTY] = surface.property_id
     display.colours_changed(current)
-
-
-def _give_material(item, material):
-    """Puts a material in the place of the block's own one; one that nothing uses any more goes."""
-    slots = item.data.materials
-    if not len(slots):
-        slots.append(material)
-        return
-    old = slots[0]
-    if old is None or materials.KEY in old:
-        slots[0] = material
-        if old is not None and not old.users:
-            bpy.data.materials.remove(old)
+    scene.remove_unused_materials()

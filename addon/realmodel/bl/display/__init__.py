@@ -41,30 +41,6 @@ from . import (
     shown_models,
     stages,
 )
-from .visible import show
-
-__all__ = [
-    "built",
-    "changed",
-    "cleared",
-    "colours_changed",
-    "exaggeration_changed",
-    "explode_changed",
-    "frame_changed",
-    "let_go",
-    "mode_changed",
-    "opened",
-    "register",
-    "render_begins",
-    "render_ends",
-    "section_changed",
-    "show",
-    "show_all",
-    "stage_changed",
-    "stop",
-    "undone",
-    "unregister",
-]
 
 _ANIMATED = ("stage", "explode", "explode_direction", "display", "color_by")
 

@@ -101,7 +101,7 @@ def known_half(current, state, cells=None):
 def cut_now(current, stage=None, matrix=None):
     """Makes the cut in this thread. Raises RealModelError; then the earlier one stays."""
     if matrix is None:
-        _layer(current).update()  # the plane's matrix may be of before it was moved
+        viewports.updated_layer(current)  # the plane's matrix may be of before it was moved
     state = _state(current, current.realmodel.stage if stage is None else stage, matrix)
     job = _begun(current, state)
     _take(current, job.result())
@@ -129,11 +129,6 @@ def refresh(current, stage=None):
         cut_now(current, stage)
     else:
         touch(current)
-
-
-def _layer(current):
-    windows = bpy.context.window_manager.windows
-    return next((w.view_layer for w in windows if w.scene == current), current.view_layers[0])
 
 
 def _wanted_cells(current):
@@ -188,7 +183,7 @@ def _begin(name, _changed_at):
     if current is None or not is_on(current):
         return None
     try:
-        _layer(current).update()
+        viewports.updated_layer(current)
         state = _state(current, current.realmodel.stage)
         if state != current.realmodel.view.cut:
             return _begun(current, state)

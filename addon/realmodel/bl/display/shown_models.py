@@ -7,7 +7,7 @@ only the blocks that differ go to Blender.
 
 from ...core import build, polygon_mesh
 from ...core.assembly import build_stage
-from .. import block_shapes, built_models, caches, project_settings, settings
+from .. import block_shapes, built_models, caches, project_settings, settings, viewports
 from ..threads import threads
 
 _MOST_CORNERS = 20_000_000  # of the faces of all stages that are kept: about 0.6 GB with their shapes
@@ -115,9 +115,8 @@ def remember_stage(scene, stage, model, shapes):
 
 
 def _composed(scene):
-    layer = scene.view_layers[0]
-    layer.update()
-    return project_settings.compose(scene, layer.depsgraph, whole=False).project
+    depsgraph = viewports.updated_layer(scene).depsgraph
+    return project_settings.compose(scene, depsgraph, whole=False).project
 
 
 def _make_room():
