@@ -56,6 +56,26 @@ class RealModelView(bpy.types.PropertyGroup):
         options=set(),
         update=changes.exaggeration,
     )
+    surfaces: EnumProperty(
+        name="Surfaces",
+        description="Which part of the surfaces is displayed",
+        items=(
+            ("INTERPOLATED", "As Interpolated", "The whole surfaces, including what was eroded"),
+            ("SURVIVING", "As They Survive", "What erosion has left of the surfaces"),
+        ),
+        options=set(),
+        update=changes.view,
+    )
+    surviving_of: StringProperty(
+        options={"HIDDEN"}
+    )  # JSON of what the bodies of kind "surviving" are made of
+    show_residuals: BoolProperty(
+        name="Residuals",
+        description="Show the points of the surfaces, colored by point minus surface",
+        options=set(),
+        update=changes.residuals,
+    )
+    residuals: StringProperty(options={"HIDDEN"})  # JSON: what the residuals of each surface are
     show_legend: BoolProperty(
         name="Legend",
         description="Show what the colors mean, in the viewport and in pictures",

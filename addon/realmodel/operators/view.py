@@ -6,10 +6,19 @@ from bpy.props import EnumProperty, IntProperty, StringProperty
 from bpy_extras import view3d_utils
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import display, overlay, picture, project_settings, units
-from ..bl.display import capture, coordinates, modes, viewpoints
+from ..bl import display, overlay, picture, project_settings, settings, units
+from ..bl.display import capture, coordinates, modes, viewpoints, visible
 from ..core import InputRefused, UsageError
-from .reporting import Reporting, a_model, a_viewport, needed_path, place_property
+from .reporting import (
+    Reporting,
+    a_model,
+    a_surface,
+    a_viewport,
+    an_edit,
+    an_interface,
+    needed_path,
+    place_property,
+)
 
 _LOOKING = {
     "FRONT": ("Front", "From the south"),
@@ -164,6 +173,40 @@ class REALMODEL_OT_render_picture(Reporting, bpy.types.Operator):
             bpy.ops.realmodel.set_up_picture()
         how = "EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT"  # with a window it stays alive
         bpy.ops.render.render(how)
+
+
+class REALMODEL_OT_edit_surface(Reporting, bpy.types.Operator):
+    """Edit the interface of the active surface: show the blocks with it and enter Edit Mode"""
+
+    bl_idname = "realmodel.edit_surface"
+    bl_label = "Edit Surface"
+    needs = (a_surface, an_interface)
+
+    def act(self, context):
+        item = settings.active_surface(context.scene).interface
+        if context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        context.scene.realmodel.display = "BLOCKS"
+        visible.show(context.scene, item, True)
+        for other in context.selected_objects:
+            other.select_set(False)
+        item.select_set(True)
+        context.view_layer.objects.active = item
+        bpy.ops.object.mode_set(mode="EDIT")
+        display.mode_changed(context.scene)
+
+
+class REALMODEL_OT_edit_done(Reporting, bpy.types.Operator):
+    """Leave Edit Mode and show the surfaces again"""
+
+    bl_idname = "realmodel.edit_done"
+    bl_label = "Done"
+    needs = (an_edit,)
+
+    def act(self, context):
+        bpy.ops.object.mode_set(mode="OBJECT")
+        display.mode_changed(context.scene)
+        context.scene.realmodel.display = "SURFACES"
 
 
 class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
@@ -332,6 +375,8 @@ CLASSES = (
     REALMODEL_OT_view_next,
     REALMODEL_OT_view_all,
     REALMODEL_OT_capture,
+    REALMODEL_OT_edit_surface,
+    REALMODEL_OT_edit_done,
     REALMODEL_OT_set_up_picture,
     REALMODEL_OT_render_picture,
     REALMODEL_OT_hide_property,

@@ -37,6 +37,7 @@ from . import (
     preparing,
     render_marks,
     replacing,
+    residuals,
     shades,
     shown_models,
     stages,
@@ -111,6 +112,18 @@ def exaggeration_changed(scene):
     exaggeration.apply(scene, [*items, cuts.plane_of(scene)], explosion.bounds(scene)[0][2])
 
 
+def residuals_changed(scene):
+    """The residuals of points are wanted, or not; or there is another model."""
+    try:
+        if scene.realmodel.view.show_residuals and len(scene.realmodel.results):
+            residuals.show(scene)
+        else:
+            residuals.hide(scene)
+    except RealModelError as error:
+        scene.realmodel.view.message = str(error)
+    exaggeration_changed(scene)
+
+
 def colours_changed(scene):
     """Another rule of colouring, or another colour in the library."""
     _show(scene, color_by=scene.realmodel.color_by)
@@ -144,7 +157,9 @@ def built(scene, bounds, stage=None):
         shown_models.remember_stage(scene, *stage)
     explosion.set_bounds(scene, *bounds)
     group = scene.realmodel
-    group.view.cells_of = ""
+    group.view.cells_of = group.view.surviving_of = ""
+    if group.view.show_residuals:
+        residuals_changed(scene)
     whole = group.stage >= settings.last_stage(scene)
     _show(scene, whole, **{key: getattr(group, key) for key in _ANIMATED})
 
@@ -157,7 +172,10 @@ def let_go(item):
 def cleared(scene):
     """The blocks are gone."""
     forget_meshes()
-    bodies.remove(scene, bodies.CELLS)
+    for kind in (bodies.CELLS, bodies.SURVIVING):
+        bodies.remove(scene, kind)
+    scene.realmodel.view.surviving_of = ""
+    residuals.hide(scene)
     cuts.take_off(scene)
     colours.forget(scene)
     modes.without_blocks(scene)

@@ -4,12 +4,15 @@ stand beside the model, in the collection "<project> view", each a child of the 
 go where that goes."""
 
 import bpy
+import numpy as np
+from mathutils import Matrix
 
-from .. import meshes, scene
+from .. import exaggeration, meshes, scene
 from . import replacing
 
 KIND = "realmodel_view"  # on an object: what it is for
-CUT, CELLS, MARKS, PLANE, SECTION, SURVIVING = "cut", "cells", "marks", "plane", "section", "surviving"
+CUT, CELLS, MARKS, PLANE, SECTION = "cut", "cells", "marks", "plane", "section"
+SURVIVING, RESIDUALS = "surviving", "residuals"
 
 
 def of_kind(current, kind):
@@ -38,6 +41,8 @@ def put(current, kind, shapes, material=None):
             replacing.give_shape(item, shape)
         else:
             item = _new(collection, kind, block, meshes.new_mesh(f"{block.name} {kind}", shape))
+        if kind == SURVIVING:  # its mesh is in the coordinates of the model, not in those of the interface
+            item.matrix_parent_inverse = Matrix(np.linalg.inv(exaggeration.true_matrix(block)))
         if material is None:
             _take_material(item, block)
         elif not len(item.data.materials):
@@ -67,7 +72,7 @@ def _take_material(item, block):
 
 def follow_materials(current):
     """The bodies take the materials that their blocks have now."""
-    for kind in (CUT, CELLS):
+    for kind in (CUT, CELLS, SURVIVING):
         for block, item in of_kind(current, kind).items():
             _take_material(item, block)
 

@@ -29,7 +29,7 @@ def apply(scene):
     common = shades.material() if by in shades.TITLES else None
     for row in scene.realmodel.results:
         if _can_take(row.object):
-            plain = None if by == "PROPERTY" or common else _material(*_entry(scene, by, row, places))
+            plain = None if by == "PROPERTY" or common else plain_material(*_entry(scene, by, row, places))
             _put_into_slot(row.object, common or plain)
     blocks = {(row.rock, row.surface): row for row in scene.realmodel.results}
     for rock, surface in settings.surface_rows(scene):
@@ -43,7 +43,7 @@ def apply(scene):
         elif by == "PROPERTY" or row is None:
             material = _of_property(scene, surface.property_id)
         else:
-            material = _material(*_entry(scene, by, row, places))
+            material = plain_material(*_entry(scene, by, row, places))
         if not len(item.data.materials):
             item.data.materials.append(None)
         _put_into_slot(item, material)
@@ -160,7 +160,7 @@ def _hue(number):
     return library_rows.hex_colour(colorsys.hsv_to_rgb((0.06 + number * _GOLDEN) % 1.0, 0.65, brightness))
 
 
-def _material(name, colour):
+def plain_material(name, colour):
     """The material of a name and colour that another scene or block may have already."""
     stands_for = f"{name} {colour}"
     for material in bpy.data.materials:
@@ -174,14 +174,14 @@ def _material(name, colour):
 
 def dark():
     """The material of edges."""
-    return _material("Edges", "#050505")
+    return plain_material("Edges", "#050505")
 
 
 def _of_property(scene, property_id):
     known = library_rows.scene_materials(scene, property_id)
     if known:
         return known[0]
-    return _material(*materials.name_and_colour(library_rows.library_of(scene), property_id))
+    return plain_material(*materials.name_and_colour(library_rows.library_of(scene), property_id))
 
 
 def _put_into_slot(item, material):

@@ -33,7 +33,7 @@ def apply(scene, by):
     limits = (0.0 if by in _FROM_ZERO else low, high)
     scene.realmodel.view.shade_limits = limits
     for item, values in found:
-        _write(item.data, layer_values.colors(values, limits))
+        write(item.data, layer_values.colors(values, limits))
 
 
 def limits(scene):
@@ -119,7 +119,8 @@ def _value_of(scene, by):
     return value
 
 
-def _write(mesh, colors):
+def write(mesh, colors):
+    """Gives the vertices of a mesh colors, (V, 4) sRGB."""
     if not len(colors):
         return
     attribute = mesh.color_attributes.get(ATTRIBUTE)

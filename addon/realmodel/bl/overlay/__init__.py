@@ -9,7 +9,7 @@ import numpy as np
 
 from ...core.drawing.overlay import Eye, Shown, draw_overlay, legend_extent
 from .. import exaggeration, project_settings
-from ..display import colours, explosion
+from ..display import colours, explosion, residuals
 
 WIDTH = 900.0  # points across the longer side of a picture
 _MOST_KEPT = 8
@@ -27,13 +27,13 @@ def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0
     view_settings = group.view
     if not len(group.results):
         return None
-    key = colours.key(scene) if view_settings.show_legend else None
+    keys = _keys(scene)
     wanted = (
         view_settings.show_north,
         view_settings.show_scale,
         view_settings.show_axes and not group.explode,
     )
-    if key is None and not any(wanted):
+    if not keys and not any(wanted):
         return None
     if not any(wanted):
         view = projection = np.eye(4)  # a legend stays the same when the view turns
@@ -53,7 +53,7 @@ def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0
     placed[:3, 3] -= placed[:3, :3] @ origin
     low, high = explosion.bounds(scene)
     shown = Shown(low + origin, high + origin, placed, group.units, factor)
-    given = (eye, shown, key, *wanted, margins)
+    given = (eye, shown, keys, *wanted, margins)
     name = pickle.dumps(given)
     if name not in _drawings:
         while len(_drawings) >= _MOST_KEPT:
@@ -62,7 +62,14 @@ def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0
     return _drawings[name]
 
 
+def _keys(scene):
+    """The core's ColorKeys of what colors are to be seen."""
+    if not (len(scene.realmodel.results) and scene.realmodel.view.show_legend):
+        return ()
+    return tuple(key for key in (colours.key(scene), residuals.key(scene)) if key is not None)
+
+
 def legend_share(scene, size):
-    """The part of a picture's width, of a size in pixels, that the legend of a scene takes at the left."""
-    key = colours.key(scene) if len(scene.realmodel.results) and scene.realmodel.view.show_legend else None
-    return 0.0 if key is None else min(0.4, 1.1 * legend_extent(key)[0] / WIDTH * max(size) / size[0])
+    """The part of a picture's width, of a size in pixels, that the legends of a scene take at the left."""
+    width = sum(1.1 * legend_extent(key)[0] for key in _keys(scene))
+    return min(0.4, width / WIDTH * max(size) / size[0])

@@ -83,19 +83,19 @@ class Shown:
 def draw_overlay(
     eye: Eye,
     shown: Shown,
-    key: ColorKey | None,
+    keys: Sequence[ColorKey],
     north: bool,
     scale: bool,
     axes: bool,
     margins: tuple[float, float] = (0.0, 0.0),
 ) -> Drawing:
-    """A Drawing as large as the picture. key: None for no legend. margins: what is covered at the left and
+    """A Drawing as large as the picture. keys: its legends. margins: what is covered at the left and
     right, in points."""
     drawing = Drawing(*eye.size)
     left, right = margins[0] + _MARGIN, drawing.width - margins[1] - _MARGIN
     if axes:
         _axes(drawing, eye, shown)
-    if key is not None:
+    for key in keys:
         left = _legend(drawing, key, left)
     if scale:
         _scale_bar(drawing, eye, shown, left, right)
