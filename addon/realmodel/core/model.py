@@ -93,7 +93,7 @@ class Model:
         rock mass has a surface m, or the model is a half: cut the stage instead. It is built anew from the
         surfaces up to m."""
         if self.is_cut:
-            raise UsageError("a half has no stages: take the stage of the whole model, then cut it")
+            raise UsageError("a cut model has no stages: take the stage of the whole model, then cut that")
         return build_stage(self, m, progress, cancel)
 
     def eroded(self, progress: Progress | None = None, cancel: Cancel | None = None) -> Erosion:
