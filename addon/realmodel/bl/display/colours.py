@@ -61,11 +61,12 @@ def key(scene):
         return ColorKey(title, limits=(low, high), colors=colors) if high > low else None
     places, entries, library = _places(scene), {}, library_rows.library_of(scene)
     for row in reversed(group.results):
-        if not stages.present(row) or modes.is_hidden(scene, row):
+        item = modes.body_of(scene, row)
+        if item is None or not stages.present(row) or modes.is_hidden(scene, row):
             continue
         if by == "PROPERTY":
             name, _ = materials.name_and_colour(library, row.property_id)
-            entries.setdefault(name, shown_colour(modes.body_of(scene, row) or row.object))
+            entries.setdefault(name, shown_colour(item))
         else:
             _, colour = _entry(scene, by, row, places)
             name = {"ROCK": row.rock, "BLOCK": row.name, "AGE": row.surface}[by]

@@ -14,7 +14,7 @@ from . import bodies, colours, explosion, marks, shown_models
 
 _MOST = 20_000  # points that are shown: of more those that are farthest from their surfaces
 _STEPS = 15  # of the color scale: each is a material, which all ways of shading show
-_RADIUS = 0.004  # of the model's size
+_RADIUS = 0.007  # of the model's size
 
 
 def show(current):
