@@ -211,7 +211,7 @@ def test_region_says_what_it_leaves_out(write):
         ),
         ('{"type":"Polygon","coordinates":[[[0,0],[1,0]]]}', None, "ring 1: a ring needs at least 3"),
         ('{"type":"Polygon","coordinates":[[[0,0],[1,0],[0,"a"]]]}', None, "position 3 is not [x, y]"),
-        ('{"type":"Polygon","coordinates":[[[0,0],[1,0],[0,1e999]]]}', None, "position 3 is not finite"),
+        ('{"type":"Polygon","coordinates":[[[0,0],[1,0],[0,1e999]]]}', None, "3 is not [x, y], finite"),
         ('{"type":"Polygon","coordinates":[3]}', None, "ring 1"),
         (b'{"type":"\xff"}', None, "UTF-8"),
     ],

@@ -12,7 +12,7 @@ import numpy as np
 
 from .boreholes import Boreholes
 from .errors import InputRefused
-from .finite import is_finite
+from .finite import is_number
 from .library import Library
 from .map_layer import MapLayer
 from .mesh_sizes import AUTO, edge_length_fault, local_lengths, triangles_fault
@@ -281,7 +281,7 @@ def _check_rock(project: Project, rock: Rock) -> None:
     if not rock.surfaces:
         raise refuse("it has no surface", advice="a block needs two surfaces, or one and a base_elevation")
     _check_mesh(rock, refuse)
-    if rock.base_elevation is not None and not _is_number(rock.base_elevation):
+    if rock.base_elevation is not None and not is_number(rock.base_elevation):
         raise refuse(f"base_elevation must be a finite number, not {rock.base_elevation!r}", "base_elevation")
     if rock.region is None and len(rock.holes):
         raise refuse("it has holes but no region", "holes", "add the outline as region")
@@ -349,12 +349,6 @@ def _at_a_place(entry, refuse):
         return entry
     check_layer(entry["at"], "size", refuse, is_file)
     return {**entry, "at": [0.0, 0.0]}
-
-
-def _is_number(value) -> bool:
-    if isinstance(value, bool):
-        return False
-    return isinstance(value, (int, float, np.integer, np.floating)) and is_finite(value)
 
 
 def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
@@ -445,7 +439,7 @@ def _check_references(rock: Rock) -> None:
                 raise _refuse(surface.source, item, what, option, f"it has {', '.join(numbers)}")
             needed.append((option, numbers[name]))
         if surface.minimum_thickness is not None:
-            if not (_is_number(surface.minimum_thickness) and surface.minimum_thickness >= 0):
+            if not (is_number(surface.minimum_thickness) and surface.minimum_thickness >= 0):
                 what = f"minimum_thickness must be a number from 0, not {surface.minimum_thickness!r}"
                 raise _refuse(surface.source, item, what, "minimum_thickness")
             if number == 0:
