@@ -4,12 +4,13 @@
 import math
 
 import bpy
-import numpy as np
 
 from ..core import RealModelError
 from ..core.planar_mesh import triangulate_rings
 from ..core.readers import read_region
+from ..core.region_rings import region_rings
 from . import project_settings, settings, stored_arrays
+from .surface_figures import plan_area
 
 
 def expected_triangles(row):
@@ -51,15 +52,8 @@ def measure(scene, row, depsgraph):
         path = project_settings.absolute(row.region_file)
         if rings is None and path is not None:
             rings, _ = read_region(path)
-        area = 0.0 if rings is None else _area(rings)
+        area = 0.0 if rings is None else plan_area(*triangulate_rings(region_rings(rings)))
     except RealModelError:
         area = 0.0  # the build will say what is wrong
     with settings.filling():
         row.region_area = area
-
-
-def _area(rings):
-    vertices, triangles = triangulate_rings(rings)
-    first, second, third = vertices[triangles].transpose(1, 0, 2)
-    (ux, uy), (vx, vy) = (second - first).T, (third - first).T
-    return float(np.abs(ux * vy - uy * vx).sum()) / 2.0
