@@ -7,16 +7,15 @@ properties) is left out.
 
 from __future__ import annotations
 
-import itertools
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputRefused
 from .text import LINES_AT_ONCE, Step, no_step, read_text
-from .triangle_mesh import TriangleMesh
+from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 _UNREADABLE = (ValueError, IndexError, KeyError, OverflowError, TypeError)
 _STL_CORNER = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
@@ -60,7 +59,7 @@ def read_obj(file: str | Path, step: Step = no_step) -> TriangleMesh:
                 lines.append(number)
         except _UNREADABLE as error:
             raise _unreadable_line(file, number, words) from error
-    return _mesh(file, vertices, faces, lines)
+    return mesh_of_faces(file, vertices, faces, lines)
 
 
 def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
@@ -90,7 +89,7 @@ def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
                 lines.append(number)
         except _UNREADABLE as error:
             raise _unreadable_line(file, number, words) from error
-    return _mesh(file, vertices, faces, lines)
+    return mesh_of_faces(file, vertices, faces, lines)
 
 
 def read_stl(file: str | Path, step: Step = no_step) -> TriangleMesh:
@@ -112,7 +111,7 @@ def read_stl(file: str | Path, step: Step = no_step) -> TriangleMesh:
         raise _unreadable(file, "STL", error) from error
     step(0.5)
     vertices, index = np.unique(corners, axis=0, return_inverse=True)
-    return _mesh(file, vertices, index.reshape(-1, 3))
+    return mesh_of_faces(file, vertices, index.reshape(-1, 3))
 
 
 def read_ply(file: str | Path, step: Step = no_step) -> TriangleMesh:
@@ -139,7 +138,7 @@ def read_ply(file: str | Path, step: Step = no_step) -> TriangleMesh:
         vertices = np.column_stack([found["vertex"][axis] for axis in "xyz"])
     except _UNREADABLE as error:
         raise _unreadable(file, "PLY", error) from error
-    return _mesh(file, vertices, found["face"])
+    return mesh_of_faces(file, vertices, found["face"])
 
 
 def _ply_header(lines: list[str]):
@@ -222,33 +221,6 @@ def _bytes(file: Path) -> bytes:
         return file.read_bytes()
     except OSError as error:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
-
-
-def _mesh(file: Path, vertices, faces: Sequence, lines: Sequence[int] | None = None) -> TriangleMesh:
-    """The mesh of vertices and the corners of each face, from 0. lines: where each face stands."""
-    vertices = np.ascontiguousarray(vertices, np.float64).reshape(-1, 3)
-    if not len(faces):
-        raise InputRefused("the mesh has no faces", file=file, advice="if it holds points, read it as points")
-    bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
-    if len(bad):
-        raise InputRefused(f"vertex {bad[0] + 1} is not finite", file=file)
-    if isinstance(faces, np.ndarray):
-        sizes, given = np.full(len(faces), faces.shape[1]), faces.ravel()
-    else:
-        sizes = np.array([len(face) for face in faces])
-        given = np.array(list(itertools.chain.from_iterable(faces)))
-    exists = (given >= 0) & (given < len(vertices))
-    corners = np.where(exists, given, 0).astype(np.int64)
-    wrong = ~exists | (corners != given)
-    face_of_corner = np.repeat(np.arange(len(sizes)), sizes)
-    for face in (*np.flatnonzero(sizes < 3)[:1], *face_of_corner[wrong][:1]):
-        what = f"face {face + 1} has a corner that is no vertex" if sizes[face] > 2 else "a face of 2 corners"
-        raise InputRefused(what, file=file, line=None if lines is None else lines[face])
-    begin, fans = np.cumsum(sizes) - sizes, sizes - 2
-    owner = np.repeat(np.arange(len(sizes)), fans)
-    second = np.arange(len(owner)) - np.repeat(np.cumsum(fans) - fans, fans) + begin[owner] + 1
-    triangles = np.stack([corners[begin[owner]], corners[second], corners[second + 1]], axis=1)
-    return TriangleMesh(vertices, triangles.astype(np.int32), None if (fans == 1).all() else owner)
 
 
 def _unreadable_line(file: Path, number: int, words: list[str]) -> InputRefused:
