@@ -7,6 +7,7 @@ from ..registration import register_modules, unregister_modules
 from . import (
     boreholes,
     build,
+    documentation,
     files,
     library,
     plan_mesh,
@@ -32,6 +33,7 @@ _MODULES = (
     results,
     view,
     sections,
+    documentation,
 )
 
 
