@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 from blender_state import inventory, volume
 from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet, stack
-from realmodel.bl import method_settings, model_at_hand, region_size, results, surface_figures
+from realmodel.bl import method_settings, region_size, results, surface_figures
+from realmodel.bl.display import shown_models
 from realmodel.core import load_library, load_project
 from realmodel.core.methods import METHODS, NEIGHBOURS_OF_FITTED
 from realmodel.core.project_writer import off_text, points_text
@@ -254,7 +255,7 @@ class Surfaces(PanelCase):
         ops.open_sample(sample="two_layers")
         ops.build()
         row = self.rock().surfaces[0]
-        found = model_at_hand.model_of(bpy.context).interpolations[0].variogram
+        found = shown_models.whole(bpy.context.scene).interpolations[0].variogram
         self.assertTrue(found.fitted)
         volumes = self.volumes()
         row.fit_variogram = False
