@@ -133,6 +133,15 @@ def view(row, _context):
         display.mode_changed(row.id_data)
 
 
+def overlay(_row, _context):
+    viewports.redraw()
+
+
+def residuals(row, _context):
+    if not settings.is_filling():
+        display.residuals_changed(row.id_data)
+
+
 def exaggeration(row, _context):
     if not settings.is_filling():
         display.exaggeration_changed(row.id_data)
