@@ -193,10 +193,10 @@ def put(current, prepared, composed, in_place=False):
         tree = _tree(current, model.project)
         _place_interfaces(current, tree, interfaces)
         _place_blocks(current, prepared, tree, blocks, palette)
-        scene.remove_unused_materials()
         for name, colour, material in updates:
             scene.give_name(bpy.data.materials, material, name)
             materials.set_colour(material, colour)
+        scene.remove_unused_materials()
         _keep(current, prepared)
         moved = project_settings.model_origin(current) - prepared.origin
         current[ORIGIN_KEY] = [float(value) for value in prepared.origin]
