@@ -27,10 +27,11 @@ def register():
         )
     from . import handlers, operators, props, ui
     from .bl import display
+    from .bl.overlay import viewport
 
     done = []
     try:
-        for part in (props, operators, ui, display, handlers):
+        for part in (props, operators, ui, display, viewport, handlers):
             part.register()
             done.append(part)
     except BaseException:
@@ -40,13 +41,29 @@ def register():
     _at_exit(True)
 
 
+def register_for_batch():
+    """Registers this copy of RealModel where none is, or another one: build_model.py brings its own along."""
+    import bpy
+
+    from . import handlers
+
+    known = bpy.types.Scene.bl_rna.properties.get("realmodel")
+    owner = type(known.fixed_type).__module__.rpartition(".")[0] if known else None
+    if owner != __name__:
+        if owner:
+            sys.modules[owner].unregister()
+        register()
+    handlers.migrate_all()
+
+
 def unregister():
     """Called by Blender when the add-on is disabled; nothing stays: no class, property, handler, timer."""
     _at_exit(False)
     from . import handlers, operators, props, ui
     from .bl import display
+    from .bl.overlay import viewport
 
-    for part in (handlers, display, ui, operators, props):
+    for part in (handlers, viewport, display, ui, operators, props):
         part.unregister()
 
 

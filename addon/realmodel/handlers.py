@@ -10,7 +10,9 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import versioning
-from .bl import built_models, display, live, project_settings, region_size, stored_arrays, stored_project
+from .bl import caches, display, live, region_size
+from .bl.display import replacing
+from .bl.overlay import rendered
 from .core import RealModelError
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
@@ -43,9 +45,8 @@ def _patient(handler):
 
 @persistent
 def _loaded(*_arguments):
-    built_models.forget()
-    stored_arrays.forget()
-    display.forget()
+    display.stop()
+    caches.clear()
     migrate_all()
     display.opened()
     live.switched()
@@ -57,30 +58,10 @@ def _before_loading(*_arguments):
     live.stop_work()
 
 
-@persistent
-def _before_saving(*_arguments):
-    """The project goes into the .blend for programs that read it without the panel."""
-    for scene in bpy.data.scenes:
-        group = scene.realmodel
-        if not len(group.results) or stored_project.KEY in scene or scene.library is not None:
-            continue
-        try:
-            composed = project_settings.compose(scene, _depsgraph(scene), whole=False)
-            stored_project.store(scene, project_settings.read_project(composed))
-        except RealModelError as error:
-            _tell(f"scene '{scene.name}': its project is not stored in the .blend: {error}")
-
-
 def _tell(text):
     """The panel shows it, and whoever reads the console."""
     print(f"RealModel: {text}")
     bpy.context.window_manager.realmodel.problem = text
-
-
-def _depsgraph(scene):
-    layer = scene.view_layers[0]
-    layer.update()
-    return layer.depsgraph
 
 
 @persistent
@@ -99,6 +80,8 @@ def _changed(scene, depsgraph):
 @_patient
 def _frame_changed(scene, depsgraph=None, *_arguments):
     display.frame_changed(scene, depsgraph)
+    if replacing.is_rendering() and len(scene.realmodel.results) and scene.library is None:
+        rendered.put(scene, depsgraph=depsgraph)
 
 
 def migrate_all():
@@ -114,18 +97,21 @@ def migrate_all():
 @_patient
 def _render_begins(scene, *_arguments):
     display.render_begins(scene)
+    if len(scene.realmodel.results) and scene.library is None:
+        rendered.put(scene)
 
 
 @persistent
 @_patient
 def _render_ends(scene, *_arguments):
+    if scene.library is None:
+        rendered.remove(scene)
     display.render_ends(scene)
 
 
 _HANDLERS = (
     ("load_post", _loaded),
     ("load_pre", _before_loading),
-    ("save_pre", _before_saving),
     ("undo_post", _undone),
     ("redo_post", _undone),
     ("depsgraph_update_post", _changed),
@@ -157,5 +143,4 @@ def unregister():
             registered.remove(handler)
     live.stop()
     region_size.stop()
-    built_models.forget()
-    stored_arrays.forget()
+    caches.clear()

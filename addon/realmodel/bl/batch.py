@@ -9,20 +9,20 @@ from pathlib import Path
 import bpy
 
 from ..core import OutputFailed
-from . import picture, scene, viewports
+from . import built_scene, picture, viewports
 
 
 def write_scene(model):
     """Put a model into the current scene, in place of an earlier one there.
 
-    model: realmodel.core.Model. Where no .blend file was opened, what Blender's startup file brings
-    along (its cube, light and camera) is taken out first; in an opened file other objects are left
-    alone. The 3D viewports are turned to show the model.
+    model: realmodel.core.Model. The add-on must be registered. Where no .blend file was opened, what
+    Blender's startup file brings along (its cube, light and camera) is taken out first; in an opened file
+    other objects are left alone. The 3D viewports are turned to show the model.
     """
     current = bpy.context.scene
-    project = scene.write_model(current, model)
+    built_scene.write_model(current, model)
     if not bpy.data.filepath:
-        _remove_startup_objects(current, project)
+        _remove_startup_objects(current, current.realmodel.collection)
     viewports.frame(current, viewports.all_spaces())
 
 
@@ -40,15 +40,14 @@ def render(path, size=(1600, 1000), samples=picture.SAMPLES, time_limit=picture.
 
     path: the file, whatever its ending. size: (width, height) in pixels. samples: rays per pixel.
     time_limit: seconds after which no more of them are begun, 0 for no limit.
-    Returns a picture.Picture; the scene and the file's other data stay as they are.
+    Returns by how much the heights were exaggerated; the scene and the file's other data stay as they are.
     Raises OutputFailed where there is nothing to see or the picture cannot be written.
     """
     if not Path(path).parent.is_dir():  # newer versions of Blender would make the folder
         raise OutputFailed(f"{path}: there is no folder {Path(path).parent}")
-    blocks = scene.model_objects(bpy.context.scene, "block")
     try:
         with without_chatter():
-            return picture.render_picture(blocks, path, size, samples, time_limit)
+            return picture.render_picture(bpy.context.scene, path, size, samples, time_limit)
     except RuntimeError as error:
         raise _failed(path, error) from error
 

@@ -2,7 +2,18 @@
 """What follows when a setting is changed by hand or by a script: each update callback is one function
 here."""
 
-from . import display, live, method_settings, reading_text, region_size, settings, surface_figures, units
+from . import (
+    display,
+    library_rows,
+    live,
+    method_settings,
+    reading_text,
+    region_size,
+    settings,
+    surface_figures,
+    units,
+    viewports,
+)
 
 
 def setting(row, _context):
@@ -116,6 +127,15 @@ def view(row, _context):
         display.mode_changed(row.id_data)
 
 
+def overlay(_row, _context):
+    viewports.redraw()
+
+
+def residuals(row, _context):
+    if not settings.is_filling():
+        display.residuals_changed(row.id_data)
+
+
 def exaggeration(row, _context):
     if not settings.is_filling():
         display.exaggeration_changed(row.id_data)
@@ -125,3 +145,24 @@ def section(row, _context):
     """Another section plane, or none."""
     if not settings.is_filling():
         display.section_changed(row.id_data)
+
+
+def property_id(row, _context):
+    """What has a property keeps it under its new ID. One that is no ID, or another entry's, is not taken."""
+    if settings.is_filling() or row.id == row.known_id:
+        return
+    if library_rows.take_id(row):
+        live.touch(row.id_data)
+
+
+def property_name(row, _context):
+    if not settings.is_filling():
+        library_rows.update_material(row)
+        live.touch(row.id_data)
+
+
+def property_colour(row, _context):
+    if not settings.is_filling():
+        row.has_color = True
+        library_rows.update_material(row)
+        display.colours_changed(row.id_data)

@@ -23,6 +23,12 @@ def linear_colour(colour):
     return tuple(channels)
 
 
+def srgb(value):
+    """The sRGB of a scene-linear channel, both from 0 to 1."""
+    value = min(max(value, 0.0), 1.0)
+    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
+
+
 def name_and_colour(library, property_id):
     """What the library says of a property: its name and "#rrggbb".
 
@@ -48,6 +54,15 @@ def new_material(name, property_id, colour):
         bpy.data.materials.remove(material)
         raise
     return material
+
+
+def give(item, material):
+    """Gives a block the material of its property, unless the user has given it another."""
+    slots = item.data.materials
+    if not len(slots):
+        slots.append(material)
+    elif slots[0] is None or KEY in slots[0]:
+        slots[0] = material
 
 
 def set_colour(material, colour):

@@ -5,7 +5,8 @@ import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import model_at_hand, project_settings
+from ..bl import project_settings
+from ..bl.display import shown_models
 from ..core import UsageError
 from ..core.atomic import Outputs
 from ..core.exporters import WRITERS, save_model, writer_for
@@ -28,7 +29,7 @@ class REALMODEL_OT_export(Reporting, bpy.types.Operator, ExportHelper):
     def act(self, context):
         path = project_settings.absolute(needed_path(self.filepath, "the model"))
         writer_for(path)
-        save_model(model_at_hand.model_of(context), path)
+        save_model(shown_models.whole(context.scene), path)
         self.report({"INFO"}, f"Wrote {path}")
 
     def check(self, _context):
@@ -50,7 +51,7 @@ class REALMODEL_OT_report(Reporting, bpy.types.Operator, ExportHelper):
         path = project_settings.absolute(needed_path(self.filepath, "the report"))
         if path.suffix.lower() != ".json":
             raise UsageError(f"{path}: a report ends in .json")
-        model = model_at_hand.model_of(context)
+        model = shown_models.whole(context.scene)
         with Outputs() as outputs, outputs.file(path) as file:
             write_report(model, path, file)
         self.report({"INFO"}, f"Wrote {path}")
