@@ -91,7 +91,7 @@ def chapter(walk, draw):
     yield from show_panels(walk)
     space = walk.area.spaces.active
     space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_axis_y = False
-    space.overlay.show_cursor = space.show_gizmo = False
+    space.overlay.show_cursor = space.overlay.show_text = space.show_gizmo = False
     space.show_region_ui, space.show_region_toolbar = True, False
     yield lambda: walk.region("UI").width > 50
     yield from open_tab(walk)
@@ -233,7 +233,7 @@ def frame(walk):
 
 
 def side_by_side(pictures, name, columns, smaller=1):
-    """Keeps several pictures of one size as one, so many times smaller, with white lines between them."""
+    """Keeps several pictures of one size as one, so many times smaller, with white lines between."""
     import numpy as np
 
     tiles = []
@@ -275,29 +275,36 @@ def modes(walk):
     walk.area.spaces.active.show_region_ui = False
     yield from example(walk, "haut_barr")
     group = bpy.context.scene.realmodel
+    group.view.show_legend = False
     pictures = []
     for mode in ("POINTS", "LINES", "AREAS", "SURFACES", "POLYHEDRA", "BLOCKS"):
         group.display = mode
         yield from settled(walk)
-        pictures.append(seen(walk, walk.region("WINDOW")))
+        pictures.append(middle(walk))
     group.display = "BLOCKS"
     group.stage = 5
     yield from settled(walk)
-    pictures.append(seen(walk, walk.region("WINDOW")))
-    group.stage, group.explode = len(group.rocks[0].surfaces) - 1, 0.4
+    pictures.append(middle(walk))
+    group.stage, group.explode = len(group.rocks[0].surfaces) - 1, 1.0
     yield from settled(walk)
-    pictures.append(seen(walk, walk.region("WINDOW")))
+    pictures.append(middle(walk))
     group.explode = 0.0
     bpy.ops.realmodel.section_plane(axis="Y")
     yield from settled(walk)
-    pictures.append(seen(walk, walk.region("WINDOW")))
+    pictures.append(middle(walk))
     side_by_side(pictures, "../view_modes", 3, 2)
+    bpy.ops.realmodel.section_remove()
     for stage in (3, 6, 10):
-        bpy.context.scene.realmodel.view.use_section = False
         group.stage = stage
         yield from settled(walk)
-        pictures.append(seen(walk, walk.region("WINDOW")))
+        pictures.append(middle(walk))
     side_by_side(pictures[-3:], "stages", 3, 2)
+
+
+def middle(walk):
+    """The viewport without what is empty above and below the model."""
+    picture = seen(walk, walk.region("WINDOW"))
+    return picture[len(picture) // 8 : -len(picture) // 8]
 
 
 def settled(walk):
@@ -313,7 +320,6 @@ def settled(walk):
 def csv(walk):
     """Two tables of points become a model."""
     import bpy
-    from driver import read_picture
 
     for name in ("clay", "ground"):
         bpy.ops.realmodel.surface_add(filepath=str(SAMPLES / "two_layers" / f"{name}.csv"))
@@ -327,7 +333,15 @@ def csv(walk):
     yield from build(walk)
     frame(walk)
     yield from keep(walk, "csv_built", panels=["build", "results"])
-    rock.active_surface = 0
+
+
+def quality(walk):
+    """Charts of a surface, as the panel saves them."""
+    import bpy
+    from driver import read_picture
+
+    yield from example(walk, "haut_barr")
+    bpy.context.scene.realmodel.rocks[0].active_surface = 5
     bpy.ops.realmodel.check_quality()
     charts = []
     for chart in ("VARIOGRAM", "CROSS_VALIDATION"):
@@ -467,7 +481,7 @@ def quarry(walk):
     yield from keep(walk, "quarry", panels=["surfaces", "results"])
 
 
-CHAPTERS = (start, tour, modes, csv, sculpt, section, quarry)
+CHAPTERS = (start, tour, modes, csv, quality, sculpt, section, quarry)
 
 if __name__ == "__main__":
     if "bpy" in sys.modules:
