@@ -24,49 +24,52 @@ from .core.units import MODEL_UNIT
 DISPLAYS = (
     ("POINTS", "Points", "Vertices of the interfaces and blocks"),
     ("LINES", "Lines", "Edges of the interfaces and blocks"),
-    ("AREAS", "Areas", "Faces of the blocks as separate, flat areas with their edges"),
-    ("SURFACES", "Surfaces", "The interfaces: the surfaces that the model is built from"),
-    ("POLYHEDRA", "Polyhedra", "The polyhedral cells that the blocks consist of"),
-    ("BLOCKS", "Blocks", "The blocks as solid bodies"),
+    ("AREAS", "Faces", "Faces of the blocks, separate and flat, with their edges"),
+    ("SURFACES", "Surfaces", "The interfaces that the model is built from"),
+    ("POLYHEDRA", "Cells", "The polyhedral cells of the blocks"),
+    ("BLOCKS", "Blocks", "The blocks as solids"),
 )
 
 
 class RealModelProperty(bpy.types.PropertyGroup):
-    """One entry of the library: what a block may be made of."""
+    """One entry of the library: the rock that a block consists of."""
 
     id: IntProperty(
         name="ID",
-        description="Number by which surfaces name this property; each entry has its own",
+        description="Number by which surfaces refer to this property; unique in the library",
         default=1,
         update=library_rows.id_changed,
+        options=set(),
     )
     known_id: IntProperty(options={"HIDDEN"})
     name: StringProperty(
         name="Name",
-        description="Name of the rock; the material of its blocks is called so",
+        description="Name of the rock, and of the material of its blocks",
         update=library_rows.changed,
     )
     color: FloatVectorProperty(
-        name="Colour",
-        description="Colour of the blocks that have this property; their material follows at once",
+        name="Color",
+        description="Color of the blocks with this property, and of their material",
         subtype="COLOR_GAMMA",
         size=3,
         min=0.0,
         max=1.0,
         default=(0.7019608, 0.7019608, 0.7019608),
         update=library_rows.colour_changed,
+        options=set(),
     )
     has_color: BoolProperty(options={"HIDDEN"})
-    rock: StringProperty(name="Rock", description="Kind of rock, such as sandstone")
+    rock: StringProperty(name="Lithology", description="Rock type, such as sandstone")
     age: StringProperty(name="Age", description="Geological age, such as Triassic", update=changes.colouring)
     structure: StringProperty(name="Structure", description="Bedding, texture, grain size")
     density: FloatProperty(
         name="Density",
-        description="Density in your units, such as kg/m³; 0 where it is not known",
+        description="Density in any unit, such as kg/m³; 0: unknown",
         min=0.0,
         precision=1,
+        options=set(),
     )
-    description: StringProperty(name="Description", description="Whatever else is to be kept")
+    description: StringProperty(name="Description", description="Further notes")
     exact: StringProperty(options={"HIDDEN"})
 
 
@@ -74,14 +77,16 @@ class RealModelBlock(bpy.types.PropertyGroup):
     """A row of the results: one block as it was built."""
 
     name: StringProperty(name="Block")
-    rock: StringProperty(name="Rock mass")
-    surface: StringProperty(name="Surface", description="The surface that the block was deposited beneath")
-    property_id: IntProperty(name="Property")
-    volume: FloatProperty(name="Volume", subtype="NONE")
+    rock: StringProperty(name="Rock Mass")
+    surface: StringProperty(name="Surface", description="The surface at the top of the block")
+    property_id: IntProperty(name="Property", options=set())
+    volume: FloatProperty(name="Volume", subtype="NONE", options=set())
     volume_exact: StringProperty(options={"HIDDEN"})
-    share: FloatProperty(name="Share", subtype="PERCENTAGE")
-    cells: IntProperty(name="Cells")
-    components: IntProperty(name="Components", description="Separate bodies that the block consists of")
+    share: FloatProperty(name="Share", subtype="PERCENTAGE", options=set())
+    cells: IntProperty(name="Cells", options=set())
+    components: IntProperty(
+        name="Components", description="Number of separate parts of the block", options=set()
+    )
     object: PointerProperty(type=bpy.types.Object)
 
 
@@ -90,43 +95,49 @@ class RealModelSettings(bpy.types.PropertyGroup):
 
     version: IntProperty(options={"HIDDEN"})
     name: StringProperty(
-        name="Name", description="Name of the model; its collection is called so", update=changes.setting
+        name="Name", description="Name of the model and of its collection", update=changes.setting
     )
     exists: BoolProperty(options={"HIDDEN"})
     units: EnumProperty(
         name="Units",
-        description="Unit of the model's lengths; files in other units are brought to it",
+        description="Length unit of the model; files in other units are converted",
         items=units.ITEMS,
         default=MODEL_UNIT,
         update=changes.model_unit,
+        options=set(),
     )
     project_file: StringProperty(
-        name="Project file",
+        name="Project File",
         description="The project file that the model was opened from or saved to",
         subtype="FILE_PATH",
     )
     rocks: CollectionProperty(type=props_rock.RealModelRock)
-    active_rock: IntProperty(name="Active rock mass", description="The rock mass whose surfaces are shown")
+    active_rock: IntProperty(
+        name="Active Rock Mass", description="The rock mass whose surfaces are shown", options=set()
+    )
     library: CollectionProperty(type=RealModelProperty)
     library_path: StringProperty(options={"HIDDEN"})
     active_property: IntProperty(
-        name="Active property", description="The entry of the library whose settings are shown"
+        name="Active Property",
+        description="The entry of the library whose settings are shown",
+        options=set(),
     )
     cells: EnumProperty(
-        name="Cells",
-        description="What the model is made of",
+        name="For",
+        description="Purpose of the model, which decides how its blocks are divided into cells",
         items=(
-            ("COLUMNS", "Columns", "Many small cells, each under one facet of a surface: for simulation"),
-            ("BLOCKS", "Blocks", "One cell for each connected part of a block: much faster, and lighter"),
+            ("COLUMNS", "Simulation", "Many small cells, one below each facet of a surface"),
+            ("BLOCKS", "Pictures", "One cell for each connected part of a block: faster, and less memory"),
         ),
         default="COLUMNS",
         update=changes.setting,
+        options=set(),
     )
     stage: IntProperty(
         name="Stage",
         description=(
-            "Replay deposition and erosion: 0 shows the oldest surface only, the last stage the whole model. "
-            "It can be keyframed"
+            "Replay deposition and erosion: 0 shows only the oldest surface, the last stage the whole model. "
+            "Can be animated"
         ),
         min=0,
         update=changes.stage,
@@ -134,57 +145,59 @@ class RealModelSettings(bpy.types.PropertyGroup):
     stage_slider: PointerProperty(type=props_stage.RealModelStage)
     display: EnumProperty(
         name="Display",
-        description="How the model is drawn",
+        description="How the model is displayed",
         items=DISPLAYS,
         default="BLOCKS",
         update=lambda self, _context: display.mode_changed(self.id_data),
     )
     explode: FloatProperty(
         name="Explode",
-        description="Move the blocks apart so that the layers inside show; 0 leaves them in place",
+        description="Move the blocks apart to show the layers inside; 0: in place",
         min=0.0,
         soft_max=2.0,
         update=lambda self, _context: display.explode_changed(self.id_data),
     )
     explode_direction: EnumProperty(
-        name="Explode",
-        description="Where the blocks go",
+        name="Direction",
+        description="Direction in which the blocks move apart",
         items=(
-            ("Z", "Upwards", "The younger a block, the higher it is lifted"),
-            ("CENTRE", "From the centre", "Every block moves away from the middle of the model"),
-            ("BLOCK", "By block", "The blocks stand side by side, the oldest first"),
+            ("Z", "Upward", "The younger a block, the higher it is lifted"),
+            ("CENTRE", "From Center", "Each block moves away from the center of the model"),
+            ("BLOCK", "Side by Side", "The blocks stand side by side, the oldest first"),
         ),
         update=lambda self, _context: display.explode_changed(self.id_data),
     )
     color_by: EnumProperty(
-        name="Colour by",
-        description="What the colours of the blocks tell",
+        name="Color By",
+        description="What the colors of the blocks show",
         items=(
-            ("PROPERTY", "Property", "The colours of the library"),
-            ("BLOCK", "Block", "Each block its own colour"),
-            ("ROCK", "Rock mass", "Each rock mass its own colour"),
+            ("PROPERTY", "Property", "Colors of the library"),
+            ("BLOCK", "Block", "A color for each block"),
+            ("ROCK", "Rock Mass", "A color for each rock mass"),
             ("AGE", "Age", "From the oldest to the youngest"),
             (
                 "UNCERTAINTY",
-                "Uncertainty",
-                "How sure the heights of interpolated surfaces are, with Show: Surfaces. Dark blue: certain; "
-                "yellow: the largest standard deviation of the surface",
+                "Standard Deviation",
+                "Standard deviation of interpolated elevations, with Show: Surfaces. Dark blue: 0; "
+                "yellow: the largest of the surface",
             ),
         ),
         update=lambda self, _context: display.colours_changed(self.id_data),
     )
     live: BoolProperty(
-        name="Live",
+        name="Auto",
         description=(
-            "Build again on its own after each change to an interface or a setting, when the hand rests"
+            "Rebuild automatically after each change to an interface or a setting, after a short pause"
         ),
         update=changes.live_switched,
+        options=set(),
     )
     results: CollectionProperty(type=RealModelBlock)
     active_result: IntProperty(
-        name="Active block",
-        description="The row of the results; choosing one selects the block in the viewport",
+        name="Active Block",
+        description="Active row of the results; choosing one selects the block in the viewport",
         update=results.row_chosen,
+        options=set(),
     )
     warnings: StringProperty(options={"HIDDEN"})
     built_stamp: StringProperty(options={"HIDDEN"})
@@ -198,7 +211,7 @@ class RealModelActivity(bpy.types.PropertyGroup):
     running: BoolProperty(options={"SKIP_SAVE"})
     progress: FloatProperty(
         name="Progress",
-        description="How much of the build is done",
+        description="Progress of the build",
         subtype="PERCENTAGE",
         min=0.0,
         max=100.0,

@@ -13,6 +13,7 @@ def _setting(name, option):
     given = {
         "name": option.label,
         "description": option.tip,
+        "options": set(),
         "update": changes.switched_on(switch) if switch else changes.setting,
     }
     if option.kind == "word":
@@ -33,7 +34,7 @@ def _settings():
             label, tip = option.switch
             yield (
                 method_settings.switch_of(name),
-                BoolProperty(name=label, description=tip, update=changes.setting),
+                BoolProperty(name=label, description=tip, update=changes.setting, options=set()),
             )
         if option.kind != "table":
             yield name, _setting(name, option)

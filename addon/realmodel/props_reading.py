@@ -33,29 +33,31 @@ class ReadingSettings:
     columns: _text(
         "columns",
         "Columns",
-        "The columns of x, y and z, by name or by number from 1, such as X, Y, Z or 2, 3, 5; empty: those "
-        "named so, or the first three",
+        "Columns of x, y and z, by name or by number from 1, such as X, Y, Z or 2, 3, 5; empty: detected "
+        "from their names, else the first three",
     )
     where: _text(
         "where",
-        "Only rows",
-        "Only rows whose columns hold this count, such as horizon = top clay; year = 2019, 2020. Text in "
+        "Filter",
+        "Only rows with these values are read, such as horizon = top clay; year = 2019, 2020. Text in "
         "quotes is taken as it is",
     )
     separator: _text(
         "separator",
         "Separator",
-        "The character between the columns, or tab, or blank; empty: told from the file",
+        "Character between the columns, or tab, or blank; empty: detected from the file",
     )
     decimal: _choice(
-        "decimal", reading_text.DECIMALS, "Decimals", "What stands between whole numbers and decimals"
+        "decimal", reading_text.DECIMALS, "Decimal Separator", "Decimal separator of the numbers in the file"
     )
-    nodata: _text("nodata", "No value", "What stands for no value, such as -9999; such points are left out")
+    nodata: _text(
+        "nodata", "NoData Value", "Value that marks missing data, such as -9999; such points are skipped"
+    )
     height_attribute: _text(
         "height",
-        "Height is",
-        "Of contour lines and the like: the attribute that holds their height; empty: z of the positions",
+        "Elevation Field",
+        "Attribute with the elevation of each feature, such as a contour line; empty: z of the coordinates",
     )
-    layer: _text("layer", "Layer", "The layer of a GeoPackage that has several")
-    plan_unit: _choice("xy", reading_text.UNITS, "x, y in", "Unit of the coordinates in plan in the file")
-    height_unit: _choice("z", reading_text.UNITS, "Heights in", "Unit of the heights in the file")
+    layer: _text("layer", "Layer", "Layer of a GeoPackage with several layers")
+    plan_unit: _choice("xy", reading_text.UNITS, "Unit of X, Y", "Unit of the plan coordinates in the file")
+    height_unit: _choice("z", reading_text.UNITS, "Unit of Z", "Unit of the elevations in the file")

@@ -18,53 +18,59 @@ from .core.meshers import DEFAULT_MESHER, MESHERS
 
 _AT = (
     ("OUTLINE", "Outline", "Along the outline of the region and its holes"),
-    ("CONSTRAINTS", "Constraints", "Along the lines and at the points that the mesh must contain"),
+    ("CONSTRAINTS", "Constraints", "Along the constraint lines and at the constraint points"),
     ("OBJECT", "Object", "At the vertices and along the edges of a curve or mesh object"),
-    ("STORED", "Places", "At places or lines that came with the project file"),
+    ("STORED", "Coordinates", "At coordinates or lines from the project file"),
 )
 
 
 class RealModelSize(bpy.types.PropertyGroup):
-    """Where the edges of the region's mesh are shorter than elsewhere."""
+    """A refinement: where the edges of the planar mesh are shorter than elsewhere."""
 
     at: EnumProperty(
-        name="At", description="Where the triangles are smaller", items=_AT, update=changes.setting
+        name="At",
+        description="Where the mesh is refined",
+        items=_AT,
+        update=changes.setting,
+        options=set(),
     )
     object: PointerProperty(
         name="Object",
         type=bpy.types.Object,
         poll=settings.is_region_object,
-        description="Curve or mesh object, seen from above",
+        description="Curve or mesh object, in plan",
         update=changes.setting,
     )
     stored: StringProperty(options={"HIDDEN"})  # JSON: places [x, y] or lines, model coordinates
     length: FloatProperty(
         name="Length",
-        description="Length of the edges there",
+        description="Edge length there",
         default=1.0,
         min=1e-6,
         subtype="DISTANCE",
         update=changes.setting,
+        options=set(),
     )
     distance: FloatProperty(
-        name="Within",
-        description="How far from there edges are so short; beyond, they grow by a quarter of the distance",
+        name="Influence Distance",
+        description="Distance within which edges are this short; beyond, they grow by a quarter of it",
         min=0.0,
         subtype="DISTANCE",
         update=changes.setting,
+        options=set(),
     )
     exact: StringProperty(options={"HIDDEN"})
 
 
 class RealModelConstraint(bpy.types.PropertyGroup):
-    """What the region's mesh must contain as edges and vertices."""
+    """A constraint: edges and vertices that the planar mesh must contain."""
 
     object: PointerProperty(
         name="Object",
         type=bpy.types.Object,
         poll=settings.is_region_object,
-        description="Curve or mesh object whose edges and loose vertices, seen from above, the mesh has, "
-        "such as a river or a fault",
+        description="Curve or mesh object, such as a river or a fault trace; the mesh contains its edges and "
+        "loose vertices in plan",
         update=changes.setting,
     )
 
@@ -78,14 +84,14 @@ class RealModelRock(bpy.types.PropertyGroup):
         type=bpy.types.Object,
         poll=settings.is_region_object,
         description=(
-            "Curve or mesh object whose outline, seen from above, bounds the rock mass; inner loops are holes"
+            "Curve or mesh object whose outline in plan bounds the rock mass; inner loops are holes"
         ),
         update=changes.region,
     )
     region_file: StringProperty(
-        name="Region file",
-        description="File with the outline of the rock mass, where no object gives it (GeoJSON, WKT, "
-        "shapefile, GeoPackage)",
+        name="Region File",
+        description="File with the outline of the rock mass, if no object is set (GeoJSON, WKT, shapefile, "
+        "GeoPackage)",
         subtype="FILE_PATH",
         update=changes.region,
     )
@@ -99,8 +105,8 @@ class RealModelRock(bpy.types.PropertyGroup):
     )  # JSON: "triangles", and "edge_length" where it is "auto"
     region_area: FloatProperty(options={"HIDDEN"}, default=-1.0)
     edges_by: EnumProperty(
-        name="Triangles by",
-        description="What says how large the triangles are on which surfaces are interpolated",
+        name="Mesh Size From",
+        description="How the size of the triangles is set on which surfaces are interpolated",
         items=plan_mesh.KINDS,
         options={"SKIP_SAVE"},  # it is kept in `edge_length` and `mesh_options`
         get=plan_mesh.kind,
@@ -108,44 +114,49 @@ class RealModelRock(bpy.types.PropertyGroup):
     )
     triangles: IntProperty(
         name="Triangles",
-        description="How many triangles the mesh of the region should have, within 5 %",
+        description="Number of triangles of the planar mesh, within 5 %",
         min=1,
         options={"SKIP_SAVE"},
         get=plan_mesh.triangles,
         set=plan_mesh.set_triangles,
     )
     edge_length: FloatProperty(
-        name="Edge length",
+        name="Edge Length",
         description=(
-            "Length of the edges of the triangles on which surfaces are interpolated; 0: not given. "
-            "Half of it makes four times as many triangles"
+            "Edge length of the triangles on which surfaces are interpolated; 0: not set. "
+            "Half the length gives four times as many triangles"
         ),
         min=0.0,
         subtype="DISTANCE",
         update=changes.setting,
+        options=set(),
     )
     mesher: EnumProperty(
         name="Mesher",
-        description="How the region is divided into triangles",
+        description="Algorithm that divides the region into triangles",
         items=[(name, mesher.label, mesher.tip) for name, mesher in MESHERS.items()],
         default=DEFAULT_MESHER,
         update=changes.setting,
+        options=set(),
     )
     base_elevation: FloatProperty(
-        name="Base elevation",
-        description="Height of the flat base of the oldest block; it lies below all surfaces",
+        name="Base Elevation",
+        description="Elevation of the flat base of the oldest block; below all surfaces",
         subtype="DISTANCE",
         update=changes.base_elevation,
+        options=set(),
     )
     use_base: BoolProperty(
         name="Base",
-        description="Lay a block beneath the oldest surface, down to the base elevation",
+        description="Add a block between the oldest surface and the base elevation",
         update=changes.setting,
+        options=set(),
     )
     surfaces: CollectionProperty(type=props_surface.RealModelSurface)
     active_surface: IntProperty(
-        name="Active surface",
+        name="Active Surface",
         description="The surface whose settings are shown, counted from the oldest, 0",
+        options=set(),
     )
     collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     interfaces: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})

@@ -12,8 +12,8 @@ from bpy.props import IntProperty
 MOST = 100  # a model with more surfaces has the number field alone
 
 DESCRIPTION = (
-    "Replay deposition and erosion: 0 shows the oldest surface only, the last stage the whole model. "
-    "The number beside the slider can be keyframed"
+    "Replay deposition and erosion: 0 shows only the oldest surface, the last stage the whole model. "
+    "The number beside the slider can be animated"
 )
 
 

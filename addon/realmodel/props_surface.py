@@ -20,27 +20,27 @@ from .core.rules import DEFAULT_RULE, RULES
 from .core.variogram import VARIOGRAM_MODELS
 
 SOURCES = (
-    ("POINTS_FILE", "Points file", "Text file with x, y and z of points that the surface is laid through"),
-    ("POINTS_OBJECT", "Points object", "The vertices of a mesh object are points of the surface"),
-    ("MESH_OBJECT", "Mesh object", "A mesh object of the scene, with its modifiers, is the surface"),
+    ("POINTS_FILE", "Points File", "File with the points that the surface is interpolated from"),
+    ("POINTS_OBJECT", "Points Object", "The surface is interpolated from the vertices of a mesh object"),
+    ("MESH_OBJECT", "Mesh Object", "A mesh object, with its modifiers, is the surface"),
     (
         "MESH_FILE",
-        "Mesh file",
+        "Mesh File",
         f"File with the triangles of the surface ({', '.join(known.name for known in MESH_FORMATS)})",
     ),
-    ("NONE", "No points", "For methods that make a surface without points: constant, parallel"),
+    ("NONE", "No Points", "For the methods that need no points: Constant and Parallel"),
 )
 
 _VARIOGRAMS = {
-    "spherical": ("Spherical", "Rises straight, and ends at the range: for heights that change often"),
-    "exponential": ("Exponential", "Rises ever more slowly: for rough heights"),
+    "spherical": ("Spherical", "Linear at the origin, reaches the sill at the range: for rough elevations"),
+    "exponential": ("Exponential", "Linear at the origin, approaches the sill: for rough elevations"),
     "gaussian": (
         "Gaussian",
-        "Begins level: for very smooth heights; many points near each other suit it ill",
+        "Parabolic at the origin: for very smooth elevations; unstable with many close points",
     ),
-    "cubic": ("Cubic", "Begins level and ends at the range: for smooth heights"),
-    "matern32": ("Matern 3/2", "Between exponential and Gaussian, the rougher one"),
-    "matern52": ("Matern 5/2", "Between exponential and Gaussian, the smoother one"),
+    "cubic": ("Cubic", "Parabolic at the origin, reaches the sill at the range: for smooth elevations"),
+    "matern32": ("Matern 3/2", "Between exponential and Gaussian, rougher than Matern 5/2"),
+    "matern52": ("Matern 5/2", "Between exponential and Gaussian, smoother than Matern 3/2"),
 }
 
 
@@ -51,59 +51,66 @@ def _items(names, labels=None):
 
 
 class RealModelStructure(bpy.types.PropertyGroup):
-    """A part of a nested variogram: what it adds to the nugget and the other parts."""
+    """A structure of a nested variogram, added to the nugget and the other structures."""
 
     model: EnumProperty(
         name="Model",
-        description="Shape of this part",
+        description="Model of this structure",
         items=_items(VARIOGRAM_MODELS, _VARIOGRAMS),
         update=changes.setting,
+        options=set(),
     )
     range: FloatProperty(
         name="Range",
-        description="Distance beyond which this part adds nothing more",
+        description="Practical range of this structure",
         default=100.0,
         min=0.0,
         subtype="DISTANCE",
         update=changes.setting,
+        options=set(),
     )
     sill: FloatProperty(
         name="Sill",
-        description="How much variance this part adds",
+        description="Variance that this structure contributes",
         default=1.0,
         min=0.0,
         update=changes.setting,
+        options=set(),
     )
     use_anisotropy: BoolProperty(
         name="Anisotropy",
-        description="Its range is longer along one direction; off: as for the whole variogram",
+        description="Give this structure its own anisotropy; off: that of the variogram",
         update=changes.setting,
+        options=set(),
     )
     ratio: FloatProperty(
         name="Ratio",
-        description="How many times its range along the azimuth is longer than across",
+        description="Range along the azimuth divided by the range across it",
         default=2.0,
         min=0.001,
         update=changes.setting,
+        options=set(),
     )
     azimuth: FloatProperty(
         name="Azimuth",
-        description="Direction of its longest range, in degrees clockwise from north (+y)",
+        description="Direction of the longest range, in degrees clockwise from north (+Y)",
         update=changes.setting,
+        options=set(),
     )
     exact: StringProperty(options={"HIDDEN"})
 
 
 class RealModelSurface(props_method.MethodSettings, props_reading.ReadingSettings, bpy.types.PropertyGroup):
-    """A surface: where its shape comes from, its rule, and what lies beneath it."""
+    """A surface: the source of its shape, its rule, and the block beneath it."""
 
     name: StringProperty(name="Name", description="Name of the surface", update=changes.setting)
     source: EnumProperty(
         name="Source",
-        description="Where the shape of the surface comes from",
+        description="Source of the shape of the surface",
         items=SOURCES,
         default="POINTS_FILE",
         update=changes.source,
+        options=set(),
     )
     filepath: StringProperty(
         name="File",
@@ -115,7 +122,7 @@ class RealModelSurface(props_method.MethodSettings, props_reading.ReadingSetting
         name="Object",
         type=bpy.types.Object,
         poll=settings.is_mesh_object,
-        description="Mesh object that gives the points or the surface; modifiers on it count",
+        description="Mesh object with the points or the surface, with its modifiers",
         update=changes.source,
     )
     interface: PointerProperty(type=bpy.types.Object, options={"HIDDEN"})
@@ -126,101 +133,114 @@ class RealModelSurface(props_method.MethodSettings, props_reading.ReadingSetting
     stored_mesh: StringProperty(options={"HIDDEN"})
     rule: EnumProperty(
         name="Rule",
-        description="What the surface does to what is there when it comes",
+        description="What the surface does to the rock that was there before",
         items=[(name, rule.label, rule.tip) for name, rule in RULES.items()],
         default=DEFAULT_RULE,
         update=changes.setting,
+        options=set(),
     )
     property_id: IntProperty(
         name="Property",
-        description="ID, in the library, of what was deposited beneath this surface; 0: none",
+        description="Library ID of the rock deposited beneath this surface; 0: none",
         update=changes.setting,
+        options=set(),
     )
     block: StringProperty(
         name="Block",
-        description="Name of the block beneath this surface; empty: the surface's name and 'block'",
+        description='Name of the block beneath this surface; empty: the name of the surface and "block"',
         update=changes.setting,
     )
     hide: BoolProperty(
         name="Hide",
-        description="Do not show this interface in the viewport; it is built all the same",
+        description="Hide this interface in the viewport; it is still built",
         update=changes.hide,
+        options=set(),
     )
     use_minimum_thickness: BoolProperty(
-        name="Thinnest",
-        description="Keep the surface at least so far above the next older one",
+        name="Minimum Thickness",
+        description="Keep the surface at least this far above the next older one",
         update=changes.setting,
+        options=set(),
     )
     minimum_thickness: FloatProperty(
-        name="Thinnest",
-        description="Least distance above the next older surface",
+        name="Minimum Thickness",
+        description="Minimum distance above the next older surface",
         min=0.0,
         subtype="DISTANCE",
         update=changes.setting,
+        options=set(),
     )
     exact: StringProperty(options={"HIDDEN"})
     figures: StringProperty(options={"HIDDEN"})
 
     method: EnumProperty(
         name="Method",
-        description="How heights are made from the points",
+        description="How elevations are interpolated from the points",
         items=[(name, method.label, method.tip) for name, method in METHODS.items()],
         default=DEFAULT_METHOD,
         update=changes.setting,
+        options=set(),
     )
     fit_variogram: BoolProperty(
-        name="Fit the variogram",
-        description="Fit the variogram to the points; switch it off to give your own",
+        name="Fit Variogram",
+        description="Fit the variogram to the points; turn off to set your own",
         default=True,
         update=changes.setting,
+        options=set(),
     )
     variogram_model: EnumProperty(
         name="Variogram",
-        description="Shape of the variogram",
+        description="Variogram model",
         items=_items(VARIOGRAM_MODELS, _VARIOGRAMS),
         update=changes.setting,
+        options=set(),
     )
     variogram_range: FloatProperty(
         name="Range",
-        description="Distance beyond which points tell nothing of each other",
+        description="Practical range: the distance at which correlation vanishes",
         default=100.0,
         min=0.0,
         subtype="DISTANCE",
         update=changes.setting,
+        options=set(),
     )
     variogram_sill: FloatProperty(
         name="Sill",
-        description="Variance between points farther apart than the range; it includes the nugget",
+        description="Variance between points farther apart than the range, including the nugget",
         default=1.0,
         min=0.0,
         update=changes.setting,
+        options=set(),
     )
     variogram_nugget: FloatProperty(
         name="Nugget",
-        description="Variance between points at one place; 0 honours every point",
+        description="Variance at distance zero; 0: every point is honored",
         min=0.0,
         update=changes.setting,
+        options=set(),
     )
     structures: CollectionProperty(type=RealModelStructure)
     use_anisotropy: BoolProperty(
         name="Anisotropy",
         description=(
-            "Points along one direction are more alike than across it. Off: found together with a variogram "
-            "that is fitted, else the same in all directions"
+            "Set a direction of longer correlation. Off: found with a fitted variogram, else isotropic"
         ),
         update=changes.setting,
+        options=set(),
     )
     anisotropy_ratio: FloatProperty(
         name="Ratio",
-        description="How many times the range along the azimuth is longer than across",
+        description="Range along the azimuth divided by the range across it",
         default=2.0,
         min=0.001,
         update=changes.setting,
+        options=set(),
     )
     anisotropy_azimuth: FloatProperty(
         name="Azimuth",
-        description="Direction of the longest range, in degrees clockwise from north (+y)",
+        description="Direction of the longest range, in degrees clockwise from north (+Y)",
         update=changes.setting,
+        options=set(),
     )
     other_options: StringProperty(options={"HIDDEN"})
 

@@ -8,7 +8,7 @@ from .bl import changes
 
 SUBJECTS = (
     ("BLOCKS", "Blocks", "The blocks"),
-    ("INTERFACES", "Interfaces", "The surfaces that the model is built from, also where they were eroded"),
+    ("INTERFACES", "Interfaces", "The surfaces that the model is built from, including what was eroded"),
     ("BOTH", "Both", "The blocks and the interfaces"),
 )
 
@@ -17,23 +17,25 @@ class RealModelView(bpy.types.PropertyGroup):
     """How the model is looked at."""
 
     subject: EnumProperty(
-        name="Of",
-        description="What is drawn as points, lines or areas",
+        name="Geometry",
+        description="What is displayed as points, lines or faces",
         items=SUBJECTS,
         update=changes.view,
+        options=set(),
     )
     hidden: StringProperty(options={"HIDDEN"})  # JSON list of the property IDs whose blocks are hidden
     collection: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})  # of what is only for viewing
     plane: PointerProperty(
-        name="Section plane",
+        name="Section Plane",
         type=bpy.types.Object,
-        description="Object whose XY plane cuts the model; what lies on the side of its Z axis is taken off",
+        description="Object whose XY plane cuts the model; the part on the side of its Z axis is removed",
         update=changes.section,
     )
     use_section: BoolProperty(
-        name="Show cut",
-        description="Show the model cut open along the section plane, the cut filled",
+        name="Show Cut",
+        description="Show the model cut along the section plane, with filled cut faces",
         update=changes.section,
+        options=set(),
     )
     cut: StringProperty(options={"HIDDEN"})  # JSON of the plane that the bodies of kind "cut" were made with
     cells_of: StringProperty(options={"HIDDEN"})  # JSON of what the bodies of kind "cells" were made of

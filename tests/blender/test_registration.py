@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Enabling and disabling the add-on: nothing stays behind, as often as it is done."""
 
+import re
 import unittest
 
 import bpy
@@ -106,6 +107,45 @@ class Registration(unittest.TestCase):
                         if not item.description
                     ]
         self.assertEqual(silent, [])
+
+    def test_only_what_reacts_can_be_animated(self):
+        realmodel.register()
+        self.addCleanup(realmodel.unregister)
+        from realmodel import props
+        from realmodel.bl import display
+
+        groups = [cls for cls in props._CLASSES if cls is not props.RealModelSettings]
+        owners = [*((cls.__name__, cls.bl_rna) for cls in groups), ("", props.RealModelSettings.bl_rna)]
+        animatable = {
+            f"{name}.{prop.identifier}".lstrip(".")
+            for name, rna in owners
+            for prop in rna.properties
+            if prop.is_animatable and prop.type in ("BOOLEAN", "INT", "FLOAT", "ENUM")
+        }
+        self.assertEqual(animatable, set(display._ANIMATED))
+
+    def test_labels_are_written_as_blender_writes_them(self):
+        """Title Case, and American spelling."""
+        realmodel.register()
+        self.addCleanup(realmodel.unregister)
+        from realmodel import props
+
+        small = re.findall(r"\w+", "a an and as at by for from in of on or per the to")
+        british = re.compile(r"colour|centre|neighbour|metre|honour", re.IGNORECASE)
+        wrong = []
+        for cls in props._CLASSES:
+            for prop in cls.bl_rna.properties:
+                if prop.is_hidden or prop.name == prop.identifier or prop.identifier == "rna_type":
+                    continue
+                items = getattr(prop, "enum_items", ())
+                labels = [prop.name, *(item.name for item in items if item.name != item.identifier)]
+                wrong += [
+                    label
+                    for label in labels
+                    if any(word[:1].islower() and word not in small for word in label.split())
+                ]
+                wrong += [text for text in (*labels, prop.description) if british.search(text)]
+        self.assertEqual(wrong, [])
 
     def test_the_menu_has_every_operator_and_choice(self):
         """View > RealModel, drawn into a list: F3 finds nothing that is not there."""

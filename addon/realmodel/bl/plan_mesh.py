@@ -17,9 +17,9 @@ from ..core.project import rock_item
 from . import live, settings, shapes, stored_arrays
 
 KINDS = (
-    ("LENGTH", "Edge length", "By the length of their edges"),
-    ("AUTO", "Points", "By how far the points of the surfaces are apart where they lie: half of that"),
-    ("TRIANGLES", "Number", "By how many there should be"),
+    ("LENGTH", "Edge Length", "A length for all edges"),
+    ("AUTO", "Point Spacing", "Half the spacing of the points of the surfaces"),
+    ("TRIANGLES", "Triangle Count", "A number of triangles"),
 )
 _USUAL_COUNT = 10_000
 _WORDS = {"OUTLINE": "outline", "CONSTRAINTS": "constraints"}
@@ -90,7 +90,7 @@ def _sizes(entry, depsgraph, origin):
     if entry.at == "OBJECT":
         if entry.object is None:
             advice = "choose one, or remove the entry"
-            raise InputRefused("an entry of Smaller Triangles has no object", advice=advice)
+            raise InputRefused("a refinement has no object", advice=advice)
         places = [(line + origin[:2]).tolist() for line in shapes.plan_lines(entry.object, depsgraph)]
     elif entry.at == "STORED":
         places = [json.loads(entry.stored or "[]")]

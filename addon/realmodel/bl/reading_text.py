@@ -7,11 +7,11 @@ import json
 from . import units
 
 DECIMALS = (
-    ("", "Told from the file", "A comma is known where it does not separate"),
+    ("", "Automatic", "Detected from the file, except for commas that could separate thousands"),
     (".", "Point", "1234.5"),
     (",", "Comma", "1234,5"),
 )
-UNITS = (("", "As the model", "The unit of the model"), *units.ITEMS)
+UNITS = (("", "Model Unit", "The unit of the model"), *units.ITEMS)
 _NAMES = ("height", "layer")  # taken as they are written, "5" too
 _SEPARATORS = {"tab": "\t", "blank": " "}
 

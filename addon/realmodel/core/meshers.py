@@ -17,9 +17,7 @@ class Mesher:
 DEFAULT_MESHER = "delaunay"
 
 MESHERS: dict[str, Mesher] = {
-    "delaunay": Mesher("Delaunay", "Triangles as equal as refinement of a Delaunay triangulation makes them"),
-    "frontal": Mesher(
-        "Frontal", "Triangles laid from the border inwards: close to equilateral nearly everywhere"
-    ),
-    "grid": Mesher("Grid", "The nodes of a regular grid, and where its lines meet the outline"),
+    "delaunay": Mesher("Delaunay", "Delaunay refinement: no angle below 25 degrees"),
+    "frontal": Mesher("Frontal", "Advancing front: nearly equilateral triangles, slower"),
+    "grid": Mesher("Grid", "Nodes of a regular grid, fitted to the outline"),
 }

@@ -80,20 +80,20 @@ class Method:
 
 
 EXTRAPOLATE: Words = {
-    "method": ("As the method", "The method goes on outside the points"),
-    "nearest": ("Nearest point", "Outside the points the height of the nearest one"),
-    "none": ("Not at all", "The surface ends where the points end"),
+    "method": ("By Method", "The method continues beyond the points"),
+    "nearest": ("Nearest Point", "Beyond the points, the elevation of the nearest one"),
+    "none": ("None", "The surface ends where the points end"),
 }
-_DRIFTS: Words = {"linear": ("Linear", "A plane"), "quadratic": ("Quadratic", "A curved sheet")}
+_DRIFTS: Words = {"linear": ("Linear", "A plane"), "quadratic": ("Quadratic", "A second-order surface")}
 _NEIGHBOURS = Option(
     DEFAULT_NEIGHBOURS,
     check.neighbours,
     "whole",
-    "Neighbours",
-    "How many points, the nearest in plan, count at each place; 0: all of them",
+    "Neighbors",
+    "Number of nearest points in plan used at each node; 0: all",
     start=DEFAULT_NEIGHBOURS,
     low=0,
-    switch=("Choose neighbours", "Say how many points count at each place; off: as many as suit the method"),
+    switch=("Limit Neighbors", "Set how many points are used at each node; off: as many as suit the method"),
     unset=f"{DEFAULT_NEIGHBOURS}; {NEIGHBOURS_OF_FITTED} for kriging with a fitted variogram",
 )
 _NEIGHBOURHOOD = {
@@ -102,16 +102,16 @@ _NEIGHBOURHOOD = {
         0,
         check.octants,
         "whole",
-        "Per octant",
-        "At most so many points from each eighth of the directions; 0: any number",
+        "Per Octant",
+        "Maximum number of points from each of eight sectors; 0: no limit",
         low=0,
     ),
     "radius": Option(
         None,
         check.optional_positive,
         "length",
-        "Radius",
-        "Points farther away do not count; 0: no limit",
+        "Search Radius",
+        "Points farther away are not used; 0: no limit",
         low=0.0,
         zero_is_none=True,
     ),
@@ -144,7 +144,7 @@ _EXTRAPOLATE = {
         "method",
         check.one_of(*EXTRAPOLATE),
         "word",
-        "Outside",
+        "Extrapolation",
         "What happens beyond the points",
         EXTRAPOLATE,
         more='outside their convex hull: `"nearest"` takes the nearest point\'s height, `"none"` gives '
@@ -155,14 +155,14 @@ _EXTRAPOLATE = {
 
 def _other_surface(label: str, tip: str, empty: str) -> Option:
     """An option that may name another surface, and need not."""
-    tip = f"{tip}Name of another surface of this rock mass, or a height; empty: {empty}"
+    tip = f"{tip}Name of another surface of this rock mass, or an elevation; empty: {empty}"
     return Option(None, check.optional_surface, "surface", label, tip, unset=empty)
 
 
 METHODS: dict[str, Method] = {
     "kriging": Method(
         "Kriging",
-        "The best guess from neighbouring points, as the variogram says how they vary",
+        "Ordinary kriging: the best linear unbiased estimate from the variogram",
         "from_neighbours.krige",
         {**_NEIGHBOURHOOD_OF_KRIGING, **_VARIOGRAM, **_EXTRAPOLATE},
         leaves_one_out=True,
@@ -170,8 +170,8 @@ METHODS: dict[str, Method] = {
         spreads_thickness=True,
     ),
     "universal_kriging": Method(
-        "Universal kriging",
-        "Kriging of what a trend, such as a dip, leaves over",
+        "Universal Kriging",
+        "Kriging with a trend, such as a dip",
         "from_neighbours.krige",
         {
             "drift": Option(
@@ -192,8 +192,8 @@ METHODS: dict[str, Method] = {
         tamed_by='its drift goes on beyond them: use a simpler one, or extrapolate = "nearest"',
     ),
     "idw": Method(
-        "Inverse distance",
-        "Mean of neighbouring points, the nearer the more",
+        "Inverse Distance",
+        "Mean of neighboring points, weighted by inverse distance",
         "from_neighbours.inverse_distance",
         {
             **_NEIGHBOURHOOD,
@@ -201,7 +201,7 @@ METHODS: dict[str, Method] = {
                 2.0,
                 check.positive,
                 label="Power",
-                tip="How fast the weight of a point falls with its distance",
+                tip="Exponent of the distance: higher values give near points more weight",
                 start=2.0,
                 low=0.01,
                 more="above 0",
@@ -214,7 +214,7 @@ METHODS: dict[str, Method] = {
     ),
     "spline": Method(
         "Spline",
-        "The smoothest sheet through the points: a thin plate",
+        "Thin-plate spline: the smoothest surface through the points",
         "from_neighbours.thin_plate",
         {
             **_NEIGHBOURHOOD,
@@ -222,7 +222,7 @@ METHODS: dict[str, Method] = {
                 0.0,
                 check.not_negative,
                 label="Smoothing",
-                tip="0: the sheet goes through every point; more: it may leave them to be smoother",
+                tip="0: the surface passes through every point; higher: smoother",
                 low=0.0,
             ),
             **_EXTRAPOLATE,
@@ -231,7 +231,7 @@ METHODS: dict[str, Method] = {
     ),
     "dsi": Method(
         "DSI",
-        "Discrete smooth interpolation: smooth on the mesh, through points, with constraints",
+        "Discrete smooth interpolation on the mesh, with constraints",
         "on_mesh.dsi",
         {
             "weight": Option(
@@ -241,48 +241,50 @@ METHODS: dict[str, Method] = {
                 tip="Weight of a point against the roughness of one node",
                 start=1.0,
                 low=1e-9,
-                switch=("Loose points", "Points need not hold exactly"),
+                switch=("Approximate Points", "The surface need not pass exactly through the points"),
                 unset="points hold",
             ),
-            "border": _other_surface("Border", "What the surface is at the border of the region. ", "free"),
-            "above": _other_surface("Stay above", "", "no bound"),
-            "below": _other_surface("Stay below", "", "no bound"),
+            "border": _other_surface("Border", "Elevation at the border of the region. ", "free"),
+            "above": _other_surface("Stay Above", "", "no bound"),
+            "below": _other_surface("Stay Below", "", "no bound"),
             **_EXTRAPOLATE,
         },
         on_mesh=True,
         tamed_by="points that differ much within a triangle make it steep: give points a weight",
     ),
     "natural_neighbour": Method(
-        "Natural neighbour",
-        "Mean of the points around, by shares of their area",
+        "Natural Neighbor",
+        "Mean of the surrounding points, weighted by the area of their Voronoi cells",
         "from_triangulation.natural_neighbour",
         _EXTRAPOLATE,
         spreads_thickness=True,
     ),
-    "tin": Method("TIN", "Triangles between the points", "from_triangulation.linear", _EXTRAPOLATE),
+    "tin": Method(
+        "TIN", "Linear in the Delaunay triangles of the points", "from_triangulation.linear", _EXTRAPOLATE
+    ),
     "grid": Method(
-        "Grid", "Points on a regular grid, bilinear between them", "regular_grid.bilinear", _EXTRAPOLATE
+        "Grid", "Bilinear between points on a regular grid", "regular_grid.bilinear", _EXTRAPOLATE
     ),
     "plane": Method(
         "Plane",
-        "One plane through the points, or of a given dip",
+        "A plane fitted to the points, or with a fixed dip",
         "plain.plane",
         {
             "dip": Option(
                 None,
                 check.dip,
                 label="Dip",
-                tip="Degrees below the horizontal",
+                tip="Angle below the horizontal, in degrees",
                 low=0.0,
                 high=89.999,
-                switch=("Given dip", "Give the dip; off: it is fitted to the points"),
+                switch=("Fixed Dip", "Set the dip; off: fitted to the points"),
                 unset="fitted",
             ),
             "dip_direction": Option(
                 0.0,
                 check.number,
-                label="Dip direction",
-                tip="Azimuth to which the plane falls, in degrees clockwise from north (+y)",
+                label="Dip Direction",
+                tip="Azimuth of the dip, in degrees clockwise from north (+Y)",
                 beside="dip",
             ),
             **_EXTRAPOLATE,
@@ -292,16 +294,16 @@ METHODS: dict[str, Method] = {
     ),
     "constant": Method(
         "Constant",
-        "One height everywhere",
+        "One elevation everywhere",
         "plain.constant",
         {
             "value": Option(
                 None,
                 check.optional_number,
                 "length",
-                "Height",
-                "Height everywhere",
-                switch=("Given height", "Give the height; off: the mean of the points"),
+                "Elevation",
+                "Elevation of the whole surface",
+                switch=("Fixed Elevation", "Set the elevation; off: the mean of the points"),
                 unset="the points' mean",
             )
         },
@@ -312,15 +314,15 @@ METHODS: dict[str, Method] = {
     ),
     "parallel": Method(
         "Parallel",
-        "A given thickness above or below another surface",
+        "Parallel to another surface, at a thickness",
         "plain.parallel",
         {
             "to": Option(
                 None,
                 check.surface,
                 "surface",
-                "Parallel to",
-                "Name of another surface of this rock mass, or a height",
+                "Parallel To",
+                "Name of another surface of this rock mass, or an elevation",
                 unset="needed",
             ),
             "thickness": Option(
@@ -329,14 +331,16 @@ METHODS: dict[str, Method] = {
                 "length",
                 "Thickness",
                 "Distance above the other surface; negative: below it",
-                switch=("Given thickness", "Give the thickness; off: it comes from the points"),
+                switch=("Fixed Thickness", "Set the thickness; off: interpolated from the points"),
                 unset="from the points",
             ),
         },
         instead_of_points="thickness",
         has_shape=False,
     ),
-    "auto": Method("Automatic", "Chooses the method that predicts left-out points best", None, _EXTRAPOLATE),
+    "auto": Method(
+        "Automatic", "Chooses the method with the smallest cross-validation error", None, _EXTRAPOLATE
+    ),
 }
 
 _SPREAD_BY = "idw"
@@ -348,8 +352,8 @@ _THICKNESS_METHOD = Option(
     _SPREAD_BY,
     check.one_of(*THICKNESS_METHODS),
     "word",
-    "Spread by",
-    "How the thickness at the points is spread between them",
+    "Thickness Method",
+    "How the thickness is interpolated between the points",
     {name: (METHODS[name].label, METHODS[name].tip) for name in THICKNESS_METHODS},
     more="also " + ", ".join(f'`"{name}"`' for name in THICKNESS_METHODS[1:]),
 )

@@ -22,20 +22,23 @@ DEFAULT_RULE = "erosional"
 RULES: dict[str, Rule] = {
     "erosional": Rule(
         "Erosional",
-        "Cuts away what lies above it: a surface of erosion, the usual case",
+        "Removes older rock above it: an erosion surface, the usual case",
         cuts=True,
         protects=False,
     ),
     "conformable": Rule(
         "Conformable",
-        "Only deposits: ends where it meets what is there already (onlap)",
+        "Only deposits: ends where it meets older rock (onlap)",
         cuts=False,
         protects=False,
     ),
     "base": Rule(
-        "Base", "Only deposits, and younger surfaces cannot cut it (baselap)", cuts=False, protects=True
+        "Base", "Only deposits, and younger surfaces cannot erode it (baselap)", cuts=False, protects=True
     ),
     "discontinuous": Rule(
-        "Discontinuous", "Cuts what is older, and younger surfaces cannot cut it", cuts=True, protects=True
+        "Discontinuous",
+        "Removes older rock above it, and younger surfaces cannot erode it",
+        cuts=True,
+        protects=True,
     ),
 }

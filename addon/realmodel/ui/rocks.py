@@ -14,7 +14,7 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
 
     def draw_in(self, layout, context, group):
         if not len(group.rocks):
-            hint(layout, "A rock mass is a piece of ground with its layers. Add one to begin:")
+            hint(layout, "A rock mass is a region with its surfaces. Add one to begin:")
             layout.operator("realmodel.rock_add", icon="ADD")
             return
         row = layout.row()
@@ -28,7 +28,7 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
         if rock.region is None:
             layout.prop(rock, "region_file", text="or file")
             if rock.region_stored and not rock.region_file:
-                hint(layout, "Its outline is kept in the .blend.")
+                hint(layout, "The outline is stored in the .blend.")
         if method_settings.interpolates(rock):
             _draw_density(layout, rock)
         base = layout.row(heading="Base")
@@ -40,21 +40,21 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
 
 def _draw_density(layout, rock):
     column = layout.column(align=True)
-    column.prop(rock, "edges_by", text="Triangles")
+    column.prop(rock, "edges_by")
     if rock.edges_by == "LENGTH":
-        column.prop(rock, "edge_length", text="Length")
+        column.prop(rock, "edge_length")
         count = region_size.expected_triangles(rock)
         if count is not None:
-            hint(layout, f"gives about {_rounded(count):,} triangles a surface")
+            hint(layout, f"about {_rounded(count):,} triangles per surface")
     elif rock.edges_by == "TRIANGLES":
-        column.prop(rock, "triangles", text="Number")
+        column.prop(rock, "triangles")
     elif plan_mesh.has_triangles(rock):
-        column.prop(rock, "triangles", text="Scaled to")
+        column.prop(rock, "triangles", text="Scale to Triangles")
     layout.prop(rock, "mesher")
 
 
 class REALMODEL_PT_rock_mesh(TabPanel, bpy.types.Panel):
-    bl_label = "Mesh of the Region"
+    bl_label = "Planar Mesh"
     bl_idname = "REALMODEL_PT_rock_mesh"
     bl_parent_id = "REALMODEL_PT_rocks"
     bl_options = {"DEFAULT_CLOSED"}
@@ -66,7 +66,7 @@ class REALMODEL_PT_rock_mesh(TabPanel, bpy.types.Panel):
 
     def draw_in(self, layout, context, _group):
         rock = settings.active_rock(context.scene)
-        hint(layout, "Smaller triangles where more is to be seen:")
+        hint(layout, "Refinement: shorter edges at")
         for number, entry in enumerate(rock.sizes):
             box = layout.box().column(align=True)
             row = box.row(align=True)
@@ -77,7 +77,7 @@ class REALMODEL_PT_rock_mesh(TabPanel, bpy.types.Panel):
             box.prop(entry, "length")
             box.prop(entry, "distance")
         layout.operator("realmodel.size_add", icon="ADD")
-        hint(layout, "Lines and points that the mesh must contain, such as rivers and faults:")
+        hint(layout, "Constraints: lines and points that the mesh contains")
         for number, entry in enumerate(rock.constraints):
             row = layout.row(align=True)
             row.prop(entry, "object", text="")
@@ -89,7 +89,7 @@ class REALMODEL_PT_rock_mesh(TabPanel, bpy.types.Panel):
             row.operator("realmodel.constraint_remove", text="", icon="X").index = -1
         row = layout.row(align=True)
         row.operator("realmodel.constraint_add", text="Add Object", icon="ADD")
-        row.operator("realmodel.constraint_read", text="Read File...", icon="FILE_FOLDER")
+        row.operator("realmodel.constraint_read", text="Import File...", icon="FILE_FOLDER")
 
 
 def _rounded(count):

@@ -16,7 +16,7 @@ class REALMODEL_PT_surfaces(TabPanel, bpy.types.Panel):
     def draw_in(self, layout, context, _group):
         rock = settings.active_rock(context.scene)
         if rock is None:
-            hint(layout, "Add a rock mass first; its surfaces are listed here, the youngest on top.")
+            hint(layout, "Add a rock mass first.")
             return
         row = layout.row()
         row.template_list("REALMODEL_UL_surfaces", "", rock, "surfaces", rock, "active_surface", rows=4)
@@ -30,12 +30,12 @@ class REALMODEL_PT_surfaces(TabPanel, bpy.types.Panel):
         if not len(rock.surfaces):
             hint(
                 layout,
-                "No surface yet. Begin with the oldest: from a file of points or a mesh, or from a mesh.",
+                "No surfaces yet. Add the oldest first.",
             )
         line = layout.column(align=True)
         line.operator("realmodel.surface_add", text="Add from File...", icon="FILE_FOLDER")
         line.operator("realmodel.surface_add", text="Add Active Mesh", icon="OBJECT_DATA").use_object = True
-        line.operator("realmodel.boreholes_read", text="Read Boreholes...", icon="EMPTY_SINGLE_ARROW")
+        line.operator("realmodel.boreholes_read", text="Import Boreholes...", icon="EMPTY_SINGLE_ARROW")
         surface = settings.active_surface(context.scene)
         if surface is not None:
             _draw_surface(layout, context, surface)
@@ -49,7 +49,7 @@ def _draw_surface(layout, context, surface):
     elif surface.source in ("POINTS_FILE", "MESH_FILE"):
         layout.prop(surface, "filepath")
         if project_settings.stored_shape(surface) and not surface.filepath:
-            hint(layout, "What was read is kept in the .blend.")
+            hint(layout, "The data are stored in the .blend.")
     if surface.source not in method_settings.READY_MESHES:
         _draw_method(layout.column(), surface)
     layout.prop(surface, "rule")
@@ -119,7 +119,7 @@ def _draw_variogram(layout, surface):
         box.prop(part, "range")
         box.prop(part, "sill")
         _draw_switched(box, part, "use_anisotropy", ("ratio", "azimuth"))
-    text = "Add Part" if parts else "In Several Parts"
+    text = "Add Structure" if parts else "Nested Structures"
     layout.operator("realmodel.structure_add", text=text, icon="ADD")
 
 
@@ -138,18 +138,18 @@ def _figures(scene, figures):
     points = f"{figures['points']:,} points, " if figures["points"] else ""
     yield f"{points}{figures['triangles']:,} triangles"
     low, high = (units.length_text(scene, figures[key]) for key in ("low", "high"))
-    yield f"Heights {low} to {high}"
+    yield f"Elevation {low} to {high}"
     if figures.get("deviation"):
-        yield f"Standard deviation to {units.length_text(scene, figures['deviation'])}"
+        yield f"Standard deviation up to {units.length_text(scene, figures['deviation'])}"
     if figures["area"] > 0.0:
         share = "" if figures["share"] is None else f" ({100 * figures['share']:.0f} %)"
         yield f"Survives over {units.area_text(scene, figures['area'])}{share}"
     else:
-        yield "Nothing of it survives: younger surfaces cut it away"
+        yield "Removed by erosion"
 
 
 class REALMODEL_PT_surface_reading(TabPanel, bpy.types.Panel):
-    bl_label = "How the File is Read"
+    bl_label = "Import Options"
     bl_idname = "REALMODEL_PT_surface_reading"
     bl_parent_id = "REALMODEL_PT_surfaces"
     bl_options = {"DEFAULT_CLOSED"}
@@ -162,7 +162,7 @@ class REALMODEL_PT_surface_reading(TabPanel, bpy.types.Panel):
 
     def draw_in(self, layout, context, _group):
         surface = settings.active_surface(context.scene)
-        hint(layout, "Most files need nothing here.")
+        hint(layout, "Most files need no options.")
         points = ("columns", "where", "separator", "decimal", "nodata", "height_attribute", "layer")
         for key in (*(points if surface.source == "POINTS_FILE" else ()), "plan_unit", "height_unit"):
             layout.prop(surface, key)
