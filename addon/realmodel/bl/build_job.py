@@ -5,6 +5,7 @@ thread again. Nothing of Blender is held in between but the scene's name: undo m
 
 import bpy
 
+from .. import preferences
 from ..core import BuildFailed, InputRefused, RealModelError, build
 from ..core.project import surface_item
 from . import built_models, built_scene, display, meshes, project_settings, settings
@@ -33,12 +34,18 @@ class BuildJob:
 
     def run(self, progress=None):
         """Builds in this thread and puts the model into the scene."""
-        model = build(self.composed.project, cells=self.cells, progress=progress)
+        model = build(
+            self.composed.project,
+            cells=self.cells,
+            threads=threads(is_short=True),
+            memory=preferences.build_memory(),
+            progress=progress,
+        )
         return self._put(built_scene.prepare(model, self.composed))
 
     def start(self, is_short=False):
         """Builds in a thread. is_short: it is expected to take less than half a second."""
-        self._threads = threads(is_short)
+        self._threads, self._memory = threads(is_short), preferences.build_memory()
         self._job = ThreadJob("build", self._work)
 
     def _work(self, job):
@@ -49,6 +56,7 @@ class BuildJob:
             self.composed.project,
             cells=self.cells,
             threads=self._threads,
+            memory=self._memory,
             progress=job.tell,
             cancel=cancel,
         )

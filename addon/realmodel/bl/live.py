@@ -11,10 +11,10 @@ from contextlib import contextmanager
 
 import bpy
 
+from .. import preferences
 from ..core import Cancelled
 from .rested_work import RestedWork
 
-REST_SECONDS = 0.03  # without a change, after which the hand is taken to rest
 _SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
 
 _at_work = False  # what Blender tells of now is our own doing
@@ -148,4 +148,9 @@ def _tell(scene, error):
     viewports.redraw()
 
 
-_work = RestedWork(REST_SECONDS, _begin, _finish, lambda: not bpy.context.window_manager.realmodel.running)
+_work = RestedWork(
+    lambda: preferences.current().live_pause,
+    _begin,
+    _finish,
+    lambda: not bpy.context.window_manager.realmodel.running,
+)

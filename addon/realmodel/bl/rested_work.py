@@ -12,7 +12,7 @@ _LOOK_SECONDS = 0.005  # between two looks, which cost nothing beside what Blend
 class RestedWork:
     """What waits, and what is under way.
 
-    rest: seconds without a change. begin(name, changed_at) returns a job (as ThreadJob: done, cancel, wait)
+    rest(): seconds without a change. begin(name, changed_at) returns a job (as ThreadJob: done, cancel, wait)
     for the scene of that name, or None. finish(name, job, changed_at) takes what it has done. may_begin():
     whether nothing else is in the way. hand_over(name, job): called once the job is done, again and again
     until it returns True: what can be done in slices before `finish`.
@@ -70,7 +70,7 @@ class RestedWork:
                 del self._jobs[name]
                 self._finish(name, job, changed_at)
         for name, changed_at in list(self._changed_at.items()):
-            if name not in self._jobs and time.perf_counter() - changed_at >= self._rest:
+            if name not in self._jobs and time.perf_counter() - changed_at >= self._rest():
                 del self._changed_at[name]
                 job = self._begin(name, changed_at)
                 if job is not None:

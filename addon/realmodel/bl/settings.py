@@ -7,6 +7,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from .. import preferences
+
 VERSION = 3  # of the settings; versioning.py brings older ones up to it
 
 _quiet = 0  # how many blocks of code fill in settings at the moment
@@ -25,6 +27,15 @@ def filling():
 
 def is_filling():
     return _quiet > 0
+
+
+def begin(group):
+    """A model is in the scene from now on; the first one is displayed as the preferences say."""
+    with filling():
+        if not group.exists:
+            chosen = preferences.current()
+            group.display, group.cells = chosen.display, chosen.cells
+        group.exists, group.version = True, VERSION
 
 
 def is_mesh_object(_row, item):

@@ -4,13 +4,19 @@
 import os
 import threading
 
+from .. import preferences
 from ..core import Cancelled
+
+_chosen = 0  # the preference, as the main thread has read it last: another thread may not
 
 
 def threads(is_short=False):
-    """How many threads native work beside a window may take: one processor is left to the window, or it would
-    stand still for half a second. 0: all that there are, for what is over sooner than that."""
-    return 0 if is_short else max(1, (os.cpu_count() or 1) - 1)
+    """How many threads native work may take: as the preferences say, else all (0) for what is over at once.
+    Otherwise one is left to the window, or it would stand still for half a second."""
+    global _chosen
+    if threading.current_thread() is threading.main_thread():
+        _chosen = preferences.current().threads
+    return _chosen or (0 if is_short else max(1, (os.cpu_count() or 1) - 1))
 
 
 class ThreadJob:
@@ -21,6 +27,7 @@ class ThreadJob:
     """
 
     def __init__(self, name, task):
+        threads()
         self.cancelled = False
         self._told = (0.0, "starting")
         self._result = self._error = None

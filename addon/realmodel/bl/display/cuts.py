@@ -236,4 +236,4 @@ def stop():
     forget()
 
 
-_work = RestedWork(REST_SECONDS, _begin, _finish)
+_work = RestedWork(lambda: REST_SECONDS, _begin, _finish)
