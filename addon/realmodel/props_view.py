@@ -2,7 +2,14 @@
 """Settings of the view beside `display`, `stage`, `explode` and `color_by`: `scene.realmodel.view`."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatVectorProperty, PointerProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    PointerProperty,
+    StringProperty,
+)
 
 from .bl import changes
 
@@ -36,6 +43,18 @@ class RealModelView(bpy.types.PropertyGroup):
         description="Show the model cut along the section plane, with filled cut faces",
         update=changes.section,
         options=set(),
+    )
+    exaggeration: FloatProperty(
+        name="Vertical Exaggeration",
+        description="Display the model so many times higher than it is; measures and exports stay true",
+        default=1.0,
+        min=1.0,
+        soft_max=20.0,
+        max=1000.0,
+        step=100,
+        precision=1,
+        options=set(),
+        update=changes.exaggeration,
     )
     cut: StringProperty(options={"HIDDEN"})  # JSON of the plane that the bodies of kind "cut" were made with
     cells_of: StringProperty(options={"HIDDEN"})  # JSON of what the bodies of kind "cells" were made of

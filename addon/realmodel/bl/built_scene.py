@@ -17,6 +17,7 @@ from ..core.build import build_stage
 from . import (
     block_shapes,
     display,
+    exaggeration,
     library_rows,
     materials,
     meshes,
@@ -438,11 +439,13 @@ def remove_model(current):
         _remove_if_empty(collection)
     if ORIGIN_KEY in current:
         del current[ORIGIN_KEY]
+    exaggeration.apply(current, [], 0.0)
 
 
 def _release(current, item):
     """An object of the user's that is no interface any more."""
     display.let_go(item)
+    exaggeration.release(item)
     for key in (scene.TAG, scene.ROCK, scene.SURFACE, scene.PROPERTY):
         if key in item:
             del item[key]

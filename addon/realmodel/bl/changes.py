@@ -96,6 +96,11 @@ def view(row, _context):
         display.mode_changed(row.id_data)
 
 
+def exaggeration(row, _context):
+    if not settings.is_filling():
+        display.exaggeration_changed(row.id_data)
+
+
 def section(row, _context):
     """Another section plane, or none."""
     if not settings.is_filling():

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from ..core import InputRefused
-from . import meshes, versions
+from . import exaggeration, meshes, versions
 
 
 @contextmanager
@@ -38,9 +38,9 @@ def evaluated_mesh(item, depsgraph):
 
 
 def offsets(item, mesh):
-    """(V, 3) float64: a mesh's vertices in the world, without the model origin."""
+    """(V, 3) float64: a mesh's vertices in the world without vertical exaggeration and model origin."""
     coordinates = meshes.mesh_coordinates(mesh).astype(np.float64)
-    matrix = np.array(item.matrix_world, np.float64)
+    matrix = exaggeration.true_matrix(item)
     if (matrix == np.eye(4)).all():
         return coordinates
     return coordinates @ matrix[:3, :3].T + matrix[:3, 3]

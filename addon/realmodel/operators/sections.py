@@ -5,7 +5,7 @@ import bpy
 from bpy.props import EnumProperty, FloatVectorProperty
 from mathutils import Quaternion, Vector
 
-from ..bl import display, settings
+from ..bl import display, project_settings, settings
 from ..bl.display import cuts, sections
 from ..core import UsageError
 from .reporting import Reporting, a_model, a_section_plane, place_property
@@ -35,16 +35,17 @@ class REALMODEL_OT_section(Reporting, bpy.types.Operator):
         location, normal = tuple(self.location), tuple(self.normal)
         if not given and cuts.plane_of(scene) is not None:
             context.view_layer.update()
-            location = tuple(cuts.plane_of(scene).matrix_world.translation)
-            normal = tuple(cuts.plane_in_model(scene)[1])
+            point, normal = cuts.plane_in_model(scene)
+            location = tuple(point - project_settings.model_origin(scene))
         if not any(normal):
             raise UsageError("the normal is zero: give the direction that the plane is square to")
         made = sections.add(scene, location, normal)
+        display.exaggeration_changed(scene)
         for item in context.selected_objects:
             item.select_set(False)
         made.select_set(True)
         context.view_layer.objects.active = made
-        self.report({"INFO"}, f"{made.name}: {len(made.data.polygons)} faces")
+        self.report({"INFO"}, f"Section made: see {made.name}, {len(made.data.polygons)} faces")
 
 
 class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):

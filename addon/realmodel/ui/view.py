@@ -35,6 +35,7 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
         column.prop(group, "explode", slider=True)
         if group.explode > 0.0:
             column.prop(group, "explode_direction", text="Direction")
+        column.prop(group.view, "exaggeration")
         if group.view.message:
             box = layout.box()
             box.alert = True

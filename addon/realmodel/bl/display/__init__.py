@@ -22,7 +22,8 @@ coordinates    what is under the cursor
 import json
 
 from ...core import RealModelError
-from .. import settings
+from .. import exaggeration, settings
+from ..scene import TAG
 from .visible import show
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "changed",
     "cleared",
     "colours_changed",
+    "exaggeration_changed",
     "explode_changed",
     "forget",
     "frame_changed",
@@ -125,6 +127,14 @@ def explode_changed(scene):
     _show(scene, explode=group.explode, explode_direction=group.explode_direction)
 
 
+def exaggeration_changed(scene):
+    """The vertical is stretched more, or less; or there are other objects that are to be."""
+    from . import cuts, explosion
+
+    items = [item for item in scene.objects if TAG in item]
+    exaggeration.apply(scene, [*items, cuts.plane_of(scene)], explosion.bounds(scene)[0][2])
+
+
 def colours_changed(scene):
     """Another rule of colouring, or another colour in the library."""
     _show(scene, color_by=scene.realmodel.color_by)
@@ -183,6 +193,7 @@ def cleared(scene):
     cuts.take_off(scene)
     colours.forget(scene)
     modes.without_blocks(scene)
+    exaggeration_changed(scene)
     scene.realmodel.view.applied = ""
 
 
@@ -293,4 +304,6 @@ def _show(scene, has_shapes=False, **wanted):
         colours.apply(scene)
     if "color_by" in wanted or "display" in wanted:
         colours.shade_viewports(now["color_by"], now["display"], _applied(scene))
+    if not replacing.is_rendering():
+        exaggeration_changed(scene)
     group.view.applied = json.dumps({key: now[key] for key in _ANIMATED})

@@ -8,7 +8,7 @@ from mathutils import Matrix
 
 from ...core import InputRefused, OutputFailed
 from ...core.atomic import Outputs
-from .. import batch, meshes, picture, scene, settings, versions, viewports
+from .. import batch, exaggeration, meshes, picture, scene, settings, versions, viewports
 from . import bodies, colours, drawing, marks, modes, render_marks, viewpoints
 
 LARGEST = 16384  # pixels along a side
@@ -121,13 +121,13 @@ def _put_bodies(stage, current, size, space):
     corners = []
     pixel, mode = _pixel_size(current, size, space), current.realmodel.display
     for item, mesh in items:
-        matrix = np.array(modes.world_matrix(item), np.float64)
+        matrix = np.array(exaggeration.world_matrix(item), np.float64)
         coordinates = meshes.mesh_coordinates(mesh) @ matrix[:3, :3].T + matrix[:3, 3]
         corners.append(coordinates)
         colour = (*colours.shown_linear(item), 1.0)
         if mode not in modes.DRAWN:
             made = stage.keep(bpy.data.meshes, mesh.copy())
-            made.transform(modes.world_matrix(item))
+            made.transform(exaggeration.world_matrix(item))
             stage.add("body", made)
             if item.get(scene.TAG) != "section" and not colours.has_shades(item):  # several colours each
                 made.materials.clear()

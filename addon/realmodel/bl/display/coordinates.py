@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from .. import library_rows, meshes, project_settings, shapes
+from .. import exaggeration, library_rows, meshes, project_settings, shapes
 from . import modes, stages
 
 _soups = {}  # by the name of a mesh: its triangles, (T, 3, 3) float32
@@ -47,7 +47,7 @@ def under_ray(scene, start, direction):
         item = modes.body_of(scene, row)
         if item is None:
             continue
-        matrix = np.array(modes.world_matrix(item), np.float64)
+        matrix = np.array(exaggeration.world_matrix(item), np.float64)
         turn = np.linalg.pinv(matrix[:3, :3])
         begin, along = turn @ (start - matrix[:3, 3]), turn @ direction
         hits = _hits(_soup(item.data), begin, along)
@@ -61,7 +61,7 @@ def at_point(scene, location):
     for row in scene.realmodel.results:
         if not stages.present(row) or modes.is_hidden(scene, row):
             continue
-        matrix = np.array(modes.world_matrix(row.object), np.float64)
+        matrix = np.array(exaggeration.world_matrix(row.object), np.float64)
         local = np.linalg.pinv(matrix[:3, :3]) @ (np.asarray(location, np.float64) - matrix[:3, 3])
         span = _span(row.object, local)
         if span is not None and span[0] <= local[2] <= span[1]:

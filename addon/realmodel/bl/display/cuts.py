@@ -12,7 +12,7 @@ import numpy as np
 
 from ...core import Cancelled, InputRefused, RealModelError, polygon_mesh
 from ...core.polygon_mesh import PolygonMesh
-from .. import block_shapes, meshes, project_settings, scene, settings, viewports
+from .. import block_shapes, exaggeration, meshes, project_settings, scene, settings, viewports
 from ..rested_work import RestedWork
 from ..thread_job import ThreadJob, threads
 from . import bodies, explosion, replacing, shown_models
@@ -42,11 +42,13 @@ def plane_in_model(current, matrix=None):
     """(point, normal) of the plane in model coordinates, (3,) float64 each. matrix: where it is in the world,
     if not where Blender last had it."""
     matrix = np.array(plane_of(current).matrix_world if matrix is None else matrix, np.float64)
-    normal = np.cross(matrix[:3, 0], matrix[:3, 1])  # square to the plane, also where it is sheared
+    stretched = exaggeration.matrix(current)
+    normal = stretched[:3, :3].T @ np.cross(matrix[:3, 0], matrix[:3, 1])  # also of a plane that is sheared
     length = np.linalg.norm(normal)
     if not length > 0.0:
         raise InputRefused("the section plane has no extent", advice="set its scale to 1")
-    return matrix[:3, 3] + project_settings.model_origin(current), normal / length
+    point = np.linalg.solve(stretched, matrix[:, 3])[:3]
+    return point + project_settings.model_origin(current), normal / length
 
 
 def add_plane(current):

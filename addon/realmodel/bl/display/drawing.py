@@ -7,7 +7,7 @@ arrays go to the card when they are first drawn, and again when a mesh has chang
 
 import bpy
 
-from .. import meshes, versions
+from .. import exaggeration, meshes, versions
 from . import colours, modes
 
 POINT_SIZE = 4.0  # pixels
@@ -49,7 +49,7 @@ def draw_items(items, mode, layer):
         if batch is None:
             continue
         with gpu.matrix.push_pop():
-            gpu.matrix.multiply_matrix(modes.world_matrix(item))
+            gpu.matrix.multiply_matrix(exaggeration.world_matrix(item))
             shader.uniform_float("color", (*colours.shown_colour(item), 1.0))
             batch.draw(shader)
     gpu.state.depth_test_set("NONE")

@@ -84,15 +84,6 @@ def body_of(scene, row):
     return bodies.of_kind(scene, bodies.CUT).get(row.object) if cuts.is_shown(scene) else row.object
 
 
-def world_matrix(item):
-    """Where an object is; Blender does not keep that up to date for hidden ones."""
-    if item.parent is None:
-        return item.matrix_local
-    if item.matrix_parent_inverse.is_identity and item.matrix_basis.is_identity:
-        return world_matrix(item.parent)
-    return item.matrix_world
-
-
 def _see_through(item, wanted):
     """Draws an interface as wires where blocks are in sight too, whoever shows it: it lies on their faces,
     and the two would flicker. One that the user draws otherwise than solid is left as it is."""

@@ -11,8 +11,8 @@ import numpy as np
 from mathutils import Quaternion, Vector
 
 from ...core import InputRefused
-from .. import meshes, viewports
-from . import bodies, modes
+from .. import exaggeration, meshes, viewports
+from . import bodies
 
 _H = 0.5**0.5
 DIRECTIONS = {  # as Blender's own axis views
@@ -126,7 +126,7 @@ def model_points(scene):
         box = np.array(
             [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
         )
-        matrix = np.array(modes.world_matrix(item), np.float64)
+        matrix = np.array(exaggeration.world_matrix(item), np.float64)
         found.append(box @ matrix[:3, :3].T + matrix[:3, 3])
     return np.concatenate(found) if found else np.empty((0, 3))
 

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Vertical exaggeration: what stands for the model hangs from an empty that stretches the vertical. Meshes,
+exports and what is read from objects stay as they are."""
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+KEY = "realmodel_exaggeration"  # on the empty: its scene's model is stretched by it
+
+
+def factor(scene):
+    """How many times as high as it is a scene's model is shown."""
+    return float(scene.realmodel.view.exaggeration)
+
+
+def matrix(scene):
+    """(4, 4) float64: from where things are to where they are shown."""
+    empty = _empty(scene)
+    return np.eye(4) if empty is None else np.array(empty.matrix_basis, np.float64)
+
+
+def apply(scene, items, base):
+    """Shows objects stretched as a scene asks for, and no others. base: the height that stays where it is."""
+    wanted, empty = factor(scene), _empty(scene)
+    if wanted == 1.0:
+        items = []
+    elif empty is None:
+        empty = bpy.data.objects.new("Vertical Exaggeration", None)
+        empty[KEY] = True
+        empty.hide_select = empty.hide_render = True
+        empty.empty_display_size = 0.0
+        scene.collection.objects.link(empty)
+    if empty is None:
+        return
+    roots = {_root(item, empty) for item in items if item is not None and item.library is None}
+    for item in [child for child in empty.children if child not in roots]:
+        item.parent = None
+    if not roots:
+        bpy.data.objects.remove(empty)
+        return
+    empty.scale.z, empty.location.z = wanted, base * (1.0 - wanted)
+    for item in roots:
+        if item.parent != empty:
+            item.parent = empty
+            item.matrix_parent_inverse = Matrix.Identity(4)
+
+
+def release(item):
+    """An object that stands for the model no more is shown where it is."""
+    if item.parent is not None and KEY in item.parent:
+        item.parent = None
+
+
+def world_matrix(item):
+    """Where an object is shown; Blender does not keep that up to date for hidden ones."""
+    if item.constraints or item.parent_type != "OBJECT":
+        return item.matrix_world
+    if item.parent is None:
+        return item.matrix_basis
+    return world_matrix(item.parent) @ item.matrix_parent_inverse @ item.matrix_basis
+
+
+def true_matrix(item):
+    """(4, 4) float64: where an object is, in the coordinates that the model origin is added to."""
+    top = item
+    while top.parent is not None:
+        top = top.parent
+    if KEY not in top:
+        return np.array(item.matrix_world, np.float64)
+    if item.parent == top and not item.constraints:
+        return np.array(item.matrix_basis, np.float64)  # exact, where the way there and back would round
+    return np.linalg.inv(np.array(top.matrix_basis, np.float64)) @ np.array(item.matrix_world, np.float64)
+
+
+def _root(item, empty):
+    while item.parent is not None and item.parent != empty:
+        item = item.parent
+    return item
+
+
+def _empty(scene):
+    return next((item for item in scene.objects if KEY in item), None)
