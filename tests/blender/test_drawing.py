@@ -47,11 +47,9 @@ def settings_of(group):
     return found
 
 
-class DrawnCase(PanelCase):
-    drawn = set()
-
+class States(PanelCase):
     def draw(self):
-        """Draws the whole tab and all menus."""
+        """The Drawing of the whole tab and all menus."""
         global _opened
         before = settings_of(self.model), inventory()
         _opened = []
@@ -84,8 +82,6 @@ class DrawnCase(PanelCase):
         for sample, *_ in samples.enum_items(None, None):
             with self.subTest(sample):
                 empty_file()
-                if sample == "haut_barr":
-                    self.model.name = sample  # of eleven surfaces; opened below as the others
                 ops.open_sample(sample=sample)
                 self.draw()
                 if not len(self.model.results):
@@ -125,17 +121,17 @@ class DrawnCase(PanelCase):
             for fit in (True, False):
                 with self.subTest(method, fit=fit):
                     surface.method, surface.fit_variogram = method, fit
-                    self.draw()
+                    draw_tab(bpy.context)
         ops.structure_add()
         ops.structure_add()
-        self.draw()
+        draw_tab(bpy.context)
         for prop in (*rock.bl_rna.properties, *surface.bl_rna.properties):
             row = rock if prop.identifier in rock.bl_rna.properties else surface
             if prop.type == "ENUM" and not prop.is_hidden:
                 for item in prop.enum_items:
                     with self.subTest(prop.identifier, value=item.identifier):
                         setattr(row, prop.identifier, item.identifier)
-                        self.draw()
+                        draw_tab(bpy.context)
 
     def test_region_mesh_and_boreholes(self):
         ops.open_sample(sample="gravel_plain")
@@ -219,6 +215,7 @@ class DrawnCase(PanelCase):
         select(sheet("field", 0.0))
         ops.size_add()
         ops.constraint_add()
+        settings.active_surface(self.scene).method = "kriging"
         ops.structure_add()
         ops.structure_add()
         if not len(self.model.results):

@@ -19,6 +19,7 @@ def traces():
             bpy.types.UIList,
             bpy.types.PropertyGroup,
             bpy.types.Menu,
+            bpy.types.AddonPreferences,
         )
         for cls in base.__subclasses__()
         if cls.is_registered and cls.__module__.startswith("realmodel")
@@ -35,7 +36,17 @@ def _handler_lists():
             yield name, registered
 
 
-_MENUS = (bpy.types.TOPBAR_MT_file_import, bpy.types.TOPBAR_MT_file_export, bpy.types.VIEW3D_MT_view)
+_MENUS = tuple(
+    getattr(bpy.types, name)
+    for name in (
+        "TOPBAR_MT_file_import",
+        "TOPBAR_MT_file_export",
+        "VIEW3D_MT_add",
+        "VIEW3D_MT_object",
+        "VIEW3D_MT_edit_mesh",
+        "VIEW3D_MT_view",
+    )
+)
 
 
 class Registration(unittest.TestCase):

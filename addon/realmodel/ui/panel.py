@@ -33,7 +33,8 @@ def _letters():
     region = bpy.context.region
     if region is None:
         return 40
-    return max(16, int((region.width / bpy.context.preferences.system.ui_scale - 60) / 5.9))
+    scale = bpy.context.preferences.system.ui_scale or 1.0  # 0 before the first window is drawn
+    return max(16, int((region.width / scale - 60) / 5.9))
 
 
 _UNIT = re.compile(r"(?<=\d) (?=(?:[mck]?m[²³]?|%|ft|mi|yd|in)(?!\w))")  # between a number and its unit
