@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Inside Blender, in background: memory over live builds; what a surface of many points costs a .blend and undo.
+"""Inside Blender, in background: memory over live builds; the .blend and undo of a surface of many points.
 
     blender -b --factory-startup --python-exit-code 1 -P blender_memory.py -- ROUNDS POINTS
     python blender_memory.py -- ROUNDS POINTS                               (the module bpy)
@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
 
 import realmodel
-from realmodel.bl import built_models, live, meshes
+from realmodel.bl import built_models, meshes
 
 from benchmarks.made_stacks import StackSpec
 from benchmarks.process import resident
@@ -45,7 +45,9 @@ def many_points(number, folder):
     random = np.random.default_rng(1)
     points = random.uniform(0.0, 1000.0, (number, 2))
     heights = 20.0 + 3.0 * np.sin(points[:, 0] / 90.0) + random.normal(0.0, 0.01, number)
-    np.savetxt(folder / "top.csv", np.column_stack([points, heights]), "%.3f", ",", header="x,y,z", comments="")
+    np.savetxt(
+        folder / "top.csv", np.column_stack([points, heights]), "%.3f", ",", header="x,y,z", comments=""
+    )
     region = bpy.data.objects.new("region", meshes.triangle_mesh("region", *_square(1000.0)))
     bpy.context.scene.collection.objects.link(region)
     ops, model = bpy.ops.realmodel, bpy.context.scene.realmodel

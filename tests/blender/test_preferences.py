@@ -6,7 +6,9 @@ import os
 import bpy
 from panel_case import PanelCase, sheet, stack
 from realmodel import preferences
-from realmodel.bl import live, thread_job
+from realmodel.bl import live
+from realmodel.bl.threads import threads
+from realmodel.core import work
 
 ops = bpy.ops.realmodel
 
@@ -34,12 +36,12 @@ class Preferences(PanelCase):
         addons.new().module = "realmodel"
 
     def test_threads(self):
-        self.assertEqual(thread_job.threads(), max(1, os.cpu_count() - 1))
-        self.assertEqual(thread_job.threads(is_short=True), 0)
+        self.assertEqual(threads(), max(1, os.cpu_count() - 1))
+        self.assertEqual(threads(is_short=True), 0)
         self.chosen.threads = 3
-        self.assertEqual((thread_job.threads(), thread_job.threads(is_short=True)), (3, 3))
+        self.assertEqual((threads(), threads(is_short=True)), (3, 3))
         told = []
-        thread_job.ThreadJob("test", lambda job: told.append(thread_job.threads())).wait()
+        work.start(lambda _: told.append(threads())).wait()
         self.assertEqual(told, [3])
         stack(0.0, 10.0)
         ops.build()

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What charts, sections, and legends are put together from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .drawing import BLACK, GRAY, Color, Drawing
+from .glyphs import text_width
+
+LINE = 1.5  # from baseline to baseline, in sizes of the text
+_TICK = 3.0  # points
+
+
+def ticks(low: float, high: float, most: int = 6) -> np.ndarray:
+    """Round numbers from low to high, `most` or fewer, in steps of 1, 2, or 5 times a power of ten."""
+    if not high > low:
+        return np.array([low])
+    power = 10.0 ** np.floor(np.log10((high - low) / most))
+    for step in (1 * power, 2 * power, 5 * power, 10 * power, 20 * power):
+        first, last = np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9)
+        if last - first < most:
+            break
+    return step * np.arange(first, last + 1) if last >= first else np.array([low])
+
+
+def round_length(most: float) -> float:
+    """The largest of 1, 2, or 5 times a power of ten that is not above `most`."""
+    power = 10.0 ** np.floor(np.log10(most))
+    return next(factor * power for factor in (5.0, 2.0, 1.0) if factor * power <= most * (1 + 1e-9))
+
+
+def tick_texts(values: np.ndarray) -> list[str]:
+    """The numbers of an axis with as many decimals as tell them apart, thousands set apart by commas."""
+    step = float(np.diff(values).min()) if len(values) > 1 else abs(float(values[0])) or 1.0
+    largest = float(np.abs(values).max())
+    if largest >= 1e9 or step < 1e-6:
+        return [f"{value:.3g}" for value in values]
+    decimals = max(0, int(-np.floor(np.log10(step) + 1e-9)))
+    return [f"{round(value, decimals) + 0.0:,.{decimals}f}".replace("-", "\u2212") for value in values]
+
+
+@dataclass
+class Axes:
+    """A frame on a drawing: box (x, y, width, height) in points, and the ranges (low, high) that it shows."""
+
+    drawing: Drawing
+    box: tuple[float, float, float, float]
+    x_range: tuple[float, float]
+    y_range: tuple[float, float]
+    size: float = 8.0  # of texts
+
+    def at(self, points) -> np.ndarray:
+        """(N, 2) in points of what is at x and y (N, 2)."""
+        low = np.array([self.x_range[0], self.y_range[0]])
+        extent = np.array([self.x_range[1], self.y_range[1]]) - low
+        x, y, width, height = self.box
+        share = (np.asarray(points, np.float64).reshape(-1, 2) - low) / np.where(extent > 0, extent, 1.0)
+        return share * (width, height) + (x, y)
+
+    def frame(self, x_label="", y_label="", layer="") -> None:
+        """The box, ticks with their numbers, and the names of the axes."""
+        x, y, width, height = self.box
+        size, drawing = self.size, self.drawing
+        drawing.rectangle(x, y, width, height, stroke=BLACK, line=0.6, layer=layer)
+        widest = 0.0
+        values = ticks(*self.y_range, max(3, int(height / (3.2 * size))))
+        for value, text in zip(values, tick_texts(values), strict=True):
+            ((_, at),) = self.at([(self.x_range[0], value)]).tolist()
+            drawing.line([(x - _TICK, at), (x, at)], width=0.6, layer=layer)
+            drawing.text(x - _TICK - 2, at - 0.36 * size, text, size, anchor="end", layer=layer)
+            widest = max(widest, text_width(text, size))
+        values = ticks(*self.x_range, max(3, int(width / (6.5 * size))))
+        for value, text in zip(values, tick_texts(values), strict=True):
+            ((at, _),) = self.at([(value, self.y_range[0])]).tolist()
+            drawing.line([(at, y - _TICK), (at, y)], width=0.6, layer=layer)
+            drawing.text(at, y - _TICK - 1.1 * size, text, size, anchor="middle", layer=layer)
+        if x_label:
+            drawing.text(x + width / 2, y - _TICK - 2.6 * size, x_label, size, anchor="middle", layer=layer)
+        if y_label:
+            left = x - _TICK - 2 - widest - 0.8 * size
+            drawing.text(left, y + height / 2, y_label, size, anchor="middle", angle=90, layer=layer)
+
+
+def legend(
+    drawing: Drawing, x: float, y: float, entries: Sequence[tuple[str, Color]], size=8.0, layer=""
+) -> tuple[float, float]:
+    """Boxes of color with their names, the first on top; x, y: the upper left corner. Returns the width and
+    height that they take."""
+    for number, (name, color) in enumerate(entries):
+        base = y - (number + 1) * LINE * size + 0.35 * size
+        drawing.rectangle(x, base - 0.2 * size, 1.6 * size, 1.1 * size, color, GRAY, 0.4, layer)
+        drawing.text(x + 2.2 * size, base, name, size, layer=layer)
+    return legend_size(entries, size)
+
+
+def legend_size(entries: Sequence[tuple[str, Color]], size=8.0) -> tuple[float, float]:
+    """The width and height of a legend in points."""
+    widest = max((text_width(name, size) for name, _ in entries), default=0.0)
+    return 2.2 * size + widest, len(entries) * LINE * size
+
+
+def color_bar(
+    drawing: Drawing,
+    box: tuple[float, float, float, float],
+    limits: tuple[float, float],
+    colors: np.ndarray,
+    label="",
+    size=8.0,
+) -> None:
+    """An upright bar of colors (N, 3), the lowest first, in a box (x, y, width, height), with numbers."""
+    x, y, width, height = box
+    step = height / len(colors)
+    for number, color in enumerate(np.asarray(colors)[:, :3].tolist()):
+        drawing.rectangle(x, y + number * step, width, height - number * step, tuple(color))
+    drawing.rectangle(x, y, width, height, stroke=BLACK, line=0.6)
+    values = ticks(*limits, max(3, int(height / (2.5 * size))))
+    for value, text in zip(values, tick_texts(values), strict=True):
+        at = y + height * ((value - limits[0]) / ((limits[1] - limits[0]) or 1.0))
+        drawing.line([(x + width, at), (x + width + _TICK, at)], width=0.6)
+        drawing.text(x + width + _TICK + 2, at - 0.36 * size, text, size)
+    if label:
+        drawing.text(x, y + height + 0.6 * size, label, size)
+
+
+def scale_bar(drawing: Drawing, x: float, y: float, most: float, scale: float, unit: str, size=8.0) -> None:
+    """A bar of a round length, at most `most` points long, from (x, y) to the right. scale: points for one
+    unit."""
+    length = round_length(most / scale)
+    step = length * scale / 2
+    drawing.rectangle(x, y, step, 0.5 * size, BLACK)
+    drawing.rectangle(x, y, 2 * step, 0.5 * size, stroke=BLACK)
+    for share, text in ((0.0, "0"), (1.0, f"{tick_texts(np.array([length]))[0]} {unit}")):
+        drawing.text(x + 2 * step * share, y + 0.8 * size, text, size, anchor="middle")

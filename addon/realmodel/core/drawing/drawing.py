@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A drawing: polygons, lines, dots, and texts in points, before it is known what file it goes to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+Color = tuple[float, ...]  # red, green, blue, and where it is not opaque alpha: sRGB from 0 to 1
+BLACK, GRAY, WHITE = (0.0, 0.0, 0.0), (0.55, 0.55, 0.55), (1.0, 1.0, 1.0)
+ANCHORS = {"start": 0.0, "middle": 0.5, "end": 1.0}
+
+
+@dataclass(frozen=True, eq=False)
+class Polygon:
+    """Closed rings (N, 2); holes turn the other way. fill, stroke: None for none."""
+
+    rings: list[np.ndarray]
+    fill: Color | None
+    stroke: Color | None
+    width: float
+    layer: str
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    points: np.ndarray  # (N, 2)
+    color: Color
+    width: float
+    dash: float | None  # length of a dash and of the gap after it
+    layer: str
+
+
+@dataclass(frozen=True, eq=False)
+class Dots:
+    points: np.ndarray  # (N, 2)
+    radii: np.ndarray  # (N,)
+    color: Color
+    layer: str
+
+
+@dataclass(frozen=True, eq=False)
+class Text:
+    x: float
+    y: float  # of the baseline
+    text: str
+    size: float
+    color: Color
+    anchor: str
+    angle: float  # degrees, counter-clockwise
+    layer: str
+
+
+@dataclass
+class Drawing:
+    """Items from the first, below, to the last, above.
+
+    width, height: of the page, in points (1/72 inch); the origin is the lower left corner. scale, origin:
+    points for one unit of what is drawn, and where its zero is; formats without a page (DXF) are in those
+    units.
+    """
+
+    width: float
+    height: float
+    scale: float = 1.0
+    origin: tuple[float, float] = (0.0, 0.0)
+    items: list[Polygon | Line | Dots | Text] = field(default_factory=list)
+
+    def polygon(self, rings, fill=None, stroke=None, width=0.5, layer="") -> None:
+        """rings: (N, 2), or a list of them."""
+        single = np.ndim(rings[0][0]) == 0
+        arrays = [np.asarray(ring, np.float64) for ring in ([rings] if single else rings)]
+        self.items.append(Polygon(arrays, fill, stroke, width, layer))
+
+    def rectangle(self, x, y, width, height, fill=None, stroke=None, line=0.5, layer="") -> None:
+        corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+        self.polygon(corners, fill, stroke, line, layer)
+
+    def line(self, points, color=BLACK, width=0.75, dash=None, layer="") -> None:
+        self.items.append(Line(np.asarray(points, np.float64), color, width, dash, layer))
+
+    def dots(self, points, radii, color=BLACK, layer="") -> None:
+        """radii: one number, or one for each point."""
+        points = np.asarray(points, np.float64).reshape(-1, 2)
+        radii = np.broadcast_to(np.asarray(radii, np.float64), len(points))
+        self.items.append(Dots(points, radii, color, layer))
+
+    def text(self, x, y, text, size=9.0, color=BLACK, anchor="start", angle=0.0, layer="") -> None:
+        """One line of text from the baseline at (x, y). anchor: "start", "middle", or "end"."""
+        self.items.append(Text(float(x), float(y), str(text), size, color, anchor, angle, layer))

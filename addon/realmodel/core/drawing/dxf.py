@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""DXF files (AutoCAD's Drawing Exchange Format, release 12, ASCII), which every program for drawings reads.
+
+Coordinates are those of what is drawn, not of the page. A polygon becomes closed polylines in its color, as
+this release has no hatching; layers are those of the drawing, their names as this release asks for.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import BinaryIO
+
+import numpy as np
+
+from .drawing import ANCHORS, BLACK, Drawing, Line, Polygon, Text
+
+_LONGEST_NAME = 31
+_ZERO_LAYER = "0"
+# AutoCAD's colors with the numbers 10 to 249: hues in steps of 15 degrees, ten of each, from bright to dark.
+_HUES, _VALUES = 15.0 * np.arange(24), (1.0, 0.65, 0.5, 0.3, 0.15)
+
+
+def write_dxf(drawing: Drawing, file: BinaryIO) -> None:
+    layers = {"": _ZERO_LAYER}
+    for item in drawing.items:
+        if item.layer not in layers:
+            layers[item.layer] = _layer_name(item.layer, layers.values())
+    pairs = _Pairs(drawing)
+    low, high = pairs.places([(0.0, 0.0), (drawing.width, drawing.height)])
+    pairs.add((0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"))
+    pairs.add((9, "$EXTMIN"), *pairs.place(low), (9, "$EXTMAX"), *pairs.place(high), (0, "ENDSEC"))
+    pairs.add((0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LTYPE"), (70, 1), (0, "LTYPE"))
+    pairs.add((2, "CONTINUOUS"), (70, 0), (3, "Solid line"), (72, 65), (73, 0), (40, 0.0), (0, "ENDTAB"))
+    pairs.add((0, "TABLE"), (2, "LAYER"), (70, len(layers)))
+    for layer, name in layers.items():
+        pairs.add((0, "LAYER"), (2, name), (70, 0), (62, _layer_color(drawing, layer)), (6, "CONTINUOUS"))
+    pairs.add((0, "ENDTAB"), (0, "ENDSEC"), (0, "SECTION"), (2, "ENTITIES"))
+    for item in drawing.items:
+        pairs.item(item, layers[item.layer])
+    pairs.add((0, "ENDSEC"), (0, "EOF"))
+    file.write("".join(pairs.lines).encode("ascii"))
+
+
+class _Pairs:
+    """The lines of a file: group codes and values."""
+
+    def __init__(self, drawing: Drawing):
+        self.drawing, self.lines = drawing, []
+
+    def add(self, *pairs) -> None:
+        self.lines += [f"{code}\n{value}\n" for code, value in pairs]
+
+    def places(self, points) -> np.ndarray:
+        return (np.asarray(points) - self.drawing.origin) / self.drawing.scale
+
+    def place(self, at):
+        return [(10, float(at[0])), (20, float(at[1])), (30, 0.0)]
+
+    def item(self, item, layer: str) -> None:
+        if isinstance(item, Polygon):
+            for ring in item.rings:
+                self.polyline(ring, layer, item.fill or item.stroke or BLACK, closed=True)
+        elif isinstance(item, Line):
+            self.polyline(item.points, layer, item.color, closed=False)
+        elif isinstance(item, Text):
+            self.text(item, layer)
+        else:
+            for at, radius in zip(self.places(item.points), item.radii / self.drawing.scale, strict=True):
+                color = (62, _number(item.color))
+                self.add((0, "CIRCLE"), (8, layer), color, *self.place(at), (40, float(radius)))
+
+    def polyline(self, points, layer: str, color, closed: bool) -> None:
+        self.add((0, "POLYLINE"), (8, layer), (62, _number(color)), (66, 1), *self.place((0.0, 0.0)))
+        self.add((70, int(closed)))
+        for at in self.places(points):
+            self.add((0, "VERTEX"), (8, layer), *self.place(at))
+        self.add((0, "SEQEND"), (8, layer))
+
+    def text(self, item: Text, layer: str) -> None:
+        ((x, y),) = self.places([(item.x, item.y)]).tolist()
+        height = 0.72 * item.size / self.drawing.scale  # of capital letters
+        self.add((0, "TEXT"), (8, layer), (62, _number(item.color)), *self.place((x, y)), (40, height))
+        self.add((1, _escaped(item.text)), (50, item.angle))
+        if ANCHORS[item.anchor]:  # then the second point counts
+            self.add((72, round(2 * ANCHORS[item.anchor])), (11, x), (21, y), (31, 0.0))
+
+
+def _escaped(text: str) -> str:
+    return "".join(letter if " " <= letter <= "~" else f"\\U+{ord(letter):04X}" for letter in text)
+
+
+def _layer_name(layer: str, taken) -> str:
+    """A name of capital letters, digits, $, - and _, unlike those that are taken."""
+    name = re.sub(r"[^A-Z0-9$_-]", "_", layer.upper())[:_LONGEST_NAME]
+    number = 2
+    while name in taken:
+        name = f"{name[: _LONGEST_NAME - 4]}_{number}"
+        number += 1
+    return name
+
+
+def _layer_color(drawing: Drawing, layer: str) -> int:
+    for item in drawing.items:
+        if item.layer == layer:
+            return _number(item.fill or item.stroke or BLACK if isinstance(item, Polygon) else item.color)
+    return _number(BLACK)
+
+
+def _number(color) -> int:
+    """The color of AutoCAD that is most like one; 7 is black on white and white on black."""
+    color = np.asarray(color[:3], np.float64)
+    if color.max() < 0.1:
+        return 7
+    grays = np.array([0.2, 0.36, 0.52, 0.68, 0.84, 1.0])  # numbers 250 to 255
+    table = np.concatenate([_TABLE, np.repeat(grays[:, None], 3, axis=1)])
+    return 10 + int(np.argmin(((table - color) ** 2).sum(axis=1)))
+
+
+def _color_table() -> np.ndarray:
+    """(240, 3): the colors 10 to 249."""
+    hue = _HUES / 60
+    full = np.column_stack([np.abs(hue - 3) - 1, 2 - np.abs(hue - 2), 2 - np.abs(hue - 4)]).clip(0, 1)
+    pale = (1 + full) / 2
+    return np.concatenate([[v * f, v * p] for f, p in zip(full, pale, strict=True) for v in _VALUES])
+
+
+_TABLE = _color_table()

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""SVG files (Scalable Vector Graphics 1.1)."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import BinaryIO
+from xml.sax.saxutils import escape
+
+import numpy as np
+
+from .drawing import Drawing, Line, Polygon, Text
+
+
+def write_svg(drawing: Drawing, file: BinaryIO) -> None:
+    """Items of one layer after another become a group that has the layer's name as its title."""
+    width, height = (f"{value:.2f}" for value in (drawing.width, drawing.height))
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}pt" height="{height}pt" '
+        f'viewBox="0 0 {width} {height}" font-family="DejaVu Sans, Verdana, Helvetica, sans-serif">',
+        f'<rect width="{width}" height="{height}" fill="white"/>',
+    ]
+    for layer, items in groupby(drawing.items, key=lambda item: item.layer):
+        lines.append(f"<g><title>{escape(layer)}</title>" if layer else "<g>")
+        for item in items:
+            lines += _elements(item, drawing.height)
+        lines.append("</g>")
+    file.write("\n".join([*lines, "</svg>", ""]).encode())
+
+
+def _elements(item, height: float) -> list[str]:
+    if isinstance(item, Polygon):
+        path = " ".join(f"M{_places(ring, height)}Z" for ring in item.rings)
+        stroke = f' stroke-width="{item.width:g}"' if item.stroke else ""
+        colors = f"{_color('fill', item.fill)}{_color('stroke', item.stroke)}"
+        return [f'<path d="{path}" fill-rule="nonzero"{colors}{stroke}/>']
+    if isinstance(item, Line):
+        dash = f' stroke-dasharray="{item.dash:g}"' if item.dash else ""
+        return [
+            f'<polyline points="{_places(item.points, height)}" fill="none"{_color("stroke", item.color)} '
+            f'stroke-width="{item.width:g}"{dash}/>'
+        ]
+    if isinstance(item, Text):
+        x, y = f"{item.x:.2f}", f"{height - item.y:.2f}"
+        turn = f' transform="rotate({-item.angle:g} {x} {y})"' if item.angle else ""
+        return [
+            f'<text x="{x}" y="{y}" font-size="{item.size:g}" text-anchor="{item.anchor}"'
+            f"{_color('fill', item.color)}{turn}>{escape(item.text)}</text>"
+        ]
+    return [
+        f'<circle cx="{x:.2f}" cy="{height - y:.2f}" r="{radius:.2f}"{_color("fill", item.color)}/>'
+        for (x, y), radius in zip(item.points.tolist(), item.radii.tolist(), strict=True)
+    ]
+
+
+def _places(points: np.ndarray, height: float) -> str:
+    return " ".join(f"{x:.2f},{height - y:.2f}" for x, y in points.tolist())
+
+
+def _color(attribute: str, color) -> str:
+    if color is None:
+        return f' {attribute}="none"'
+    code = "".join(f"{round(255 * min(max(part, 0.0), 1.0)):02x}" for part in color[:3])
+    opacity = f' {attribute}-opacity="{color[3]:g}"' if len(color) > 3 and color[3] < 1 else ""
+    return f' {attribute}="#{code}"{opacity}'
