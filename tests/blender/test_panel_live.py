@@ -6,7 +6,7 @@ from unittest import mock
 import bpy
 from blender_state import volume
 from panel_case import PanelCase, ops, raise_by, select, stack
-from realmodel.bl import built_models, live
+from realmodel.bl import built_models, live, viewports
 from realmodel.bl.display import shown_models
 
 
@@ -87,11 +87,13 @@ class Live(PanelCase):
         activity = bpy.context.window_manager.realmodel
         self.assertIn("overlap in plan", activity.problem)
         self.assertEqual(activity.problem_object, "S1")
+        self.assertEqual(list(viewports._status.values()), [activity.problem])
         self.assertAlmostEqual(volume(self.block().data), 1e5, delta=1.0)
         vertices[6].co.x -= 60.0
         raise_by(self.items[1], 1.0)
         self.live_is_done()
         self.assertEqual(activity.problem, "")
+        self.assertEqual(list(viewports._status.values()), [""])
         self.assertAlmostEqual(volume(self.block().data), 9e4, delta=1.0)
 
     def test_the_bad_place_is_selected(self):
