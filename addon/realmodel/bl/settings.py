@@ -7,13 +7,9 @@ from contextlib import contextmanager
 
 import numpy as np
 
-<<<<<<< HEAD
 from .. import preferences
 
-VERSION = 3  # of the settings; versioning.py brings older ones up to it
-=======
 VERSION = 4  # of the settings; versioning.py brings older ones up to it
->>>>>>> main
 
 _quiet = 0  # how many blocks of code fill in settings at the moment
 
