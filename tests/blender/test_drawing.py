@@ -218,6 +218,7 @@ class States(PanelCase):
         settings.active_surface(self.scene).method = "kriging"
         ops.structure_add()
         ops.structure_add()
+        ops.filter_add()
         if not len(self.model.results):
             ops.build()
         ops.section_plane()
