@@ -9,9 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from .build import build
 from .errors import InputRefused, UsageError
 from .exporters import write_model, writer_for
 from .exporters.sections import section_writer
+from .project_file import load_project
 from .readers import MESH_ENDINGS, read_mesh
 from .readers.text import read_text
 
@@ -71,8 +73,6 @@ class CutRequest:
         if isinstance(self.cutter, Path):
             return [self.cutter]
         if isinstance(self.cutter, tuple) and self.cutter[0] is not None:
-            from .project_file import load_project
-
             return [self.cutter[0], *load_project(self.cutter[0]).input_files()]
         return []
 
@@ -81,9 +81,6 @@ class CutRequest:
         if isinstance(self.cutter, Path):
             self._mesh = read_mesh(self.cutter)
         elif isinstance(self.cutter, tuple) and self.cutter[0] is not None:
-            from .build import build
-            from .project_file import load_project
-
             self._other = build(load_project(self.cutter[0]), cells="blocks")
 
     def run(self, model, outputs, threads: int, progress) -> str:
@@ -133,7 +130,7 @@ def fence_request(text: str) -> SectionRequest:
     if numbers is None:
         return SectionRequest("--fence", Path(file), Path(what))
     if len(numbers) < 4 or len(numbers) % 2:
-        raise UsageError(f"--fence {text}: a line has two places at least, x and y of each")
+        raise UsageError(f"--fence {text}: a line needs at least two points, x and y of each")
     return SectionRequest("--fence", Path(file), _line(numbers.reshape(-1, 2), f"--fence {text}", UsageError))
 
 
@@ -144,7 +141,7 @@ def cut_request(text: str) -> CutRequest:
     what, files = _divided("--cut", text, form)
     halves = files.split(",")
     if len(halves) > 2 or not any(halves):
-        raise UsageError(f"--cut {text}: it is written as {form}")
+        raise UsageError(f"--cut {text}: expected {form}")
     below, above = (Path(half) if half else None for half in (*halves, "")[:2])
     for path in (below, above):
         if path is not None:
@@ -154,11 +151,11 @@ def cut_request(text: str) -> CutRequest:
     project, colon, block = what.rpartition(":")
     if colon and (not project or project.lower().endswith(".toml")):
         if not block:
-            raise UsageError(f"--cut {text}: which block? write {what}NAME")
+            raise UsageError(f"--cut {text}: the block is missing; write {what}NAME")
         return CutRequest((Path(project) if project else None, block), below, above)
     if Path(what).suffix.lower() not in MESH_ENDINGS:
         raise UsageError(
-            f"--cut {text}: '{what}' is no cutter; use a plane X,Y,Z,NX,NY,NZ, a surface "
+            f"--cut {text}: '{what}' is not a cutter; use a plane X,Y,Z,NX,NY,NZ, a surface "
             f"FILE{' or FILE'.join(MESH_ENDINGS)}, or a block PROJECT.toml:BLOCK (:BLOCK for one of the "
             "model's own)"
         )
@@ -177,23 +174,23 @@ def read_polyline(file: Path) -> np.ndarray:
         if numbers is None and not places:
             continue  # names of columns
         if numbers is None or len(numbers) < 2:
-            raise InputRefused(f"{file}:{number}: a line of the polyline has two numbers, x and y")
+            raise InputRefused(f"{file}:{number}: each line must have two numbers, x and y")
         places.append(numbers[:2])
     if len(places) < 2:
-        raise InputRefused(f"{file}: a polyline has two places at least, x and y in a line each")
+        raise InputRefused(f"{file}: a polyline needs at least two points, x and y on each line")
     return _line(np.array(places), str(file), InputRefused)
 
 
 def _line(places: np.ndarray, where: str, error: type[Exception]) -> np.ndarray:
     if not np.diff(places, axis=0).any(axis=1).all():
-        raise error(f"{where}: two equal places one after the other; leave one out")
+        raise error(f"{where}: two consecutive points are equal; remove one")
     return places
 
 
 def _divided(option: str, text: str, form: str) -> tuple[str, str]:
     what, equals, file = text.rpartition("=")
     if not equals or not what or not file:
-        raise UsageError(f"{option} {text}: it is written as {option} {form}")
+        raise UsageError(f"{option} {text}: expected {option} {form}")
     return what, file
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from .atomic import Outputs
+from .exporters.sections import section_writer
 
 
 @dataclass(eq=False)
@@ -69,8 +70,6 @@ class Section:
     def save(self, path: str | Path) -> None:
         """Writes the polygons, with block and property, to a .vtu, .obj, .csv or .npz, which appears whole or
         not at all. Raises UsageError, OutputFailed."""
-        from .exporters.sections import section_writer
-
         writer = section_writer(path)
         with Outputs() as outputs, outputs.file(path) as file:
             writer(self, file)

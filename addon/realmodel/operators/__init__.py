@@ -5,6 +5,7 @@ from ..registration import register_modules, unregister_modules
 from . import (
     boreholes,
     build,
+    documentation,
     files,
     library,
     plan_mesh,
@@ -30,6 +31,7 @@ _MODULES = (
     results,
     view,
     sections,
+    documentation,
 )
 
 

@@ -7,7 +7,8 @@ import bpy
 from bpy.props import EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import model_at_hand, project_settings, results
+from ..bl import project_settings, results
+from ..bl.display import shown_models
 from ..core import UsageError
 from ..core.atomic import atomic_file
 from ..core.exporters import save_model
@@ -77,7 +78,7 @@ class REALMODEL_OT_export(Exporting, bpy.types.Operator):
     filter_glob: format_filter(_MODELS)
 
     def write(self, context, path):
-        save_model(model_at_hand.model_of(context), path)
+        save_model(shown_models.whole(context.scene), path)
 
 
 class REALMODEL_OT_report(Exporting, bpy.types.Operator):
@@ -92,7 +93,7 @@ class REALMODEL_OT_report(Exporting, bpy.types.Operator):
 
     def write(self, context, path):
         is_table = path.suffix.lower() == ".csv"
-        model = None if is_table else model_at_hand.model_of(context)
+        model = None if is_table else shown_models.whole(context.scene)
         with atomic_file(path) as file:
             if is_table:
                 file.write(results.as_csv(context.scene).encode())

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...core import InputRefused
 from ...core.polygon_mesh import PolygonMesh
-from .. import library_rows, materials, meshes, project_settings, scene
+from .. import library_rows, meshes, project_settings, scene
 from ..origin import offsets_from
 from . import bodies, shown_models
 
@@ -36,7 +36,7 @@ def add(current, location, normal):
     mesh = meshes.new_mesh("Section", shape)
     ids = np.unique(found.property)
     for property_id in ids.tolist():
-        mesh.materials.append(_material(current, property_id))
+        mesh.materials.append(library_rows.material_of(current, property_id))
     slots = np.searchsorted(ids, found.property).astype(np.int32)
     mesh.polygons.foreach_set("material_index", slots)
     attribute = mesh.attributes.new(BLOCK_ATTRIBUTE, "INT", "FACE")
@@ -48,11 +48,3 @@ def add(current, location, normal):
     item["realmodel_normal"] = [float(value) for value in normal]
     bodies.view_collection(current).objects.link(item)
     return item
-
-
-def _material(current, property_id):
-    known = library_rows.scene_materials(current, property_id)
-    if known:
-        return known[0]
-    name, colour = materials.name_and_colour(library_rows.library_of(current), property_id)
-    return materials.new_material(name, property_id, colour)

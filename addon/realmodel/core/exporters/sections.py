@@ -29,7 +29,7 @@ def section_writer(path: str | Path) -> Callable[..., None]:
     ending = Path(path).suffix.lower()
     if ending not in SECTION_WRITERS:
         known = ", ".join(SECTION_WRITERS)
-        what = f"sections are not written as '{ending}'" if ending else "the file name has no ending"
+        what = f"sections are not written as '{ending}'" if ending else "the file name has no extension"
         raise UsageError(f"{path}: {what}; use one of {known}")
     return SECTION_WRITERS[ending]
 

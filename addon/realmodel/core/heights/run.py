@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from importlib import import_module
 
 import numpy as np
 
@@ -14,18 +13,7 @@ from ..mis_ties import without_mis_ties
 from ..work import Work, native_module
 from . import automatic
 from .extrapolation import outside_hull, replace_extrapolated
-from .interpolation import Interpolation, Result, Task
-
-
-def run_method(method: str, task: Task) -> Result:
-    """Runs a method that is not "auto"."""
-    module, _, function = METHODS[method].run.rpartition(".")
-    return getattr(import_module(f".{module}", __package__), function)(task)
-
-
-def settings_of(method: str, options: dict | None = None) -> dict:
-    """The settings of a method, options that are not given at their defaults."""
-    return checked_options(method, options or {})
+from .interpolation import Interpolation, Result, Task, run_method
 
 
 def heights(
@@ -44,7 +32,7 @@ def heights(
     try:
         if method == "auto":
             method, reason, result = automatic.automatic(task)
-            settings = {**settings_of(method), "extrapolate": settings["extrapolate"]}
+            settings = {**checked_options(method, {}), "extrapolate": settings["extrapolate"]}
             task = replace(task, settings=settings)
         else:
             result = run_method(method, task)
@@ -78,12 +66,12 @@ def few_points(points: np.ndarray, method: str) -> list[str]:
     if len(points) and not len(elsewhere):
         return ["there is one point only: the surface is its height everywhere"]
     if len(elsewhere) and (elsewhere == elsewhere[0]).all():
-        return ["there are two points only: the surface is known along their line at best"]
+        return ["there are two points only: they do not show the slope across their line"]
     return []
 
 
 def elsewhere(points: np.ndarray, nodes: np.ndarray) -> list[str]:
-    """What to tell where the points are in another place than the nodes: mostly a slip."""
+    """A warning if the points lie elsewhere than the nodes: mostly wrong coordinates or units."""
     if not len(points) or not len(nodes):
         return []
     for axis, name in enumerate("xy"):
@@ -91,14 +79,14 @@ def elsewhere(points: np.ndarray, nodes: np.ndarray) -> list[str]:
         lowest, highest = nodes[:, axis].min(), nodes[:, axis].max()
         if high < lowest or highest < low:
             return [
-                f"no point lies where heights are wanted: {name} of the points is {low:.9g} to {high:.9g}, "
-                f"wanted {lowest:.9g} to {highest:.9g}; check their coordinates and units"
+                f"no point lies in the area of the mesh: {name} of the points is {low:.9g} to {high:.9g}, "
+                f"of the mesh {lowest:.9g} to {highest:.9g}; check their coordinates and units"
             ]
     return []
 
 
 def runs_away(points: np.ndarray, z: np.ndarray, method: str) -> list[str]:
-    """What to tell where heights go much farther than the points do, beyond twice their range."""
+    """A warning if heights go far beyond those of the points, by more than twice their range."""
     tamed_by = METHODS[method].tamed_by
     if tamed_by is None or not len(points) or not np.isfinite(z).any():
         return []
