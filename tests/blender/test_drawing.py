@@ -28,6 +28,7 @@ BLENDERS_MENUS = (
     "VIEW3D_MT_view",
     "TOPBAR_MT_file_import",
     "TOPBAR_MT_file_export",
+    "TOPBAR_MT_help",
 )
 BY_SCRIPT = {"realmodel.section_update"}  # operators that no button is for
 

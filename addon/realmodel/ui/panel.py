@@ -20,6 +20,11 @@ class TabPanel:
         self.draw_in(layout, context, context.scene.realmodel)
 
 
+def ui_scale():
+    """Pixels by Blender's units of the interface, which has none before its first window is drawn."""
+    return bpy.context.preferences.system.ui_scale or 1.0
+
+
 def hint(layout, text):
     """An empty state: what to do first, in as many lines as the sidebar's width asks for."""
     column = layout.column(align=True)
@@ -33,8 +38,7 @@ def _letters():
     region = bpy.context.region
     if region is None:
         return 40
-    scale = bpy.context.preferences.system.ui_scale or 1.0  # 0 before the first window is drawn
-    return max(16, int((region.width / scale - 60) / 5.9))
+    return max(16, int((region.width / ui_scale() - 60) / 5.9))
 
 
 _UNIT = re.compile(r"(?<=\d) (?=(?:[mck]?m[²³]?|%|ft|mi|yd|in)(?!\w))")  # between a number and its unit
