@@ -6,11 +6,31 @@ editor, a menu of the top bar, or a script it happens in the largest viewport of
 mode, where nobody looks, in all of them.
 """
 
+import math
+
 import bpy
 import numpy as np
-from mathutils import Vector
+from mathutils import Matrix, Vector
 
-from . import picture, scene
+from . import scene
+
+# Where the usual view of a model is from. Azimuths are clockwise from north (+y).
+CAMERA_AZIMUTH = math.radians(152.0)
+CAMERA_ELEVATION = math.radians(27.0)
+
+
+def towards(azimuth, elevation):
+    """Unit vector towards an azimuth (clockwise from north) and elevation, radians."""
+    flat = math.cos(elevation)
+    return Vector((flat * math.sin(azimuth), flat * math.cos(azimuth), math.sin(elevation)))
+
+
+def view_rotation():
+    """How the usual view is turned, (3, 3): its columns point right, up, and back from where it looks."""
+    back = towards(CAMERA_AZIMUTH, CAMERA_ELEVATION)
+    right = Vector((0.0, 0.0, 1.0)).cross(back).normalized()
+    return Matrix((right, back.cross(right), back)).transposed()
+
 
 _status = {}  # by the pointer of a window: the message that its status bar has
 
@@ -72,7 +92,7 @@ def frame(current, shown):
         space.clip_start, space.clip_end = diagonal / 1e4, diagonal * 10.0
         space.region_3d.view_location = middle
         space.region_3d.view_distance = diagonal
-        space.region_3d.view_rotation = picture.view_rotation().to_quaternion()
+        space.region_3d.view_rotation = view_rotation().to_quaternion()
 
 
 def show_status():
