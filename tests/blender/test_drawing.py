@@ -225,6 +225,11 @@ class States(PanelCase):
         ops.section_plane()
         activity.problem, activity.problem_object = "a problem", "field"
         drawn |= self.draw().operators
+        self.model.display = "SURFACES"
+        drawn |= self.draw().operators
+        ops.edit_surface()
+        drawn |= self.draw().operators
+        ops.edit_done()
         known = {
             cls.bl_idname
             for cls in bpy.types.Operator.__subclasses__()

@@ -10,7 +10,7 @@ from bpy_extras.io_utils import ExportHelper
 from ..bl import project_settings, results
 from ..bl.display import shown_models
 from ..core import UsageError
-from ..core.atomic import atomic_file
+from ..core.atomic import Outputs
 from ..core.exporters import save_model
 from ..core.exporters.report import write_report
 from .reporting import Reporting, a_model, needed_path
@@ -94,7 +94,7 @@ class REALMODEL_OT_report(Exporting, bpy.types.Operator):
     def write(self, context, path):
         is_table = path.suffix.lower() == ".csv"
         model = None if is_table else shown_models.whole(context.scene)
-        with atomic_file(path) as file:
+        with Outputs() as outputs, outputs.file(path) as file:
             if is_table:
                 file.write(results.as_csv(context.scene).encode())
             else:

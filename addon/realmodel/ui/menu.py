@@ -64,6 +64,7 @@ class REALMODEL_MT_object(_Menu, bpy.types.Menu):
         yield "constraint_add", "Constraint from Active Object", {}
         yield "size_add", "Refinement at Active Object", {}
         yield None
+        yield "edit_surface", "Edit Active Surface", {}
         yield "assign_property", "Assign Active Property", {}
 
 
@@ -86,6 +87,8 @@ class REALMODEL_MT_view(_Menu, bpy.types.Menu):
         yield None
         yield "coordinates", None, {}
         yield "capture", None, {}
+        yield "set_up_picture", None, {}
+        yield "render_picture", None, {}
 
 
 def _draw(layout, entries):
