@@ -109,7 +109,7 @@ class States(PanelCase):
         ops.section_plane()
         ops.coordinates(location=(50.0, 50.0, 5.0))
         ops.set_origin(action="PLACE")
-        ops.hide_property(property_id=0, action="HIDE")
+        ops.hide_property(property_id=self.model.results[0].property_id, action="HIDE")
         drawing = self.draw()
         self.assertIn("realmodel.section_flip", drawing.operators)
         self.assertIn("x", " ".join(drawing.labels))

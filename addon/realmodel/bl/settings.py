@@ -11,6 +11,8 @@ from .. import preferences
 
 VERSION = 4  # of the settings; versioning.py brings older ones up to it
 
+DATA = "realmodel_data"  # on an object: it shows data of a model, and is no input of one
+
 _quiet = 0  # how many blocks of code fill in settings at the moment
 
 
@@ -40,12 +42,12 @@ def begin(group):
 
 def is_mesh_object(_row, item):
     """Poll of pointers to objects: what has vertices."""
-    return item.type == "MESH"
+    return item.type == "MESH" and DATA not in item
 
 
 def is_region_object(_row, item):
     """Poll of pointers to objects: what can bound a region."""
-    return item.type in {"MESH", "CURVE"}
+    return item.type in {"MESH", "CURVE"} and DATA not in item
 
 
 def active_rock(scene):

@@ -7,7 +7,9 @@ from . import (
     build,
     documentation,
     files,
+    imports,
     library,
+    origin,
     plan_mesh,
     results,
     rocks,
@@ -20,8 +22,10 @@ from . import (
 
 _MODULES = (
     start,
+    origin,
     rocks,
     plan_mesh,
+    imports,
     surfaces,
     boreholes,
     variograms,

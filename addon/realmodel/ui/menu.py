@@ -43,6 +43,7 @@ class REALMODEL_MT_add(_Menu, bpy.types.Menu):
         yield "surface_add", "Surfaces from Files...", {}
         yield _SURFACE_OF_OBJECT
         yield "boreholes_read", "Boreholes from File...", {}
+        yield "region_around", None, {}
         yield None
         for axis, name in (("Y", "South"), ("X", "East"), ("Z", "Above")):
             yield "section_plane", f"Section Plane: {name}", {"axis": axis}
