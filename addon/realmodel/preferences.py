@@ -44,8 +44,8 @@ class RealModelPreferences(bpy.types.AddonPreferences):
         precision=1,
     )
     live_pause: FloatProperty(
-        name="Live Pause",
-        description="Time without a change after which Live builds again",
+        name="Auto Pause",
+        description="Time without a change after which Auto builds again",
         subtype="TIME_ABSOLUTE",
         unit="TIME_ABSOLUTE",
         min=0.0,
