@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import colorsys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -24,6 +25,8 @@ from .work import Cancel, Progress, native_module
 if TYPE_CHECKING:
     from .cutting import Cut
     from .section import Fence, Section
+
+_GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
 
 
 @dataclass(frozen=True)
@@ -90,6 +93,19 @@ class Model:
     def volume(self) -> float:
         """The volume of all blocks, model units cubed."""
         return float(sum(block.volume for block in self.blocks))
+
+    @property
+    def block_colors(self) -> np.ndarray:
+        """(B, 3) float64: the color of each block's property, sRGB from 0 to 1; where there is none one of a
+        circle of hues."""
+        library = self.project.library
+        entries = [library.get(block.property) if library else None for block in self.blocks]
+        return np.array(
+            [
+                entry.rgb if entry and entry.rgb else colorsys.hsv_to_rgb(number * _GOLDEN % 1.0, 0.35, 0.85)
+                for number, entry in enumerate(entries)
+            ]
+        )
 
     @property
     def interpolations(self) -> list[Interpolation | None]:

@@ -67,7 +67,7 @@ class Axes:
         size, drawing = self.size, self.drawing
         drawing.rectangle(x, y, width, height, stroke=BLACK, line=0.6, layer=layer)
         widest = 0.0
-        values = ticks(*self.y_range, max(3, int(height / (3.2 * size))))
+        values = ticks(*self.y_range, max(3, int(height / (2.6 * size))))
         for value, text in zip(values, tick_texts(values), strict=True):
             ((_, at),) = self.at([(self.x_range[0], value)]).tolist()
             drawing.line([(x - _TICK, at), (x, at)], width=0.6, layer=layer)
