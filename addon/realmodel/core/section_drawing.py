@@ -56,7 +56,10 @@ def draw_section(section: Section, exaggeration: float = 1.0, title: str | None 
     plot_height = max(height, legend_height)
     drawing = Drawing(float(page) + 12, float(_BELOW + plot_height + _ABOVE))
     base = _BELOW + plot_height - height
-    drawing.scale, drawing.origin = float(scale), (_LEFT - scale * low[0], base - scale * exaggeration * low[1])
+    drawing.scale, drawing.origin = (
+        float(scale),
+        (_LEFT - scale * low[0], base - scale * exaggeration * low[1]),
+    )
     axes = Axes(drawing, (_LEFT, base, width, height), (low[0], high[0]), (low[1], high[1]), _SIZE)
     for block in present:
         rings = [axes.at(ring) for ring in block_outlines(section, flat, block)]
