@@ -20,9 +20,9 @@ DEFAULT_FOLDS = 10
 @dataclass(frozen=True, eq=False)
 class SurfaceQuality:
     """variogram: that its heights were estimated with, or None. cross_validation: None where there is none,
-    then `missing` says why. angles: (T,) the smallest angles of its triangles in plan, degrees. mean_deviation,
-    most_deviation: of the standard deviation of its heights over its area, model units; None where the
-    method gives none."""
+    then `missing` says why. angles: (T,) the smallest angles of its triangles in plan, degrees.
+    mean_deviation, most_deviation: of the standard deviation of its heights over its area, model units; None
+    where the method gives none."""
 
     variogram: Variogram | None
     cross_validation: CrossValidation | None
