@@ -1,20 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measures RealModel beside its peers in one run and writes docs/dev/performance.md; also fits what
-# estimates and progress stand on (addon/realmodel/core/measured_costs.py). On a quiet machine the
+# Measures RealModel beside its peers in one run and writes docs/dev/performance.md. On a quiet machine the
 # whole run takes about half an hour and up to 12 GB. Peers that are missing are SKIPPED, and why.
 #
-#   scripts/benchmark.sh              all sizes; writes the page and the constants
+#   scripts/benchmark.sh              all sizes; writes the page
 #   scripts/benchmark.sh --quick      small sizes, each once, as a look; the page is left as it is
-#   scripts/benchmark.sh --fit        only fits the constants and compares estimates with builds
-#   scripts/benchmark.sh --only stacks|fit|watch|blender|heights|meshing, --memory GB, --write F.md, --help
+#   scripts/benchmark.sh --only stacks|watch|blender|heights|meshing, --memory GB, --write F.md, --help
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 python=/usr/bin/python3
 
 # Whether one of these parts is to be measured: all are where none is named.
 wanted() {
-    [[ " ${asked[*]} " != *" --only "* && " ${asked[*]} " != *" --fit "* ]] && return
+    [[ " ${asked[*]} " != *" --only "* ]] && return
     local part
     for part; do [[ " ${asked[*]} " == *" --only $part "* ]] && return; done
     return 1

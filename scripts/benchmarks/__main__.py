@@ -11,7 +11,6 @@ from pathlib import Path
 from . import (
     blender_table,
     display_table,
-    fitting,
     heights_table,
     meshing_table,
     page,
@@ -21,7 +20,7 @@ from . import (
 from .process import ROOT
 from .stacks_table import Limits, Row, StackRows
 
-PARTS = ("stacks", "fit", "watch", "blender", "heights", "meshing")
+PARTS = ("stacks", "watch", "blender", "heights", "meshing")
 _QUICK_TRIANGLES, _ALL_TRIANGLES = 800_000, 10_000_000
 
 
@@ -39,9 +38,6 @@ def main() -> int:
     if "stacks" in parts:
         rows = StackRows(limits, lambda row: print(" | ".join(_cells(row)), flush=True)).all()
         tables["stacks"] = [page.table(_HEADINGS, [_cells(row) for row in rows], 2)]
-    if "fit" in parts:
-        rows = fitting.fit_and_check(given.quick, memory, _say, write=given.fit or not given.quick)
-        tables["estimates"] = [page.table(fitting.HEADINGS, rows, 2)]
     if "watch" in parts:
         progress, cancels = watching_table.measure(limits, _say)
         tables["progress"] = [
@@ -87,7 +83,6 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument(
         "--only", action="append", choices=PARTS, help="this part only; may be given several times"
     )
-    parser.add_argument("--fit", action="store_true", help="the same as --only fit")
     parser.add_argument(
         "--memory", type=float, default=12.0, metavar="GB", help="most that a process may take"
     )
@@ -95,8 +90,6 @@ def _arguments() -> argparse.Namespace:
         "--write", type=Path, metavar="F.md", help="page to write (default: docs/dev/performance.md)"
     )
     given = parser.parse_args()
-    if given.fit:
-        given.only = [*(given.only or []), "fit"]
     if given.write is None and not given.quick:
         given.write = Path("docs/dev/performance.md")
     if given.write is not None:

@@ -3,18 +3,15 @@
 
 from __future__ import annotations
 
-import copy
 import gc
 import threading
 import time
-from contextlib import contextmanager
 
 import numpy as np
-from realmodel.core import Cancelled, Project, Rock, Surface, build
-from realmodel.core.measured_costs import COSTS
+from realmodel.core import Cancelled, Project, Rock, Surface, build, estimate
 
 from .made_stacks import StackSpec
-from .process import resident
+from .process import peak_resident, resident
 
 
 def project(spec: StackSpec) -> Project:
@@ -25,17 +22,6 @@ def project(spec: StackSpec) -> Project:
     return Project("benchmark", [Rock("rock", surfaces)])
 
 
-@contextmanager
-def counting_plainly():
-    """Builds within tell what the native part counted, not what was made of it."""
-    whole = [{"triangles": 1, "knots": [[0.0, 0.0], [1.0, 1.0]]}]
-    kept = copy.deepcopy(COSTS)
-    for cells in ("columns", "blocks"):
-        COSTS[cells].update(pace_own=whole, pace_shared=whole)
-    yield
-    COSTS.update(kept)
-
-
 def _grown(before: int) -> int:
     gc.collect()
     return resident() - before
@@ -44,12 +30,15 @@ def _grown(before: int) -> int:
 def progress(spec: dict, cells: str, threads: int) -> dict:
     """Builds once and compares each fraction that was told with the share of the time that had passed.
 
-    Returns `seconds`, `deviation` (the greatest difference, 0 .. 1), `worked` (the same for processor time of
-    the process, which other processes do not change), `halfway` (the fraction told at half of the time),
-    `gap` (the longest time without a call), `calls`, `told` [[share of the time, fraction, text], ...].
+    Returns `seconds`, `bytes` taken, `bound` and `expected` (bytes and seconds that estimate() says),
+    `deviation` (the greatest difference, 0 .. 1), `worked` (the same for processor time of the process, which
+    other processes do not change), `halfway` (the fraction told at half of the time), `gap` (the longest time
+    without a call), `calls`, `told` [[share of the time, fraction, text], ...].
     """
     given = project(StackSpec(**spec))
     told, spent = [], []
+    said = estimate(given, cells, threads)
+    resident_before = resident()
 
     def tell(share: float, text: str) -> None:
         told.append((time.perf_counter() - began, share, text))
@@ -64,6 +53,9 @@ def progress(spec: dict, cells: str, threads: int) -> dict:
     worked = (np.array(spent) - before) / (spent[-1] - before)
     return {
         "seconds": seconds,
+        "bytes": peak_resident() - resident_before,
+        "bound": said.memory,
+        "expected": said.seconds,
         "cells": len(model.cell_block),
         "timings": model.timings,
         "deviation": float(np.abs(shares - passed).max()),

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from blender_state import inventory, volume
 from panel_case import PanelCase, ops, raise_by, select, stack
-from realmodel.bl import meshes, meshes_ahead
+from realmodel.bl import meshes
 from realmodel.bl.build_job import BuildJob
 from realmodel.core import Cancelled
 from realmodel.core.polygon_mesh import of_triangles
@@ -29,78 +29,24 @@ class HandOver(PanelCase):
         self.assertAlmostEqual(self.volumes()["S2 block"], 13e4, delta=1.0)
         self.assertAlmostEqual(volume(bpy.data.objects["S2 block"].data), 13e4, delta=1.0)
         self.assertEqual(bpy.data.objects["S2 block"].data.name, "S2 block")
-        self.assertFalse([m.name for m in bpy.data.meshes if not m.users or meshes_ahead._MARK in m])
-        self.assertFalse(meshes_ahead._made)
+        self.assertFalse([mesh.name for mesh in bpy.data.meshes if not mesh.users])
 
-    def test_one_mesh_after_the_other(self):
+    def test_done(self):
         self.assertFalse(self.job.hand_over(0.0), "there is a second block")
-        self.assertTrue(self.job.hand_over(0.0))
-        self.assertAlmostEqual(volume(bpy.data.objects["S2 block"].data), 1e5, delta=1.0)
-        with mock.patch.object(meshes, "_made_now", side_effect=AssertionError("it is there already")):
-            self.job.finish()
-        self.assert_built()
-
-    def test_all_at_once(self):
         self.assertTrue(self.job.hand_over(60.0))
+        self.assertAlmostEqual(volume(bpy.data.objects["S2 block"].data), 1e5, delta=1.0)
         self.job.finish()
         self.assert_built()
 
-    def test_cancelled_in_between(self):
+    def test_cancelled(self):
         self.job.hand_over(0.0)
         self.job.cancel()
         self.assertTrue(self.job.hand_over(0.0), "there is nothing to wait for")
         with self.assertRaises(Cancelled):
             self.job.finish()
         self.assertEqual(inventory(), self.before)
-        self.assertFalse(meshes_ahead._made)
 
-    def test_no_memory_in_between(self):
-        self.job.hand_over(0.0)
-        with (
-            mock.patch.object(self.job._slices, "_new_mesh", side_effect=MemoryError("on purpose")),
-            self.assertRaisesRegex(MemoryError, "on purpose"),
-        ):
-            self.job.hand_over(0.0)
-        self.assertEqual(inventory(), self.before)
-
-    def test_the_window_is_closed_in_between(self):
-        self.job.hand_over(0.0)
-        self.job.cancel()
-        self.job.leave()
-        self.assertEqual(inventory(), self.before)
-
-    def test_the_lists_change_in_between(self):
-        self.job.hand_over(60.0)
-        self.model.rocks[0].surfaces[2].name = "Renamed"
-        with self.assertRaisesRegex(Exception, "lists were changed"):
-            self.job.finish()
-        self.model.rocks[0].surfaces[2].name = "S2"
-        self.assertEqual(inventory(), self.before)
-
-    def test_what_has_no_users_is_cleared_in_between(self):
-        self.job.hand_over(60.0)
-        for mesh in [mesh for mesh in bpy.data.meshes if not mesh.users]:
-            bpy.data.meshes.remove(mesh)
-        self.job.finish()
-        self.assert_built()
-
-    def test_the_scene_is_saved_and_opened_in_between(self):
-        self.job.hand_over(60.0)
-        self.save_and_open()
-        self.job.finish()
-        self.assert_built()
-
-    def test_another_mesh_of_the_same_name_is_left_alone(self):
-        self.job.hand_over(60.0)
-        for mesh in [mesh for mesh in bpy.data.meshes if not mesh.users]:
-            name = mesh.name
-            bpy.data.meshes.remove(mesh)
-            bpy.data.meshes.new(name)["mine"] = True
-        self.job.finish()
-        self.assertAlmostEqual(volume(bpy.data.objects["S2 block"].data), 13e4, delta=1.0)
-        self.assertEqual(len([mesh for mesh in bpy.data.meshes if "mine" in mesh]), 2)
-
-    def test_undo_in_between(self):
+    def test_undone(self):
         if bpy.app.background and not bpy.ops.ed.undo_push.poll():
             self.skipTest("this Blender has no undo in background")
         bpy.ops.ed.undo_push(message="one")

@@ -3,8 +3,6 @@
 coordinates. The model stays what it is in all of them."""
 
 import itertools
-import sys
-import threading
 import time
 from unittest import mock
 
@@ -13,7 +11,7 @@ import bpy
 import numpy as np
 import realmodel
 from made_projects import LIBRARY
-from realmodel import handlers, props_stage
+from realmodel import props_stage
 from realmodel.bl.display import cuts, preparing, replacing
 from realmodel.core import build
 from view_case import Case
@@ -294,37 +292,6 @@ class Renders(Case):
         self.assertEqual(self.opaque(), shown["BLOCKS"])
         self.assertEqual(self.contents(), before)
         self.assertEqual([m.name for m in bpy.data.meshes if not m.users], [])
-
-
-class BesideAWindow(Case):
-    def call(self, *errors):
-        """Calls a handler in a thread, as a render does; it raises the errors one after the other. Returns
-        how often it was called, and what the thread has raised."""
-        left, calls, raised = list(errors), [], []
-
-        def handler(scene):
-            calls.append(scene)
-            if left:
-                raise left.pop(0)
-
-        def render():
-            try:
-                handlers._patient(handler)(self.scene)
-            except AttributeError as error:
-                raised.append(error)
-
-        thread = threading.Thread(target=render)
-        thread.start()
-        thread.join()
-        return len(calls), raised
-
-    def test_a_render_waits_while_a_panel_is_drawn(self):
-        interval = sys.getswitchinterval()
-        drawing = [AttributeError(f"{handlers._WHILE_DRAWING}: Scene") for _ in range(3)]
-        self.assertEqual(self.call(*drawing), (4, []))
-        self.assertEqual(sys.getswitchinterval(), interval)
-        defect = AttributeError("no such thing")
-        self.assertEqual(self.call(defect), (1, [defect]))
 
 
 class WithAWindow(Stages):

@@ -7,14 +7,11 @@ import random
 import resource
 import signal
 import subprocess
-import tempfile
 import time
 from contextlib import suppress
-from pathlib import Path
 
 import pytest
 from realmodel.core import OutputFailed
-from realmodel.core import atomic as atomic_module
 from realmodel.core.atomic import Outputs, atomic_file, atomic_path
 
 FORK = multiprocessing.get_context("fork")
@@ -25,23 +22,6 @@ def names(folder):
     return sorted(entry.name for entry in folder.iterdir())
 
 
-@pytest.fixture(params=["nameless files", "hidden names"])
-def either_way(request, monkeypatch):
-    """With the nameless files of Linux, and on file systems that have none."""
-    if request.param == "hidden names":
-        monkeypatch.setattr(atomic_module, "_nameless", lambda folder: None)
-    return request.param
-
-
-@pytest.fixture
-def scratch(tmp_path, monkeypatch):
-    """The system's temporary folder, for this test alone."""
-    folder = tmp_path / "system-temporary"
-    folder.mkdir()
-    monkeypatch.setattr(tempfile, "tempdir", str(folder))
-    return folder
-
-
 @pytest.fixture
 def out(tmp_path):
     folder = tmp_path / "out"
@@ -49,7 +29,7 @@ def out(tmp_path):
     return folder
 
 
-def test_files_appear_together_at_the_end(out, scratch, either_way):
+def test_files_appear_together_at_the_end(out):
     (out / "b").write_text("old")
     with Outputs() as outputs:
         with outputs.file(out / "a") as file:
@@ -60,7 +40,6 @@ def test_files_appear_together_at_the_end(out, scratch, either_way):
             file.write(b"new b")
         with outputs.path(out / "c.png") as path:
             assert path.suffix == ".png"
-            assert path.parent != out
             path.write_text("new c")
         assert not (out / "a").exists()
         assert (out / "b").read_text() == "old"
@@ -70,7 +49,6 @@ def test_files_appear_together_at_the_end(out, scratch, either_way):
         "b": "new b",
         "c.png": "new c",
     }
-    assert names(scratch) == []
     assert os.stat(out / "a").st_mode & 0o777 == 0o666 & ~_umask()
 
 
@@ -81,7 +59,7 @@ def _umask():
 
 
 @pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, SystemExit])
-def test_nothing_stays_of_a_run_that_fails(out, scratch, either_way, error):
+def test_nothing_stays_of_a_run_that_fails(out, error):
     (out / "b").write_text("old")
     with pytest.raises(error), Outputs() as outputs:
         with outputs.file(out / "a") as file:
@@ -91,36 +69,15 @@ def test_nothing_stays_of_a_run_that_fails(out, scratch, either_way, error):
         raise error
     assert names(out) == ["b"]
     assert (out / "b").read_text() == "old"
-    assert names(scratch) == []
 
 
-def test_what_was_published_is_taken_back_when_the_next_fails(out, scratch, either_way):
+def test_what_was_published_is_taken_back_when_the_next_fails(out):
     with pytest.raises(OutputFailed, match="b: cannot be written"), Outputs() as outputs:
         for name in "ab":
             with outputs.file(out / name) as file:
                 file.write(b"x")
         (out / "b").mkdir()  # someone takes the name meanwhile
     assert names(out) == ["b"]
-    assert names(scratch) == []
-
-
-def test_another_file_system_is_reached_by_copying(out, scratch, either_way, monkeypatch):
-    move = os.replace
-
-    def replace(source, target):
-        if Path(source).parent != Path(target).parent:
-            raise OSError(18, "Invalid cross-device link")
-        move(source, target)
-
-    monkeypatch.setattr(os, "replace", replace)
-    for text in ("first", "second"):
-        with atomic_path(out / "a.blend") as path:
-            path.write_text(text)
-        with atomic_file(out / "b") as file:
-            file.write(text.encode())
-        assert [(out / name).read_text() for name in ("a.blend", "b")] == [text, text]
-    assert names(out) == ["a.blend", "b"]
-    assert names(scratch) == []
 
 
 def test_links_are_followed(out):
@@ -144,25 +101,6 @@ def test_places_that_cannot_be_written_to_are_named(out):
     assert names(out) == []
 
 
-def test_left_overs_of_killed_runs_are_removed(out, scratch, monkeypatch):
-    monkeypatch.setattr(atomic_module, "_nameless", lambda folder: None)
-    child = subprocess.Popen(["true"])
-    child.wait()
-    dead = child.pid
-    prefix = atomic_module._prefix(out / "a")
-    (out / f"{prefix}{dead}-0123").write_text("left over")
-    (out / f"{prefix}{os.getpid()}-0123").write_text("of a living run")
-    (out / ".other").write_text("of the user")
-    (scratch / f"realmodel-{os.getuid()}-{dead}-xyz").mkdir()
-    (scratch / f"realmodel-{os.getuid()}-{os.getpid()}-xyz").mkdir()
-    with atomic_file(out / "a") as file:
-        file.write(b"a")
-    with atomic_path(out / "b") as path:
-        path.write_text("b")
-    assert names(out) == sorted(["a", "b", ".other", f"{prefix}{os.getpid()}-0123"])
-    assert names(scratch) == [f"realmodel-{os.getuid()}-{os.getpid()}-xyz"]
-
-
 def _write_once(out, number):
     """Three outputs, each filled with one character that tells the round."""
     text = bytes([65 + number % 26]) * SIZE
@@ -183,35 +121,6 @@ def _write_for_ever(out, number, ready):
         _write_once(out, number)
 
 
-def seconds_of_a_round(out):
-    began = time.perf_counter()
-    for number in range(3):
-        _write_once(out, number)
-    return (time.perf_counter() - began) / 3
-
-
-def test_killed_at_any_moment_nothing_partial_and_nothing_stray(out, scratch):
-    """SIGKILL at 150 random moments."""
-    chance = random.Random(1)
-    a_round = seconds_of_a_round(out)
-    for trial in range(150):
-        ready = FORK.Event()
-        child = FORK.Process(target=_write_for_ever, args=(out, 7 * trial, ready))
-        child.start()
-        ready.wait()
-        time.sleep(chance.uniform(0.0, 2.0) * a_round)
-        os.kill(child.pid, signal.SIGKILL)
-        child.join()
-        for entry in out.iterdir():
-            assert entry.name in ("same", "byname.png") or entry.name.startswith("new"), entry.name
-            content = entry.read_bytes()
-            assert len(content) == SIZE
-            assert content == content[:1] * SIZE
-    with atomic_path(out / "last") as path:
-        path.write_text("x")
-    assert names(scratch) == [], "what killed runs left in the temporary folder is removed by the next"
-
-
 def _interrupted(out, ready):
     # a run started in the background ignores the signal, and children inherit that
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -220,21 +129,19 @@ def _interrupted(out, ready):
     os._exit(7)
 
 
-def test_ctrl_c_at_any_moment_leaves_nothing(out, scratch, either_way):
+def test_ctrl_c_at_any_moment_leaves_nothing(out):
     chance = random.Random(2)
-    a_round = seconds_of_a_round(out)
     for _ in range(40):
         ready = FORK.Event()
         child = FORK.Process(target=_interrupted, args=(out, ready))
         child.start()
         ready.wait()
-        time.sleep(chance.uniform(0.0, 2.0) * a_round)
+        time.sleep(chance.uniform(0.0, 0.02))
         while child.is_alive():  # Python drops a Ctrl-C that comes while it frees an object: pressed again
             os.kill(child.pid, signal.SIGINT)
             child.join(5)
         assert child.exitcode == 7
         assert [name for name in names(out) if name.startswith(".")] == []
-        assert names(scratch) == []
 
 
 def _fill(out, outcome):
@@ -270,12 +177,11 @@ def outcomes_of(target, *arguments):
     return found
 
 
-def test_a_size_limit_is_told_in_one_line_and_leaves_nothing(out, scratch, either_way):
+def test_a_size_limit_is_told_in_one_line_and_leaves_nothing(out):
     for message in outcomes_of(_fill, out):
         assert "large: cannot be written: File too large; make room" in message
         assert "\n" not in message
     assert names(out) == []
-    assert names(scratch) == []
 
 
 @pytest.fixture
@@ -289,8 +195,7 @@ def small_disk(tmp_path):
     subprocess.run(["umount", str(folder)], check=True)
 
 
-def test_a_full_disk_is_told_in_one_line_and_leaves_nothing(small_disk, scratch, either_way):
+def test_a_full_disk_is_told_in_one_line_and_leaves_nothing(small_disk):
     for message in outcomes_of(_write_too_much, small_disk):
         assert "large: cannot be written: No space left on device; make room" in message
     assert names(small_disk) == []
-    assert names(scratch) == []

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What scripts/benchmark.sh stands on: its inputs, its page, its fit, and the guard round its processes."""
+"""What scripts/benchmark.sh stands on: its inputs, its page, and the guard round its processes."""
 
-import ast
 import sys
 
 import numpy as np
@@ -12,7 +11,7 @@ from realmodel.core import mesh_region
 
 sys.path.insert(0, str(ROOT / "scripts"))
 
-from benchmarks import fitting, hard_outlines, meshing, page, peers, process
+from benchmarks import hard_outlines, meshing, page, peers, process
 from benchmarks.made_stacks import StackSpec
 
 
@@ -88,56 +87,6 @@ def test_each_run_rewrites_its_own_part_of_the_page(tmp_path):
         "# Performance\n\n<!-- one begins -->\n1\nmore\n<!-- one ends -->\n\n"
         "<!-- two begins -->\n2\n<!-- two ends -->\n\nby hand\n"
     )
-
-
-def test_the_fit_finds_what_was_put_in():
-    rows = np.random.default_rng(6).uniform(1, 9, (12, 4))
-    found = fitting.least_squares(rows, rows @ [3.0, 0.0, 5.0, 0.0])
-    assert found == pytest.approx([3.0, 0.0, 5.0, 0.0], abs=1e-9)
-    assert (fitting.least_squares(rows, rows @ [3.0, -1.0, 0.0, 4.0]) >= 0).all()
-
-
-def a_case(ratio, seconds, whole=False):
-    return {"seconds": seconds, "sample": {"corners": ratio, "built": 1, "seconds": 1.0, "whole": whole}}
-
-
-@pytest.mark.parametrize("growth", [0.8, 0.9, 1.0, 1.1])
-def test_the_growth_that_was_put_in_is_found(growth):
-    cases = [a_case(ratio, 0.6 * ratio**growth) for ratio in (0.5, 4, 40, 200)]
-    assert fitting.scale([*cases, a_case(1, 99.0, whole=True)]) == {"pace": 0.6, "growth": growth}
-
-
-def test_no_case_is_missed_by_more_than_it_has_to_be():
-    assert fitting.scale([a_case(8, 8.0), a_case(8, 4 * 8.0)]) == {"pace": 2.0, "growth": 1.0}
-    cases = [{"triangles": 1, "vertices": 0, "faces": 0, "corners": 0, "bytes": size} for size in (100, 900)]
-    assert fitting.sizes(cases)["triangles"] == 300.0
-
-
-def test_a_pace_rises_where_counting_jumps_and_stands_still():
-    told = [[0.0, 0.0], [0.2, 0.5], [0.4, 0.5], [0.6, 0.5], [0.9, 0.6], [1.0, 1.0]]
-    knots = fitting.knots([{"told": told}])
-    shares = [share for _, share in knots]
-    assert knots[0] == [0.0, 0.0]
-    assert knots[-1] == [1.0, 1.0]
-    assert shares == sorted(shares)
-    middle = dict(map(tuple, knots))[0.5]
-    assert 0.2 <= middle <= 0.6
-
-
-def test_small_and_large_stacks_have_a_pace_each():
-    slow, fast = [[0.0, 0.0], [0.5, 0.2], [1.0, 1.0]], [[0.0, 0.0], [0.5, 0.8], [1.0, 1.0]]
-    small = {"spec": {"surfaces": 10, "quads": 100}, "told": slow}
-    large = {"spec": {"surfaces": 10, "quads": 700}, "told": fast}
-    curves = fitting.pace([large, small])
-    assert [curve["triangles"] for curve in curves] == [200_000, 9_800_000]
-    assert curves[0]["knots"] == fitting.knots([small])
-    assert len(fitting.pace([small])) == 1
-
-
-def test_constants_are_written_as_python_that_reads_back():
-    costs = {"read": 1.5e-08, "columns": {"bytes": {"faces": 3.0}, "pace_own": []}}
-    costs["columns"]["pace_own"] = [{"triangles": 7, "knots": [[0.0, 0.0], [1.0, 1.0]]}]
-    assert ast.literal_eval(fitting.literal(costs)) == costs
 
 
 def test_a_process_that_takes_too_long_or_fails_is_skipped():

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from realmodel.core import InputRefused, Project, Rock, Surface, build, estimate, interpolate, load_project
+from realmodel.core import InputRefused, Project, Rock, Surface, build, interpolate, load_project
 from realmodel.core.exporters.report import model_report
 from realmodel.core.rules import RULES
 
@@ -185,18 +185,6 @@ def test_minimum_thickness_of_the_oldest():
         build(rock(Surface("a", method="constant", options={"value": 1}, minimum_thickness=1)))
 
 
-def test_surfaces_without_points_can_be_estimated():
-    top = Surface("top", points=points(10, 10, 14, 14), method="plane")
-    middle = Surface("middle", method="parallel", options={"to": "top", "thickness": -3})
-    floor = Surface("floor", method="constant", options={"value": 0})
-    low = Surface("low", points=points(1, 1, 2, 2), method="natural_neighbour", minimum_thickness=1)
-    project = rock(floor, low, middle, top)
-    for cells in ("columns", "blocks"):
-        for stage in (None, 2):
-            told, model = estimate(project, cells, stage=stage), build(project, cells, stage=stage)
-            assert told.cells == pytest.approx(len(model.cell_block), rel=0.1)
-
-
 def test_a_smooth_surface_that_keeps_off_another():
     low = Surface("low", points=points(0, 0, 4, 4), method="plane")
     wells = np.array([[3, 3, 4.0], [7, 3, 1.5], [5, 8, 4.0]])
@@ -209,4 +197,3 @@ def test_a_smooth_surface_that_keeps_off_another():
     assert set(vertices[on_border, 2]) == {6.0}
     told = interpolate(None, wells[:, :2], "parallel", to=(vertices, triangles), thickness=0).z
     assert told == pytest.approx(wells[:, 2], abs=1e-5)
-    assert estimate(rock(low, high)).cells == pytest.approx(len(model.cell_block), rel=0.5)

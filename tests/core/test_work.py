@@ -7,7 +7,7 @@ import time
 
 import pytest
 from realmodel.core import Cancelled, InputRefused
-from realmodel.core.work import POLL_SECONDS, run
+from realmodel.core.work import POLL_SECONDS, run, start
 
 ENDLESS = 6000  # steps of 10 ms: a test that takes all of them has failed
 
@@ -20,8 +20,8 @@ class Steps:
         self._enough = enough
 
     def __call__(self, work):
-        for start, text in ((0.0, "first half"), (0.5, "second half")):
-            with work.phase(start, start + 0.5, text):
+        for begin, text in ((0.0, "first half"), (0.5, "second half")):
+            with work.phase(begin, begin + 0.5, text):
                 for step in range(ENDLESS // 2):
                     if self._enough() and step > 0:
                         break
@@ -128,3 +128,58 @@ def test_the_last_call_tells_the_end():
 
     run(task, lambda fraction, text: calls.append((fraction, text)))
     assert calls == [(1.0, "quick")]
+
+
+def test_a_job_is_looked_after_by_its_handle():
+    steps, enough = Steps(lambda: enough.is_set()), threading.Event()
+    job = start(steps)
+    assert not job.wait(0.05)
+    assert not job.done
+    assert not job.succeeded
+    assert job.state()[1] == "first half"
+    enough.set()
+    assert job.result() == "done"
+    assert job.done
+    assert job.succeeded
+    assert job.state() == (1.0, "second half")
+
+
+def test_a_cancelled_job_is_done_at_once_though_its_thread_still_leaves():
+    may_leave = threading.Event()
+    job = start(lambda _work: may_leave.wait(60.0))
+    job.cancel()
+    began = time.monotonic()
+    assert job.wait()
+    assert time.monotonic() - began < 30.0
+    with pytest.raises(Cancelled):
+        job.result()
+    assert not job.succeeded
+    assert working_threads()
+    may_leave.set()
+    run(lambda _work: None)
+    assert not working_threads()
+
+
+def test_what_runs_within_a_job_is_a_part_of_it():
+    threads, may_end = [], threading.Event()
+
+    def inner(work):
+        threads.append(threading.get_ident())
+        with work.phase(0.0, 1.0, "inner"):
+            work.step(0.5)
+            may_end.wait(60.0)
+
+    def outer(_work):
+        threads.append(threading.get_ident())
+        run(inner)
+
+    job = start(outer)
+    while len(threads) < 2:
+        time.sleep(0.01)
+    assert threads[0] == threads[1]
+    while job.state() != (0.5, "inner"):
+        time.sleep(0.01)
+    job.cancel()
+    may_end.set()
+    with pytest.raises(Cancelled):
+        job.result()

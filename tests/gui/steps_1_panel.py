@@ -124,7 +124,7 @@ def change_a_rule(walk):
 
 
 def edit_live(walk):
-    """A vertex is pulled up in edit mode; the block follows when the hand rests."""
+    """A vertex is pulled up in edit mode; the block follows after a short pause."""
     model().live = True
     yield nothing_left_to_do
     before = volumes()

@@ -5,10 +5,10 @@ thread again. Nothing of Blender is held in between but the scene's name: undo m
 
 import bpy
 
-from ..core import BuildFailed, InputRefused, RealModelError, build
+from ..core import BuildFailed, InputRefused, RealModelError, build, work
 from ..core.project import surface_item
 from . import built_models, built_scene, display, meshes, project_settings, settings
-from .thread_job import ThreadJob, threads
+from .threads import threads
 
 
 class BuildJob:
@@ -39,20 +39,11 @@ class BuildJob:
     def start(self, is_short=False):
         """Builds in a thread. is_short: it is expected to take less than half a second."""
         self._threads = threads(is_short)
-        self._job = ThreadJob("build", self._work)
+        self._job = work.start(self._work)
 
-    def _work(self, job):
-        def cancel():
-            return job.cancelled
-
-        model = build(
-            self.composed.project,
-            cells=self.cells,
-            threads=self._threads,
-            progress=job.tell,
-            cancel=cancel,
-        )
-        return built_scene.prepare(model, self.composed, self._stage, self._threads, cancel)
+    def _work(self, _):
+        model = build(self.composed.project, cells=self.cells, threads=self._threads)
+        return built_scene.prepare(model, self.composed, self._stage, self._threads)
 
     @property
     def done(self):
@@ -66,7 +57,7 @@ class BuildJob:
         self._job.cancel()
 
     def wait(self):
-        """Waits for the thread."""
+        """Waits until it has ended or, where it was cancelled, for a moment."""
         self._job.wait()
 
     def hand_over(self, seconds):

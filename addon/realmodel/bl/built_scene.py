@@ -55,9 +55,9 @@ class Prepared:
     stage: tuple | None = None
 
 
-def prepare(model, composed, stage=None, threads=0, cancel=None):
+def prepare(model, composed, stage=None, threads=0):
     """Prepared arrays of a model; may run in a thread of its own. stage: the one that will be shown, where it
-    is not the whole. threads, cancel: as for `build`."""
+    is not the whole. threads: as for `build`."""
     origin = composed.origin
     if composed.origin_is_free:
         origin = choose_origin(model.surface_vertices)
@@ -74,7 +74,7 @@ def prepare(model, composed, stage=None, threads=0, cancel=None):
                 prepared.interfaces[r, s] = (shape, digest)
                 prepared.told[r, s] = model.surface_attributes(surface)
             surface += 1
-    prepared.blocks = polygon_mesh.of_blocks(model, origin, threads, cancel)
+    prepared.blocks = polygon_mesh.of_blocks(model, origin, threads)
     prepared.bounds = block_shapes.bounds([s.coordinates for s in prepared.blocks if s is not None])
     for (r, s), stamp in composed.read.items():
         rock = model.project.rocks[r]
@@ -86,8 +86,8 @@ def prepare(model, composed, stage=None, threads=0, cancel=None):
         prepared.stored[r, s] = (project_settings.packed(model.project.rocks[r].surfaces[s]), "")
     prepared.figures = surface_figures.of_model(model)
     if stage is not None:
-        at_stage = build_stage(model, stage, cells="blocks", cancel=cancel)
-        found = block_shapes.by_name(at_stage, polygon_mesh.of_blocks(at_stage, origin, threads, cancel))
+        at_stage = build_stage(model, stage, cells="blocks")
+        found = block_shapes.by_name(at_stage, polygon_mesh.of_blocks(at_stage, origin, threads))
         prepared.stage = (stage, at_stage, found)
     return prepared
 

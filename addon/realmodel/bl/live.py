@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Building again on its own after a change, when the hand rests (`scene.realmodel.live`).
+"""Building again on its own after a change, after a short pause (`scene.realmodel.live`).
 
 A handler of Blender's dependency graph tells of changed objects, the settings of changed rows. A timer waits
 until nothing has changed for a moment, builds in a thread, and puts the result into the meshes that are
@@ -12,9 +12,9 @@ from contextlib import contextmanager
 import bpy
 
 from ..core import Cancelled
-from .rested_work import RestedWork
+from .debounce import DebouncedJob
 
-REST_SECONDS = 0.03  # without a change, after which the hand is taken to rest
+REST_SECONDS = 0.03  # without a change, after which it is built
 _SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
 
 _at_work = False  # what Blender tells of now is our own doing
@@ -35,7 +35,7 @@ def switched():
 
 
 def is_working():
-    """Whether a rebuild is under way, or waits for the hand to rest."""
+    """Whether a rebuild is under way, or waits for a pause."""
     return _work.is_working()
 
 
@@ -148,4 +148,4 @@ def _tell(scene, error):
     viewports.redraw()
 
 
-_work = RestedWork(REST_SECONDS, _begin, _finish, lambda: not bpy.context.window_manager.realmodel.running)
+_work = DebouncedJob(REST_SECONDS, _begin, _finish, lambda: not bpy.context.window_manager.realmodel.running)

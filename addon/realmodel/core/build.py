@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from contextlib import contextmanager
 from dataclasses import replace
@@ -12,7 +13,6 @@ import numpy as np
 from .build_options import CELL_KINDS, check_cells, check_memory, check_stage
 from .build_warning import BuildWarning
 from .estimate import require_memory
-from .expected_costs import expected_costs, expected_shares, stack_pace
 from .method_options import check_threads
 from .model import Block, Model, count_blocks
 from .project import Project, check_project
@@ -20,6 +20,8 @@ from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
 from .stack_refusals import refused_stack
 from .work import Cancel, Progress, Work, native_module, run
 
+# Of the time of a build, roughly; a phase that a project does not have has none
+_SHARES = {"read": 0.1, "mesh": 0.05, "interpolate": 0.45, "intersect": 0.38, "merge": 0.02}
 _STAGE_INTERSECTED = 0.99  # of the time of a stage: nothing is read again
 
 __all__ = ["CELL_KINDS", "build", "build_stage"]
@@ -90,7 +92,7 @@ def _build(
     work: Work, project: Project, cells: str, threads: int, stage: int | None, memory: int | None
 ) -> Model:
     timings = {"read": 0.0, "mesh": 0.0, "interpolate": 0.0, "intersect": 0.0}
-    shares = expected_shares(project, cells)
+    ends = _phase_ends(project)
 
     @contextmanager
     def timed(name: str):
@@ -98,33 +100,44 @@ def _build(
         yield
         timings[name] += time.perf_counter() - began
 
-    with timed("read"), work.phase(0.0, shares.read, "reading"):
+    with timed("read"), work.phase(0.0, ends["read"], "reading"):
         inputs = read_rocks(work, project)
+    for entry, (start, end) in zip(inputs, _parts(ends["read"], ends["mesh"], len(inputs)), strict=True):
+        with timed("mesh"), work.phase(start, end, f"meshing the region of {entry.rock.name}"):
+            mesh_rock(work, entry)
 
     def taken() -> list[RockInput]:
         return inputs if stage is None else [entry.stage(stage) for entry in inputs]
 
-    costs = expected_costs(taken(), cells)
-    scale = (shares.intersect - shares.read) / sum(cost.total for cost in costs)
-    at = shares.read
-    for entry, cost in zip(inputs, costs, strict=True):
-        with (
-            timed("mesh"),
-            work.phase(at, at + scale * cost.mesh, f"meshing the region of {entry.rock.name}"),
-        ):
-            mesh_rock(work, entry)
-        at += scale * cost.mesh
-    with work.phase(at, at, "looking whether it fits the memory"):
-        require_memory(work, taken(), cells, threads, memory)
-    for entry, cost in zip(inputs, costs, strict=True):
+    require_memory(taken(), cells, memory)
+    parts = _parts(ends["mesh"], ends["interpolate"], len(inputs))
+    for entry, (start, end) in zip(inputs, parts, strict=True):
         with timed("interpolate"):
-            interpolate_rock(work, entry, at, at + scale * cost.interpolate, threads, stage)
-        at += scale * cost.interpolate
+            interpolate_rock(work, entry, start, end, threads, stage)
     inputs = taken()
     with timed("intersect"):
-        built = _intersect(work, inputs, cells, threads, at, shares.intersect)
+        built = _intersect(work, inputs, cells, threads, ends["interpolate"], ends["intersect"])
     given = replace(project, rocks=[entry.rock for entry in inputs])
-    return _assemble(work, given, inputs, built, cells, threads, timings, shares.intersect)
+    return _assemble(work, given, inputs, built, cells, threads, timings, ends["intersect"])
+
+
+def _phase_ends(project: Project) -> dict[str, float]:
+    """Where each phase ends in the progress: by fixed shares of the phases that this project has."""
+    has_files = bool(project.input_files())
+    interpolates = any(rock.interpolates for rock in project.rocks)
+    shares = _SHARES | {
+        "read": _SHARES["read"] * has_files,
+        "mesh": _SHARES["mesh"] * interpolates,
+        "interpolate": _SHARES["interpolate"] * interpolates,
+    }
+    ends = np.cumsum(list(shares.values())) / sum(shares.values())
+    return dict(zip(shares, ends.tolist(), strict=True))
+
+
+def _parts(start: float, end: float, count: int) -> list[tuple[float, float]]:
+    """The stretch from `start` to `end` in equal parts."""
+    steps = np.linspace(start, end, count + 1).tolist()
+    return list(itertools.pairwise(steps))
 
 
 def _intersect(work: Work, inputs, cells: str, threads: int, start: float, end: float) -> dict:
@@ -139,7 +152,7 @@ def _intersect(work: Work, inputs, cells: str, threads: int, start: float, end: 
         )
         for entry in inputs
     ]
-    with work.phase(start, end, "intersecting and cutting"), work.paced(stack_pace(inputs, cells)):
+    with work.phase(start, end, "intersecting and cutting"):
         try:
             return work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)
         except native.InputError as error:

@@ -8,7 +8,7 @@ import numpy as np
 from .build_warning import BuildWarning
 from .errors import InputRefused, place_text
 from .heights import Interpolation, heights
-from .methods import METHODS, SURFACE_OPTIONS, checked_options
+from .methods import SURFACE_OPTIONS
 from .project import Rock, surface_item
 from .work import Work, native_module
 from .wrong_sides import Triangulation, heights_at, listed
@@ -106,32 +106,6 @@ def _older_points_above(
         return []
     z = heights_at(work, shape, points[:, :2], threads)
     return listed(rock, number - 1, points[:, 2] - z, "above", number)
-
-
-_STAND_IN = "idw"
-
-
-def rough_heights(work: Work, entry, number: int, nodes: np.ndarray, threads: int) -> np.ndarray:
-    """(N,) heights of a surface at a few nodes (N, 2), shape enough to count how surfaces cross: by another
-    method where its own is dear, and NaN where it has none. Other surfaces need no heights yet."""
-    entry = entry.whole or entry
-    rock, surface = entry.rock, entry.rock.surfaces[number]
-    if entry.surfaces[number] is not None:
-        return heights_at(work, entry.surfaces[number], nodes, threads)
-    method, settings = surface.method_options()
-    if method == "parallel" and settings["thickness"] is not None:
-        below = named_surfaces(rock, number).get(settings["to"]) if isinstance(settings["to"], str) else None
-        if below is not None:
-            return rough_heights(work, entry, below, nodes, threads) + settings["thickness"]
-        if isinstance(settings["to"], np.ndarray):  # known at all the nodes only
-            return np.full(len(nodes), np.nanmean(settings["to"]) + settings["thickness"])
-    points = surface.points
-    if len(points) and (not METHODS[method].is_local or settings.get("neighbours") == 0):
-        method, settings = _STAND_IN, checked_options(_STAND_IN, {})
-    z = heights(work, points, nodes, method, settings, threads).z
-    if surface.minimum_thickness is not None:
-        z = np.fmax(z, rough_heights(work, entry, number - 1, nodes, threads) + surface.minimum_thickness)
-    return z
 
 
 def where_known(nodes: np.ndarray, triangles: np.ndarray, z: np.ndarray) -> Triangulation:

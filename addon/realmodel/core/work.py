@@ -28,14 +28,13 @@ _SECONDS_TO_LEAVE = 0.1  # with one poll before it, an answer to cancel() stays 
 
 
 class Work:
-    """What the working thread tells of itself, and how it learns that it should stop."""
+    """What a working thread tells of itself, and how it learns that it should stop."""
 
     def __init__(self):
         self._lock = threading.Lock()
         self._control = None
         self._start, self._end = 0.0, 1.0
         self._share = 0.0
-        self._pace: Callable[[float], float] | None = None
         self._told = 0.0
         self._text = ""
         self._cancelled = False
@@ -50,15 +49,6 @@ class Work:
             self._start, self._end, self._share, self._text = start, end, 0.0, text
         yield
         self.step(1.0)
-
-    @contextmanager
-    def paced(self, pace: Callable[[float], float]):
-        """Native calls within whose counted fraction goes to the share of their time by `pace`."""
-        with self._lock:
-            self._pace = pace
-        yield
-        with self._lock:
-            self._pace = None
 
     def step(self, share: float) -> None:
         """Tells the share done of the present phase. Raises Cancelled where the caller asked to stop."""
@@ -96,8 +86,7 @@ class Work:
         with self._lock:
             share = self._share
             if self._control is not None:
-                counted = self._control.fraction
-                share = max(share, counted if self._pace is None else self._pace(counted))
+                share = max(share, self._control.fraction)
             self._told = max(self._told, self._start + (self._end - self._start) * share)
             return self._told, self._text
 
@@ -108,6 +97,78 @@ class Work:
                 self._control.cancel()
 
 
+class Job:
+    """A task in a thread of its own, under way. Only the thread that started it looks after it."""
+
+    def __init__(self, task: Callable[[Work], Result]):
+        self._work = Work()
+        self._ended = threading.Event()
+        self._leaves_at: float | None = None  # when a stopped task is no longer waited for
+        self._result = self._error = None
+        _leaving[:] = [thread for thread in _leaving if thread.is_alive()]
+        # not a daemon: at its end Python must not tear native work out of its thread
+        self._thread = threading.Thread(
+            target=self._run, args=(task, list(_leaving)), name="realmodel work", daemon=False
+        )
+        self._thread.start()
+
+    def _run(self, task, leaving: list[threading.Thread]) -> None:
+        try:
+            for thread in leaving:  # so that two never hold memory at once
+                thread.join()
+            _current.work = self._work
+            self._result = task(self._work)
+        except BaseException as error:  # handed to the thread that asks for the result, which raises it
+            self._error = error
+        finally:
+            self._ended.set()
+
+    def state(self) -> tuple[float, str]:
+        """(fraction done, never falling; what is being done)."""
+        return self._work.state()
+
+    def cancel(self) -> None:
+        """Tells the task to stop. It is waited for, but not for long: freeing what a large model has taken so
+        far may need seconds, and goes on in its own thread, which later jobs wait for."""
+        if self._leaves_at is None:
+            self._leaves_at = time.monotonic() + _SECONDS_TO_LEAVE
+            _leaving.append(self._thread)
+        self._work.cancel()
+
+    @property
+    def done(self) -> bool:
+        """Whether result() answers at once."""
+        return self._ended.is_set() or (self._leaves_at is not None and time.monotonic() >= self._leaves_at)
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether the task has ended, and result() returns what it has returned."""
+        return self._ended.is_set() and self._leaves_at is None and self._error is None
+
+    def wait(self, seconds: float | None = None) -> bool:
+        """Waits until the job is done, at most so many seconds; returns whether it is."""
+        if self._leaves_at is not None:
+            left = max(0.0, self._leaves_at - time.monotonic())
+            seconds = left if seconds is None else min(seconds, left)
+        self._ended.wait(seconds)
+        return self.done
+
+    def result(self):
+        """What the task has returned, once it has; raises what it has raised, and Cancelled."""
+        self.wait()
+        if self._leaves_at is not None:
+            raise Cancelled("cancelled")
+        self._thread.join()
+        if self._error is not None:
+            raise self._error
+        return self._result
+
+
+def start(task: Callable[[Work], Result]) -> Job:
+    """Begins task(work) in a thread of its own. What it calls with `run` becomes a part of it."""
+    return Job(task)
+
+
 def run(
     task: Callable[[Work], Result], progress: Progress | None = None, cancel: Cancel | None = None
 ) -> Result:
@@ -115,66 +176,35 @@ def run(
 
     progress(fraction, text) and cancel() are called from this thread every 40 ms. Whatever they raise,
     KeyboardInterrupt included, stops the work and passes on. Raises Cancelled where cancel() returned True
-    before the work was done. Work that was stopped is waited for, but not for long: freeing what a large
-    model has taken so far may need seconds, and goes on in its own thread, which later work waits for.
+    before the work was done.
+
+    Within a job, and without these two, the task is done at once as a part of that job.
     """
-    work = Work()
-    done = threading.Event()
-    outcome: list = [None, None]
-
-    def target() -> None:
-        try:
-            _join_leaving()
-            outcome[0] = task(work)
-        except BaseException as error:  # handed to the caller's thread, which raises it
-            outcome[1] = error
-        finally:
-            done.set()
-
-    # not a daemon: at its end Python must not tear native work out of its thread
-    thread = threading.Thread(target=target, name="realmodel work")
-    thread.start()
+    work = getattr(_current, "work", None)
+    if work is not None and progress is None and cancel is None:
+        return task(work)
+    job = start(task)
     try:
-        while not done.wait(POLL_SECONDS):
+        while not job.wait(POLL_SECONDS):
             if progress is not None:
-                progress(*work.state())
+                progress(*job.state())
             if cancel is not None and cancel():
-                work.cancel()
-                _wait(thread)
-                break
+                job.cancel()
+                job.wait()
     except BaseException:
-        work.cancel()
-        _wait(thread)
+        job.cancel()
+        while not job.done:
+            with suppress(KeyboardInterrupt):  # however often Ctrl-C is pressed meanwhile
+                job.wait()
         raise
-    if not done.is_set():
-        raise Cancelled("cancelled")
-    thread.join()
-    if outcome[1] is not None:
-        raise outcome[1]
+    result = job.result()
     if progress is not None:
-        progress(*work.state())
-    return outcome[0]
+        progress(*job.state())
+    return result
 
 
-_leaving: list[threading.Thread] = []  # told to stop, but not gone yet
-
-
-def _join_leaving() -> None:
-    """Waits for stopped work to end, so that two never hold memory at once."""
-    for thread in list(_leaving):
-        thread.join()
-        with suppress(ValueError):  # other work, which waited as well, has taken it away
-            _leaving.remove(thread)
-
-
-def _wait(thread: threading.Thread) -> None:
-    """Waits a moment for a thread that was told to stop, however often Ctrl-C is pressed meanwhile."""
-    until = time.monotonic() + _SECONDS_TO_LEAVE
-    while thread.is_alive() and time.monotonic() < until:
-        with suppress(KeyboardInterrupt):
-            thread.join(max(0.0, until - time.monotonic()))
-    if thread.is_alive():
-        _leaving.append(thread)
+_current = threading.local()  # work: of the job that this thread does
+_leaving: list[threading.Thread] = []  # told to stop, but perhaps not gone yet
 
 
 @contextmanager

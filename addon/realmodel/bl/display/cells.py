@@ -5,7 +5,7 @@ import json
 
 from ...core import polygon_mesh
 from .. import block_shapes, project_settings
-from ..thread_job import threads
+from ..threads import threads
 from . import cuts, shown_models
 
 SHRINK = 0.88  # of a cell's size: the gaps let each be seen
@@ -37,15 +37,15 @@ class Recipe:
     def is_ready(self):
         return self.shapes is not None
 
-    def make(self, cancel=None):
+    def make(self):
         """{(rock mass, block): PolygonMesh}, in offsets from the model origin. Raises RealModelError."""
         if self.shapes is None:
             model = self._half
             if model is None:
-                model = self._model.make(cancel)
+                model = self._model.make()
                 if self._plane is not None:
-                    model = model.cut_by_plane(*self._plane, cancel=cancel).below
-            shapes = polygon_mesh.of_cells(model, self._origin, SHRINK, threads(), cancel)
+                    model = model.cut_by_plane(*self._plane).below
+            shapes = polygon_mesh.of_cells(model, self._origin, SHRINK, threads())
             self.shapes = block_shapes.by_name(model, shapes)
         return self.shapes
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The model cut open along a movable plane: exactly, by the core, when the hand rests.
+"""The model cut open along a movable plane: exactly, by the core, after a short pause.
 
 What stands on the side of the plane's Z axis is taken off; of each block its other half is shown, a closed
 body whose cut is filled. The blocks themselves stay whole, only hidden.
@@ -10,14 +10,14 @@ import json
 import bpy
 import numpy as np
 
-from ...core import Cancelled, InputRefused, RealModelError, polygon_mesh
+from ...core import Cancelled, InputRefused, RealModelError, polygon_mesh, work
 from ...core.polygon_mesh import PolygonMesh
 from .. import block_shapes, exaggeration, meshes, project_settings, scene, settings, viewports
-from ..rested_work import RestedWork
-from ..thread_job import ThreadJob, threads
+from ..debounce import DebouncedJob
+from ..threads import threads
 from . import bodies, explosion, replacing, shown_models
 
-REST_SECONDS = 0.08  # without a movement of the plane, after which the hand is taken to rest
+REST_SECONDS = 0.08  # without a movement of the plane, after which it is cut
 _halves = {}  # by the name of a scene: (what it was cut from and where, the half as a Model)
 
 
@@ -124,7 +124,7 @@ def follow(current, depsgraph):
 
 
 def refresh(current, stage=None):
-    """Makes the cut anew: at once where nobody waits for the window, else when the hand rests."""
+    """Makes the cut anew: at once where nobody waits for the window, else after a short pause."""
     if replacing.nobody_waits():
         cut_now(current, stage)
     else:
@@ -155,7 +155,7 @@ def take_off(current):
 
 
 def touch(current):
-    """The plane was moved, or the model is another: the cut is made when the hand rests."""
+    """The plane was moved, or the model is another: the cut is made after a short pause."""
     _work.touch(current.name)
 
 
@@ -165,17 +165,14 @@ def _begun(current, state):
     recipe = shown_models.Recipe(current, stage, _wanted_cells(current))
     half, origin = known_half(current, state, _wanted_cells(current)), project_settings.model_origin(current)
 
-    def task(job):
-        def cancel():
-            return job.cancelled
-
+    def task(_):
         model = half
         if model is None:
-            model = recipe.make(cancel).cut_by_plane(point, normal, threads(), cancel=cancel).below
-        shapes = block_shapes.by_name(model, polygon_mesh.of_blocks(model, origin, threads(), cancel))
+            model = recipe.make().cut_by_plane(point, normal, threads()).below
+        shapes = block_shapes.by_name(model, polygon_mesh.of_blocks(model, origin, threads()))
         return state, model, shapes, recipe
 
-    return ThreadJob("section", task)
+    return work.start(task)
 
 
 def _take(current, made):
@@ -238,4 +235,4 @@ def stop():
     forget()
 
 
-_work = RestedWork(REST_SECONDS, _begin, _finish)
+_work = DebouncedJob(REST_SECONDS, _begin, _finish)

@@ -4,10 +4,9 @@ the cells of a large model. Then the view is asked again, and finds it at hand."
 
 import bpy
 
-from ...core import Cancelled, RealModelError
+from ...core import Cancelled, RealModelError, work
 from .. import meshes, viewports
-from ..rested_work import RestedWork
-from ..thread_job import ThreadJob
+from ..debounce import DebouncedJob
 from . import cells, modes, replacing, shown_models
 
 
@@ -43,16 +42,13 @@ def _begin(name, _changed_at):
         group.view.message = str(error)
         return None
 
-    def task(job):
-        def cancel():
-            return job.cancelled
-
-        shapes = stage.make_shapes(cancel)
+    def task(_):
+        shapes = stage.make_shapes()
         if wanted is not None:
-            wanted.make(cancel)
+            wanted.make()
         return stage, shapes, wanted
 
-    return ThreadJob("view", task)
+    return work.start(task)
 
 
 def _hand_over(name, job):
@@ -115,4 +111,4 @@ def stop():
 
 _SLICE = 0.05  # seconds in which Blender is given meshes, before the window is looked after again
 _slices = {}  # by the name of a scene: the meshes that are being made for it
-_work = RestedWork(0.0, _begin, _finish, hand_over=_hand_over)
+_work = DebouncedJob(0.0, _begin, _finish, hand_over=_hand_over)

@@ -8,7 +8,7 @@ only the blocks that differ go to Blender.
 from ...core import build, polygon_mesh
 from ...core.build import build_stage
 from .. import block_shapes, built_models, project_settings, settings
-from ..thread_job import threads
+from ..threads import threads
 
 _MOST_CORNERS = 20_000_000  # of the faces of all stages that are kept: about 0.6 GB with their shapes
 _stages = {}  # (stamp, stage, cells) -> realmodel.core.Model, the one that was used last at the end
@@ -39,25 +39,25 @@ class Recipe:
             return built_models.current(scene, self.cells)
         return _stages.get((self.stamp, self.stage, self.cells))
 
-    def make(self, cancel=None):
-        """The realmodel.core.Model. cancel: as for `build`. Raises InputRefused, BuildFailed, Cancelled."""
+    def make(self):
+        """The realmodel.core.Model. Raises InputRefused, BuildFailed, Cancelled."""
         if self.model is None and self._base is None:
             kind = self.cells or "blocks"
-            self._base = build(self._project, cells=kind, threads=threads(), cancel=cancel)
+            self._base = build(self._project, cells=kind, threads=threads())
             if self.is_whole:
                 self.model = self._base
         if self.model is None:
             last = max(len(rock.surfaces) for rock in self._base.project.rocks) - 1
             stage = last if self.is_whole else self.stage
-            self.model = build_stage(self._base, stage, cells=self.cells, cancel=cancel)
+            self.model = build_stage(self._base, stage, cells=self.cells)
         return self.model
 
-    def make_shapes(self, cancel=None):
+    def make_shapes(self):
         """{(rock mass, block): PolygonMesh} of the model's blocks."""
         found = _shapes.get((self.stamp, self.stage))
         if found is None:
-            model = self.make(cancel)
-            found = block_shapes.by_name(model, polygon_mesh.of_blocks(model, self.origin, threads(), cancel))
+            model = self.make()
+            found = block_shapes.by_name(model, polygon_mesh.of_blocks(model, self.origin, threads()))
         return found
 
     def keep(self, shapes=None):

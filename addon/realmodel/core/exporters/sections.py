@@ -23,6 +23,7 @@ from .. import drawing
 from ..errors import UsageError
 from ..section_drawing import draw_section
 from .npz import write_arrays
+from .vtk_xml import write_grid
 
 _POLYGON = 7
 
@@ -54,46 +55,18 @@ def write_section_npz(section, file: BinaryIO) -> None:
 def write_section_vtu(section, file: BinaryIO) -> None:
     """Polygon cells with the cell arrays `block` (number in the model's list), `property` (library id, 0:
     none), `cells` (the model's, below and above; -1: outside), and `panel` where it is a fence."""
-    polygons = len(section)
-    arrays = [  # element, name, components, values
-        ("Points", "Points", 3, section.vertices.astype("<f8")),
-        ("Cells", "connectivity", 1, section.polygon_vertices.astype("<i8")),
-        ("Cells", "offsets", 1, section.offsets[1:].astype("<i8")),
-        ("Cells", "types", 1, np.full(polygons, _POLYGON, np.uint8)),
-        ("CellData", "block", 1, section.block.astype("<i4")),
-        ("CellData", "property", 1, section.property.astype("<i4")),
-        ("CellData", "cells", 2, section.cells.astype("<i4")),
+    arrays = [
+        ("Points", "Points", section.vertices.astype("<f8")),
+        ("Cells", "connectivity", section.polygon_vertices.astype("<i8")),
+        ("Cells", "offsets", section.offsets[1:].astype("<i8")),
+        ("Cells", "types", np.full(len(section), _POLYGON, np.uint8)),
+        ("CellData", "block", section.block.astype("<i4")),
+        ("CellData", "property", section.property.astype("<i4")),
+        ("CellData", "cells", section.cells.astype("<i4")),
     ]
     if hasattr(section, "panel"):
-        arrays.append(("CellData", "panel", 1, section.panel.astype("<i4")))
-    kinds = {"f8": "Float64", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
-    tags: dict[str, list[str]] = {"Points": [], "Cells": [], "CellData": []}
-    at = 0
-    for element, name, components, values in arrays:
-        width = f' NumberOfComponents="{components}"' if components > 1 else ""
-        kind = kinds[values.dtype.str[1:]]
-        tags[element].append(
-            f'<DataArray type="{kind}" Name="{name}"{width} format="appended" offset="{at}"/>'
-        )
-        at += 8 + values.nbytes
-    body = "\n".join(
-        "\n".join([f"<{element}>", *lines, f"</{element}>"]) for element, lines in tags.items()
-    ).replace("<CellData>", '<CellData Scalars="block">')
-    file.write(
-        f"""<?xml version="1.0"?>
-<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
-<UnstructuredGrid>
-<Piece NumberOfPoints="{len(section.vertices)}" NumberOfCells="{polygons}">
-{body}
-</Piece>
-</UnstructuredGrid>
-<AppendedData encoding="raw">
-_""".encode("ascii")
-    )
-    for *_, values in arrays:
-        file.write(np.array([values.nbytes], "<u8").tobytes())
-        file.write(np.ascontiguousarray(values))
-    file.write(b"\n</AppendedData>\n</VTKFile>\n")
+        arrays.append(("CellData", "panel", section.panel.astype("<i4")))
+    write_grid(file, arrays)
 
 
 def write_section_obj(section, file: BinaryIO) -> None:

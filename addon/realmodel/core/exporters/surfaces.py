@@ -14,6 +14,7 @@ from ..atomic import Outputs
 from ..errors import UsageError
 from .npz import joined_attributes, texts, write_arrays
 from .report import SCHEMA, surface_entries, versions, warning_entries
+from .vtk_xml import write_grid
 
 _TRIANGLE = 5  # VTK's number
 ATTRIBUTES = ("height", "variance", "distance")
@@ -52,44 +53,17 @@ def write_surfaces_vtu(surfaces, file: BinaryIO) -> None:
         np.arange(len(surfaces.surface_names), dtype="<i4"), np.diff(arrays["surface_triangle_offsets"])
     )
     count = len(corners)
-    blocks: list[np.ndarray] = []
-    at = 0
-
-    def tag(name: str, kind: str, values: np.ndarray, width: int = 1) -> str:
-        nonlocal at
-        several = f' NumberOfComponents="{width}"' if width > 1 else ""
-        text = f'<DataArray type="{kind}" Name="{name}"{several} format="appended" offset="{at}"/>'
-        blocks.append(np.ascontiguousarray(values))
-        at += 8 + blocks[-1].nbytes
-        return text
-
-    points = tag("Points", "Float64", arrays["surface_vertices"].astype("<f8"), 3)
-    of_points = [tag(name, "Float64", arrays[f"surface_{name}"].astype("<f8")) for name in ATTRIBUTES]
-    cells = [
-        tag("connectivity", "Int64", corners),
-        tag("offsets", "Int64", 3 * np.arange(1, count + 1, dtype="<i8")),
-        tag("types", "UInt8", np.full(count, _TRIANGLE, np.uint8)),
-    ]
-    of_cells = tag("surface", "Int32", number)
-    lines = [
-        '<?xml version="1.0"?>',
-        '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">',
-        "<UnstructuredGrid>",
-        f'<Piece NumberOfPoints="{len(arrays["surface_vertices"])}" NumberOfCells="{count}">',
-        f"<Points>{points}</Points>",
-        f"<Cells>{''.join(cells)}</Cells>",
-        f'<PointData Scalars="height">{"".join(of_points)}</PointData>',
-        f'<CellData Scalars="surface">{of_cells}</CellData>',
-        "</Piece>",
-        "</UnstructuredGrid>",
-        '<AppendedData encoding="raw">',
-        "_",
-    ]
-    file.write("\n".join(lines).encode("ascii"))
-    for block in blocks:
-        file.write(np.array([block.nbytes], "<u8").tobytes())
-        file.write(block)
-    file.write(b"\n</AppendedData>\n</VTKFile>\n")
+    write_grid(
+        file,
+        [
+            ("Points", "Points", arrays["surface_vertices"].astype("<f8")),
+            ("Cells", "connectivity", corners.ravel()),
+            ("Cells", "offsets", 3 * np.arange(1, count + 1, dtype="<i8")),
+            ("Cells", "types", np.full(count, _TRIANGLE, np.uint8)),
+            *(("PointData", name, arrays[f"surface_{name}"].astype("<f8")) for name in ATTRIBUTES),
+            ("CellData", "surface", number),
+        ],
+    )
 
 
 WRITERS: dict[str, Callable[..., None]] = {".npz": write_surfaces_npz, ".vtu": write_surfaces_vtu}

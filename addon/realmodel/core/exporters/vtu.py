@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """VTK unstructured grid (.vtu) of polyhedral cells, binary, for ParaView, PyVista and meshio.
 
-Format: "VTK File Formats", XML, type UnstructuredGrid; polyhedra as `faces` (for each cell: number of
+Polyhedra stand as `faces` (for each cell: number of
 faces, then for each face its number of corners and the corners) and `faceoffsets` (end of each cell).
 """
 
@@ -13,6 +13,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ..work import native_module
+from .vtk_xml import END, ArrayTag, write_array, write_header, write_length
 
 _POLYHEDRON = 42
 _CELLS_AT_ONCE = 20_000
@@ -25,26 +26,27 @@ def write_vtu(model, file: BinaryIO, step: Callable[[float], None]) -> None:
     count = len(model.cell_block)
     block_property = np.array([block.property for block in model.blocks], np.int32)
     streams = cells.stream_length()
-    parts = [  # name, type, components, bytes; connectivity is last: its length is found on the way
-        ("Points", "Float64", 3, model.vertices.nbytes),
-        ("block", "Int32", 1, 4 * count),
-        ("property", "Int32", 1, 4 * count),
-        ("types", "UInt8", 1, count),
-        ("faceoffsets", "Int64", 1, 8 * count),
-        ("faces", "Int64", 1, 8 * int(streams.sum())),
-        ("offsets", "Int64", 1, 8 * count),
-        ("connectivity", "Int64", 1, None),
+    faces_size = 8 * int(streams.sum())
+    tags = [  # connectivity is last: its length is found on the way
+        ArrayTag("Points", "Points", "f8", model.vertices.nbytes, 3),
+        ArrayTag("CellData", "block", "i4", 4 * count),
+        ArrayTag("CellData", "property", "i4", 4 * count),
+        ArrayTag("Cells", "types", "u1", count),
+        ArrayTag("Cells", "faceoffsets", "i8", 8 * count),
+        ArrayTag("Cells", "faces", "i8", faces_size),
+        ArrayTag("Cells", "offsets", "i8", 8 * count),
+        ArrayTag("Cells", "connectivity", "i8", 0),
     ]
-    file.write(_header(len(model.vertices), count, parts).encode("ascii"))
-    _array(file, np.ascontiguousarray(model.vertices, "<f8"))
-    _array(file, model.cell_block.astype("<i4"))
-    _array(file, block_property[model.cell_block].astype("<i4") if count else np.empty(0, "<i4"))
-    _array(file, np.full(count, _POLYHEDRON, np.uint8))
-    _array(file, np.cumsum(streams).astype("<i8"))
+    write_header(file, len(model.vertices), count, tags)
+    write_array(file, np.ascontiguousarray(model.vertices, "<f8"))
+    write_array(file, model.cell_block.astype("<i4"))
+    write_array(file, block_property[model.cell_block].astype("<i4") if count else np.empty(0, "<i4"))
+    write_array(file, np.full(count, _POLYHEDRON, np.uint8))
+    write_array(file, np.cumsum(streams).astype("<i8"))
     faces_at = file.tell()
-    offsets_at = faces_at + 8 + 8 * int(streams.sum())
+    offsets_at = faces_at + 8 + faces_size
     corners_at = offsets_at + 8 + 8 * count
-    file.write(_length(8 * int(streams.sum())))
+    write_length(file, faces_size)
     faces_at, next_corners_at = faces_at + 8, corners_at + 8
     corners = np.zeros(count, np.int64)
     for start in range(0, count, _CELLS_AT_ONCE):
@@ -57,47 +59,11 @@ def write_vtu(model, file: BinaryIO, step: Callable[[float], None]) -> None:
         faces_at, next_corners_at = faces_at + stream.nbytes, next_corners_at + vertices.nbytes
         step(end / count)
     file.seek(offsets_at)
-    _array(file, np.cumsum(corners).astype("<i8"))
-    file.write(_length(8 * int(corners.sum())))
+    write_array(file, np.cumsum(corners).astype("<i8"))
+    write_length(file, 8 * int(corners.sum()))
     file.seek(next_corners_at)
-    file.write(b"\n</AppendedData>\n</VTKFile>\n")
+    file.write(END)
     step(1.0)
-
-
-def _length(size: int) -> bytes:
-    return np.array([size], "<u8").tobytes()
-
-
-def _array(file: BinaryIO, array: np.ndarray) -> None:
-    file.write(_length(array.nbytes))
-    file.write(np.ascontiguousarray(array))
-
-
-def _header(points: int, cells: int, parts) -> str:
-    tags, at = {}, 0
-    for name, kind, components, size in parts:
-        width = f' NumberOfComponents="{components}"' if components > 1 else ""
-        tags[name] = f'<DataArray type="{kind}" Name="{name}"{width} format="appended" offset="{at}"/>'
-        at += 8 + (size or 0)
-    in_cells = "\n".join(tags[name] for name in ("connectivity", "offsets", "types", "faces", "faceoffsets"))
-    return f"""<?xml version="1.0"?>
-<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
-<UnstructuredGrid>
-<Piece NumberOfPoints="{points}" NumberOfCells="{cells}">
-<Points>
-{tags["Points"]}
-</Points>
-<Cells>
-{in_cells}
-</Cells>
-<CellData Scalars="block">
-{tags["block"]}
-{tags["property"]}
-</CellData>
-</Piece>
-</UnstructuredGrid>
-<AppendedData encoding="raw">
-_"""
 
 
 class CellFaces:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Work for a scene that begins when the hand rests: nothing has changed for a moment. It goes on in a thread,
-while one of Blender's timers looks after it; what changes meanwhile stops it, and it begins anew."""
+"""Jobs for a scene that begin after a short pause: nothing has changed for a moment. One of Blender's timers
+looks after them; what changes meanwhile stops the job, and it begins anew."""
 
 import time
 
@@ -9,17 +9,17 @@ import bpy
 _LOOK_SECONDS = 0.005  # between two looks, which cost nothing beside what Blender does in that time
 
 
-class RestedWork:
+class DebouncedJob:
     """What waits, and what is under way.
 
-    rest: seconds without a change. begin(name, changed_at) returns a job (as ThreadJob: done, cancel, wait)
-    for the scene of that name, or None. finish(name, job, changed_at) takes what it has done. may_begin():
-    whether nothing else is in the way. hand_over(name, job): called once the job is done, again and again
-    until it returns True: what can be done in slices before `finish`.
+    pause: seconds without a change. begin(name, changed_at) returns a job (core.work.Job, or with its done,
+    cancel and wait) for the scene of that name, or None. finish(name, job, changed_at) takes what it has
+    done. may_begin(): whether nothing else is in the way. hand_over(name, job): called once the job is done,
+    again and again until it returns True: what can be done in slices before `finish`.
     """
 
-    def __init__(self, rest, begin, finish, may_begin=lambda: True, hand_over=lambda name, job: True):
-        self._rest, self._begin, self._finish, self._may_begin = rest, begin, finish, may_begin
+    def __init__(self, pause, begin, finish, may_begin=lambda: True, hand_over=lambda name, job: True):
+        self._pause, self._begin, self._finish, self._may_begin = pause, begin, finish, may_begin
         self._hand_over = hand_over
         self._changed_at = {}  # by the name of a scene: when something changed that has no job yet
         self._jobs = {}  # by the name of a scene: (job, when its last change was)
@@ -70,7 +70,7 @@ class RestedWork:
                 del self._jobs[name]
                 self._finish(name, job, changed_at)
         for name, changed_at in list(self._changed_at.items()):
-            if name not in self._jobs and time.perf_counter() - changed_at >= self._rest:
+            if name not in self._jobs and time.perf_counter() - changed_at >= self._pause:
                 del self._changed_at[name]
                 job = self._begin(name, changed_at)
                 if job is not None:

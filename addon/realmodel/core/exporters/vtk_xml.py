@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""VTK's unstructured grids in XML with binary arrays behind ("VTK File Formats", type UnstructuredGrid)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import BinaryIO, NamedTuple
+
+import numpy as np
+
+_TYPES = {"f8": "Float64", "i8": "Int64", "i4": "Int32", "u1": "UInt8"}
+END = b"\n</AppendedData>\n</VTKFile>\n"
+
+
+class ArrayTag(NamedTuple):
+    """An array of the file. element: Points, Cells, PointData or CellData. kind: like "i4". size: bytes,
+    0 where it is the last array and its length is not known yet."""
+
+    element: str
+    name: str
+    kind: str
+    size: int
+    components: int = 1
+
+
+def write_grid(file: BinaryIO, arrays: Sequence[tuple[str, str, np.ndarray]]) -> None:
+    """Writes a whole file. arrays: (element, name, values), of little-endian float64, int64, int32 or uint8;
+    "Points" (P, 3) and "offsets" (C,) are among them."""
+    values = {name: np.ascontiguousarray(array) for _, name, array in arrays}
+    tags = [
+        ArrayTag(element, name, array.dtype.str[1:], array.nbytes, *array.shape[1:])
+        for element, name, array in arrays
+    ]
+    write_header(file, len(values["Points"]), len(values["offsets"]), tags)
+    for array in values.values():
+        write_array(file, array)
+    file.write(END)
+
+
+def write_header(file: BinaryIO, points: int, cells: int, arrays: Sequence[ArrayTag]) -> None:
+    """Writes all that stands before the arrays, which follow in this order. The first array of points or
+    cells is what programs color by."""
+    lines: dict[str, list[str]] = {}
+    at = 0
+    for element, name, kind, size, components in arrays:
+        width = f' NumberOfComponents="{components}"' if components > 1 else ""
+        active = f' Scalars="{name}"' if element.endswith("Data") else ""
+        lines.setdefault(element, [f"<{element}{active}>"]).append(
+            f'<DataArray type="{_TYPES[kind]}" Name="{name}"{width} format="appended" offset="{at}"/>'
+        )
+        at += 8 + size
+    body = "\n".join("\n".join([*found, f"</{element}>"]) for element, found in lines.items())
+    file.write(
+        f"""<?xml version="1.0"?>
+<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+<UnstructuredGrid>
+<Piece NumberOfPoints="{points}" NumberOfCells="{cells}">
+{body}
+</Piece>
+</UnstructuredGrid>
+<AppendedData encoding="raw">
+_""".encode("ascii")
+    )
+
+
+def write_length(file: BinaryIO, size: int) -> None:
+    """Writes what precedes an array of so many bytes."""
+    file.write(np.array([size], "<u8").tobytes())
+
+
+def write_array(file: BinaryIO, array: np.ndarray) -> None:
+    """Writes a contiguous array behind its length."""
+    write_length(file, array.nbytes)
+    file.write(array)
