@@ -12,7 +12,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENT = ROOT / "docs" / "reference" / "project_file.md"
-TABLE = re.compile(r"(<!-- table of (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
+TABLE = re.compile(r"(<!-- table of (\w+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 
 
 def _table(headings, rows):
@@ -65,10 +65,41 @@ def _options():
     return _table(["option", "default", ""], rows)
 
 
+def _keys(settings, text):
+    """The rows of keys: those of settings that say more are written, the others stay as they are."""
+    from realmodel.core.methods import OPTIONS
+
+    rows = text.strip().splitlines()
+    for key, setting in settings.items():
+        if key in OPTIONS:  # in a table of their own
+            continue
+        place = next((n for n, row in enumerate(rows) if f"`{key}`" in row.split("|")[1]), None)
+        if place is None:
+            place = next((n for n, row in enumerate(rows) if f"[{key}]" in row or f".{key}]" in row), None)
+        if place is None:
+            raise KeyError(key)
+        if not setting.more:
+            continue
+        words = [f'`"{word}"`: {tip}' for word, (_, tip) in setting.words.items() if key == "mesher"]
+        default = [f'default `"{setting.default}"`'] if setting.words else []
+        said = ". ".join([setting.tip, *words, "; ".join([setting.more, *default])])
+        rows[place] = f"| `{key}` | {setting.needed} | {said} |".replace("|  |", "| |")
+    return "\n".join(rows) + "\n"
+
+
 def written(text):
-    """The text of the document with its tables as the registries have them."""
+    """The text of the document with its tables as the registries have them. Raises KeyError for a key without
+    a row."""
+    from realmodel.core.schema import PROJECT, READING, ROCK, SURFACE
+
     tables = {"rules": _rules, "methods": _methods, "options": _options}
-    return TABLE.sub(lambda found: found[1] + "\n" + tables[found[2]]() + "\n" + found[3], text)
+    keys = {"project": PROJECT, "rock": ROCK, "surface": SURFACE, "reading": READING}
+
+    def table(found):
+        _, name, rows, _ = found.groups()
+        return f"{found[1]}\n{_keys(keys[name], rows) if name in keys else tables[name]()}\n{found[4]}"
+
+    return TABLE.sub(table, text)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,9 @@ Version 0 is a scene that build_model.py wrote: it has the stored project and th
 tests/data/versions has a file of each version.
 """
 
-from .bl import adoption, method_settings, plan_mesh, settings, units
+import json
+
+from .bl import adoption, method_settings, plan_mesh, reading_text, settings, units
 
 
 def _from_0(scene):
@@ -30,7 +32,20 @@ def _from_2(scene):
             entry.known_id = entry.id
 
 
-_STEPS = (_from_0, _from_1, _from_2)  # step n makes version n + 1 of version n
+def _from_3(scene):
+    """How files are read, and how large triangles are, stood in texts."""
+    with settings.filling():
+        for rock in scene.realmodel.rocks:
+            given = json.loads(rock.mesh_options) if rock.mesh_options and not rock.edge_length > 0.0 else {}
+            length = settings.number(rock, "edge_length") or None
+            plan_mesh.set_edges(rock, given.get("edge_length", length), given.get("triangles"))
+            rock.mesh_options = ""
+            for surface in rock.surfaces:
+                reading_text.fill(surface, json.loads(surface.reading) if surface.reading else {})
+                surface.reading = ""
+
+
+_STEPS = (_from_0, _from_1, _from_2, _from_3)  # step n makes version n + 1 of version n
 
 
 def needs_migration(scene):

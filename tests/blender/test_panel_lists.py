@@ -9,10 +9,11 @@ import bpy
 import numpy as np
 from blender_state import inventory, volume
 from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet, stack
-from realmodel.bl import method_settings, region_size, results, surface_figures
+from realmodel.bl import method_settings, model_at_hand, region_size, results, surface_figures
 from realmodel.core import load_library, load_project
-from realmodel.core.methods import ALL_OPTIONS, METHODS
+from realmodel.core.methods import METHODS, NEIGHBOURS_OF_FITTED
 from realmodel.core.project_writer import off_text, points_text
+from realmodel.core.schema import ROCK, SURFACE
 
 POINTS = np.array([(x, y, 5.0 + 0.05 * x) for x in range(0, 101, 25) for y in range(0, 101, 25)], float)
 SQUARE = [(0, 0), (100, 0), (100, 100), (0, 100)]
@@ -231,12 +232,46 @@ class Surfaces(PanelCase):
         ops.surface_hide()
         self.assertTrue(row.interface.hide_get())
 
-    def test_every_option_of_every_method_has_a_setting(self):
-        self.assertEqual(set(ALL_OPTIONS) - set(method_settings.SHOWN), set())
+    def test_every_setting_has_its_properties(self):
+        """Of a file of points and of methods, each is a property or several, and keeps what it is set to."""
         ops.surface_add(name="S0")
-        for switch, shown in method_settings.SHOWN.values():
-            for key in (*shown, *([switch] if switch else [])):
-                self.assertTrue(hasattr(self.rock().surfaces[0], key), key)
+        row = self.rock().surfaces[0]
+        examples = {"word": lambda s: list(s.words)[-1], "whole": lambda s: 3, "text": lambda s: "text"}
+        for settings in (ROCK, SURFACE):
+            target = self.rock() if settings is ROCK else row
+            for key, setting in settings.items():
+                if setting.kind in ("other", "columns") or setting.parts:
+                    continue
+                given = examples.get(setting.kind, lambda s: 7.25 if s.kind in ("number", "length") else "7")
+                method_settings.set_value(target, key, settings, given(setting))
+                found = method_settings.value(target, key, settings)
+                self.assertEqual(str(found).rstrip("0."), str(given(setting)), key)
+                if setting.default is None and setting.switch is not None:
+                    method_settings.set_value(target, key, settings, None)
+                    self.assertIsNone(method_settings.value(target, key, settings), key)
+
+    def test_a_fitted_variogram_fills_the_fields(self):
+        ops.open_sample(sample="two_layers")
+        ops.build()
+        row = self.rock().surfaces[0]
+        found = model_at_hand.model_of(bpy.context).interpolations[0].variogram
+        self.assertTrue(found.fitted)
+        volumes = self.volumes()
+        row.fit_variogram = False
+        given = method_settings.options_of(row)
+        anisotropy = given.pop("anisotropy", None)
+        part = found.settings().get("structures", [found.settings()])[0]
+        self.assertEqual(given["variogram"]["range"], part["range"])
+        self.assertEqual(given["variogram"]["sill"], found.sill)
+        self.assertEqual(anisotropy, part.get("anisotropy"))
+        row.use_neighbours, row.neighbours = True, NEIGHBOURS_OF_FITTED
+        ops.build()
+        for name, built in self.volumes().items():
+            self.assertAlmostEqual(built, volumes[name], delta=1e-6 * built)
+        row.fit_variogram = True
+        row.variogram_range = 1.0
+        row.fit_variogram = False  # what was built last had the same variogram, but did not fit it
+        self.assertEqual(row.variogram_range, 1.0)
 
     def test_options_there_and_back(self):
         nested = {"nugget": 0.1, "structures": [{"model": "spherical", "range": 60.3, "sill": 4.0}]}

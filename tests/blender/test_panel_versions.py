@@ -2,6 +2,7 @@
 """Files of every version of the settings, opened today. tests/data/versions has one of each, written by
 make_version_fixture.py from the example two_layers, whose files are not beside it."""
 
+import json
 import math
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import bpy
 from blender_state import empty_file
 from panel_case import SAMPLES, PanelCase, ops, raise_by
 from realmodel import handlers, versioning
-from realmodel.bl import batch, settings
+from realmodel.bl import batch, reading_text, settings
 from realmodel.core import build, load_project
 
 FILES = Path(__file__).resolve().parents[1] / "data" / "versions"
@@ -41,6 +42,34 @@ class Versions(PanelCase):
                 raise_by(ground, 1.0)
                 ops.build()
                 self.assertAlmostEqual(sum(self.volumes().values()), clay + sand + 6000.0, delta=0.05)
+
+    def test_texts_of_version_3_become_settings(self):
+        ops.rock_add()
+        for number in range(3):
+            ops.surface_add(empty=True)
+            if number:
+                ops.rock_add()
+        by_length, by_points, by_number = rocks = self.model.rocks
+        with settings.filling():
+            by_length.edge_length = 9.7
+            by_points.mesh_options = '{"edge_length": "auto", "triangles": 300}'
+            by_number.mesh_options = '{"triangles": 500}'
+            row = by_length.surfaces[0]
+            row.reading = (
+                '{"columns": ["E", 2, "Z"], "where": {"bed": ["a", "b"]}, "nodata": [-9, ""], "height": "h", '
+                '"separator": "\\t", "units": {"z": "ft"}}'
+            )
+        given = json.loads(row.reading)
+        for rock in rocks:
+            rock.edges_by = "LENGTH"
+        self.model.version = 3
+        handlers.migrate_all()
+        self.assertEqual([rock.edges_by for rock in rocks], ["LENGTH", "AUTO", "TRIANGLES"])
+        self.assertEqual(
+            (by_points.use_triangles, by_points.triangles, by_number.triangles), (True, 300, 500)
+        )
+        self.assertEqual(settings.number(by_length, "edge_length"), 9.7)
+        self.assertEqual((reading_text.options(row), row.reading), (given, ""))
 
     def assert_volumes(self, clay, sand, tolerance=0.02):
         volumes = self.volumes()

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import bpy
 from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet
-from realmodel.bl import plan_mesh, project_settings, reading_text
-from realmodel.core import load_project
-from realmodel.core.project_file import _ROCK_KEYS, _SURFACE_KEYS
+from realmodel.bl import choices, plan_mesh, project_settings, reading_text
+from realmodel.core import InputRefused, load_project
 from realmodel.core.rock_input import read_rocks
+from realmodel.core.schema import ROCK, SURFACE
 from realmodel.core.work import run
 
 EVERY_KEY = """
@@ -256,8 +256,9 @@ class RoundTrip(PanelCase):
                 self.assert_says_the_same(path)
 
     def test_every_key(self):
-        keys = [key for key in (*_ROCK_KEYS, *_SURFACE_KEYS) if key != "surface"]
-        self.assertEqual([key for key in keys if f"\n{key} =" not in EVERY_KEY], [], "not in EVERY_KEY above")
+        self.assertEqual(
+            [key for key in (*ROCK, *SURFACE) if f"\n{key} =" not in EVERY_KEY], [], "not in EVERY_KEY above"
+        )
         write_files(self.folder)
         self.assert_says_the_same(self.folder / "project.toml")
 
@@ -270,10 +271,12 @@ class RoundTrip(PanelCase):
         self.assertEqual([entry.at for entry in first.sizes], ["OUTLINE", "STORED", "STORED", "CONSTRAINTS"])
         self.assertEqual(plan_mesh.stored_constraints(first), (2, 1))
         surface = first.surfaces[0]
+        self.assertEqual((surface.column_x, surface.column_y, surface.column_z), ("east", "north", "level"))
         self.assertEqual(
-            (surface.columns, surface.where, surface.separator, surface.decimal, surface.nodata),
-            ("east, north, level", "bed = A; year = 2019, 2020", ";", ",", "-999, none"),
+            [(entry.column, entry.value) for entry in surface.filters],
+            [("bed", "A"), ("year", "2019"), ("year", "2020")],
         )
+        self.assertEqual((surface.separator, surface.decimal, surface.nodata), (";", ",", "-999, none"))
         self.assertEqual((surface.plan_unit, surface.height_unit), ("ft", "m"))
         self.assertEqual([part.model for part in surface.structures], ["spherical", "gaussian"])
         self.assertTrue(surface.structures[1].use_anisotropy)
@@ -304,35 +307,53 @@ class Written(PanelCase):
         ops.rock_add()
         ops.surface_add(filepath=str(self.folder / "p.csv"))
         row = self.model.rocks[0].surfaces[0]
-        row.columns, row.where, row.separator, row.nodata = "a, b, c", "bed = x", "|", "-9"
+        row.column_x, row.column_y, row.column_z, row.separator, row.nodata = "a", "b", "c", "|", "-9"
         row.height_unit, row.decimal = "ft", "."
+        ops.filter_add()
+        row.filters[0].column, row.filters[0].value = "bed", "x"
         given = self.composed().surfaces[0].points
         self.assertEqual(
             (list(given.columns), given.where, given.separator, given.nodata, given.units, given.decimal),
             (["a", "b", "c"], {"bed": "x"}, "|", -9, {"z": "ft"}, "."),
         )
-        row.where = row.nodata = ""
+        ops.filter_remove(index=0)
+        self.refused(ops.filter_remove, "no filter 0", index=0)
+        row.nodata = ""
         row.height_unit = "NONE"
-        self.assertNotIn("where", row.reading)
-        self.assertNotIn("units", row.reading)
+        given = self.composed().surfaces[0].points
+        self.assertEqual((given.where, given.nodata, given.units), ({}, (), None))
+        row.column_y = ""
+        with self.assertRaisesRegex(InputRefused, "only some of its columns"):
+            self.composed()
 
-    def test_texts_come_back_as_they_were(self):
+    def test_how_a_file_is_read_comes_back_as_it_was(self):
         ops.rock_add()
         ops.surface_add(empty=True)
         row = self.model.rocks[0].surfaces[0]
-        for key, value in (
-            ("columns", [2, 3, "z; up"]),
-            ("where", {"a": "60", "b": [1.5, "x, y"]}),
-            ("separator", "\t"),
-            ("separator", " "),
-            ("nodata", [-9999, "n/a", ""]),
+        for given in (
+            {"columns": [2, 3, "z; up"], "decimal": ","},
+            {"columns": ["5", "y", "z"], "units": {"xy": "ft", "z": "ft"}},
+            {"where": {"a": "60", "b": [1.5, "x, y"]}, "height": "5", "layer": "l"},
+            {"separator": "\t", "nodata": -9999},
+            {"separator": " ", "nodata": [-9999, "n/a", ""]},
         ):
-            row.reading = ""
-            reading_text._set(row, key, value)
-            shown = reading_text.text(row, key)
-            row.reading = ""
-            reading_text.set_text(row, key, shown)
-            self.assertEqual(reading_text.options(row)[key], value)
+            reading_text.fill(row, given)
+            self.assertEqual(reading_text.options(row), given)
+
+    def test_names_are_offered(self):
+        write_files(self.folder)
+        ops.open_project(filepath=str(self.folder / "project.toml"))
+        rock = self.model.rocks[0]
+        kriged, contours = rock.surfaces[0], rock.surfaces[2]
+        self.assertEqual(choices.columns(kriged, bpy.context, ""), ["east", "north", "level", "bed", "year"])
+        self.assertEqual(choices.values(kriged.filters[1], bpy.context, ""), ["2019", "2020", "2021"])
+        self.assertEqual(choices.columns(contours, bpy.context, ""), ["fid", '"5"', "kind"])
+        self.assertEqual(choices.values(contours.filters[0], bpy.context, ""), ["contour"])
+        self.assertEqual(choices.layers(contours, bpy.context, ""), ["first", "second"])
+        others = [surface.name for surface in rock.surfaces if surface.name != "dsi"]
+        self.assertEqual(choices.surfaces(rock.surfaces[5], bpy.context, ""), others)
+        kriged.filepath = str(self.folder / "none.csv")
+        self.assertEqual(choices.columns(kriged, bpy.context, ""), [])
 
     def test_smaller_triangles_and_constraints(self):
         ops.open_sample(sample="two_layers")

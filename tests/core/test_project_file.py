@@ -157,7 +157,7 @@ CASES = {
     "variogram model": (
         POINTS + '[rock.surface.variogram]\nsill = 1\nrange = 1\nmodel = "x"\n',
         13,
-        "unknown",
+        "cannot be 'x'",
     ),
     "variogram unknown key": (
         POINTS + '[rock.surface.variogram]\nsill = 1\nrnge = 1\nrange = 1\nmodel = "gaussian"\n',

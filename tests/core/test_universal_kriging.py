@@ -161,7 +161,7 @@ def test_extrapolation_is_a_choice_and_told():
     [
         ({"structures": []}, "must be a list of tables"),
         ({"structures": [{"model": "spherical", "range": 3}]}, "lacks 'sill'"),
-        ({"structures": [{"model": "linear", "range": 3, "sill": 1}]}, "unknown variogram model 'linear'"),
+        ({"structures": [{"model": "linear", "range": 3, "sill": 1}]}, "'model' cannot be 'linear'"),
         ({"structures": [{"model": "cubic", "range": 0, "sill": 1}]}, "'range' must be more than 0"),
         ({"structures": [{"model": "cubic", "range": 1, "sill": 1, "nugget": 1}]}, "unknown key 'nugget'"),
         ({**SPHERICAL, "structures": NESTED["structures"]}, "unknown key 'model'"),

@@ -53,6 +53,7 @@ def _own_points(scene, row):
 
 
 def _keep(row, points):
-    row.source, row.filepath, row.reading = "POINTS_FILE", "", ""
+    row.source, row.filepath = "POINTS_FILE", ""
+    reading_text.fill(row, {})
     row.stored, row.stored_stamp = stored_arrays.pack(points=points), ""
     row.interface_digest = ""

@@ -2,7 +2,7 @@
 """What follows when a setting is changed by hand or by a script: each update callback is one function
 here."""
 
-from . import display, live, region_size, settings, units
+from . import display, live, method_settings, reading_text, region_size, settings, surface_figures, units
 
 
 def setting(row, _context):
@@ -24,11 +24,17 @@ def colouring(row, _context):
         display.colours_changed(row.id_data)
 
 
-def base_elevation(rock, context):
-    """Whoever gives a height of the base wants a base."""
+def edge_length(rock, _context):
+    """Of a rock mass: whoever sets it wants the triangles by it."""
     if not settings.is_filling():
-        rock.use_base = True
-        setting(rock, context)
+        rock.edges_by = "LENGTH"  # comes to `setting`
+
+
+def triangles(rock, context):
+    """The number of triangles: of point spacing it is what that is scaled to."""
+    if not settings.is_filling() and rock.edges_by == "AUTO":
+        rock.use_triangles = True
+    setting(rock, context)
 
 
 def switched_on(switch):
@@ -56,20 +62,34 @@ def source(surface, context):
     """Another source of a surface: it is made from that, whatever was done to its interface before."""
     if settings.is_filling():
         return
-    surface.interface_digest = surface.reading = ""
+    surface.interface_digest = ""
+    with settings.filling():
+        reading_text.fill(surface, {})
     if surface.source != "MESH_OBJECT":
         surface.stored_stamp = ""
     setting(surface, context)
 
 
-def reading(surface):
+def reading(row, context):
     """A file is to be read in another way: what was read before is worth nothing."""
     if settings.is_filling():
         return
+    surface = settings.surface_of(row)
     surface.interface_digest = ""
     if surface.filepath:
         surface.stored = surface.stored_stamp = ""
-    setting(surface, None)
+    setting(surface, context)
+
+
+def fit_variogram(surface, context):
+    """Whoever wants a variogram of their own begins with the one that was fitted."""
+    if settings.is_filling():
+        return
+    fitted = (surface_figures.read(surface) or {}).get("variogram")
+    if not surface.fit_variogram and fitted is not None:
+        with settings.filling():
+            method_settings.take_fitted(surface, fitted)
+    setting(surface, context)
 
 
 def hide(surface, _context):

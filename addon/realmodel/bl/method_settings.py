@@ -1,38 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The options of methods between the settings of a surface and realmodel.core."""
+"""Settings as their declarations (core/setting.py) have them, between the properties of a row and
+realmodel.core; those of methods with their variograms."""
 
 import json
 
-from ..core.methods import METHODS, OPTIONS
+import numpy as np
+
+from ..core.methods import METHODS, OPTIONS, STRUCTURE
+from ..core.setting import property_name, switch_name
 from .settings import number, set_number
 
-_TABLES = {  # settings of the options that are tables, as SHOWN has them
-    "anisotropy": ("use_anisotropy", ("anisotropy_ratio", "anisotropy_azimuth")),
-    "variogram": (None, ()),
-}
-
-
-def switch_of(name):
-    """The setting that switches an option on; None where it is always on."""
-    option = OPTIONS[name]
-    if option.beside is not None:
-        return switch_of(option.beside)
-    return None if option.switch is None else f"use_{name}"
-
-
-def _shown(name, option):
-    if option.kind == "table":
-        return _TABLES[name]
-    if option.beside is not None:
-        return None, ()
-    beside = [other for other, given in OPTIONS.items() if given.beside == name]
-    return switch_of(name), (name, *beside)
-
-
-# Settings that the panel shows for an option: the switch before it, if it has one, its own and those beside.
-SHOWN = {name: _shown(name, option) for name, option in OPTIONS.items()}
 READY_MESHES = ("MESH_OBJECT", "MESH_FILE")  # sources of surfaces that are not interpolated
-_VARIOGRAM = ("range", "sill", "nugget")
 
 
 def interpolates(rock):
@@ -40,40 +18,73 @@ def interpolates(rock):
     return not len(rock.surfaces) or any(row.source not in READY_MESHES for row in rock.surfaces)
 
 
+def value(row, key, settings):
+    """A setting of a row as realmodel.core takes it; None where it is not given."""
+    setting, name = settings[key], property_name(key, settings[key])
+    switch = switch_name(key, settings)
+    if switch is not None and not getattr(row, switch):
+        return None
+    if setting.parts:
+        found = {part: value(row, part, setting.parts) for part in setting.parts}
+        return {part: given for part, given in found.items() if given is not None} or None
+    if setting.kind in ("number", "length"):
+        given = number(row, name)
+        return None if setting.zero_is_none and given == 0.0 else given
+    given = getattr(row, name)
+    if setting.kind == "surface":
+        return _surface_or_elevation(given)
+    return None if given == "" or (given == "NONE" and "" in setting.words) else given
+
+
+def set_value(row, key, settings, given):
+    """Sets a setting of a row, and its switch; None unsets it."""
+    setting, name = settings[key], property_name(key, settings[key])
+    switch = switch_name(key, settings)
+    if switch is not None and setting.beside is None:
+        setattr(row, switch, given is not None)
+    if setting.parts:
+        for part, inner in (given or {}).items():
+            set_value(row, part, setting.parts, inner)
+    elif given is None:
+        row.property_unset(name)
+        if setting.kind == "word":
+            setattr(row, name, setting.default or "NONE")
+    elif setting.kind in ("number", "length"):
+        set_number(row, name, given)
+    elif setting.kind == "surface":
+        setattr(row, name, given if isinstance(given, str) else repr(given))
+    else:
+        setattr(row, name, given)
+
+
 def options_of(row):
     """The options of a surface's method as realmodel.core takes them; those at their default are left out."""
     known = METHODS[row.method].options
-    options = json.loads(row.other_options) if row.other_options else {}
-    options = {key: value for key, value in options.items() if key in known}
-    if row.fit_variogram:
-        options.pop("variogram", None)
-    for name, option in known.items():
-        if name in options or name not in SHOWN:
-            continue
-        value = _value(row, name)
-        if value is not None and value != option.default:
-            options[name] = value
+    others = json.loads(row.other_options) if row.other_options else {}
+    options = {key: given for key, given in others.items() if key in known}
+    for key, setting in known.items():
+        given = _variogram(row) if key == "variogram" else value(row, key, OPTIONS)
+        if key not in options and given is not None and given != setting.default:
+            options[key] = given
     return options
 
 
-def _value(row, name):
-    option, (switch, _) = OPTIONS[name], SHOWN[name]
-    switch = switch or switch_of(name)
-    if switch is not None and not getattr(row, switch):
-        return None
-    if name == "variogram":
-        return None if row.fit_variogram else _variogram(row)
-    if name == "anisotropy":
-        return _anisotropy(row)
-    if option.kind in ("word", "whole"):
-        return getattr(row, name)
-    if option.kind == "surface":
-        return _surface_or_height(getattr(row, name))
-    value = number(row, name)
-    return None if option.zero_is_none and value == 0.0 else value
+def set_options(row, method, options):
+    """Sets a surface's method and its options from a project; what the panel has no setting for is kept."""
+    if method is not None:
+        row.method = method
+    others = {}
+    for key, given in options.items():
+        if key == "variogram" and given is not None:
+            set_variogram(row, given)
+        elif key in OPTIONS and not (OPTIONS[key].kind == "surface" and np.ndim(given)):
+            set_value(row, key, OPTIONS, given)
+        else:  # heights or a triangulation
+            others[key] = [np.asarray(part).tolist() for part in given]
+    row.other_options = json.dumps(others) if others else ""
 
 
-def _surface_or_height(text):
+def _surface_or_elevation(text):
     text = text.strip()
     try:
         return float(text)
@@ -82,91 +93,50 @@ def _surface_or_height(text):
 
 
 def _variogram(row):
-    if len(row.structures):
-        return {
-            "nugget": number(row, "variogram_nugget"),
-            "structures": [_structure(part) for part in row.structures],
-        }
-    return {
-        "model": row.variogram_model,
-        **{key: number(row, f"variogram_{key}") for key in _VARIOGRAM},
-    }
+    """As a project file writes it; None where it is to be fitted."""
+    if row.fit_variogram:
+        return None
+    found = value(row, "variogram", OPTIONS)
+    if not len(row.structures):
+        return found
+    structures = [{key: value(part, key, STRUCTURE) for key in STRUCTURE} for part in row.structures]
+    for part in structures:
+        if part["anisotropy"] is None:
+            del part["anisotropy"]
+    return {"nugget": found["nugget"], "structures": structures}
 
 
-def _structure(part):
-    found = {"model": part.model, **{key: number(part, key) for key in ("range", "sill")}}
-    if part.use_anisotropy:
-        found["anisotropy"] = {key: number(part, key) for key in ("ratio", "azimuth")}
-    return found
-
-
-def _anisotropy(row):
-    return {key: number(row, f"anisotropy_{key}") for key in ("ratio", "azimuth")}
-
-
-def set_options(row, method, options):
-    """Sets a surface's method and its options from a project; what the panel has no setting for is kept."""
-    if method is not None:
-        row.method = method
-    other = {}
-    for name, value in options.items():
-        if not _set(row, name, value):
-            other[name] = value.settings() if hasattr(value, "settings") else value
-    row.other_options = json.dumps(other) if other else ""
-
-
-def _set(row, name, value):
-    """Whether the settings of a surface could take an option's value."""
-    if value is None:
-        return True
-    if name not in OPTIONS:
-        return False
-    option, (switch, _) = OPTIONS[name], SHOWN[name]
-    if switch is not None:
-        setattr(row, switch, True)
-    if name == "variogram":
-        return _set_variogram(row, value)
-    if name == "anisotropy":
-        for key, part in value.items():
-            set_number(row, f"anisotropy_{key}", part)
-    elif option.kind in ("word", "whole"):
-        setattr(row, name, value)
-    elif option.kind == "surface":
-        if not isinstance(value, (str, int, float)):
-            return False
-        setattr(row, name, value if isinstance(value, str) else repr(value))
-    else:
-        set_number(row, name, value)
-    return True
-
-
-def _set_variogram(row, value):
-    value = value.settings() if hasattr(value, "settings") else value
+def set_variogram(row, given):
+    """Sets the variogram of a surface's row, which then is not fitted: as a project file writes it, or one
+    found by an earlier interpolation."""
+    given = given.settings() if hasattr(given, "settings") else given
     row.fit_variogram = False
     row.structures.clear()
-    if "structures" in value:
-        set_number(row, "variogram_nugget", value.get("nugget", 0.0))
-        for given in value["structures"]:
-            _set_structure(row.structures.add(), given)
-        return True
-    row.variogram_model = value["model"]
-    for key in _VARIOGRAM:
-        set_number(row, f"variogram_{key}", value.get(key, 0.0))
-    return True
+    given = {"nugget": 0.0, **given}
+    structures = given.pop("structures", ())
+    set_value(row, "variogram", OPTIONS, given)
+    for structure in structures:
+        part = row.structures.add()
+        for key in STRUCTURE:
+            set_value(part, key, STRUCTURE, structure.get(key))
 
 
-def _set_structure(part, given):
-    part.model = given["model"]
-    for key in ("range", "sill"):
-        set_number(part, key, given[key])
-    for key, value in (given.get("anisotropy") or {}).items():
-        part.use_anisotropy = True
-        set_number(part, key, value)
+def take_fitted(row, fitted):
+    """Sets the variogram that a build has fitted, as a project file writes it; it is not fitted again."""
+    parts = fitted.get("structures", ())
+    if len(parts) == 1:  # one with an anisotropy of its own
+        anisotropy = parts[0].get("anisotropy")
+        if anisotropy is not None:
+            set_value(row, "anisotropy", OPTIONS, anisotropy)
+        nugget = fitted["nugget"]
+        fitted = {key: parts[0][key] for key in ("model", "range", "sill")} | {"nugget": nugget}
+        fitted["sill"] += nugget  # of a structure it is without the nugget
+    set_variogram(row, fitted)
 
 
 def take_up_nested_variogram(row):
     """A nested variogram that a file of an earlier version has kept as it was gets its rows."""
     others = json.loads(row.other_options) if row.other_options else {}
     if "variogram" in others:
-        _set_variogram(row, others.pop("variogram"))
+        set_variogram(row, others.pop("variogram"))
         row.other_options = json.dumps(others) if others else ""

@@ -1,80 +1,37 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The mesh of a rock mass's region between its settings and realmodel.core: how large the triangles are to
 be, where they are smaller, what lines and points the mesh must contain.
-
-The settings keep an edge length as a number; `mesh_options` has what is said instead of one. An edge length
-above 0 says more than that: scripts need to set nothing else.
 """
 
 import json
-import math
 
 import numpy as np
 
 from ..core import InputRefused
 from ..core.mesh_sizes import AUTO
 from ..core.project import rock_item
-from . import live, settings, shapes, stored_arrays
+from ..core.schema import ROCK, SIZE
+from . import method_settings, settings, shapes, stored_arrays
 
-KINDS = (
-    ("LENGTH", "Edge Length", "A length for all edges"),
-    ("AUTO", "Point Spacing", "Half the spacing of the points of the surfaces"),
-    ("TRIANGLES", "Triangle Count", "A number of triangles"),
+KINDS = (  # each with the number by which Blender stores it
+    ("AUTO", "Point Spacing", "Half the spacing of the points of the surfaces", "", 1),
+    ("LENGTH", "Edge Length", "A length for all edges", "", 0),
+    ("TRIANGLES", "Triangle Count", "A number of triangles", "", 2),
 )
-_USUAL_COUNT = 10_000
 _WORDS = {"OUTLINE": "outline", "CONSTRAINTS": "constraints"}
-
-
-def kind(row):
-    """The number of the present one of KINDS."""
-    given = _instead_of_length(row)
-    return 1 if given.get("edge_length") == AUTO else 2 if "triangles" in given else 0
-
-
-def set_kind(row, number):
-    if number == kind(row):
-        return
-    count = triangles(row)
-    if number == 0:
-        area = max(row.region_area, 0.0)
-        _keep(row)
-        row.edge_length = math.sqrt(area / count * 4.0 / math.sqrt(3.0)) if area else 1.0
-        return
-    row.edge_length = 0.0
-    _keep(row, **({"edge_length": AUTO} if number == 1 else {"triangles": count}))
-
-
-def triangles(row):
-    return _instead_of_length(row).get("triangles", _USUAL_COUNT)
-
-
-def set_triangles(row, count):
-    """A number of triangles; where edges go by the points it scales them."""
-    row.edge_length = 0.0
-    _keep(row, **{**_instead_of_length(row), "triangles": count})
-
-
-def has_triangles(row):
-    """Whether a number of triangles is given."""
-    return "triangles" in _instead_of_length(row)
-
-
-def _instead_of_length(row):
-    return json.loads(row.mesh_options) if row.mesh_options and not row.edge_length > 0.0 else {}
-
-
-def _keep(row, **given):
-    row.mesh_options = json.dumps(given) if given else ""
-    if not settings.is_filling():
-        live.touch(row.id_data)
 
 
 def compose(rock, row, depsgraph, origin):
     """What a rock mass's row says of its mesh goes to a realmodel.core.Rock. Raises InputRefused."""
-    given = _instead_of_length(row)
-    rock.edge_length, rock.triangles = given.get("edge_length"), given.get("triangles")
-    if row.edge_length > 0.0:
-        rock.edge_length = settings.number(row, "edge_length")
+    rock.mesher = row.mesher
+    if row.edges_by == "LENGTH":
+        rock.edge_length = method_settings.value(row, "edge_length", ROCK)
+    elif row.edges_by == "AUTO":
+        rock.edge_length = AUTO
+    if row.edges_by == "TRIANGLES":
+        rock.triangles = row.triangles
+    elif row.edges_by == "AUTO":
+        rock.triangles = method_settings.value(row, "triangles", ROCK)
     try:
         rock.size = []
         for entry in row.sizes:
@@ -86,7 +43,7 @@ def compose(rock, row, depsgraph, origin):
 
 def _sizes(entry, depsgraph, origin):
     """The entries of Rock.size that a row stands for: an object's lines are one each."""
-    length, distance = (settings.number(entry, key) for key in ("length", "distance"))
+    length, distance = (method_settings.value(entry, key, SIZE) for key in SIZE)
     if entry.at == "OBJECT":
         if entry.object is None:
             advice = "choose one, or remove the entry"
@@ -109,18 +66,19 @@ def _constraints(row, depsgraph, origin):
 
 def fill(row, rock):
     """Sets a row from a realmodel.core.Rock whose constraints are arrays."""
-    instead = {}
-    if isinstance(rock.edge_length, str):
-        instead["edge_length"] = rock.edge_length
-    elif rock.edge_length is not None:
-        settings.set_number(row, "edge_length", rock.edge_length)
-    if rock.triangles is not None:
-        instead["triangles"] = int(rock.triangles)
-    row.mesh_options = json.dumps(instead) if instead else ""
+    set_edges(row, rock.edge_length, rock.triangles)
     row.mesher = rock.mesher
     for entry in rock.size:
         _fill_size(row.sizes.add(), entry)
     add_constraints(row, rock.constraints)
+
+
+def set_edges(row, edge_length, triangles):
+    """Sets how large the triangles are, as realmodel.core.Rock has it."""
+    by_points = isinstance(edge_length, str)
+    row.edges_by = "AUTO" if by_points else "LENGTH" if triangles is None else "TRIANGLES"
+    method_settings.set_value(row, "edge_length", ROCK, None if by_points else edge_length)
+    method_settings.set_value(row, "triangles", ROCK, triangles)
 
 
 def take_up_sizes(row):
@@ -136,8 +94,8 @@ def _fill_size(row, entry):
     row.at = next((key for key, word in _WORDS.items() if isinstance(at, str) and at == word), "STORED")
     if row.at == "STORED":
         row.stored = json.dumps(np.asarray(at, np.float64).tolist())
-    settings.set_number(row, "length", entry["length"])
-    settings.set_number(row, "distance", entry["distance"])
+    for key in SIZE:
+        settings.set_number(row, key, entry[key])
 
 
 def add_constraints(row, lines):

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-import json
 import os
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -15,6 +13,7 @@ import numpy as np
 from ..core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
 from ..core.project import rock_item, surface_item
 from ..core.rock_input import read_rocks
+from ..core.schema import READING, ROCK, SURFACE
 from ..core.work import run
 from . import (
     built_models,
@@ -79,10 +78,8 @@ def compose(scene, depsgraph, whole=True):
     project = Project(group.name, [], library_rows.library_of(scene), units=group.units)
     composed = Composed(project, origin, _origin_is_free(scene))
     for number, row in enumerate(scene.realmodel.rocks):
-        rock = Rock(row.name, [], mesher=row.mesher)
+        rock = Rock(row.name, [], base_elevation=method_settings.value(row, "base_elevation", ROCK))
         plan_mesh.compose(rock, row, depsgraph, origin)
-        if row.use_base:
-            rock.base_elevation = settings.number(row, "base_elevation")
         _region(composed, number, rock, row, depsgraph, whole)
         composed.project.rocks.append(rock)
         for at, surface_row in enumerate(row.surfaces):
@@ -103,8 +100,7 @@ def _plain_surface(row):
     if row.source not in method_settings.READY_MESHES:
         surface.method = row.method
         surface.options = method_settings.options_of(row)
-        if row.use_minimum_thickness:
-            surface.minimum_thickness = settings.number(row, "minimum_thickness")
+        surface.minimum_thickness = method_settings.value(row, "minimum_thickness", SURFACE)
     return surface
 
 
@@ -164,7 +160,7 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
         if row.source == "POINTS_FILE":
             surface.points = PointFile(path, **reading_text.options(row))
         else:
-            surface.mesh = MeshFile(path, **reading_text.options(row))
+            surface.mesh = MeshFile(path, method_settings.value(row, "units", READING))
         composed.read[place] = stored_arrays.file_stamp(path)
     elif stored:
         _take_stored(surface, stored)
@@ -298,9 +294,7 @@ def add_rock(group, rock):
     with settings.filling():
         row.name = rock.name
         plan_mesh.fill(row, rock)
-        if rock.base_elevation is not None:
-            settings.set_number(row, "base_elevation", rock.base_elevation)
-            row.use_base = True
+        method_settings.set_value(row, "base_elevation", ROCK, rock.base_elevation)
         if rock.region_file is not None:
             row.region_file = str(rock.region_file)
         elif rock.region is not None:
@@ -311,30 +305,16 @@ def add_rock(group, rock):
     return row
 
 
-def _reading(file):
-    """How a project file has a file of points or a mesh read - columns, filters, units - as text; "" for the
-    usual."""
-    usual = type(file)(file.file)
-    keys = (field.name for field in dataclasses.fields(file) if field.name != "file")
-    given = {key: getattr(file, key) for key in keys if getattr(file, key) != getattr(usual, key)}
-    return json.dumps(given) if given else ""
-
-
 def fill_surface(row, surface):
     """Sets a surface's row from a realmodel.core.Surface."""
     with settings.filling():
-        row.name = surface.name
-        row.rule = surface.rule
-        row.property_id = surface.property
-        row.block = surface.block or ""
-        if surface.minimum_thickness is not None:
-            row.use_minimum_thickness = True
-            settings.set_number(row, "minimum_thickness", surface.minimum_thickness)
+        for key in ("name", "rule", "property", "block", "minimum_thickness"):
+            method_settings.set_value(row, key, SURFACE, getattr(surface, key))
         method_settings.set_options(row, surface.method, surface.options)
         if surface.input_file is not None:
             row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
             row.filepath = str(surface.input_file)
-            row.reading = _reading(surface.point_file or surface.mesh_file)
+            reading_text.fill(row, vars(surface.point_file or surface.mesh_file))
         elif surface.interpolated and surface.points is None:
             row.source = "NONE"
         else:

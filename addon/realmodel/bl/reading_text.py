@@ -1,143 +1,87 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a file of points, or a mesh, is read, between `reading` of a surface's row - JSON, as
-realmodel.core.PointFile and MeshFile take it - and what a person writes in the panel."""
+"""How a file of points, or a mesh, is read, between the settings of a surface and realmodel.core."""
 
-import json
+import re
 
-from . import units
+from ..core import InputRefused
+from ..core.schema import READING
+from . import method_settings
 
-DECIMALS = (
-    ("", "Automatic", "Detected from the file, except for commas that could separate thousands"),
-    (".", "Point", "1234.5"),
-    (",", "Comma", "1234,5"),
-)
-UNITS = (("", "Model Unit", "The unit of the model"), *units.ITEMS)
-_NAMES = ("height", "layer")  # taken as they are written, "5" too
 _SEPARATORS = {"tab": "\t", "blank": " "}
+_ENTRY = re.compile(r'\s*("[^"]*"|[^,"]+?)\s*(?:,|$)')  # of a list with commas
 
 
 def options(row):
-    """The keyword arguments of PointFile, or MeshFile, that a surface's row asks for."""
-    return json.loads(row.reading) if row.reading else {}
+    """The keyword arguments of PointFile, or MeshFile, that a surface's row asks for. Raises InputRefused."""
+    given = {key: method_settings.value(row, key, READING) for key in ("decimal", "height", "layer", "units")}
+    columns = [column(getattr(row, f"column_{axis}")) for axis in "xyz"]
+    if any(columns) and not all(columns):
+        raise InputRefused("only some of its columns x, y and z are set", advice="set all three, or none")
+    given["columns"] = columns if all(columns) else None
+    where = {}
+    for entry in row.filters:
+        if entry.column.strip() and entry.value:
+            where.setdefault(entry.column.strip(), []).append(value(entry.value))
+    given["where"] = {name: _one_or_all(values) for name, values in where.items()}
+    given["separator"] = _SEPARATORS.get(row.separator.lower(), row.separator)
+    given["nodata"] = _one_or_all([value(text) for text in _ENTRY.findall(row.nodata)])
+    return {key: part for key, part in given.items() if part not in (None, "", [], {})}
 
 
-def text(row, key):
-    """What the panel shows of an option."""
-    value = options(row).get(key)
-    if value is None:
-        return ""
-    if key in _NAMES:
-        return value
-    if key == "separator":
-        return next((word for word, sign in _SEPARATORS.items() if sign == value), value)
-    if key == "where":
-        return "; ".join(f"{column} = {_list_text(values)}" for column, values in value.items())
-    return _list_text(value)
+def fill(row, given):
+    """Sets a surface's row from the keyword arguments of a PointFile or MeshFile; what they lack is unset."""
+    for axis, name in zip("xyz", given.get("columns") or ("", "", ""), strict=True):
+        setattr(row, f"column_{axis}", column_text(name))
+    row.filters.clear()
+    for name, values in (given.get("where") or {}).items():
+        for wanted in values if isinstance(values, (list, tuple)) else [values]:
+            entry = row.filters.add()
+            entry.column, entry.value = name, value_text(wanted)
+    separator = given.get("separator") or ""
+    row.separator = next((word for word, sign in _SEPARATORS.items() if sign == separator), separator)
+    nodata = given.get("nodata", ())
+    row.nodata = ", ".join(map(value_text, nodata if isinstance(nodata, (list, tuple)) else [nodata]))
+    units = given.get("units")
+    units = units if isinstance(units, dict) else {"xy": units, "z": units}
+    for key, part in (("decimal", given.get("decimal")), ("units", {"xy": None, "z": None} | units)):
+        method_settings.set_value(row, key, READING, part)
+    row.height_attribute, row.layer = given.get("height") or "", given.get("layer") or ""
 
 
-def set_text(row, key, given):
-    """Sets an option from what was typed; empty: it is not given."""
-    given = given.strip() if key != "separator" or given.strip() else given
-    if key == "separator":
-        value = _SEPARATORS.get(given.lower(), given)
-    elif key in _NAMES:
-        value = given
-    elif key == "where":
-        value = {}
-        for part in filter(None, (part.strip() for part in given.split(";"))):
-            column, _, values = part.partition("=")
-            parsed = _values(values)
-            value[_name(column)] = parsed[0] if len(parsed) == 1 else parsed
-    elif key == "columns":
-        value = _values(given)
-    else:
-        parsed = _values(given)
-        value = parsed[0] if len(parsed) == 1 else parsed
-    _set(row, key, value)
+def _one_or_all(values):
+    return values[0] if len(values) == 1 else values
 
 
-def choice(row, key, items):
-    """The number of the present one of the items of a menu. key: "decimal", or "xy" or "z" of the units."""
-    return next((n for n, item in enumerate(items) if item[0] == _choice(row, key)), 0)
+def column(text):
+    """A column as it is written: by number where it is one, else by name; a name may stand in quotes."""
+    text = text.strip()
+    return int(text) if text.isdecimal() else text.strip('"')
 
 
-def set_choice(row, key, items, number):
-    if key == "decimal":
-        _set(row, key, items[number][0])
-        return
-    given = {part: _choice(row, part) for part in ("xy", "z")} | {key: items[number][0]}
-    _set(row, "units", {part: unit for part, unit in given.items() if unit})
+def column_text(name):
+    return f'"{name}"' if isinstance(name, str) and name.isdecimal() else str(name)
 
 
-def _choice(row, key):
-    if key == "decimal":
-        return options(row).get(key) or ""
-    given = options(row).get("units")
-    return (given.get(key) if isinstance(given, dict) else given) or ""
-
-
-def _set(row, key, value):
-    from . import changes
-
-    given = options(row)
-    given.pop(key, None)
-    if value not in ("", [], {}):
-        given[key] = value
-    row.reading = json.dumps(given) if given else ""
-    changes.reading(row)
-
-
-def _list_text(values):
-    return ", ".join(map(_value_text, values if isinstance(values, list) else [values]))
-
-
-def _value_text(value):
-    """A number, or a text; in quotes where it would be taken for something else."""
-    if not isinstance(value, str):
-        return repr(value)
-    plain = value and value == value.strip() and not set(value) & set(',;="')
-    return value if plain and isinstance(_value(value), str) else f'"{value}"'
-
-
-def _values(given):
-    """The values of a list with commas; those in quotes are text."""
-    found, at = [], 0
-    given = given.strip()
-    while at < len(given):
-        if given[at] == '"':
-            end = given.find('"', at + 1)
-            end = len(given) if end < 0 else end
-            found.append(given[at + 1 : end])
-            at = given.find(",", end)
-        else:
-            end = given.find(",", at)
-            found.append(_value(given[at : end if end >= 0 else len(given)].strip()))
-            at = end
-        if at < 0:
-            break
-        at += 1
-        while at < len(given) and given[at].isspace():
-            at += 1
-    return [value for value in found if value != ""] if '""' not in given else found
-
-
-def _value(given):
+def value(text):
+    """A number, or a text; what is in quotes is text."""
+    text = text.strip()
     for kind in (int, float):
         try:
-            return kind(given)
+            return kind(text)
         except ValueError:
             continue
-    return given
+    return text[1:-1] if text[:1] == text[-1:] == '"' and len(text) > 1 else text
 
 
-def _name(column):
-    return column.strip().strip('"')
+def value_text(given):
+    """A number, or a text; in quotes where it would be taken for something else."""
+    if not isinstance(given, str):
+        return repr(given)
+    plain = given and given == given.strip() and not set(given) & set(',"')
+    return given if plain and isinstance(value(given), str) else f'"{given}"'
 
 
 def named_columns(given):
     """{name: column} of "hole = BHID; depth = 3"."""
-    found = {}
-    for part in filter(None, (part.strip() for part in given.split(";"))):
-        name, _, column = part.partition("=")
-        found[name.strip()] = _values(column)[0] if _values(column) else ""
-    return found
+    parts = (part.partition("=") for part in given.split(";") if part.strip())
+    return {name.strip(): column(text) for name, _, text in parts}

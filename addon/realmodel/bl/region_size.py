@@ -4,11 +4,13 @@
 import math
 
 import bpy
-import numpy as np
 
 from ..core import RealModelError
+from ..core.planar_mesh import triangulate_rings
 from ..core.readers import read_region
+from ..core.region_rings import region_rings
 from . import project_settings, settings, stored_arrays
+from .surface_figures import plan_area
 
 
 def expected_triangles(row):
@@ -43,7 +45,6 @@ def _measure_all():
 def measure(scene, row, depsgraph):
     """Measures the region of a rock mass, once for each change of it: model units squared, 0 where it is not
     known."""
-    rings = None
     try:
         rings = project_settings.region_rings(row, depsgraph, project_settings.model_origin(scene))
         if rings is None and row.region_stored:
@@ -51,30 +52,8 @@ def measure(scene, row, depsgraph):
         path = project_settings.absolute(row.region_file)
         if rings is None and path is not None:
             rings, _ = read_region(path)
+        area = 0.0 if rings is None else plan_area(*triangulate_rings(region_rings(rings)))
     except RealModelError:
-        rings = None  # the build will say what is wrong
+        area = 0.0  # the build will say what is wrong
     with settings.filling():
-        row.region_area = 0.0 if rings is None else _area(rings)
-
-
-def _area(rings):
-    """Even-odd area of nested rings, each inner one a hole of the next outer one: by their depth."""
-    total = 0.0
-    for number, ring in enumerate(rings):
-        depth = sum(_inside(ring[0], other) for n, other in enumerate(rings) if n != number)
-        total += (-1) ** depth * _ring_area(np.asarray(ring))
-    return total
-
-
-def _ring_area(ring):
-    x, y = (ring - ring[0]).T
-    return abs(float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum())) / 2.0
-
-
-def _inside(place, ring):
-    """Whether a place is inside a ring: how many edges a ray to the east crosses."""
-    a, b = np.asarray(ring), np.roll(np.asarray(ring), -1, axis=0)
-    spans = (a[:, 1] > place[1]) != (b[:, 1] > place[1])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        east = a[:, 0] + (place[1] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
-    return bool(np.count_nonzero(spans & (east > place[0])) % 2)
+        row.region_area = area

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-VERSION = 3  # of the settings; versioning.py brings older ones up to it
+VERSION = 4  # of the settings; versioning.py brings older ones up to it
 
 _quiet = 0  # how many blocks of code fill in settings at the moment
 
@@ -49,6 +49,16 @@ def active_surface(scene):
     if rock is None or not len(rock.surfaces):
         return None
     return rock.surfaces[min(max(rock.active_surface, 0), len(rock.surfaces) - 1)]
+
+
+def surface_of(row):
+    """The surface that a row is, or is of: a filter."""
+    return row.id_data.path_resolve(row.path_from_id().partition(".filters[")[0])
+
+
+def rock_of(surface):
+    """The rock mass that a surface's row belongs to."""
+    return surface.id_data.path_resolve(surface.path_from_id().rpartition(".surfaces[")[0])
 
 
 def surface_rows(scene):

@@ -9,14 +9,15 @@ import numpy as np
 def of_model(model):
     """For each surface of a model a JSON text: points, triangles, low, high, area (in plan, of what survives,
     model units squared), deviation (the largest standard deviation of its heights; null where it is not
-    known) and share (of the surface itself; null where the region cuts it off)."""
+    known), variogram (as a project file writes it, where one was fitted) and share (of the surface itself;
+    null where the region cuts it off)."""
     areas = _surviving_areas(model)
     found, number = [], 0
     for rock in model.project.rocks:
         for surface in rock.surfaces:
             vertices, triangles = model.surface(number)
             heights = vertices[np.unique(triangles), 2] if len(triangles) else np.zeros(1)
-            whole = _plan_area(vertices, triangles) if surface.interpolated or rock.region is None else 0.0
+            whole = plan_area(vertices, triangles) if surface.interpolated or rock.region is None else 0.0
             figures = {
                 "points": len(surface.points) if surface.points is not None else None,
                 "triangles": len(triangles),
@@ -24,11 +25,17 @@ def of_model(model):
                 "high": float(heights.max()),
                 "area": float(areas[number]),
                 "deviation": _most_deviation(model.surface_attributes(number)["variance"]),
+                "variogram": _fitted(model.interpolations[number]),
                 "share": min(float(areas[number]) / whole, 1.0) if whole else None,
             }
             found.append(json.dumps(figures))
             number += 1
     return found
+
+
+def _fitted(result):
+    found = result.variogram if result is not None else None
+    return found.settings() if found is not None and found.fitted else None
 
 
 def _most_deviation(variance):
@@ -61,7 +68,8 @@ def _next(values, first, last):
     return found
 
 
-def _plan_area(vertices, triangles):
+def plan_area(vertices, triangles):
+    """The area of triangles, seen from above."""
     a, b, c = (vertices[triangles[:, k], :2] for k in range(3))
     (ux, uy), (vx, vy) = (b - a).T, (c - a).T
     return float(np.abs(ux * vy - uy * vx).sum() / 2)

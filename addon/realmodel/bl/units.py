@@ -3,21 +3,10 @@
 
 import math
 
-from ..core.units import METRES
+from ..core.units import METRES, UNIT_NAMES
 from . import results
 
-_NAMES = {
-    "mm": "Millimeters",
-    "cm": "Centimeters",
-    "m": "Meters",
-    "km": "Kilometers",
-    "in": "Inches",
-    "ft": "Feet (international)",
-    "us-ft": "US survey feet",
-    "yd": "Yards",
-    "mi": "Miles",
-}
-ITEMS = tuple((unit, unit, _NAMES.get(unit, unit)) for unit in METRES)  # of a menu
+ITEMS = tuple((unit, unit, UNIT_NAMES[unit]) for unit in METRES)  # of a menu
 
 # What Blender shows lengths in. It has no yards; of a survey foot it only knows the size.
 _LENGTH_UNITS = {

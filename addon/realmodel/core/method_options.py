@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the options of methods may be: each check returns the value as the methods take it, or refuses it."""
+"""What settings may be: each check returns the value as it is used, or refuses it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from .errors import InputRefused, UsageError
-from .variogram import VARIOGRAM_MODELS
+from .setting import Setting, Settings
 
 
 class OptionRefused(InputRefused):
@@ -24,73 +24,44 @@ def _is_whole(value) -> bool:
     return hasattr(value, "__index__") and not isinstance(value, (bool, np.bool_))
 
 
-def neighbours(option: str, value) -> int:
-    if not _is_whole(value) or not 0 <= int(value) < 2**31:
-        raise OptionRefused(
-            f"'{option}' must be a whole number from 0, not {value!r}",
-            option=option,
-            advice="0 takes all points, 16 is usual",
-        )
-    return int(value)
+def checked(option: str, setting: Setting, value):
+    """The value of a setting as it is used. Raises OptionRefused."""
+    if setting.check is not None:
+        return setting.check(option, value)
+    if value is None and setting.default is None:
+        return None
+    if setting.kind == "word":
+        return _word(option, setting, value)
+    if setting.kind == "surface":
+        return surface(option, value)
+    if setting.parts:
+        return table(option, setting.parts, value)
+    if setting.kind == "whole":
+        least = int(setting.low)
+        if not _is_whole(value) or not least <= int(value) < 2**31:
+            raise OptionRefused(
+                f"'{option}' must be a whole number from {least}, not {value!r}", option=option
+            )
+        return int(value)
+    return number(option, setting, value)
 
 
-def optional_neighbours(option: str, value) -> int | None:
-    return None if value is None else neighbours(option, value)
-
-
-def octants(option: str, value) -> int:
-    if not _is_whole(value) or not 0 <= int(value) < 2**31:
-        raise OptionRefused(
-            f"'{option}' must be a whole number from 0, not {value!r}",
-            option=option,
-            advice="it is the most points that count from each eighth of the directions; 0 is no limit",
-        )
-    return int(value)
-
-
-def number(option: str, value, above: float | None = None, least: float | None = None) -> float:
+def number(option: str, setting: Setting, value) -> float:
     name = option.rpartition(".")[2]
     try:
-        checked = float(value) if not isinstance(value, (bool, str)) else math.nan
+        given = float(value) if not isinstance(value, (bool, str)) else math.nan
     except (OverflowError, TypeError, ValueError):
-        checked = math.nan
-    if not math.isfinite(checked):
+        given = math.nan
+    if not math.isfinite(given):
         raise OptionRefused(f"'{name}' must be a finite number, not {value!r}", option=option)
-    if above is not None and checked <= above:
-        raise OptionRefused(f"'{name}' must be more than {above:g}, not {checked:g}", option=option)
-    if least is not None and checked < least:
-        raise OptionRefused(f"'{name}' must be at least {least:g}, not {checked:g}", option=option)
-    return checked
-
-
-def positive(option: str, value) -> float:
-    return number(option, value, above=0.0)
-
-
-def not_negative(option: str, value) -> float:
-    return number(option, value, least=0.0)
-
-
-def optional_number(option: str, value) -> float | None:
-    return None if value is None else number(option, value)
-
-
-def optional_positive(option: str, value) -> float | None:
-    return None if value is None else positive(option, value)
-
-
-def dip(option: str, value) -> float | None:
-    """Degrees from the horizontal."""
-    if value is None:
-        return None
-    checked = number(option, value, least=0.0)
-    if checked >= 90:
-        raise OptionRefused(f"'{option}' must be below 90 degrees, not {checked:g}", option=option)
-    return checked
-
-
-def optional_surface(option: str, value):
-    return None if value is None else surface(option, value)
+    if setting.above is not None:
+        if given <= setting.above:
+            raise OptionRefused(f"'{name}' must be more than {setting.above:g}, not {given:g}", option=option)
+    elif setting.low is not None and given < setting.low:
+        raise OptionRefused(f"'{name}' must be at least {setting.low:g}, not {given:g}", option=option)
+    if setting.below is not None and given >= setting.below:
+        raise OptionRefused(f"'{name}' must be below {setting.below:g}, not {given:g}", option=option)
+    return given
 
 
 def surface(option: str, value):
@@ -120,104 +91,70 @@ def surface(option: str, value):
             return np.asarray(value, np.float64)
         except (TypeError, ValueError) as error:
             raise OptionRefused(f"'{option}' is not an array of heights", option=option) from error
-    return number(option, value)
+    return number(option, Setting(), value)
 
 
-def one_of(*known: str):
-    """The check of an option that is one of a few words."""
-
-    def check(option: str, value) -> str:
-        if value not in known:
-            choices = "' or '".join(known)
-            raise OptionRefused(f"'{option}' cannot be {value!r}", option=option, advice=f"use '{choices}'")
-        return value
-
-    return check
-
-
-def _table(option: str, value, required: Sequence[str], optional: Sequence[str]) -> dict:
-    known = (*required, *optional)
-    if not isinstance(value, Mapping):
-        shape = ", ".join(f"{key} = ..." for key in known)
-        raise OptionRefused(f"'{option}' must be a table", option=option, advice=f"write {{{shape}}}")
-    for key in value:
-        if key not in known:
-            raise OptionRefused(
-                f"unknown key '{key}' in '{option}'",
-                option=f"{option}.{key}",
-                advice=f"known are {', '.join(known)}",
-            )
-    for key in required:
-        if key not in value:
-            raise OptionRefused(f"'{option}' lacks '{key}'", option=option)
-    return dict(value)
-
-
-def _model(option: str, value) -> str:
-    if not isinstance(value, str) or value not in VARIOGRAM_MODELS:
-        raise OptionRefused(
-            f"unknown variogram model {value!r}", option=option, advice=f"use {', '.join(VARIOGRAM_MODELS)}"
-        )
+def _word(option: str, setting: Setting, value) -> str:
+    if not isinstance(value, str) or value not in setting.words:
+        choices = "' or '".join(setting.words)
+        name = option.rpartition(".")[2]
+        raise OptionRefused(f"'{name}' cannot be {value!r}", option=option, advice=f"use '{choices}'")
     return value
 
 
-def variogram(option: str, value) -> dict | None:
-    """{model, range, sill, nugget}, or {nugget, structures = [{model, range, sill, anisotropy}, ...]} for a
-    nested one; a Variogram found by an earlier interpolation is taken as well. None: to be fitted."""
-    if value is None:
-        return None
-    if hasattr(value, "settings"):
-        value = value.settings()
-    if isinstance(value, Mapping) and "structures" in value:
-        return _nested(option, value)
-    parts = _table(option, value, ("model", "range", "sill"), ("nugget",))
-    model = _model(f"{option}.model", parts["model"])
-    sill = positive(f"{option}.sill", parts["sill"])
-    nugget = not_negative(f"{option}.nugget", parts.get("nugget", 0.0))
-    if nugget > sill:
-        raise OptionRefused(
-            f"the nugget, {nugget:g}, is more than the sill, {sill:g}",
-            option=f"{option}.nugget",
-            advice="the sill includes the nugget",
-        )
-    reach = positive(f"{option}.range", parts["range"])
-    return {"model": model, "range": reach, "sill": sill, "nugget": nugget}
-
-
-def _nested(option: str, value: Mapping) -> dict:
-    parts = _table(option, value, ("structures",), ("nugget",))
-    listed = parts["structures"]
-    if not isinstance(listed, (list, tuple)) or not listed:
-        raise OptionRefused(
-            f"'{option}.structures' must be a list of tables",
-            option=f"{option}.structures",
-            advice='write structures = [{model = "spherical", range = ..., sill = ...}, ...]',
-        )
-    structures = []
-    for entry in listed:
-        name = f"{option}.structures"
-        own = _table(name, entry, ("model", "range", "sill"), ("anisotropy",))
-        structure = {
-            "model": _model(name, own["model"]),
-            "range": positive(f"{name}.range", own["range"]),
-            "sill": positive(f"{name}.sill", own["sill"]),
-        }
-        if own.get("anisotropy") is not None:
-            structure["anisotropy"] = anisotropy(f"{name}.anisotropy", own["anisotropy"])
-        structures.append(structure)
-    nugget = not_negative(f"{option}.nugget", parts.get("nugget", 0.0))
-    return {"nugget": nugget, "structures": structures}
-
-
-def anisotropy(option: str, value) -> dict | None:
-    """{ratio, azimuth}. None: found with a variogram that is fitted, and none with one that is given."""
-    if value is None:
-        return None
-    parts = _table(option, value, ("ratio", "azimuth"), ())
-    return {
-        "ratio": positive(f"{option}.ratio", parts["ratio"]),
-        "azimuth": number(f"{option}.azimuth", parts["azimuth"]),
+def table(option: str, parts: Settings, value) -> dict:
+    """The values of a table by its parts; those without a default are needed. Raises OptionRefused."""
+    if not isinstance(value, Mapping):
+        shape = ", ".join(f"{key} = ..." for key in parts)
+        raise OptionRefused(f"'{option}' must be a table", option=option, advice=f"write {{{shape}}}")
+    for key in value:
+        if key not in parts:
+            raise OptionRefused(
+                f"unknown key '{key}' in '{option}'",
+                option=f"{option}.{key}",
+                advice=f"known are {', '.join(parts)}",
+            )
+    for key, part in parts.items():
+        if key not in value and part.default is None and not part.switch:
+            raise OptionRefused(f"'{option}' lacks '{key}'", option=option)
+    found = {
+        key: checked(f"{option}.{key}", part, value.get(key, part.default)) for key, part in parts.items()
     }
+    return {key: given for key, given in found.items() if given is not None}
+
+
+def variogram(parts: Settings, structure: Settings):
+    """The check of a variogram: {model, range, sill, nugget}, or {nugget, structures = [{model, range, sill,
+    anisotropy}, ...]} for a nested one; a Variogram found by an earlier interpolation is taken as well. None:
+    to be fitted."""
+    nested = {"nugget": parts["nugget"], "structures": Setting(check=lambda *given: structures(*given))}
+
+    def structures(option: str, value) -> list[dict]:
+        if not isinstance(value, (list, tuple)) or not value:
+            raise OptionRefused(
+                f"'{option}' must be a list of tables",
+                option=option,
+                advice='write structures = [{model = "spherical", range = ..., sill = ...}, ...]',
+            )
+        return [table(option, structure, entry) for entry in value]
+
+    def check(option: str, value) -> dict | None:
+        if value is None:
+            return None
+        if hasattr(value, "settings"):
+            value = value.settings()
+        if isinstance(value, Mapping) and "structures" in value:
+            return table(option, nested, value)
+        found = table(option, parts, value)
+        if found["nugget"] > found["sill"]:
+            raise OptionRefused(
+                f"the nugget, {found['nugget']:g}, is more than the sill, {found['sill']:g}",
+                option=f"{option}.nugget",
+                advice="the sill includes the nugget",
+            )
+        return found
+
+    return check
 
 
 def check_threads(threads) -> int:

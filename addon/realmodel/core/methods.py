@@ -9,45 +9,17 @@ What a method does with its options is in the package `heights`, one module for 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 from . import method_options as check
 from .method_options import OptionRefused
+from .setting import Setting, Settings, Words
+from .variogram import VARIOGRAMS
 
 DEFAULT_METHOD = "kriging"
 DEFAULT_NEIGHBOURS = 16
 NEIGHBOURS_OF_FITTED = 32
-
-Words = Mapping[str, tuple[str, str]]  # label and tooltip in the panel, by word
-
-
-@dataclass(frozen=True)
-class Option:
-    """default: its value where it is not given. check(name, value) returns the value as the method takes it,
-    or raises OptionRefused.
-
-    For the panel: kind, one of "number", "length", "whole", "word", "surface" and "table" (which has settings
-    of its own); label and tip; words, of the kind "word"; start, low and high: the value before it is given,
-    and its bounds. switch: label and tip of a tick, off where the option is not given; beside: the option
-    whose tick this one shares. zero_is_none: 0 in the panel means that it is not given.
-    For the documents: unset, what None means, and more, what there is to say beside the tip.
-    """
-
-    default: object
-    check: Callable[[str, object], object]
-    kind: str = "number"
-    label: str = ""
-    tip: str = ""
-    words: Words = field(default_factory=dict)
-    start: float = 0.0
-    low: float | None = None
-    high: float | None = None
-    switch: tuple[str, str] | None = None
-    beside: str | None = None
-    zero_is_none: bool = False
-    unset: str = "none"
-    more: str = ""
 
 
 @dataclass(frozen=True)
@@ -65,7 +37,7 @@ class Method:
     label: str
     tip: str
     run: str | None
-    options: Mapping[str, Option]
+    options: Settings
     instead_of_points: str | None = None
     on_mesh: bool = False
     leaves_one_out: bool = False
@@ -85,64 +57,126 @@ EXTRAPOLATE: Words = {
     "none": ("None", "The surface ends where the points end"),
 }
 _DRIFTS: Words = {"linear": ("Linear", "A plane"), "quadratic": ("Quadratic", "A second-order surface")}
-_NEIGHBOURS = Option(
+_NEIGHBOURS = Setting(
     DEFAULT_NEIGHBOURS,
-    check.neighbours,
     "whole",
     "Neighbors",
     "Number of nearest points in plan used at each node; 0: all",
     start=DEFAULT_NEIGHBOURS,
     low=0,
     switch=("Limit Neighbors", "Set how many points are used at each node; off: as many as suit the method"),
+    fold="search",
     unset=f"{DEFAULT_NEIGHBOURS}; {NEIGHBOURS_OF_FITTED} for kriging with a fitted variogram",
 )
 _NEIGHBOURHOOD = {
     "neighbours": _NEIGHBOURS,
-    "octants": Option(
+    "octants": Setting(
         0,
-        check.octants,
         "whole",
         "Per Octant",
         "Maximum number of points from each of eight sectors; 0: no limit",
         low=0,
+        fold="search",
     ),
-    "radius": Option(
+    "radius": Setting(
         None,
-        check.optional_positive,
         "length",
         "Search Radius",
         "Points farther away are not used; 0: no limit",
         low=0.0,
+        above=0.0,
         zero_is_none=True,
+        fold="search",
     ),
 }
 # None: DEFAULT_NEIGHBOURS, or with a variogram that is fitted twice as many, which tells points better.
 _NEIGHBOURHOOD_OF_KRIGING = {
     **_NEIGHBOURHOOD,
-    "neighbours": replace(_NEIGHBOURS, default=None, check=check.optional_neighbours),
+    "neighbours": replace(_NEIGHBOURS, default=None),
+}
+
+
+def _anisotropy(prefix: str, tip: str) -> Setting:
+    """The anisotropy of a variogram or of one of its structures; prefix: of its properties."""
+    return Setting(
+        None,
+        "table",
+        "Anisotropy",
+        parts={
+            "ratio": Setting(
+                label="Ratio",
+                tip="Range along the azimuth divided by the range across it",
+                start=2.0,
+                low=0.001,
+                above=0.0,
+                name=f"{prefix}ratio",
+            ),
+            "azimuth": Setting(
+                label="Azimuth",
+                tip="Direction of the longest range, in degrees clockwise from north (+Y)",
+                name=f"{prefix}azimuth",
+            ),
+        },
+        switch=("Anisotropy", tip),
+        unset="found with a variogram that is fitted, else none",
+        more="`{ratio = 2, azimuth = 30}`: the range is longest along the azimuth, in degrees clockwise from "
+        "north (+y), and `ratio` times shorter across",
+    )
+
+
+def _range(tip: str, name: str) -> Setting:
+    return Setting(kind="length", label="Range", tip=tip, start=100.0, low=0.0, above=0.0, name=name)
+
+
+STRUCTURE = {  # of a nested variogram, beside its anisotropy
+    "model": Setting(
+        "spherical", kind="word", label="Model", tip="Model of this structure", words=VARIOGRAMS
+    ),
+    "range": _range("Practical range of this structure", "range"),
+    "sill": Setting(
+        label="Sill", tip="Variance that this structure contributes", start=1.0, low=0.0, above=0.0
+    ),
+    "anisotropy": _anisotropy("", "Give this structure its own anisotropy; off: that of the variogram"),
+}
+_PARTS = {
+    "model": Setting(
+        kind="word", label="Variogram", tip="Variogram model", words=VARIOGRAMS, name="variogram_model"
+    ),
+    "range": _range("Practical range: the distance at which correlation vanishes", "variogram_range"),
+    "sill": Setting(
+        label="Sill",
+        tip="Variance between points farther apart than the range, including the nugget",
+        start=1.0,
+        low=0.0,
+        above=0.0,
+        name="variogram_sill",
+    ),
+    "nugget": Setting(
+        0.0,
+        label="Nugget",
+        tip="Variance at distance zero; 0: every point is honored",
+        low=0.0,
+        name="variogram_nugget",
+    ),
 }
 _VARIOGRAM = {
-    "variogram": Option(
-        None,
-        check.variogram,
-        "table",
+    "variogram": Setting(
+        kind="table",
+        label="Variogram",
+        check=check.variogram(_PARTS, STRUCTURE),
+        parts=_PARTS,
         unset="fitted",
         more='`{model = "spherical", range = 60, sill = 4, nugget = 0}`, or nested: `{nugget = 0, '
         "structures = [{model, range, sill, anisotropy}, ...]}`",
     ),
-    "anisotropy": Option(
-        None,
-        check.anisotropy,
-        "table",
-        unset="found with a variogram that is fitted, else none",
-        more="`{ratio = 2, azimuth = 30}`: the range is longest along the azimuth, in degrees clockwise from "
-        "north (+y), and `ratio` times shorter across",
+    "anisotropy": _anisotropy(
+        "anisotropy_",
+        "Set a direction of longer correlation. Off: found with a fitted variogram, else isotropic",
     ),
 }
 _EXTRAPOLATE = {
-    "extrapolate": Option(
+    "extrapolate": Setting(
         "method",
-        check.one_of(*EXTRAPOLATE),
         "word",
         "Extrapolation",
         "What happens beyond the points",
@@ -153,10 +187,10 @@ _EXTRAPOLATE = {
 }
 
 
-def _other_surface(label: str, tip: str, empty: str) -> Option:
+def _other_surface(label: str, tip: str, empty: str) -> Setting:
     """An option that may name another surface, and need not."""
     tip = f"{tip}Name of another surface of this rock mass, or an elevation; empty: {empty}"
-    return Option(None, check.optional_surface, "surface", label, tip, unset=empty)
+    return Setting(None, "surface", label, tip, unset=empty)
 
 
 METHODS: dict[str, Method] = {
@@ -174,9 +208,8 @@ METHODS: dict[str, Method] = {
         "Kriging with a trend, such as a dip",
         "from_neighbours.krige",
         {
-            "drift": Option(
+            "drift": Setting(
                 "linear",
-                check.one_of(*_DRIFTS),
                 "word",
                 "Drift",
                 "Form of the trend",
@@ -197,13 +230,13 @@ METHODS: dict[str, Method] = {
         "from_neighbours.inverse_distance",
         {
             **_NEIGHBOURHOOD,
-            "power": Option(
+            "power": Setting(
                 2.0,
-                check.positive,
                 label="Power",
                 tip="Exponent of the distance: higher values give near points more weight",
                 start=2.0,
                 low=0.01,
+                above=0.0,
                 more="above 0",
             ),
             **_EXTRAPOLATE,
@@ -218,9 +251,8 @@ METHODS: dict[str, Method] = {
         "from_neighbours.thin_plate",
         {
             **_NEIGHBOURHOOD,
-            "smoothing": Option(
+            "smoothing": Setting(
                 0.0,
-                check.not_negative,
                 label="Smoothing",
                 tip="0: the surface passes through every point; higher: smoother",
                 low=0.0,
@@ -234,13 +266,13 @@ METHODS: dict[str, Method] = {
         "Discrete smooth interpolation on the mesh, with constraints",
         "on_mesh.dsi",
         {
-            "weight": Option(
+            "weight": Setting(
                 None,
-                check.optional_positive,
                 label="Weight",
                 tip="Weight of a point against the roughness of one node",
                 start=1.0,
                 low=1e-9,
+                above=0.0,
                 switch=("Approximate Points", "The surface need not pass exactly through the points"),
                 unset="points hold",
             ),
@@ -270,19 +302,17 @@ METHODS: dict[str, Method] = {
         "A plane fitted to the points, or with a fixed dip",
         "plain.plane",
         {
-            "dip": Option(
-                None,
-                check.dip,
+            "dip": Setting(
                 label="Dip",
                 tip="Angle below the horizontal, in degrees",
                 low=0.0,
                 high=89.999,
+                below=90.0,
                 switch=("Fixed Dip", "Set the dip; off: fitted to the points"),
                 unset="fitted",
             ),
-            "dip_direction": Option(
+            "dip_direction": Setting(
                 0.0,
-                check.number,
                 label="Dip Direction",
                 tip="Azimuth of the dip, in degrees clockwise from north (+Y)",
                 beside="dip",
@@ -297,9 +327,8 @@ METHODS: dict[str, Method] = {
         "One elevation everywhere",
         "plain.constant",
         {
-            "value": Option(
+            "value": Setting(
                 None,
-                check.optional_number,
                 "length",
                 "Elevation",
                 "Elevation of the whole surface",
@@ -317,17 +346,16 @@ METHODS: dict[str, Method] = {
         "Parallel to another surface, at a thickness",
         "plain.parallel",
         {
-            "to": Option(
+            "to": Setting(
                 None,
-                check.surface,
                 "surface",
                 "Parallel To",
                 "Name of another surface of this rock mass, or an elevation",
+                check=check.surface,
                 unset="needed",
             ),
-            "thickness": Option(
+            "thickness": Setting(
                 None,
-                check.optional_number,
                 "length",
                 "Thickness",
                 "Distance above the other surface; negative: below it",
@@ -348,9 +376,8 @@ THICKNESS_METHODS = tuple(
     dict.fromkeys([_SPREAD_BY, *(name for name, method in METHODS.items() if method.spreads_thickness)])
 )
 # Of any of the methods above: only now are they all there.
-_THICKNESS_METHOD = Option(
+_THICKNESS_METHOD = Setting(
     _SPREAD_BY,
-    check.one_of(*THICKNESS_METHODS),
     "word",
     "Thickness Method",
     "How the thickness is interpolated between the points",
@@ -362,11 +389,10 @@ METHODS["parallel"] = replace(
 )
 
 # Every option once: those of one name mean the same wherever they are.
-OPTIONS: dict[str, Option] = {
+OPTIONS: dict[str, Setting] = {
     name: option for method in reversed(METHODS.values()) for name, option in method.options.items()
 }
 OPTIONS = {name: OPTIONS[name] for method in METHODS.values() for name in method.options}
-ALL_OPTIONS = tuple(OPTIONS)
 SURFACE_OPTIONS = tuple(name for name, option in OPTIONS.items() if option.kind == "surface")
 
 
@@ -396,4 +422,7 @@ def checked_options(method: str, options: Mapping) -> dict:
             option=option,
             advice=f"options of {method} are {', '.join(known)}",
         )
-    return {name: option.check(name, options.get(name, option.default)) for name, option in known.items()}
+    return {
+        name: check.checked(name, setting, options.get(name, setting.default))
+        for name, setting in known.items()
+    }

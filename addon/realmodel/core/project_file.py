@@ -12,52 +12,17 @@ from .finite import is_finite
 from .library import load_library
 from .map_layer import MapLayer, is_wkt
 from .meshers import DEFAULT_MESHER
-from .methods import ALL_OPTIONS
+from .methods import OPTIONS
 from .plan_input import is_place_elsewhere
 from .point_file import MeshFile, PointFile
 from .project import Project, Rock, Source, Surface, check_project, is_file
 from .rules import DEFAULT_RULE
+from .schema import PROJECT, READING, ROCK, SURFACE
 from .toml_table import Table, TomlDocument
 from .units import METRES, MODEL_UNIT
 
 FORMAT = 1
-_PROJECT_KEYS = ("format", "name", "units", "library", "rock")
-_ROCK_KEYS = (
-    "name",
-    "region",
-    "holes",
-    "edge_length",
-    "triangles",
-    "mesher",
-    "size",
-    "base_elevation",
-    "constraints",
-    "boreholes",
-    "surface",
-)
-_READING_KEYS = (
-    "columns",
-    "where",
-    "separator",
-    "decimal",
-    "nodata",
-    "units",
-    "height",
-    "layer",
-)  # of a file of points
 _BOREHOLES = 'write boreholes = { collars = "collars.csv", picks = "picks.csv" }'
-_SURFACE_KEYS = (
-    "name",
-    "points",
-    *_READING_KEYS,
-    "mesh",
-    "method",
-    *ALL_OPTIONS,
-    "minimum_thickness",
-    "rule",
-    "property",
-    "block",
-)
 
 
 def load_project(path: str | Path) -> Project:
@@ -71,7 +36,7 @@ def load_project(path: str | Path) -> Project:
     version = top.integer("format", required=True)
     if version != FORMAT:
         raise top.refuse(f"format {version} is not known", "format", f"this version reads format {FORMAT}")
-    top.allow_only(_PROJECT_KEYS)
+    top.allow_only(PROJECT)
     name = top.text("name", required=True)
     library = None
     if (library_file := top.text("library")) is not None:
@@ -91,7 +56,7 @@ def load_project(path: str | Path) -> Project:
 def _read_rock(table: Table, folder: Path) -> Rock:
     name = table.text("name", required=True)
     table.item = f"rock '{name}'"
-    table.allow_only(_ROCK_KEYS)
+    table.allow_only((*ROCK, "surface"))
     region, holes = _read_region(table, folder)
     return Rock(
         name=name,
@@ -238,9 +203,9 @@ def _is_coordinate(value) -> bool:
 def _read_surface(table: Table, folder: Path) -> Surface:
     name = table.text("name", required=True)
     table.item = f"{table.item.rpartition(', ')[0]}, surface '{name}'"
-    table.allow_only(_SURFACE_KEYS)
+    table.allow_only(SURFACE)
     files = {key: folder / table.text(key) for key in ("points", "mesh") if key in table}
-    reading = {key: table.content[key] for key in _READING_KEYS if key in table}
+    reading = {key: table.content[key] for key in READING if key in table}
     if "mesh" in files and "units" in reading and "points" not in files:
         files["mesh"] = MeshFile(files["mesh"], reading.pop("units"))
     if reading and "points" not in files:
@@ -249,7 +214,7 @@ def _read_surface(table: Table, folder: Path) -> Surface:
     if reading:
         files["points"] = PointFile(files["points"], **reading)
     property_id = table.integer("property")
-    options = {key: table.content[key] for key in ALL_OPTIONS if key in table}
+    options = {key: table.content[key] for key in OPTIONS if key in table}
     return Surface(
         name=name,
         method=table.text("method"),

@@ -18,6 +18,17 @@ METRES = {
     "yd": Fraction(9144, 10_000),
     "mi": Fraction(1_609_344, 1000),
 }
+UNIT_NAMES = {
+    "mm": "Millimeters",
+    "cm": "Centimeters",
+    "m": "Meters",
+    "km": "Kilometers",
+    "in": "Inches",
+    "ft": "Feet (international)",
+    "us-ft": "US survey feet",
+    "yd": "Yards",
+    "mi": "Miles",
+}
 
 
 def factor(unit: str | None, model_unit: str = MODEL_UNIT) -> float:

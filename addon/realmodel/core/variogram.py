@@ -17,6 +17,17 @@ _SHAPES = {
     "matern32": lambda t: 1 - (1 + _A * t) * np.exp(-_A * t),
     "matern52": lambda t: 1 - (1 + _B * t + (_B * t) ** 2 / 3) * np.exp(-_B * t),
 }
+VARIOGRAMS = {  # label and tooltip in the panel
+    "spherical": ("Spherical", "Linear at the origin, reaches the sill at the range: for rough elevations"),
+    "exponential": ("Exponential", "Linear at the origin, approaches the sill: for rough elevations"),
+    "gaussian": (
+        "Gaussian",
+        "Parabolic at the origin: for very smooth elevations; unstable with many close points",
+    ),
+    "cubic": ("Cubic", "Parabolic at the origin, reaches the sill at the range: for smooth elevations"),
+    "matern32": ("Matern 3/2", "Between exponential and Gaussian, rougher than Matern 5/2"),
+    "matern52": ("Matern 5/2", "Between exponential and Gaussian, smoother than Matern 3/2"),
+}
 VARIOGRAM_MODELS = tuple(_SHAPES)
 NO_ANISOTROPY = {"ratio": 1.0, "azimuth": 0.0}
 

@@ -10,6 +10,8 @@ from ..core import InputRefused
 from ..core.boreholes import COLUMNS, Boreholes
 from ..core.point_file import ReadingRefused
 from ..core.readers import read_boreholes
+from ..core.schema import READING
+from ..props_schema import items
 from .reporting import Reporting, a_rock, needed_path
 
 
@@ -50,7 +52,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     units: EnumProperty(
         name="Unit",
         description="Unit of all the tables",
-        items=[(unit or "NONE", *rest) for unit, *rest in reading_text.UNITS],
+        items=items(READING["units"].parts["z"].words),
     )
     add_surfaces: BoolProperty(
         name="Add Surfaces",

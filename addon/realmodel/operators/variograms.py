@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a nested variogram."""
+"""Rows of a surface: the structures of a nested variogram, the filters of its file."""
 
 import bpy
 from bpy.props import IntProperty
 
-from ..bl import live, settings
+from ..bl import changes, live, settings
 from ..core import InputRefused
 from .reporting import Reporting, a_surface
 
 
 class REALMODEL_OT_structure_add(Reporting, bpy.types.Operator):
-    """Add a part to the variogram of the active surface: parts of several ranges make a nested variogram"""
+    """Add a structure to the variogram of the active surface: structures of several ranges make it nested"""
 
     bl_idname = "realmodel.structure_add"
-    bl_label = "Add Part of Variogram"
+    bl_label = "Add Structure"
     needs = (a_surface,)
 
     def act(self, context):
@@ -38,10 +38,10 @@ def _take_single(surface):
 
 
 class REALMODEL_OT_structure_remove(Reporting, bpy.types.Operator):
-    """Remove a part of the variogram of the active surface"""
+    """Remove a structure from the variogram of the active surface"""
 
     bl_idname = "realmodel.structure_remove"
-    bl_label = "Remove Part of Variogram"
+    bl_label = "Remove Structure"
     needs = (a_surface,)
 
     index: IntProperty(name="Number", description="Which of them, counted from 0", min=0)
@@ -54,4 +54,37 @@ class REALMODEL_OT_structure_remove(Reporting, bpy.types.Operator):
         live.touch(context.scene)
 
 
-CLASSES = (REALMODEL_OT_structure_add, REALMODEL_OT_structure_remove)
+class REALMODEL_OT_filter_add(Reporting, bpy.types.Operator):
+    """Read only the rows of the file that have a value in a column; values of one column are alternatives"""
+
+    bl_idname = "realmodel.filter_add"
+    bl_label = "Add Filter"
+    needs = (a_surface,)
+
+    def act(self, context):
+        settings.active_surface(context.scene).filters.add()
+
+
+class REALMODEL_OT_filter_remove(Reporting, bpy.types.Operator):
+    """Remove a filter from the active surface"""
+
+    bl_idname = "realmodel.filter_remove"
+    bl_label = "Remove Filter"
+    needs = (a_surface,)
+
+    index: IntProperty(name="Number", description="Which of them, counted from 0", min=0)
+
+    def act(self, context):
+        surface = settings.active_surface(context.scene)
+        if not 0 <= self.index < len(surface.filters):
+            raise InputRefused(f"there is no filter {self.index}", advice="they are counted from 0")
+        surface.filters.remove(self.index)
+        changes.reading(surface, context)
+
+
+CLASSES = (
+    REALMODEL_OT_structure_add,
+    REALMODEL_OT_structure_remove,
+    REALMODEL_OT_filter_add,
+    REALMODEL_OT_filter_remove,
+)

@@ -4,6 +4,8 @@
 import bpy
 
 from ..bl import method_settings, plan_mesh, region_size, settings
+from ..core.schema import ROCK, SIZE
+from . import setting_rows
 from .panel import TabPanel, hint
 
 
@@ -31,11 +33,7 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
                 hint(layout, "The outline is stored in the .blend.")
         if method_settings.interpolates(rock):
             _draw_density(layout, rock)
-        base = layout.row(heading="Base")
-        base.prop(rock, "use_base", text="")
-        height = base.row()
-        height.active = rock.use_base
-        height.prop(rock, "base_elevation", text="")
+        setting_rows.draw(layout, rock, "base_elevation", ROCK)
 
 
 def _draw_density(layout, rock):
@@ -48,8 +46,8 @@ def _draw_density(layout, rock):
             hint(layout, f"about {_rounded(count):,} triangles per surface")
     elif rock.edges_by == "TRIANGLES":
         column.prop(rock, "triangles")
-    elif plan_mesh.has_triangles(rock):
-        column.prop(rock, "triangles", text="Scale to Triangles")
+    else:
+        setting_rows.draw(column, rock, "triangles", ROCK)
     layout.prop(rock, "mesher")
 
 
@@ -74,8 +72,8 @@ class REALMODEL_PT_rock_mesh(TabPanel, bpy.types.Panel):
             row.operator("realmodel.size_remove", text="", icon="X").index = number
             if entry.at == "OBJECT":
                 box.prop(entry, "object")
-            box.prop(entry, "length")
-            box.prop(entry, "distance")
+            for key in SIZE:
+                setting_rows.draw(box, entry, key, SIZE)
         layout.operator("realmodel.size_add", icon="ADD")
         hint(layout, "Constraints: lines and points that the mesh contains")
         for number, entry in enumerate(rock.constraints):

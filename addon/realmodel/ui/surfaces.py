@@ -4,7 +4,10 @@
 import bpy
 
 from ..bl import library_rows, method_settings, project_settings, settings, surface_figures, units
-from ..core.methods import METHODS
+from ..core.methods import METHODS, OPTIONS, STRUCTURE
+from ..core.schema import READING, SURFACE
+from ..core.variogram import VARIOGRAMS
+from . import setting_rows
 from .panel import TabPanel, hint, wrapped
 
 
@@ -51,9 +54,9 @@ def _draw_surface(layout, context, surface):
         if project_settings.stored_shape(surface) and not surface.filepath:
             hint(layout, "The data are stored in the .blend.")
     if surface.source not in method_settings.READY_MESHES:
-        _draw_method(layout.column(), surface)
+        layout.prop(surface, "method")
+        setting_rows.draw(layout, surface, "minimum_thickness", SURFACE)
     layout.prop(surface, "rule")
-    hint(layout, surface.bl_rna.properties["rule"].enum_items[surface.rule].description)
     entry = library_rows.find(context.scene, surface.property_id)
     known = (
         f"{entry.name} ({entry.id})"
@@ -69,58 +72,6 @@ def _draw_surface(layout, context, surface):
     row.operator_menu_enum("realmodel.surface_property", "property_id", text=known)
     layout.prop(surface, "block")
     _draw_figures(layout, context, surface)
-
-
-def _draw_method(layout, surface):
-    layout.prop(surface, "method")
-    for name in METHODS[surface.method].options:
-        switch, shown = method_settings.SHOWN.get(name, (None, ()))
-        if name == "variogram":
-            _draw_variogram(layout, surface)
-        elif switch is not None:
-            _draw_switched(layout, surface, switch, shown)
-        else:
-            for key in shown:
-                layout.prop(surface, key)
-    _draw_switched(layout, surface, "use_minimum_thickness", ("minimum_thickness",))
-
-
-def _draw_switched(layout, surface, switch, keys):
-    """A tick, and beside it what it switches on; further settings below."""
-    names = surface.bl_rna.properties
-    row = layout.row(heading=names[keys[0]].name if len(keys) == 1 else names[switch].name)
-    row.prop(surface, switch, text="")
-    if len(keys) == 1:
-        value = row.row()
-        value.active = getattr(surface, switch)
-        value.prop(surface, keys[0], text="")
-    elif getattr(surface, switch):
-        for key in keys:
-            layout.prop(surface, key)
-
-
-def _draw_variogram(layout, surface):
-    layout.row(heading="Variogram").prop(surface, "fit_variogram", text="Fitted")
-    if surface.fit_variogram:
-        return
-    parts = len(surface.structures)
-    keys = (
-        ("variogram_nugget",)
-        if parts
-        else ("variogram_model", "variogram_range", "variogram_sill", "variogram_nugget")
-    )
-    for key in keys:
-        layout.prop(surface, key)
-    for number, part in enumerate(surface.structures):
-        box = layout.box().column(align=True)
-        row = box.row(align=True)
-        row.prop(part, "model")
-        row.operator("realmodel.structure_remove", text="", icon="X").index = number
-        box.prop(part, "range")
-        box.prop(part, "sill")
-        _draw_switched(box, part, "use_anisotropy", ("ratio", "azimuth"))
-    text = "Add Structure" if parts else "Nested Structures"
-    layout.operator("realmodel.structure_add", text=text, icon="ADD")
 
 
 def _draw_figures(layout, context, surface):
@@ -148,24 +99,115 @@ def _figures(scene, figures):
         yield "Removed by erosion"
 
 
-class REALMODEL_PT_surface_reading(TabPanel, bpy.types.Panel):
-    bl_label = "Import Options"
-    bl_idname = "REALMODEL_PT_surface_reading"
-    bl_parent_id = "REALMODEL_PT_surfaces"
+class _OfASurface:
     bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def shown(cls, surface):
+        return True
 
     @classmethod
     def poll(cls, context):
         surface = settings.active_surface(context.scene)
-        files = ("POINTS_FILE", "MESH_FILE")
-        return surface is not None and surface.source in files and bool(surface.filepath)
+        return surface is not None and cls.shown(surface)
+
+
+class REALMODEL_PT_surface_method(_OfASurface, TabPanel, bpy.types.Panel):
+    bl_label = "Method Options"
+    bl_idname = "REALMODEL_PT_surface_method"
+    bl_parent_id = "REALMODEL_PT_surfaces"
+    fold = ""
+
+    @classmethod
+    def shown(cls, surface):
+        return surface.source not in method_settings.READY_MESHES and any(cls.options(surface))
+
+    @classmethod
+    def options(cls, surface):
+        known = METHODS[surface.method].options
+        return [key for key, setting in known.items() if setting.fold == cls.fold]
+
+    def draw_in(self, layout, context, _group):
+        surface = settings.active_surface(context.scene)
+        for key in self.options(surface):
+            if key == "variogram":
+                _draw_variogram(layout, context.scene, surface)
+            else:
+                setting_rows.draw(layout, surface, key, OPTIONS)
+
+
+class REALMODEL_PT_surface_search(REALMODEL_PT_surface_method):
+    bl_label = "Search"
+    bl_idname = "REALMODEL_PT_surface_search"
+    bl_parent_id = "REALMODEL_PT_surface_method"
+    fold = "search"
+
+
+def _draw_variogram(layout, scene, surface):
+    layout.row(heading="Variogram").prop(surface, "fit_variogram", text="Fitted")
+    if surface.fit_variogram:
+        fitted = (surface_figures.read(surface) or {}).get("variogram")
+        if fitted is not None:
+            hint(layout, _variogram_text(scene, fitted))
+        return
+    if len(surface.structures):
+        layout.prop(surface, "variogram_nugget")
+    else:
+        setting_rows.draw(layout, surface, "variogram", OPTIONS)
+    for number, part in enumerate(surface.structures):
+        box = layout.box().column(align=True)
+        row = box.row(align=True)
+        row.prop(part, "model")
+        row.operator("realmodel.structure_remove", text="", icon="X").index = number
+        for key in ("range", "sill", "anisotropy"):
+            setting_rows.draw(box, part, key, STRUCTURE)
+    text = "Add Structure" if len(surface.structures) else "Nested Structures"
+    layout.operator("realmodel.structure_add", text=text, icon="ADD")
+
+
+def _variogram_text(scene, fitted):
+    """What a build fitted, in words."""
+    parts = fitted.get("structures") or [fitted]
+    said = [
+        f"{VARIOGRAMS[part['model']][0]}, range {units.length_text(scene, part['range'])}, "
+        f"sill {part['sill']:.4g}"
+        for part in parts
+    ]
+    return f"{'; '.join(said)}; nugget {fitted['nugget']:.4g}"
+
+
+class REALMODEL_PT_surface_reading(_OfASurface, TabPanel, bpy.types.Panel):
+    bl_label = "Import Options"
+    bl_idname = "REALMODEL_PT_surface_reading"
+    bl_parent_id = "REALMODEL_PT_surfaces"
+
+    @classmethod
+    def shown(cls, surface):
+        return surface.source in ("POINTS_FILE", "MESH_FILE") and bool(surface.filepath)
 
     def draw_in(self, layout, context, _group):
         surface = settings.active_surface(context.scene)
         hint(layout, "Most files need no options.")
-        points = ("columns", "where", "separator", "decimal", "nodata", "height_attribute", "layer")
-        for key in (*(points if surface.source == "POINTS_FILE" else ()), "plan_unit", "height_unit"):
-            layout.prop(surface, key)
+        for key in READING if surface.source == "POINTS_FILE" else ("units",):
+            if key == "where":
+                _draw_filters(layout, surface)
+            else:
+                setting_rows.draw(layout, surface, key, READING)
 
 
-CLASSES = (REALMODEL_PT_surfaces, REALMODEL_PT_surface_reading)
+def _draw_filters(layout, surface):
+    for number, entry in enumerate(surface.filters):
+        row = layout.row(align=True)
+        row.use_property_split = False
+        row.prop(entry, "column", text="")
+        row.prop(entry, "value", text="")
+        row.operator("realmodel.filter_remove", text="", icon="X").index = number
+    layout.operator("realmodel.filter_add", icon="ADD")
+
+
+CLASSES = (
+    REALMODEL_PT_surfaces,
+    REALMODEL_PT_surface_method,
+    REALMODEL_PT_surface_search,
+    REALMODEL_PT_surface_reading,
+)

@@ -40,17 +40,22 @@ def read_geopackage(
 ) -> Shapes:
     """The features of one layer: of `layer`, or of the only one. Raises InputRefused naming both."""
     file = Path(file)
-    address = f"file:{quote(str(file.resolve()))}?mode=ro"
-    if open_changes(file) is None:
-        address += "&immutable=1"  # so that nothing is written beside it
     try:
-        with closing(sqlite3.connect(address, uri=True)) as base:
+        with closing(connect(file)) as base:
             return _read(file, base, layer, where or {}, step, heights)
     except sqlite3.Error as error:
         changed = open_changes(file) is not None
         advice = "close it in the program that has it open, so that its last changes are in it"
         what = f"not a GeoPackage that can be read: {error}"
         raise InputRefused(what, file=file, advice=advice if changed else None) from error
+
+
+def connect(file: Path) -> sqlite3.Connection:
+    """A connection that only reads. Raises sqlite3.Error."""
+    address = f"file:{quote(str(file.resolve()))}?mode=ro"
+    if open_changes(file) is None:
+        address += "&immutable=1"  # so that nothing is written beside it
+    return sqlite3.connect(address, uri=True)
 
 
 def open_changes(file: Path) -> Path | None:

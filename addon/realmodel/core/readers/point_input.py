@@ -63,7 +63,7 @@ def read_point_file(
     Raises InputRefused naming the file, and the line where it has some.
     """
     file = Path(given.file)
-    head = _head(file)
+    head = head_of(file)
     raster = next((known for known in RASTER_FORMATS if known.begins(head)), None)
     if raster is not None:
         points, warnings = _raster_points(given, file, raster, step)
@@ -125,7 +125,8 @@ def companions(file: Path) -> list[Path]:
     return [] if beside is None else [beside]
 
 
-def _head(file: Path) -> bytes:
+def head_of(file: Path) -> bytes:
+    """The first bytes of a file, by which its format is told. Raises InputRefused."""
     try:
         with file.open("rb") as opened:
             return opened.read(_HEAD)

@@ -86,6 +86,13 @@ class Heights:
     attribute: str | None = None
 
 
+class NothingSelected(InputRefused):
+    """No feature is as was asked. names: of the attributes; values: of the first one that was asked for."""
+
+    names: Sequence[str] = ()
+    values: Sequence[str] = ()
+
+
 class Selection:
     """Which features count, by their attributes; remembers what there was for a refusal."""
 
@@ -95,7 +102,6 @@ class Selection:
         self.known: dict[str, None] = {}
         self.seen: dict[str, dict[str, None]] = {name: {} for name in where}
         self.features = self.taken = 0
-        self.names: dict[str, None] = {}  # of attributes
 
     def height(self, attributes: Mapping, name: str, item: str) -> float:
         """The height that an attribute of a feature holds; NaN where it holds nothing."""
@@ -118,7 +124,6 @@ class Selection:
 
     def takes(self, attributes: Mapping) -> bool:
         self.features += 1
-        self.names.update(dict.fromkeys(attributes))
         if not self.where:
             self.taken += 1
             return True
@@ -139,7 +144,7 @@ class Selection:
             return
         for name, values in self.seen.items():
             if not values:
-                raise InputRefused(
+                raise self._nothing(
                     f"its features have no attribute '{name}'",
                     file=self.file,
                     item=self.item,
@@ -147,7 +152,12 @@ class Selection:
                 )
         said = ", ".join(f"{name} = {value!r}" for name, value in self.where.items())
         there = "; ".join(f"{name} is {names_shown(list(values))}" for name, values in self.seen.items())
-        raise InputRefused(f"no feature has {said}", file=self.file, item=self.item, advice=there)
+        raise self._nothing(f"no feature has {said}", file=self.file, item=self.item, advice=there)
+
+    def _nothing(self, what: str, **where) -> NothingSelected:
+        error = NothingSelected(what, **where)
+        error.names, error.values = list(self.known), list(next(iter(self.seen.values())))
+        return error
 
 
 def _same_name(name: str, attributes: Mapping) -> str | None:

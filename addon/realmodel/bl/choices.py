@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the fields of names offer: surfaces of the rock mass; columns, values and layers of a surface's file.
+Blender asks when such a field is edited, never while a panel is drawn."""
+
+from ..core import RealModelError
+from ..core.readers import contents
+from . import project_settings, reading_text, settings, stored_arrays
+
+_found = {}  # by the stamp of a file and what was asked: the names found lately
+_MOST = 64
+
+
+def surfaces(row, _context, _text):
+    """The other surfaces of the rock mass."""
+    return [other.name for other in settings.rock_of(row).surfaces if other != row]
+
+
+def columns(row, _context, _text):
+    surface = settings.surface_of(row)
+    return [
+        reading_text.column_text(name) for name in _of_file(surface, contents.column_names, surface.layer)
+    ]
+
+
+def values(row, _context, _text):
+    surface = settings.surface_of(row)
+    found = _of_file(surface, contents.column_values, row.column.strip('" '), surface.layer)
+    return [reading_text.value_text(reading_text.value(value)) for value in found]
+
+
+def layers(row, _context, _text):
+    return _of_file(row, contents.layer_names)
+
+
+def _of_file(surface, ask, *arguments):
+    """What a file holds; nothing where it cannot be read: a build says why."""
+    path = project_settings.absolute(surface.filepath)
+    key = (path and stored_arrays.file_stamp(path), ask.__name__, *arguments)
+    if not key[0]:
+        return []
+    if key not in _found:
+        while len(_found) >= _MOST:
+            _found.pop(next(iter(_found)))
+        try:
+            _found[key] = ask(path, *(given or None for given in arguments))
+        except RealModelError:
+            return []
+    return _found[key]

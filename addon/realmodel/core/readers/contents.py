@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What there is to choose from in a file of points: its columns or attributes, their values, its layers."""
+
+from __future__ import annotations
+
+import sqlite3
+from contextlib import closing
+from itertools import islice
+from pathlib import Path
+
+from ..errors import InputRefused
+from ..map_layer import MapLayer
+from .geopackage import connect, is_geopackage
+from .map_input import is_map_layer, read_shapes
+from .point_input import RASTER_FORMATS, head_of
+from .points import KNOWN, Table, open_table
+from .shapes import NothingSelected
+from .table_layout import fields
+
+_MOST = 50  # values
+_NOTHING = "\0"  # no attribute is called so, and none has it
+
+
+def column_names(file: Path, layer: str | None = None) -> list[str]:
+    """The names of the columns of a table, or numbers from 1 where it has no header; or of the attributes of
+    the features of a layer; none of a raster. Raises InputRefused."""
+    head = head_of(file)
+    if any(known.begins(head) for known in RASTER_FORMATS):
+        return []
+    if is_map_layer(file, head):
+        return list(_nothing_selected(file, layer, _NOTHING).names)
+    table = open_table(file, None, (), {}, KNOWN)
+    row = next(_rows(table), [])
+    names = table.layout.names or ()
+    return [name or str(n) for n, name in enumerate(names, 1)] or [str(n + 1) for n in range(len(row))]
+
+
+def column_values(file: Path, column: str, layer: str | None = None) -> list[str]:
+    """The different values of a column, or attribute, in the order of the file: the first of them. Raises
+    InputRefused."""
+    if is_map_layer(file, head_of(file)):
+        return list(_nothing_selected(file, layer, column).values)[:_MOST]
+    table = open_table(file, None, (column,), {}, KNOWN)
+    at = table.column(column)
+    different = dict.fromkeys(row[at] for row in _rows(table) if at < len(row))
+    return list(islice(different, _MOST))
+
+
+def layer_names(file: Path) -> list[str]:
+    """The layers of a GeoPackage; none of other files. Raises InputRefused."""
+    if not is_geopackage(head_of(file)):
+        return []
+    try:
+        with closing(connect(file)) as base:
+            return [name for (name,) in base.execute("SELECT table_name FROM gpkg_geometry_columns")]
+    except sqlite3.Error as error:
+        raise InputRefused(f"not a GeoPackage that can be read: {error}", file=file) from error
+
+
+def _rows(table: Table):
+    text = table.raw[table.layout.body :].decode(table.encoding, "replace")
+    return (fields(line, table.layout.separator) for line in text.splitlines() if line.strip())
+
+
+def _nothing_selected(file: Path, layer: str | None, attribute: str) -> NothingSelected:
+    """What a layer says when it has no feature as is asked for; geometries are not read."""
+    try:
+        read_shapes(MapLayer(file, layer, {attribute: _NOTHING}))
+    except NothingSelected as found:
+        return found
+    return NothingSelected("it has no features")

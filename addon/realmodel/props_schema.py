@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The properties of settings, made from their declarations (core/setting.py)."""
+
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from .bl import changes, choices
+from .core.setting import property_name, switch_name
+
+_SEARCH = {"surface": choices.surfaces, "column": choices.columns, "layer": choices.layers}
+
+
+def settings_of(settings, update=changes.setting, **updates):
+    """A base of a property group with the properties of settings. update: what follows on a change; updates:
+    what else, by key."""
+    properties = dict(_all(settings, update, updates))
+    return type("Settings", (), {"__module__": __name__, "__annotations__": properties})
+
+
+def _all(settings, update, updates):
+    for key, setting in settings.items():
+        switch = switch_name(key, settings)
+        if setting.switch is not None:
+            label, tip = setting.switch
+            yield switch, BoolProperty(name=label, description=tip, update=update, options=set())
+        follows = updates.get(key) or (changes.switched_on(switch) if switch else update)
+        if setting.parts:
+            yield from _all(setting.parts, follows, {})
+        elif setting.kind != "other":
+            yield property_name(key, setting), _property(setting, follows)
+
+
+def _property(setting, update):
+    given = {"name": setting.label, "description": setting.tip, "options": set(), "update": update}
+    if setting.kind == "word":
+        return EnumProperty(
+            **given,
+            items=items(setting.words),
+            default=setting.default or next(iter(setting.words)) or "NONE",
+        )
+    if setting.kind in ("text", *_SEARCH):
+        if setting.kind in _SEARCH:
+            given["search"] = _SEARCH[setting.kind]
+        return StringProperty(**given)
+    given |= {key: bound for key, bound in (("min", setting.low), ("max", setting.high)) if bound is not None}
+    if setting.kind == "whole":
+        return IntProperty(**given, default=int(setting.start))
+    return FloatProperty(
+        **given, default=setting.start, subtype="DISTANCE" if setting.kind == "length" else "NONE"
+    )
+
+
+def items(words):
+    """The items of a menu. Each keeps the number by which Blender stores it; what chooses by itself comes
+    first."""
+    numbered = [(word or "NONE", *texts, "", number) for number, (word, texts) in enumerate(words.items())]
+    return sorted(numbered, key=lambda item: item[0] != "auto")
