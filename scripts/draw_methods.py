@@ -102,7 +102,9 @@ def draw(folder):
             save_drawing(plots.variogram(result.variogram, "m"), folder / "method_variogram.svg")
     draw_extrapolation(given[-14:], vertices, triangles, folder)
     save_drawing(plots.cross_validation(cross_validate(given), "m"), folder / "method_cross_validation.svg")
-    save_drawing(plots.mesh_quality(vertices, triangles), folder / "method_mesh_quality.svg")
+    save_drawing(
+        plots.mesh_quality(plots.smallest_angles(vertices, triangles)), folder / "method_mesh_quality.svg"
+    )
 
 
 def height_map(vertices, triangles, points, axes, limits=None):

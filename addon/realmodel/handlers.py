@@ -10,7 +10,16 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import versioning
-from .bl import built_models, display, live, project_settings, region_size, stored_arrays, stored_project
+from .bl import (
+    built_models,
+    display,
+    live,
+    project_settings,
+    quality,
+    region_size,
+    stored_arrays,
+    stored_project,
+)
 from .core import RealModelError
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
@@ -45,6 +54,7 @@ def _patient(handler):
 def _loaded(*_arguments):
     built_models.forget()
     stored_arrays.forget()
+    quality.forget()
     display.forget()
     migrate_all()
     display.opened()
@@ -55,6 +65,7 @@ def _loaded(*_arguments):
 @persistent
 def _before_loading(*_arguments):
     live.stop_work()
+    quality.stop()
 
 
 @persistent

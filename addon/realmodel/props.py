@@ -18,7 +18,7 @@ from bpy.props import (
 )
 
 from . import props_rock, props_stage, props_surface, props_view
-from .bl import changes, display, library_rows, results, units
+from .bl import changes, display, library_rows, quality, results, units
 from .core.units import MODEL_UNIT
 
 DISPLAYS = (
@@ -219,6 +219,12 @@ class RealModelActivity(bpy.types.PropertyGroup):
         options={"SKIP_SAVE"},
     )
     text: StringProperty(options={"SKIP_SAVE"})
+    chart: EnumProperty(
+        name="Chart",
+        description="What the panel Quality shows of the active surface",
+        items=quality.CHARTS,
+        options={"SKIP_SAVE"},
+    )
     problem: StringProperty(options={"SKIP_SAVE"})
     problem_object: StringProperty(options={"SKIP_SAVE"})
     problem_triangles: StringProperty(options={"SKIP_SAVE"})

@@ -88,7 +88,7 @@ def test_quality_of_triangles():
     corners = np.array([[0, 0], [1, 0], [0.5, np.sqrt(0.75)], [0, 1], [2, 0]])
     angles = plots.smallest_angles(corners, np.array([[0, 1, 2], [2, 1, 0], [0, 1, 3], [0, 1, 4]]))
     assert angles == pytest.approx([60, 60, 45, 0])
-    drawing = plots.mesh_quality(VERTICES, TRIANGLES)
+    drawing = plots.mesh_quality(plots.smallest_angles(VERTICES, TRIANGLES))
     (bar,) = (item for item in items(drawing, Polygon) if item.fill is not None)
     low, high = box(drawing)
     left, right = ((bar.rings[0][[0, 1], 0] - low[0]) / (high[0] - low[0]) * 60).tolist()

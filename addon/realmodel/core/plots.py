@@ -19,7 +19,7 @@ from .variogram import Variogram
 __all__ = ["cross_validation", "mesh_quality", "smallest_angles", "variogram"]
 
 BLUE, RED = (0.12, 0.42, 0.70), (0.80, 0.20, 0.15)
-_WIDTH, _HEIGHT = 260.0, 220.0  # points
+_PAGE = (260.0, 220.0)  # points, without the words above
 _LEFT, _RIGHT, _BELOW = 46.0, 10.0, 32.0
 _SIZE = 8.0
 _MANY = 300  # points, beyond which their dots become smaller
@@ -27,9 +27,10 @@ _MOST_DOTS = 4000
 _BINS = np.arange(0.0, 61.0, 2.0)  # degrees
 
 
-def variogram(fitted: Variogram, unit: str = "") -> Drawing:
+def variogram(fitted: Variogram, unit: str = "", page=_PAGE, words: bool = True) -> Drawing:
     """The semivariance over distance: the curve, and where it was fitted to points the experimental values as
-    dots, the larger the more pairs of points they have. unit: of lengths."""
+    dots, the larger the more pairs of points they have. unit: of lengths. page: width and height in points;
+    words: whether the figures stand above, as in all charts here."""
     longest = 1.5 * fitted.range
     dots = radii = np.empty(0)
     if fitted.lags is not None and len(fitted.lags):
@@ -39,7 +40,7 @@ def variogram(fitted: Variogram, unit: str = "") -> Drawing:
     distance = np.linspace(longest / 400, longest, 400)  # not from 0, where a nugget makes a step
     curve = np.column_stack([distance, fitted.semivariance(distance)])
     highest = max(curve[:, 1].max(), dots[:, 1].max() if len(dots) else 0.0) or 1.0
-    axes = _axes((0.0, longest), (0.0, 1.08 * highest), variogram_lines(fitted, unit))
+    axes = _axes((0.0, longest), (0.0, 1.08 * highest), variogram_lines(fitted, unit), page, words)
     axes.frame(_with_unit("Distance", unit), _with_unit("Semivariance", unit and f"{unit}²"))
     if len(dots):
         axes.drawing.dots(axes.at(dots), radii, BLUE)
@@ -69,7 +70,7 @@ def variogram_lines(fitted: Variogram, unit: str = "") -> list[str]:
     return lines
 
 
-def cross_validation(result: CrossValidation, unit: str = "") -> Drawing:
+def cross_validation(result: CrossValidation, unit: str = "", page=_PAGE, words: bool = True) -> Drawing:
     """The estimated over the measured elevations of points; where the method has a variance, in two colors,
     for errors within two standard deviations and beyond."""
     known = np.isfinite(result.errors)
@@ -77,7 +78,7 @@ def cross_validation(result: CrossValidation, unit: str = "") -> Drawing:
     low, high = (float(places.min()), float(places.max())) if len(places) else (0.0, 1.0)
     margin = 0.04 * (high - low) or 0.5
     limits = (low - margin, high + margin)
-    axes = _axes(limits, limits, cross_validation_lines(result, unit))
+    axes = _axes(limits, limits, cross_validation_lines(result, unit), page, words)
     axes.frame(_with_unit("Measured elevation", unit), _with_unit("Estimated elevation", unit))
     axes.drawing.line(axes.at([(limits[0], limits[0]), (limits[1], limits[1])]), GRAY, 0.8)
     beyond = np.zeros(len(places), bool)
@@ -114,11 +115,10 @@ def smallest_angles(vertices, triangles) -> np.ndarray:
     return np.degrees(np.arctan2(cross, (onward * back).sum(axis=2)).min(axis=1))
 
 
-def mesh_quality(vertices, triangles) -> Drawing:
-    """How many triangles of a planar mesh have which smallest angle."""
-    angles = smallest_angles(vertices, triangles)
+def mesh_quality(angles: np.ndarray, page=_PAGE, words: bool = True) -> Drawing:
+    """How many triangles have which smallest angle; angles: as smallest_angles gives them."""
     counts, edges = np.histogram(angles, _BINS)
-    axes = _axes((0.0, 60.0), (0.0, 1.08 * max(counts.max(), 1)), mesh_quality_lines(angles))
+    axes = _axes((0.0, 60.0), (0.0, 1.08 * max(counts.max(), 1)), mesh_quality_lines(angles), page, words)
     axes.frame("Smallest angle (°)", "Triangles")
     for count, left, right in zip(counts.tolist(), edges[:-1], edges[1:], strict=True):
         if count:
@@ -135,12 +135,14 @@ def mesh_quality_lines(angles: np.ndarray) -> list[str]:
     ]
 
 
-def _axes(x_range, y_range, lines: list[str]) -> Axes:
-    """Axes on a page of their own, with some lines of text above."""
-    drawing = Drawing(_WIDTH, _HEIGHT + LINE * _SIZE * len(lines))
-    for number, text in enumerate(lines, 1):
-        drawing.text(_LEFT, drawing.height - LINE * _SIZE * number, text, _SIZE)
-    box = (_LEFT, _BELOW, _WIDTH - _LEFT - _RIGHT, _HEIGHT - _BELOW - _SIZE)
+def _axes(x_range, y_range, lines: list[str], page, words: bool) -> Axes:
+    """Axes on a page of their own, with the lines of text above where words are wanted."""
+    above = LINE * _SIZE * len(lines) if words else 0.0
+    drawing = Drawing(page[0], page[1] + above)
+    if words:
+        for number, text in enumerate(lines, 1):
+            drawing.text(_LEFT, drawing.height - LINE * _SIZE * number, text, _SIZE)
+    box = (_LEFT, _BELOW, page[0] - _LEFT - _RIGHT, page[1] - _BELOW - _SIZE)
     return Axes(drawing, box, x_range, y_range, _SIZE)
 
 
