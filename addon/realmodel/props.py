@@ -87,6 +87,9 @@ class RealModelBlock(bpy.types.PropertyGroup):
     components: IntProperty(
         name="Components", description="Number of separate parts of the block", options=set()
     )
+    slivers: IntProperty(
+        name="Slivers", description="How many of the parts have less than 0.1 % of its volume", options=set()
+    )
     object: PointerProperty(type=bpy.types.Object)
 
 

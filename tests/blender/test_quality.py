@@ -40,6 +40,8 @@ class Quality(PanelCase):
             quality.icon(self.scene, chart, 160)
             quality.icon(self.scene, chart, 160)
             self.assertTrue(quality.lines(found, chart, "m"))
+        deviations = [quality.volume_deviation(self.scene, row) for row in self.model.results]
+        self.assertTrue(any(deviations))
         self.assertEqual(len(quality._pictures), 3)
         for picture in quality._pictures.values():
             self.assertEqual(tuple(picture.image_size), (160, 160))

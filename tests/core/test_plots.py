@@ -6,7 +6,9 @@ import pytest
 from conftest import grid_surface
 from realmodel.core import Project, Rock, Surface, Variogram, build, cross_validate, interpolate, plots
 from realmodel.core.drawing.drawing import Dots, Line, Polygon, Text
+from realmodel.core.exporters.report import model_report
 from realmodel.core.surface_quality import surface_quality
+from realmodel.core.volume_uncertainty import volume_deviations
 
 RNG = np.random.default_rng(3)
 PLAN = RNG.random((90, 2)) * 100
@@ -129,3 +131,22 @@ def test_quality_of_the_surfaces_of_a_model():
         "its shape is a mesh: nothing was interpolated",
     ]
     assert found[5].angles == pytest.approx(np.full(8, 45.0))
+
+
+def test_volumes_may_be_off_by_the_standard_deviation_over_their_contacts():
+    region = [[0, 0], [100, 0], [100, 100], [0, 100]]
+    level, triangles = grid_surface(1, lambda x, y: -50 + 0 * x, 100.0)
+    surfaces = [
+        Surface("base", level, triangles),
+        Surface("kriged", points=POINTS),
+        Surface("top", level + np.array([0, 0, 100]), triangles),
+    ]
+    model = build(Project("p", [Rock("rock", surfaces, region=region, edge_length=5.0)]))
+    mean = surface_quality(model, 1).mean_deviation
+    assert mean > 0
+    found = volume_deviations(model)
+    assert found[-2:] == pytest.approx(np.full(2, mean * 100 * 100), rel=1e-3)
+    entries = [entry["volume_deviation_at_most"] for entry in model_report(model)["blocks"]]
+    assert entries[-2:] == found[-2:].tolist()
+    exact = build(Project("p", [Rock("rock", [surfaces[0], surfaces[2]])]))
+    assert np.isnan(volume_deviations(exact)).all()

@@ -9,6 +9,7 @@ import numpy as np
 from ..core import Cancelled, InputRefused, RealModelError, plots
 from ..core.drawing.raster import rasterize
 from ..core.surface_quality import surface_quality
+from ..core.volume_uncertainty import volume_deviations
 from ..core.work import Job
 from . import build_job, settings, viewports
 from .display import shown_models
@@ -25,6 +26,7 @@ _PAGE = 220.0  # points: of a chart in a wide sidebar
 _PIXELS = 1.2  # for a point, at least: the texts stay legible
 
 _found = {}  # key -> SurfaceQuality
+_deviations = {}  # stamp of a model -> {(rock mass, block): what its volume's standard deviation is at most}
 _working = {}  # the job, its recipe, and its key, while there is one
 _pictures = None  # previews of charts, by their key
 
@@ -37,6 +39,13 @@ def found(current):
     """The SurfaceQuality of the active surface, or None."""
     rock, surface = settings.active_rock(current), settings.active_surface(current)
     return None if surface is None else _found.get(_key(current, rock, surface))
+
+
+def volume_deviation(current, row):
+    """What the standard deviation of the volume of a row of the results is at most, model units cubed; None
+    where it was not asked for, or is not known."""
+    known = _deviations.get(current.realmodel.built_stamp, {}).get((row.rock, row.name))
+    return known if known is not None and np.isfinite(known) else None
 
 
 def check(current):
@@ -76,14 +85,19 @@ def _asked(current):
         names = [(r.name, s.name) for r in model.project.rocks for s in r.surfaces]
         if wanted not in names:
             raise InputRefused(f"surface '{wanted[1]}' is not in the built model", advice="press Build first")
-        return surface_quality(model, names.index(wanted), threads())
+        found = surface_quality(model, names.index(wanted), threads())
+        blocks = [(model.project.rocks[block.rock].name, block.name) for block in model.blocks]
+        return found, dict(zip(blocks, volume_deviations(model).tolist(), strict=True))
 
     wanted = rock.name, surface.name
     return _key(current, rock, surface), recipe, task
 
 
-def _keep(key, recipe, quality):
+def _keep(key, recipe, made):
     recipe.keep()
+    quality, deviations = made
+    _deviations.clear()  # of one model at a time
+    _deviations[key[0]] = deviations
     _found.pop(key, None)
     _found[key] = quality
     while len(_found) > _MOST:
@@ -159,6 +173,7 @@ def forget():
     global _pictures
     stop()
     _found.clear()
+    _deviations.clear()
     if _pictures is not None:
         bpy.utils.previews.remove(_pictures)
         _pictures = None

@@ -79,7 +79,7 @@ def cross_validation(result: CrossValidation, unit: str = "", page=_PAGE, words:
     margin = 0.04 * (high - low) or 0.5
     limits = (low - margin, high + margin)
     axes = _axes(limits, limits, cross_validation_lines(result, unit), page, words)
-    axes.frame(_with_unit("Measured elevation", unit), _with_unit("Estimated elevation", unit))
+    axes.frame(_with_unit("Measured", unit), _with_unit("Estimated", unit))
     axes.drawing.line(axes.at([(limits[0], limits[0]), (limits[1], limits[1])]), GRAY, 0.8)
     beyond = np.zeros(len(places), bool)
     if result.standardised is not None:

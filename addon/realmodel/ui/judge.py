@@ -32,7 +32,9 @@ class REALMODEL_PT_quality(TabPanel, bpy.types.Panel):
             hint(layout, "Variogram, cross-validation, and mesh of the active surface.")
             return
         chart = context.window_manager.realmodel.chart
-        layout.row(align=True).prop(context.window_manager.realmodel, "chart", expand=True)
+        row = layout.row(align=True)
+        row.use_property_split = False
+        row.prop(context.window_manager.realmodel, "chart", expand=True)
         _draw_picture(layout, context, chart)
         unit = context.scene.realmodel.units
         lines = quality.lines(found, chart, unit)
@@ -58,7 +60,7 @@ def _draw_picture(layout, context, chart):
     """The chart as wide as the sidebar: Blender leaves a margin of 4 pixels around a picture."""
     unit = 20.0 * context.preferences.system.ui_scale
     width = context.region.width if context.region is not None else 300.0
-    size = max(6, int((width - 3.0 * unit) / unit))
+    size = max(6.0, width / unit - 3.0)
     icon = quality.icon(context.scene, chart, int(size * unit) - 8)
     if icon is not None:
         layout.template_icon(icon_value=icon, scale=size)
