@@ -273,10 +273,10 @@ def draw_bounds(d):
         d.dot(point, INK, 2.6)
     d.text(4, 40, "E", 13, bold=True)
     d.text(4, 108, "S", 13, bold=True)
-    d.text(2, 144, "told: below, stays whole", 11, fill=BLUE)
+    d.text(2, 144, "decided: below, stays whole", 11, fill=BLUE)
     d.text(150, 160, "unclear: overlaid exactly", 11, fill=RED)
     d.path([(200, 148), (200, 100)], RED, 1, end="red")
-    d.text(228, 54, "told: gone", 11, fill=GREY)
+    d.text(228, 54, "decided: removed", 11, fill=GREY)
 
 
 def draw_nodes(d):

@@ -79,4 +79,4 @@ if [[ -n $configured ]]; then
     (cd "$root" && cmake --preset release "-DREALMODEL_PACKAGED_PYTHONS=${configured%;}" --log-level=WARNING)
     cmake --build "$root/build/release" --target packaged_modules -j "$("$root/scripts/build_jobs.sh")"
 fi
-"$python" "$root/scripts/packaging/make_zip.py" "$into" "${modules[@]}"
+"$root/build/tools/bin/python" "$root/scripts/packaging/make_zip.py" "$into" "${modules[@]}"

@@ -1,17 +1,27 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the tables of docs/reference/project_file.md that follow from the registries of the add-on: rules,
-methods and options. A test compares them (tests/core/test_documents.py).
+"""Writes the tables of the documents that follow from the add-on: rules, methods and options from its
+registries, operators from its sources. A test compares them (tests/core/test_documents.py).
 
     python3 scripts/write_tables.py
 """
 
+import ast
 import re
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-DOCUMENT = ROOT / "docs" / "reference" / "project_file.md"
+ADDON = ROOT / "addon" / "realmodel"
+DOCUMENTS = [
+    ROOT / "docs" / name
+    for name in (
+        "reference/project_file.md",
+        "reference/operators.md",
+        "guide/sculpted_strata.md",
+        "guide/tour.md",
+    )
+]
 TABLE = re.compile(r"(<!-- table of (\w+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 
 
@@ -65,6 +75,48 @@ def _options():
     return _table(["option", "default", ""], rows)
 
 
+def _rule_labels():
+    from realmodel.core.rules import RULES
+
+    return _table(["rule", ""], [[f"**{rule.label}**", rule.tip] for rule in RULES.values()])
+
+
+def _classes(pattern):
+    """(name of the module, class) of the add-on's sources, in their order."""
+    for path in sorted(ADDON.glob(pattern)):
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ClassDef):
+                yield path.stem, node
+
+
+def _strings(node):
+    """{name: text} of what a class sets to strings."""
+    found = {}
+    for part in node.body:
+        if isinstance(part, ast.Assign) and isinstance(part.value, ast.Constant):
+            found[part.targets[0].id] = part.value.value
+    return found
+
+
+def _arguments(node):
+    """The names of an operator's properties that a script gives."""
+    names = [part.target.id for part in node.body if isinstance(part, ast.AnnAssign)]
+    bases = [base.attr if isinstance(base, ast.Attribute) else base.id for base in node.bases]
+    file = ["filepath"] if any(base.endswith(("ImportHelper", "ExportHelper")) for base in bases) else []
+    return [*file, *(name for name in names if name not in ("filepath", "filter_glob", "files", "directory"))]
+
+
+def _operators():
+    rows = []
+    for _, node in _classes("operators/*.py"):
+        said = _strings(node)
+        if "bl_idname" in said and "bl_label" in said:
+            name = said["bl_idname"].removeprefix("realmodel.")
+            tip = " ".join((ast.get_docstring(node) or "").split())
+            rows.append([f"`{name}({', '.join(_arguments(node))})`", said["bl_label"], tip])
+    return _table(["`bpy.ops.realmodel.`", "label", ""], sorted(rows))
+
+
 def _keys(settings, text):
     """The rows of keys: those of settings that say more are written, the others stay as they are."""
     from realmodel.core.methods import OPTIONS
@@ -88,11 +140,16 @@ def _keys(settings, text):
 
 
 def written(text):
-    """The text of the document with its tables as the registries have them. Raises KeyError for a key without
-    a row."""
+    """The text of a document with its tables as the add-on has them. Raises KeyError for a key not there."""
     from realmodel.core.schema import PROJECT, READING, ROCK, SURFACE
 
-    tables = {"rules": _rules, "methods": _methods, "options": _options}
+    tables = {
+        "rules": _rules,
+        "methods": _methods,
+        "options": _options,
+        "rule_labels": _rule_labels,
+        "operators": _operators,
+    }
     keys = {"project": PROJECT, "rock": ROCK, "surface": SURFACE, "reading": READING}
 
     def table(found):
@@ -104,4 +161,5 @@ def written(text):
 
 if __name__ == "__main__":
     sys.path.insert(0, str(ROOT / "addon"))
-    DOCUMENT.write_text(written(DOCUMENT.read_text(encoding="utf-8")), encoding="utf-8")
+    for document in DOCUMENTS:
+        document.write_text(written(document.read_text(encoding="utf-8")), encoding="utf-8")

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Puts the add-on into one zip that Blender installs.
 
-    python3 make_zip.py FOLDER MODULE...
+    build/tools/bin/python make_zip.py FOLDER MODULE...
 
 FOLDER: where realmodel-VERSION-linux-x64.zip goes. MODULE: the native modules, one for each Python.
-The zip is written whole or not at all, and the same files give the same bytes.
+The zip is written whole or not at all, and the same files give the same bytes. Documents become web pages,
+for which markdown-it-py is needed.
 """
 
 import os
 import sys
 import zipfile
 from pathlib import Path
+
+from web_pages import web_pages
 
 ROOT = Path(__file__).resolve().parents[2]
 ADDON = ROOT / "addon" / "realmodel"
@@ -30,17 +33,18 @@ def files_below(folder):
 
 
 def contents(modules):
-    """{name in the zip: file}."""
+    """{name in the zip: its bytes}."""
     files = {
-        f"{TOP}/{path.relative_to(ADDON).as_posix()}": path
+        f"{TOP}/{path.relative_to(ADDON).as_posix()}": path.read_bytes()
         for path in files_below(ADDON)
         if not path.name.startswith("_native.")
     }
     for path in files_below(ROOT / "blend_samples"):
-        files[f"{TOP}/{path.relative_to(ROOT).as_posix()}"] = path
-    files[f"{TOP}/LICENSE"] = ROOT / "LICENSE"
+        files[f"{TOP}/{path.relative_to(ROOT).as_posix()}"] = path.read_bytes()
+    files[f"{TOP}/LICENSE"] = (ROOT / "LICENSE").read_bytes()
     for module in modules:
-        files[f"{TOP}/{module.name}"] = module
+        files[f"{TOP}/{module.name}"] = module.read_bytes()
+    files |= {f"{TOP}/{name}": content for name, content in web_pages().items()}
     return files
 
 
@@ -54,7 +58,7 @@ def write_zip(path, files):
                 entry.create_system = 3  # Unix, whichever system makes it
                 entry.external_attr = (0o100755 if name.endswith(".so") else 0o100644) << 16
                 entry.compress_type = zipfile.ZIP_DEFLATED
-                archive.writestr(entry, files[name].read_bytes(), compresslevel=9)
+                archive.writestr(entry, files[name], compresslevel=9)
         size = unfinished.stat().st_size
         if size > LARGEST:
             sys.exit(

@@ -13,6 +13,7 @@ ALWAYS = {  # operators that can be used in every scene of one's own, and why
     "library_add": "the library may be there before the model",
     "library_import": "as library_add",
     "set_origin": "its action is known only when it is used",
+    "documentation": "needs no model",
     "capture": "any viewport can be captured, in background mode the scene",
 }
 

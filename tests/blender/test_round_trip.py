@@ -379,7 +379,7 @@ class Written(PanelCase):
         self.refused(ops.constraint_remove, "no constraint 3", index=3)
         select()
         self.refused(ops.constraint_add, "no lines")
-        self.refused(ops.constraint_read, "no file", filepath=str(self.folder / "none.wkt"))
+        self.refused(ops.constraint_read, "file not found", filepath=str(self.folder / "none.wkt"))
 
     def test_triangles_by_number_and_by_points(self):
         ops.open_sample(sample="two_layers")
@@ -431,7 +431,7 @@ class Written(PanelCase):
         self.refused(
             ops.boreholes_read, "columns", filepath=str(self.folder / "picks.csv"), columns="bore = X"
         )
-        self.refused(ops.boreholes_read, "no file", filepath=str(self.folder / "none.csv"))
+        self.refused(ops.boreholes_read, "file not found", filepath=str(self.folder / "none.csv"))
 
     def test_nested_variograms(self):
         ops.open_sample(sample="two_layers")

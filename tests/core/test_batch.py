@@ -69,7 +69,11 @@ def test_everything_asked_for_is_written(layers, out):
     assert (done.returncode, done.stderr) == (0, "")
     assert names(out) == ["m.npz", "m.vtu", "r.json"]
     lines = done.stdout.splitlines()
-    assert lines[0].endswith("reading") or lines[0].endswith("together") or "intersecting" in lines[0]
+    assert (
+        lines[0].endswith("reading")
+        or lines[0].endswith("assembling the model")
+        or "intersecting" in lines[0]
+    )
     assert any(line.split()[:2] == ["S2", "block"] and "2.000000" in line for line in lines)
     assert lines[-1].split()[:2] == ["total", "3.000000"]
     assert json.loads((out / "r.json").read_text())["counts"]["blocks"] == 2
@@ -109,7 +113,7 @@ def test_stage(layers, out):
     with np.load(out / "m.npz") as read:
         assert read["block_names"].tolist() == ["S1 block"]
     assert json.loads((out / "r.json").read_text())["project"]["stage"] == 1
-    assert "there is no stage 3: stages go from 0 to 2" in refused(run(project, "--stage", 3), 2)
+    assert "stage 3 does not exist: stages run from 0 to 2" in refused(run(project, "--stage", 3), 2)
 
 
 def test_cells_of_blocks(layers, out):
@@ -134,8 +138,8 @@ def test_cells_of_blocks(layers, out):
         (["p.toml", "--blend", "m.png"], ".blend"),
         (["p.toml", "--render", "m.jpg"], ".png"),
         (["p.toml", "--report", "r.txt"], ".json"),
-        (["p.toml", "--export", "m.obj"], "'.obj' are not known; use .npz or .vtu"),
-        (["p.toml", "--export", "m"], "no ending"),
+        (["p.toml", "--export", "m.obj"], "'.obj' are not supported; use .npz or .vtu"),
+        (["p.toml", "--export", "m"], "no extension"),
         (["p.toml", "--export", "m.npz", "--export", "./m.npz"], "two outputs have this name"),
     ],
 )
@@ -167,7 +171,7 @@ POINTS = '[[rock.surface]]\nname = "P"\npoints = "p.csv"\n'
             {},
             "p.toml:5: rock 'rock': unknown key 'edge_lenght'; did you mean",
         ),
-        ("missing file", 'region = "r.geojson"', {}, "p.toml:5: rock 'rock': there is no file"),
+        ("missing file", 'region = "r.geojson"', {}, "p.toml:5: rock 'rock': file not found"),
         (
             "broken mesh",
             "",

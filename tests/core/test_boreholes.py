@@ -57,11 +57,11 @@ def test_tables(write, collars, picks, keys):
     assert list(met.points) == ["clay", "sand"]
     assert met.points["clay"].tolist() == CLAY
     assert met.points["sand"].tolist() == SAND
-    assert any("1 picks without a depth" in text for text in met.warnings) == (
+    assert any("1 picks have no depth" in text for text in met.warnings) == (
         ",sand,\n" in picks or "sand,\r" in picks or ";sand;\n" in picks or "sand\t\n" in picks
     )
     if collars and "B5" in collars:
-        assert any("no surface was met in B5" in text for text in met.warnings)
+        assert any("no picks for B5" in text for text in met.warnings)
 
 
 @pytest.mark.parametrize("entry", ["-", "NA", "n/a", "NR", "NaN", "null"])
@@ -72,7 +72,7 @@ def test_words_for_a_surface_that_was_not_reached(write, entry):
     }
     met = read_boreholes(Boreholes(**files))
     assert met.points["sand"].tolist() == SAND
-    assert any("1 picks without a depth" in text for text in met.warnings)
+    assert any("1 picks have no depth" in text for text in met.warnings)
 
 
 def test_inclined_holes_are_told(write):
@@ -100,16 +100,16 @@ def test_units(write):
         (COLLARS, PICKS + "B1,clay,x\n", "p.csv", 8, "depth is not a number: 'x'"),
         (COLLARS, PICKS + "B1,,3\n", "p.csv", 8, "no name"),
         (COLLARS, PICKS + "B1,clay\n", "p.csv", 8, "3 values are needed, there are 2"),
-        (COLLARS + "B1,0,0,11\n", PICKS, "c.csv", 7, "another collar further up"),
+        (COLLARS + "B1,0,0,11\n", PICKS, "c.csv", 7, "has two collars"),
         (
             COLLARS.replace("z", "q"),
             PICKS,
             "c.csv",
             1,
-            'no column z; say which it is: columns = { z = "..." }',
+            'no column z; name it: columns = { z = "..." }',
         ),
         (COLLARS, PICKS.replace("surface", "what"), "p.csv", 1, "no column surface"),
-        (COLLARS, PICKS.replace("depth", "deep"), "p.csv", 2, "neither a column depth nor"),
+        (COLLARS, PICKS.replace("depth", "deep"), "p.csv", 2, "neither a column for depth nor"),
         (None, PICKS, "p.csv", 2, "no column x"),
         (COLLARS, "hole,surface,depth\n", "p.csv", None, "no picks"),
         (COLLARS, "hole,surface,depth\nB1,clay,inf\n", "p.csv", 2, "not a finite"),
@@ -152,7 +152,7 @@ def test_a_project_of_boreholes(write, tmp_path):
     model = build(project)
     assert model.volume == pytest.approx(16 * 9)
     assert [len(surface.points) for surface in model.project.rocks[0].surfaces] == [3, 4]
-    assert any("met gravel, which is no surface" in str(warning) for warning in model.warnings)
+    assert any("picks of gravel, which no surface" in str(warning) for warning in model.warnings)
     assert build(model.project).volume == model.volume
 
 
@@ -161,9 +161,9 @@ def test_a_project_of_boreholes(write, tmp_path):
     [
         ("3", 8, "must be a file or a table"),
         ('{ collars = "c.csv" }', 8, "key 'picks' is missing"),
-        ('{ collars = "no.csv", picks = "p.csv" }', 8, "there is no file"),
+        ('{ collars = "no.csv", picks = "p.csv" }', 8, "file not found"),
         ('{ pick = "p.csv" }', 8, "did you mean 'picks'?"),
-        ('{ picks = "p.csv", columns = { deep = "x" } }', 8, "names a column 'deep'"),
+        ('{ picks = "p.csv", columns = { deep = "x" } }', 8, "unknown column 'deep'"),
         ('{ picks = "p.csv", columns = { depth = true } }', 8, "a name or a number"),
         ('{ picks = "p.csv", units = "feet" }', 8, "unknown unit"),
     ],
@@ -182,7 +182,7 @@ def test_a_surface_that_no_hole_met(write):
     files = Boreholes(write("p.csv", PICKS), write("c.csv", COLLARS))
     square = [[0, 0], [4, 0], [4, 4], [0, 4]]
     rock = Rock("r", [Surface("silt")], square, edge_length=1.0, base_elevation=0.0, boreholes=files)
-    with pytest.raises(InputRefused, match="surface 'silt': the boreholes did not meet it"):
+    with pytest.raises(InputRefused, match="surface 'silt': it has no points, and no borehole"):
         build(Project("x", [rock]))
     rock.boreholes = None
     with pytest.raises(InputRefused, match="neither points nor a mesh"):

@@ -117,9 +117,9 @@ def test_stages():
         assert staged.surface_names == [f"S{k}" for k in range(m + 1)]
     assert whole.stage(3) is whole
     for stage in (4, -1, 1.5, True):
-        with pytest.raises(UsageError, match="stages go from 0 to 3"):
+        with pytest.raises(UsageError, match="stages run from 0 to 3"):
             whole.stage(stage)
-        with pytest.raises(UsageError, match="stages go from 0 to 3"):
+        with pytest.raises(UsageError, match="stages run from 0 to 3"):
             build(project, stage=stage)
 
 
@@ -308,7 +308,7 @@ def test_wrong_calls():
 def test_one_surface_alone_warns():
     model = build(rock(level("S0", 0.0)))
     assert model.blocks == []
-    assert "one surface alone" in str(model.warnings[0])
+    assert "a single surface" in str(model.warnings[0])
 
 
 @pytest.fixture(scope="module")
@@ -376,5 +376,5 @@ def test_a_base_that_a_method_passed_says_which_points_did_not(write):
         'edge_length = 4\nbase_elevation = 0\n[[rock.surface]]\nname = "s"\npoints = "p.csv"\n'
         'method = "dsi"\n',
     )
-    with pytest.raises(InputRefused, match="points of surface 's' go down to 10 only: look at its method"):
+    with pytest.raises(InputRefused, match="lowest point of surface 's' is 10, so check its method"):
         build(load_project(path))

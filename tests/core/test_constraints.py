@@ -123,7 +123,7 @@ def test_edges_are_shorter_at_what_files_hold(write, tmp_path):
 @pytest.mark.parametrize(
     ("at", "words"),
     [
-        ('"outlines"', "there is no file .*outlines"),
+        ('"outlines"', "file not found: .*outlines"),
         ('{ layer = "x" }', "key 'file' is missing"),
         ('"empty.geojson"', "size 0: there are no lines or points in it"),
         ('"POINT (1"', "size 0"),
@@ -139,8 +139,8 @@ def test_places_of_short_edges_refused(write, at, words):
     ("constraints", "shape", "line", "words"),
     [
         ('"river.geojson"', CONSTANT, 8, "must be a list"),
-        ('[\n"no.geojson"]', CONSTANT, 8, "there is no file"),
-        ("[\n3]", CONSTANT, 9, "no file, line or point"),
+        ('[\n"no.geojson"]', CONSTANT, 8, "file not found"),
+        ("[\n3]", CONSTANT, 9, "not a file, line or point"),
         ("[\n[[0, 0], [1]]]", CONSTANT, 9, "two finite numbers"),
         ("[[1, 2, 3]]", CONSTANT, 8, "two finite numbers"),
         ('[{ layer = "x" }]', CONSTANT, 8, "key 'file' is missing"),
@@ -170,7 +170,7 @@ def test_constraints_from_python(write):
         ([[0, 0], [1, np.nan]], "not finite"),
         ([], r"\(N, 2\)"),
         ("x", "cannot be read"),
-        ([["a", 1]], "places"),
+        ([["a", 1]], "must be points"),
     ):
         with pytest.raises(InputRefused, match=words):
             read_constraints([bad])

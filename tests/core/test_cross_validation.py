@@ -62,7 +62,7 @@ def test_a_fitted_variogram_has_honest_variances():
 
 
 def test_refused_and_cancelled():
-    with pytest.raises(InputRefused, match="one point alone"):
+    with pytest.raises(InputRefused, match="at least two points"):
         cross_validate([[0, 0, 1], [0, 0, 1]])
     with pytest.raises(UsageError, match="folds"):
         cross_validate(POINTS, folds=1)

@@ -148,7 +148,7 @@ def test_a_plane_that_is_none(point, normal, words):
     [
         ([[0, 0]], "N > 1"),
         ([[0, 0], [np.nan, 1]], "finite"),
-        ([[0, 0], [1, 1], [1, 1]], "two equal points"),
+        ([[0, 0], [1, 1], [1, 1]], "two consecutive points that are equal"),
     ],
 )
 def test_a_polyline_that_is_none(line, words):
@@ -234,12 +234,12 @@ def test_what_is_refused_says_where():
     assert refused.value.place[2] == 0.5
     with pytest.raises(InputRefused, match="names vertices"):
         model.cut_by_surface(vertices, triangles + 100)
-    with pytest.raises(UsageError, match="there is no block 7"):
+    with pytest.raises(UsageError, match="block 7 does not exist"):
         model.cut_by_block(model, 7)
     with pytest.raises(UsageError, match="no block named 'chalk'"):
         model.cut_by_block(model, "chalk")
     lying = made([lambda x, y: 0 * x, lambda x, y: 0 * x])
-    with pytest.raises(InputRefused, match="no cells; choose one that has cells"):
+    with pytest.raises(InputRefused, match="no cells; choose a block that has cells"):
         model.cut_by_block(lying, 1)
 
 

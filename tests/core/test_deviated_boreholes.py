@@ -172,7 +172,7 @@ def test_depths_in_feet(write):
 
 def test_what_is_told(write):
     met = read(write, "hole,depth,azimuth,dip\nB1,0,90,-60\nB7,0,90,-60\n")
-    assert any("there is no direction of B2: taken as vertical" in text for text in met.warnings)
+    assert any("no direction for B2: taken as vertical" in text for text in met.warnings)
     assert any("B7 have no collar" in text for text in met.warnings)
     np.testing.assert_allclose(met.points["clay"][1], [100, 200, 30], **NEAR)
 
@@ -181,7 +181,7 @@ def test_what_is_told(write):
     ("survey", "line", "words"),
     [
         ("hole,depth,azimuth,dip\nB1,0,90,-60\nB1,30,90,60\n", 3, "dip is 60, and -60 in line 2; say which"),
-        ("hole,depth,azimuth,dip\nB1,0,90,-95\n", 2, "dip is -95; it is measured from the horizontal"),
+        ("hole,depth,azimuth,dip\nB1,0,90,-95\n", 2, "dip is -95; dip is measured from the horizontal"),
         (
             "hole,depth,azimuth,inclination\nB1,0,90,-60\n",
             2,
@@ -196,10 +196,10 @@ def test_what_is_told(write):
         (
             "hole,depth,azimuth,inclination\nB1,0,9,90\nB1,9,189,90\n",
             3,
-            "hole 'B1' turns back on itself between depths 0 and 9",
+            "hole 'B1' turns back between depths 0 and 9",
         ),
-        ("hole,depth,dip\nB1,9,9\n", 1, 'no column azimuth; say which it is: columns = { azimuth = "..." }'),
-        ("hole,depth,azimuth\nB1,9,9\n", 2, "neither a column dip (from the horizontal)"),
+        ("hole,depth,dip\nB1,9,9\n", 1, 'no column azimuth; name it: columns = { azimuth = "..." }'),
+        ("hole,depth,azimuth\nB1,9,9\n", 2, "no column for dip (from the horizontal)"),
         ("hole,depth,azimuth,dip\n", None, "no directions"),
     ],
 )
@@ -215,9 +215,9 @@ def test_surveys_refused(write, survey, line, words):
     [
         (
             "hole,surface,elevation\nB1,clay,6\n",
-            "hole 'B1' is not vertical: its elevation does not say",
+            "hole 'B1' is not vertical: an elevation does not say",
         ),
-        ("hole,surface,TVD\nB1,clay,6\n", "hole 'B1' is not vertical, and TVD is a depth straight down"),
+        ("hole,surface,TVD\nB1,clay,6\n", "hole 'B1' is not vertical, and TVD is a vertical depth"),
     ],
 )
 def test_picks_that_do_not_say_where_in_a_deviated_hole(write, picks, words):
@@ -257,7 +257,7 @@ def test_a_project(write, tmp_path):
     clay = model.project.rocks[0].surfaces[0].points
     np.testing.assert_allclose(clay, [[600, 700, -150], [100, 200, 30]], **NEAR)
     for wrong, words in (
-        (given.replace("s.csv", "no.csv"), "there is no file"),
+        (given.replace("s.csv", "no.csv"), "file not found"),
         (given.replace("negative", "down"), "'downward_dip' must be"),
         (given.replace('"s.csv"', "3"), "survey"),
     ):

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The documents keep what they promise: their Python examples print what stands below them, their links lead
-somewhere, and the drawings are what their scripts draw."""
+"""The documents keep what they promise: their Python examples print what stands below them, their commands
+run, their links lead somewhere, labels and messages that they name exist, drawings are what scripts draw."""
 
+import ast
+import functools
 import os
 import re
 import runpy
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -14,7 +17,11 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("blend_samples/**/*.md")])
 EXAMPLE = re.compile(r"^```python\n(.*?)^```\n```text\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-LINK = re.compile(r"\]\(([^)#]+)(#[^)]*)?\)")
+LINK = re.compile(r"\]\(([^)#]*)(#[^)]*)?\)")
+COMMAND = re.compile(
+    r"^ {4}(?:\$ )?((?:scripts/|python3 |blender |build/|cmake )(?:[^\n]*\\\n)*[^\n#]*)", re.MULTILINE
+)
+LABEL = re.compile(r"\*\*([^*\n]+)\*\*")
 
 EXAMPLES = [
     pytest.param(code, output, id=f"{document.relative_to(ROOT)}-{number}")
@@ -56,11 +63,109 @@ def test_there_are_examples():
     assert len(EXAMPLES) >= 3
 
 
+@functools.cache
+def anchors(document):
+    """The anchors of the headings of a document, as code hosts make them."""
+    text = re.sub(r"^```.*?^```$", "", document.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_links_lead_somewhere(document):
-    for target, _ in LINK.findall(document.read_text(encoding="utf-8")):
-        if "://" not in target:
-            assert (document.parent / target).exists(), f"{document.name} links to {target}"
+    for path, anchor in LINK.findall(document.read_text(encoding="utf-8")):
+        if "://" in path:
+            continue
+        target = document.parent / path if path else document
+        assert target.exists(), f"{document.name} links to {path}"
+        if anchor:
+            assert anchor[1:] in anchors(target.resolve()), f"{document.name} links to {path}{anchor}"
+
+
+@functools.cache
+def texts():
+    """All strings of the add-on's sources, those within f-strings too."""
+    found = set()
+    for path in (ROOT / "addon" / "realmodel").rglob("*.py"):
+        if "vendor" not in path.parts:
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            nodes = (node.value for node in ast.walk(tree) if isinstance(node, ast.Constant))
+            found.update(value for value in nodes if isinstance(value, str))
+    return found
+
+
+@pytest.mark.parametrize(
+    "document", sorted((ROOT / "docs" / "guide").glob("*.md")), ids=lambda path: path.name
+)
+def test_labels_in_the_guide_exist(document):
+    """Labels are bold; a path to one, such as **Open Example > Two Layers**, has several."""
+    labels = LABEL.findall(document.read_text(encoding="utf-8"))
+    missing = {part for label in labels for part in label.split(" > ") if part not in texts()}
+    assert not missing, f"{document.name}: no such label: {sorted(missing)}"
+
+
+def test_messages_in_the_guide_exist():
+    guide = (ROOT / "docs" / "guide" / "troubleshooting.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (`.*?) \|", guide, re.MULTILINE)
+    assert len(rows) > 20
+    for row in rows:
+        for message in re.findall(r"`([^`]+)`", row):
+            for part in filter(None, (part.strip() for part in message.split("..."))):
+                assert any(part in text for text in texts()), f"no message has '{part}'"
+
+
+@functools.cache
+def sources():
+    folders = ("addon", "native", "scripts", "tests", "blend_samples")
+    files = [path for folder in folders for path in (ROOT / folder).rglob("*.*")]
+    return ["/" + path.relative_to(ROOT).as_posix() for path in [*files, *ROOT.glob("*.py")]]
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_sources_that_are_named_exist(document):
+    names = re.findall(r"`([\w./]+\.(?:py|cpp|hpp|sh|inl))`", document.read_text(encoding="utf-8"))
+    names = [name for name in names if "NAME" not in name and "shared" not in name]
+    missing = {name for name in names if not any(path.endswith("/" + name) for path in sources())}
+    assert not missing, f"{document.name} names {sorted(missing)}"
+
+
+def commands(document):
+    for text in COMMAND.findall(document.read_text(encoding="utf-8")):
+        yield shlex.split(text.replace("\\\n", " "))
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_scripts_and_options_in_commands_exist(document):
+    for command in commands(document):
+        files = [
+            word for word in command if re.match(r"(scripts|tests|blend_samples)/|build_model\.py$", word)
+        ]
+        for name in files:
+            assert (ROOT / name.split("=")[0]).exists(), f"{document.name}: {name}"
+            if name.endswith((".sh", "build_model.py")):
+                source = (ROOT / name).read_text(encoding="utf-8")
+                after = command[command.index(name) + 1 :]
+                for option in (word for word in after if re.match(r"--\w", word)):
+                    assert option in source, f"{document.name}: {name} has no {option}"
+
+
+RUNNABLE = [
+    pytest.param(command, id=f"{document.name}-{number}")
+    for document in DOCUMENTS
+    for number, command in enumerate(commands(document), 1)
+    if command[:2] == ["python3", "build_model.py"] and command[2].startswith("blend_samples/")
+]
+
+
+@pytest.mark.parametrize("command", RUNNABLE)
+def test_commands_run(command, tmp_path):
+    (tmp_path / "blend_samples").symlink_to(ROOT / "blend_samples")
+    (tmp_path / "build_model.py").symlink_to(ROOT / "build_model.py")
+    run = subprocess.run(
+        [sys.executable, *command[1:]], cwd=tmp_path, capture_output=True, text=True, timeout=300
+    )
+    assert run.returncode == 0, run.stderr
+    assert len(list(tmp_path.iterdir())) > 2, "it wrote nothing"
 
 
 def test_drawing_is_what_its_script_draws(monkeypatch):
@@ -79,8 +184,16 @@ def test_pictures_of_the_algorithm_are_what_their_script_draws(monkeypatch):
         assert (images / name).read_bytes() == svg.encode(), f"{name}: run scripts/draw_algorithm.py"
 
 
-def test_tables_are_what_the_registries_say():
+def test_the_project_that_is_shown_is_the_example():
+    shown = (ROOT / "docs" / "reference" / "project_file.md").read_text(encoding="utf-8")
+    project = (ROOT / "blend_samples" / "two_layers" / "project.toml").read_text(encoding="utf-8")
+    written = "\n".join(line for line in project.splitlines() if not line.startswith("#")).strip()
+    assert f"```toml\n{written}\n```" in shown
+
+
+def test_tables_are_what_the_add_on_says():
     write_tables = runpy.run_path(str(ROOT / "scripts" / "write_tables.py"))
-    text = write_tables["DOCUMENT"].read_text(encoding="utf-8")
-    assert text.count("<!-- table of ") == 7
-    assert write_tables["written"](text) == text, "run scripts/write_tables.py"
+    texts = {path.name: path.read_text(encoding="utf-8") for path in write_tables["DOCUMENTS"]}
+    assert sum(text.count("<!-- table of ") for text in texts.values()) == 10
+    for name, text in texts.items():
+        assert write_tables["written"](text) == text, f"{name}: run scripts/write_tables.py"

@@ -197,10 +197,10 @@ def test_points_beyond_a_bound_are_told():
     assert 0 < wrong.sum() < len(POINTS)
     result = dsi(points, above=298)
     worst = int(POINTS[:, 2].argmin())
-    told = [text for text in result.warnings if "lie below 298, which the surface is kept above" in text]
+    told = [text for text in result.warnings if "lie below 298, but the surface is kept above it" in text]
     assert len(told) == 1 and told[0].startswith(f"{wrong.sum()} of 16 points")
     assert f"point {worst} at" in told[0]
-    assert not any("cannot all be met" in text for text in result.warnings)
+    assert not any("cannot all be honored" in text for text in result.warnings)
     assert result.z.min() == 298
     assert dsi(POINTS, above=POINTS[:, 2].min() - 50).warnings == ()
 
@@ -220,7 +220,7 @@ def test_what_cannot_be_met_is_told():
     corner = NODES[TRIANGLES[0]].mean(axis=0)
     cluster = np.column_stack([corner + RNG.normal(0, 0.2, (8, 2)), RNG.normal(300, 1, 8)])
     result = dsi(np.vstack([POINTS, cluster]))
-    assert "cannot all be met" in result.warnings[0]
+    assert "cannot all be honored" in result.warnings[0]
     assert np.isfinite(result.z).all()
     outside = np.vstack([POINTS, [[*(UTM - 10), 0]]])
     beyond = dsi(outside)
@@ -261,7 +261,7 @@ def test_cross_validation_and_refusals():
         interpolate(POINTS, NODES, "dsi")
     with pytest.raises(UsageError, match="needs mesh"):
         cross_validate(POINTS, "dsi")
-    with pytest.raises(UsageError, match="works on no mesh"):
+    with pytest.raises(UsageError, match="does not use a mesh"):
         cross_validate(POINTS, "idw", mesh=(NODES, TRIANGLES))
     with pytest.raises(InputRefused, match="'weight' must be more than 0"):
         dsi(POINTS, weight=0)

@@ -135,4 +135,4 @@ def test_the_progress_of_a_build_rises_to_1_through_all_its_phases(make):
     shares = [share for share, _ in told]
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
-    assert told[-1][1] == "putting the model together"
+    assert told[-1][1] == "assembling the model"

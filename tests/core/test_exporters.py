@@ -69,9 +69,9 @@ def test_a_model_without_cells_can_be_written(tmp_path):
 
 
 def test_unknown_endings_are_refused_with_those_known(model, tmp_path):
-    with pytest.raises(UsageError, match=r"'\.xyz' are not known; use \.npz or \.vtu"):
+    with pytest.raises(UsageError, match=r"'\.xyz' are not supported; use \.npz or \.vtu"):
         model.save(tmp_path / "m.xyz")
-    with pytest.raises(UsageError, match="no ending"):
+    with pytest.raises(UsageError, match="no extension"):
         writer_for("model")
     assert writer_for("M.NPZ") is WRITERS[".npz"]
     with pytest.raises(OutputFailed, match="no folder"):

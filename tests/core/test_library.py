@@ -28,18 +28,22 @@ def test_every_key(write):
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
-        ("", None, "no [[property]]"),
+        ("", None, "[[property]] is missing"),
         ("title = 1\n", 1, "unknown key 'title'"),
         ('[[property]]\nid = 1\nname = "a"\ncolour = "#000000"\n', 4, "did you mean 'color'"),
         ('[[property]]\nname = "a"\n', 1, "'id' is missing"),
         ("[[property]]\nid = 1\n", 1, "'name' is missing"),
         ('[[property]]\nid = 1.0\nname = "a"\n', 2, "whole number"),
-        ('[[property]]\nid = 1\nname = "a"\n[[property]]\nid = 1\nname = "b"\n', 5, "taken"),
+        (
+            '[[property]]\nid = 1\nname = "a"\n[[property]]\nid = 1\nname = "b"\n',
+            5,
+            "another property has this id",
+        ),
         ('[[property]]\nid = 1\nname = "a"\ncolor = "red"\n', 4, "#rrggbb"),
         ('[[property]]\nid = 1\nname = "a"\ncolor = 3\n', 4, "text"),
         ('[[property]]\nid = 1\nname = "a"\ndensity = -1\n', 4, "above 0"),
         ('[[property]]\nid = 1\nname = "a"\ndensity = nan\n', 4, "finite"),
-        ('[[property]]\nid = 9999999999\nname = "a"\n', 2, "32 bits"),
+        ('[[property]]\nid = 9999999999\nname = "a"\n', 2, "32-bit"),
     ],
 )
 def test_refused(write, text, line, words):
@@ -51,7 +55,7 @@ def test_refused(write, text, line, words):
 
 
 def test_libraries_made_in_python_are_checked_too():
-    with pytest.raises(InputRefused, match="taken"):
+    with pytest.raises(InputRefused, match="another property has this id"):
         Library([Property(1, "a"), Property(1, "b")])
     with pytest.raises(InputRefused, match="#rrggbb"):
         Library([Property(1, "a", color="#12345")])

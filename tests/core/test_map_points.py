@@ -62,7 +62,7 @@ def test_heights_of_positions(write, tmp_path):
         points, warnings = read_point_file(PointFile(file))
         assert points.tolist() == [list(spot) for spot in SPOTS], file
         assert len(warnings) == told
-        assert not told or "1 points without a value are left out" in warnings[0]
+        assert not told or "1 points have no value and are left out" in warnings[0]
     measures = write("m.wkt", "LINESTRING M (1 2 7, 3 4 8)")
     with pytest.raises(InputRefused, match=r"no height.*height = "):
         read_point_file(PointFile(measures))
@@ -83,7 +83,7 @@ def test_heights_by_an_attribute(write, tmp_path):
     points, warnings = read_point_file(PointFile(path, height="elev", nodata=99))
     expected = [[*place, 20.0] for place in CONTOUR] + [[0, 5, 25.5], [1, 5, 25.5], [1, 6, 25.5]]
     assert points.tolist() == expected
-    assert "4 points without a value" in warnings[0]
+    assert "4 points have no value" in warnings[0]
     points, _ = read_point_file(PointFile(path, height="ELEV", where={"kind": "lake"}))
     assert len(points) == 3
 
@@ -105,12 +105,12 @@ def test_heights_by_an_attribute(write, tmp_path):
         ("a.geojson", features(({"a": 1}, point([1, 2]))), {"height": "b"}, "no attribute 'b'; it has a"),
         ("a.geojson", features(({"a": "high"}, point([1, 2]))), {"height": "a"}, "not a number: 'high'"),
         ("a.geojson", features(({"a": True}, point([1, 2]))), {"height": "a"}, "not a number"),
-        ("a.geojson", features(({"a": None}, point([1, 2]))), {"height": "a"}, "'a' holds no height"),
+        ("a.geojson", features(({"a": None}, point([1, 2]))), {"height": "a"}, "'a' has no heights"),
         ("a.geojson", features(), {}, "no points in it"),
         ("a.geojson", features(({}, point([1, 2, 3]))), {"columns": ["x", "y", "z"]}, "'columns' has no"),
-        ("a.geojson", features(({}, point([1, 2, 3]))), {"layer": "a"}, "no GeoPackage"),
+        ("a.geojson", features(({}, point([1, 2, 3]))), {"layer": "a"}, "not a GeoPackage"),
         ("a.wkt", "POINT (1 2 3)", {"height": "z"}, "no attributes"),
-        ("a.csv", "1,2,3\n", {"height": "z"}, "it is a table, so 'height' has no meaning"),
+        ("a.csv", "1,2,3\n", {"height": "z"}, "it is a table, so 'height' has no effect"),
         ("a.asc", "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n5\n", {"layer": "a"}, "a raster"),
     ],
 )

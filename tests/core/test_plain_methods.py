@@ -211,7 +211,7 @@ def test_grids_refused():
     points[17, :2] += 3
     with pytest.raises(InputRefused, match=r"cells off.*use method"):
         interpolate(points, NODES, "grid")
-    with pytest.raises(InputRefused, match="no regular grid"):
+    with pytest.raises(InputRefused, match="not a regular grid"):
         interpolate(WAVY, NODES, "grid")
     with pytest.raises(InputRefused, match="four points"):
         interpolate(WAVY[:3], NODES, "grid")
@@ -226,7 +226,7 @@ def test_grids_refused():
         ("plane", {"dip": 90}, "'dip' must be below 90"),
         ("plane", {"dip": -1}, "'dip' must be at least 0"),
         ("parallel", {"thickness": 3}, "'to' is missing"),
-        ("parallel", {"to": "S0", "thickness": 3}, "'to' names surface 'S0', which is not there"),
+        ("parallel", {"to": "S0", "thickness": 3}, "'to' names surface 'S0', which does not exist"),
         ("parallel", {"to": [1.0, 2], "thickness": 3}, "'to' has 2 heights for 300 nodes"),
         ("parallel", {"to": (np.zeros((3, 2)), TRIANGLES), "thickness": 3}, "'to' must be vertices (V, 3)"),
         ("parallel", {"to": 0, "thickness_method": "dsi"}, "'thickness_method' cannot be 'dsi'"),
@@ -280,7 +280,7 @@ def test_nodes_without_a_point_within_the_radius_are_told(method):
     variogram = {"variogram": {"model": "spherical", "range": 5, "sill": 1}} if method == "kriging" else {}
     result = interpolate(points, nodes, method, radius=3.0, **variogram)
     assert result.warnings == (
-        "50 % of the nodes have no point within the radius: there the nearest point alone counts",
+        "50 % of the nodes have no point within the radius: there only the nearest point is used",
     )
     assert result.z[2:] == pytest.approx([2, 2])
     assert interpolate(points, nodes[:2], method, radius=3.0, **variogram).warnings == ()
@@ -289,5 +289,5 @@ def test_nodes_without_a_point_within_the_radius_are_told(method):
 def test_points_elsewhere_are_told():
     """Other coordinates or units: all is extrapolated, and nothing that comes out means anything."""
     (warning,) = interpolate(WAVY, NODES * 3.28, "tin").warnings
-    assert warning.startswith("no point lies where heights are wanted: x of the points is 431250.")
+    assert warning.startswith("no point lies in the area of the mesh: x of the points is 431250.")
     assert interpolate(WAVY, NODES + 900, "tin").warnings == ()

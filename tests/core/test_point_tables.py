@@ -56,9 +56,9 @@ def test_tables_in_every_spelling(write, text, keys):
 @pytest.mark.parametrize(
     ("text", "keys", "line", "words"),
     [
-        ("500,000;600,000;1,234\n", {}, 1, 'say decimal = ","'),
+        ("500,000;600,000;1,234\n", {}, 1, 'set decimal = ","'),
         ("1;2;3\n1,5;2.5;3\n", {}, 2, "decimals with a point"),
-        ("1,5;2;3\n1;2.5;3\n", {"decimal": ","}, 2, "decimals of this file have commas"),
+        ("1,5;2;3\n1;2.5;3\n", {"decimal": ","}, 2, "this file has decimal commas"),
         ("x,y,z\n1,2,3\n", {"columns": ["X", "Y", "elev"]}, 1, "no column elev; it has x, y, z"),
         ("1,2,3\n", {"columns": ["X", "Y", "Z"]}, None, "no header that names a column 'X'"),
         ("1,2,3\n1,2,3\n", {"columns": [1, 2, 5]}, 1, "5 values are needed, there are 3"),
@@ -66,7 +66,7 @@ def test_tables_in_every_spelling(write, text, keys):
         ("x,y,z,val\n1,2,3,60\n1,2,3,0\n", {"where": {"val": 61}}, None, "no row has val = 61; among"),
         ("x,y,z,val\n1,2,3,60\n1,2,3,0\n", {"where": {"val": 61}}, None, "val has 60, 0"),
         ("x,y,z\n1,2,3\n", {"where": {"val": 61}}, 1, "no column val"),
-        ("x,y,z\n1,2,-9999\n", {"nodata": [-9999]}, None, "without a value"),
+        ("x,y,z\n1,2,-9999\n", {"nodata": [-9999]}, None, "none of its points has a value"),
         ("x,y,z\n1,2,nan\n", {}, 2, "nodata = nan"),
         ("1 # 2, 3\n1,2,3\n", {"separator": ","}, 1, "3 values are needed, there are 1"),
     ],
@@ -170,7 +170,7 @@ def test_keys_of_the_project_file(write):
     [
         ("", "columns = 3", 13, "three columns"),
         ("", 'columns = ["a", "b"]', 13, "three columns"),
-        ("", "columns = [0, 1, 2]", 13, "count from 1"),
+        ("", "columns = [0, 1, 2]", 13, "column numbers start at 1"),
         ("", "where = 60", 13, "where = { val = 60 }"),
         ("", "where = { val = true }", 13, "a number or text for 'val'"),
         ("", "where = { val = [] }", 13, "a number or text for 'val'"),
@@ -198,7 +198,7 @@ def test_keys_that_make_no_sense(write, top, surface, line, words):
 def test_keys_need_a_file_of_points(write):
     text = KEYS.format(top="", surface="where = { val = 1 }").replace('points = "all.csv"', "value = 3")
     path = write("p.toml", text.replace('"plane"', '"constant"'))
-    with pytest.raises(InputRefused, match="and there is none") as raised:
+    with pytest.raises(InputRefused, match="needs a file of points") as raised:
         load_project(path)
     assert raised.value.line == 13
 
@@ -211,7 +211,7 @@ def test_point_files_from_python(write):
     project = Project("x", [Rock("r", [surface], square, edge_length=1.0, base_elevation=-9.0)])
     assert build(project).volume == pytest.approx(16 * (4.25 + 9))
     surface.points = PointFile(path, where=[1])
-    with pytest.raises(InputRefused, match="'where' must say"):
+    with pytest.raises(InputRefused, match="'where' must be"):
         check_project(project)
 
 
@@ -219,7 +219,7 @@ def test_points_without_a_value_are_told(write):
     text = KEYS.format(top="", surface="nodata = -9999").replace("all.csv", "p.xyz")
     write("p.xyz", "0 0 1\n4 0 1\n4 4 1\n0 4 1\n2 2 -9999\n")
     warnings = build(load_project(write("p.toml", text))).warnings
-    assert any("1 points without a value are left out" in str(warning) for warning in warnings)
+    assert any("1 points have no value and are left out" in str(warning) for warning in warnings)
 
 
 @pytest.mark.parametrize(
@@ -243,7 +243,7 @@ def test_names_that_say_nothing_of_coordinates_are_told(write):
     body = "1.5,2.25,3.125\n4,5,-6\n"
     points, warnings = read_point_file(PointFile(write("p.csv", "first,second,third\n" + body)))
     assert points.tolist() == POINTS
-    assert "the first three, 'first', 'second', 'third', are taken" in warnings[0]
+    assert "the first three, 'first', 'second', 'third', are used" in warnings[0]
     for text in ("My three wells\n" + body, body, "# first,second,third\n" + body, "x,y,z\n" + body):
         assert not read_point_file(PointFile(write("p.csv", text)))[1]
     file = write("p.csv", "first,second,third\n" + body)

@@ -254,7 +254,7 @@ def test_layers_of_geopackages(tmp_path, write):
     for layer, words in ((None, "it has 2 layers; say which"), ("lake", "no layer 'lake'; it has lakes")):
         with pytest.raises(InputRefused, match=words):
             read_region(MapLayer(path, layer))
-    with pytest.raises(InputRefused, match="it is no GeoPackage"):
+    with pytest.raises(InputRefused, match="it is not a GeoPackage"):
         read_region(MapLayer(write("r.wkt", WKT[0]), "lakes"))
     write_geopackage(path, {"lakes": [(packaged(RINGS)[:-9], "", 0)]})
     with pytest.raises(InputRefused, match="layer 'lakes', feature 1: its geometry cannot be read"):
@@ -347,10 +347,10 @@ def test_regions_of_the_project_file(write, tmp_path):
 @pytest.mark.parametrize(
     ("region", "line", "words"),
     [
-        ('{ file = "no.shp" }', 5, "there is no file"),
+        ('{ file = "no.shp" }', 5, "file not found"),
         ('{ layer = "a" }', 5, "key 'file' is missing"),
         ('{ file = "r.wkt", layers = "a" }', 5, "did you mean 'layer'?"),
-        ('{ file = "r.wkt", where = 3 }', 5, "'where' must say"),
+        ('{ file = "r.wkt", where = 3 }', 5, "'where' must be"),
         ('{ file = "r.wkt", where = { a = 3 } }', None, "no attributes"),
         ('{ file = "r.wkt", units = "feet" }', 5, "unknown unit"),
         ('"POLYGON ((0 0, 4 4, 4 0, 0 4))"', 5, "region, outline: the outline crosses itself at (2, 2)"),

@@ -64,7 +64,7 @@ def test_minimum_thickness_and_points_on_the_wrong_side():
     assert told["wrong_side", "low"].items == (2,)
     raised = told["minimum_thickness", "high"]
     count = int((free < z[0] + 0.5).sum())
-    assert f"raised at {count} of {len(free)} nodes to keep 0.5 above 'low', most by 2.5 at (10, 10)" in str(
+    assert f"raised at {count} of {len(free)} nodes to stay 0.5 above 'low', by up to 2.5 at (10, 10)" in str(
         raised
     )
     assert not [w for w in plain.warnings if w.kind in ("wrong_side", "minimum_thickness")]
@@ -153,7 +153,7 @@ def test_in_a_project_file(written):
             14,
             "'to' names surface 'lwo', which rock 'r' does not",
         ),
-        ('method = "parallel"\nto = "high"\nthickness = 1\n', 14, "itself made from it"),
+        ('method = "parallel"\nto = "high"\nthickness = 1\n', 14, "depends on this surface"),
         ('method = "parallel"\nto = "low"\n', 13, "needs points; add points = ..., or thickness = ..."),
         ('method = "constant"\n', 13, "needs points; add points = ..., or value = ..."),
         ('method = "kriging"\n', 13, "needs points; add points = ..."),
@@ -163,12 +163,12 @@ def test_in_a_project_file(written):
             'method = "parallel"\nto = "third"\nthickness = 1\n[[rock.surface]]\nname = "third"\n'
             'method = "parallel"\nto = "high"\nthickness = 1\n',
             19,
-            "'to' makes it from 'high', which is itself made from it",
+            "'to' names 'high', which depends on this surface",
         ),
         (
             'mesh = "m.off"\nminimum_thickness = 1\n',
             14,
-            "a ready mesh is not interpolated, so 'minimum_thickness' has no meaning here",
+            "'minimum_thickness' has no effect, as a mesh is not interpolated",
         ),
     ],
 )
@@ -181,7 +181,7 @@ def test_refused_at_the_line(written, write, text, line, words):
 
 
 def test_minimum_thickness_of_the_oldest():
-    with pytest.raises(InputRefused, match="the oldest surface has none beneath it"):
+    with pytest.raises(InputRefused, match="there is no surface beneath it"):
         build(rock(Surface("a", method="constant", options={"value": 1}, minimum_thickness=1)))
 
 

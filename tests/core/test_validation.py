@@ -329,7 +329,7 @@ def spoil_builds(monkeypatch):
 def test_check_model_prints_the_proof(program, layers, tmp_path, capsys):
     assert program.main([str(layers([0, 1])), "--check-model", "--export", str(tmp_path / "m.npz")]) == 0
     out = capsys.readouterr().out
-    assert "Validation of layers: passed" in out and "% of what intersecting took" in out
+    assert "Validation of layers: passed" in out and "% of the time of intersecting" in out
     assert (tmp_path / "m.npz").exists()
 
 

@@ -8,7 +8,9 @@ import subprocess
 import sys
 import tomllib
 import zipfile
+from html.parser import HTMLParser
 from pathlib import Path
+from urllib.parse import urldefrag, urlsplit
 
 import pytest
 
@@ -55,6 +57,41 @@ def test_all_that_a_user_needs_is_there(unpacked):
         assert (folder / name).is_file(), name
     samples = folder / "blend_samples"
     assert {path.parent.name for path in samples.glob("*/project.toml")} >= {"two_layers", "haut_barr"}
+
+
+class Links(HTMLParser):
+    """The addresses and the anchors of a page."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.addresses, self.anchors = [], set()
+        self.feed(page.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, _tag, attributes):
+        for name, value in attributes:
+            if name in ("href", "src"):
+                self.addresses.append(value)
+            elif name == "id":
+                self.anchors.add(value)
+
+
+def test_the_guide_is_there_and_its_links_lead_somewhere(unpacked):
+    pages = {path.resolve(): Links(path) for path in (unpacked / "realmodel" / "docs").rglob("*.html")}
+    guide = unpacked / "realmodel" / "docs" / "guide"
+    assert {"index.html", "install.html", "tour.html", "troubleshooting.html"} <= {
+        p.name for p in guide.iterdir()
+    }
+    followed = 0
+    for page, links in pages.items():
+        for address in links.addresses:
+            path, anchor = urldefrag(address)
+            if urlsplit(path).scheme:
+                continue
+            target = (page.parent / path).resolve() if path else page
+            assert target.is_file(), f"{page.name}: {address}"
+            assert not anchor or anchor in pages[target].anchors, f"{page.name}: {address}"
+            followed += 1
+    assert followed > 50
 
 
 def test_nothing_else_is_there(package):
@@ -116,8 +153,9 @@ def test_it_works_from_the_zip(unpacked, modules):
     assert done.returncode == 0, done.stderr
 
 
-def test_same_files_same_bytes(package, modules, tmp_path):
+def test_same_files_same_bytes(package, modules, tmp_path, monkeypatch):
     """Made again from the same sources, later and in another folder."""
+    monkeypatch.syspath_prepend(ROOT / "scripts" / "packaging")
     path = ROOT / "scripts" / "packaging" / "make_zip.py"
     specification = importlib.util.spec_from_file_location("make_zip", path)
     make_zip = importlib.util.module_from_spec(specification)

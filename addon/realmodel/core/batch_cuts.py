@@ -135,7 +135,7 @@ def fence_request(text: str, exaggeration: float = 1.0) -> SectionRequest:
     if numbers is None:
         return SectionRequest("--fence", Path(file), Path(what), exaggeration)
     if len(numbers) < 4 or len(numbers) % 2:
-        raise UsageError(f"--fence {text}: a line has two places at least, x and y of each")
+        raise UsageError(f"--fence {text}: a line needs at least two points, x and y of each")
     line = _line(numbers.reshape(-1, 2), f"--fence {text}", UsageError)
     return SectionRequest("--fence", Path(file), line, exaggeration)
 
@@ -147,7 +147,7 @@ def cut_request(text: str) -> CutRequest:
     what, files = _divided("--cut", text, form)
     halves = files.split(",")
     if len(halves) > 2 or not any(halves):
-        raise UsageError(f"--cut {text}: it is written as {form}")
+        raise UsageError(f"--cut {text}: expected {form}")
     below, above = (Path(half) if half else None for half in (*halves, "")[:2])
     for path in (below, above):
         if path is not None:
@@ -157,11 +157,11 @@ def cut_request(text: str) -> CutRequest:
     project, colon, block = what.rpartition(":")
     if colon and (not project or project.lower().endswith(".toml")):
         if not block:
-            raise UsageError(f"--cut {text}: which block? write {what}NAME")
+            raise UsageError(f"--cut {text}: the block is missing; write {what}NAME")
         return CutRequest((Path(project) if project else None, block), below, above)
     if Path(what).suffix.lower() not in MESH_ENDINGS:
         raise UsageError(
-            f"--cut {text}: '{what}' is no cutter; use a plane X,Y,Z,NX,NY,NZ, a surface "
+            f"--cut {text}: '{what}' is not a cutter; use a plane X,Y,Z,NX,NY,NZ, a surface "
             f"FILE{' or FILE'.join(MESH_ENDINGS)}, or a block PROJECT.toml:BLOCK (:BLOCK for one of the "
             "model's own)"
         )
@@ -180,23 +180,23 @@ def read_polyline(file: Path) -> np.ndarray:
         if numbers is None and not places:
             continue  # names of columns
         if numbers is None or len(numbers) < 2:
-            raise InputRefused(f"{file}:{number}: a line of the polyline has two numbers, x and y")
+            raise InputRefused(f"{file}:{number}: each line must have two numbers, x and y")
         places.append(numbers[:2])
     if len(places) < 2:
-        raise InputRefused(f"{file}: a polyline has two places at least, x and y in a line each")
+        raise InputRefused(f"{file}: a polyline needs at least two points, x and y on each line")
     return _line(np.array(places), str(file), InputRefused)
 
 
 def _line(places: np.ndarray, where: str, error: type[Exception]) -> np.ndarray:
     if not np.diff(places, axis=0).any(axis=1).all():
-        raise error(f"{where}: two equal places one after the other; leave one out")
+        raise error(f"{where}: two consecutive points are equal; remove one")
     return places
 
 
 def _divided(option: str, text: str, form: str) -> tuple[str, str]:
     what, equals, file = text.rpartition("=")
     if not equals or not what or not file:
-        raise UsageError(f"{option} {text}: it is written as {option} {form}")
+        raise UsageError(f"{option} {text}: expected {option} {form}")
     return what, file
 
 

@@ -45,11 +45,11 @@ class Boreholes:
     def check(self) -> None:
         """Raises ReadingRefused for a key that makes no sense."""
         if not isinstance(self.columns, Mapping):
-            what = f"'columns' must say how columns are called, not {self.columns!r}"
+            what = f"'columns' must be a table of column names, not {self.columns!r}"
             raise ReadingRefused("columns", what, 'write columns = { hole = "BHID" }')
         for name, column in self.columns.items():
             if name not in COLUMNS:
-                what = f"'columns' names a column '{name}'"
+                what = f"'columns' has an unknown column '{name}'"
                 raise ReadingRefused("columns", what, f"there are {', '.join(COLUMNS)}")
             is_number = isinstance(column, int) and not isinstance(column, bool) and 1 <= column <= 100_000
             if not is_number and not (isinstance(column, str) and column.strip()):

@@ -164,7 +164,7 @@ def _assemble(
 ) -> Model:
     """The model that the native arrays are of."""
     began = time.perf_counter()
-    with work.phase(start, 1.0, "putting the model together"):
+    with work.phase(start, 1.0, "assembling the model"):
         arrays = _arrays(inputs, built)
         component = work.native(native_module().cell_components, arrays["face_cells"], arrays["cell_block"])
         work.step(0.8)
@@ -239,7 +239,7 @@ def _warnings(inputs, built: dict, blocks: list[Block]) -> list[BuildWarning]:
         warnings.append(BuildWarning(text, kind, rock, named, tuple(int(i) for i in items)))
     for number, entry in enumerate(inputs):
         if len(entry.surfaces) == 1 and entry.rock.base_elevation is None:
-            text = "one surface alone bounds no block"
+            text = "a single surface does not bound a block"
         elif not any(block.cells for block in blocks if block.rock == number):
             text = "no block is left: its surfaces (and region) share no place, or all was cut away"
         else:

@@ -19,7 +19,9 @@ def check_stage(project: Project, stage) -> None:
     """Raises UsageError for a stage that no rock mass has."""
     youngest = max(len(rock.surfaces) for rock in project.rocks) - 1
     if isinstance(stage, bool) or not hasattr(stage, "__index__") or not 0 <= int(stage) <= youngest:
-        raise UsageError(f"there is no stage {stage}: stages go from 0 to {youngest}, the youngest surface")
+        raise UsageError(
+            f"stage {stage} does not exist: stages run from 0 to {youngest}, the youngest surface"
+        )
 
 
 def check_memory(memory) -> None:

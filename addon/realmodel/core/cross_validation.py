@@ -102,7 +102,7 @@ def cross_validate(
     if isinstance(folds, bool) or not hasattr(folds, "__index__") or int(folds) < 2:
         raise UsageError(f"folds must be a whole number from 2, not {folds!r}")
     if (mesh is None) == METHODS[method].on_mesh:
-        needs = "needs mesh = (nodes, triangles)" if mesh is None else "works on no mesh"
+        needs = "needs mesh = (nodes, triangles)" if mesh is None else "does not use a mesh"
         raise UsageError(f"method '{method}' {needs}")
     if mesh is not None:
         nodes = checked_nodes(mesh[0])
@@ -121,7 +121,7 @@ def validate(
     """cross_validate within a work that is already running, from checked arrays and settings."""
     points = distinct_points(points)
     if len(points) < 2:
-        raise InputRefused("one point alone cannot be told by others", item="points")
+        raise InputRefused("cross-validation needs at least two points", item="points")
     variance, variogram = None, None
     if METHODS[method].leaves_one_out:
         result = left_out_heights(work, points, method, settings, threads)

@@ -98,7 +98,7 @@ def _block_number(model: Model, block: int | str) -> int:
             raise UsageError(f"the model has {known} named '{block}'; give its number")
         return names.index(block)
     if isinstance(block, bool) or not hasattr(block, "__index__") or not 0 <= int(block) < len(names):
-        raise UsageError(f"there is no block {block}: they count from 0 to {len(names) - 1}")
+        raise UsageError(f"block {block} does not exist: blocks are numbered from 0 to {len(names) - 1}")
     return int(block)
 
 
@@ -122,10 +122,10 @@ def _cut(model: Model, call, threads: int, progress: Progress | None, cancel: Ca
 
 _ADVICE = {
     "ends_inside": "extend it beyond the model, or close it",
-    "branching": "leave the triangles out that make it branch",
-    "one_sided": "leave triangles out until it has an upper and a lower side",
-    "two_sides": "cut by one part after the other",
-    "no_block": "choose one that has cells",
+    "branching": "remove the triangles where it branches",
+    "one_sided": "remove triangles until it has one upper and one lower side",
+    "two_sides": "cut by each part in turn",
+    "no_block": "choose a block that has cells",
 }
 
 
@@ -183,7 +183,7 @@ def fence(
     if not np.isfinite(polyline).all():
         raise UsageError("polyline must be finite")
     if not np.diff(polyline, axis=0).any(axis=1).all():
-        raise UsageError("polyline has two equal points one after the other; leave one out")
+        raise UsageError("polyline has two consecutive points that are equal; remove one")
     threads = check_threads(threads)
     native_module()
 
@@ -233,7 +233,7 @@ def _plane(point, normal) -> tuple[tuple[float, ...], tuple[float, ...]]:
             raise UsageError(f"{name} must be three finite numbers, not {given!r}")
         found.append(tuple(numbers.tolist()))
     if not any(found[1]):
-        raise UsageError("normal must not be zero: it tells how the plane lies and which side is above")
+        raise UsageError("normal must not be zero: it gives the orientation of the plane and its upper side")
     return found[0], found[1]
 
 
@@ -264,7 +264,7 @@ def _section_arrays(model: Model, found: dict) -> dict:
 
 
 def _assembled(work: Work, model: Model, halves: dict, began: float) -> Cut:
-    with work.phase(_CUT_SHARE, 1.0, "putting the halves together"):
+    with work.phase(_CUT_SHARE, 1.0, "assembling the halves"):
         found = Section(**_section_arrays(model, halves["section"]))
         above = _half(work, model, halves["above"], halves["above_touches"])
         work.step(0.5)

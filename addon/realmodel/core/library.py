@@ -66,15 +66,13 @@ class Library:
 def _check_property(entry: Property, seen: set[int]) -> None:
     item = f"property {entry.id!r}"
     if isinstance(entry.id, bool) or not isinstance(entry.id, int) or not -(2**31) <= entry.id < 2**31:
-        raise InputRefused("an id must be a whole number of 32 bits", item=item)
+        raise InputRefused("an id must be a 32-bit whole number", item=item)
     if entry.id in seen:
-        raise InputRefused("the id is taken by another property", item=item, advice="give each its own id")
+        raise InputRefused("another property has this id", item=item, advice="give each a unique id")
     if not isinstance(entry.name, str) or not entry.name.strip():
         raise InputRefused("it has no name", item=item)
     if entry.color is not None and not _COLOR.fullmatch(entry.color):
-        raise InputRefused(
-            f"color '{entry.color}' is not a colour", item=item, advice='write it as "#rrggbb"'
-        )
+        raise InputRefused(f"color '{entry.color}' is not a color", item=item, advice='write it as "#rrggbb"')
     if entry.density is not None and not entry.density > 0:
         raise InputRefused(f"density must be above 0, not {entry.density:g}", item=item)
 
@@ -91,7 +89,7 @@ def load_library(path: str | Path) -> Library:
         try:
             _check_property(entry, seen)
         except InputRefused as error:
-            key = "color" if "colour" in error.what else "density" if "density" in error.what else "id"
+            key = "color" if "color" in error.what else "density" if "density" in error.what else "id"
             raise table.refuse(error.what, key, error.advice) from error
         seen.add(entry.id)
         properties.append(entry)

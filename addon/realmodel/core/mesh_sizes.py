@@ -19,7 +19,7 @@ _AT = "'outline', 'constraints', a place [x, y] or a line [[x, y], ...]"
 
 def check_mesher(mesher) -> None:
     if mesher not in MESHERS:
-        raise UsageError(f"mesher {mesher!r} is not there; use {', '.join(map(repr, MESHERS))}")
+        raise UsageError(f"mesher {mesher!r} is unknown; use {', '.join(map(repr, MESHERS))}")
 
 
 def is_number(value) -> bool:
@@ -47,7 +47,7 @@ def triangles_fault(triangles) -> str | None:
 def size_of_edges(edge_length, triangles, points) -> tuple[float, float, np.ndarray | None]:
     """(edge length or 0, number of triangles or 0, points (P, 2) whose density counts or None)."""
     if edge_length is None and triangles is None:
-        raise InputRefused("edge_length must be given, or the number of triangles")
+        raise InputRefused("edge_length or triangles must be given")
     fault = None if edge_length is None else edge_length_fault(edge_length)
     fault = fault or (None if triangles is None else triangles_fault(triangles))
     if fault:
@@ -55,10 +55,10 @@ def size_of_edges(edge_length, triangles, points) -> tuple[float, float, np.ndar
     wanted = 0.0 if triangles is None else float(triangles)
     if edge_length != AUTO:
         if triangles is not None and edge_length is not None:
-            raise InputRefused("edge_length and triangles exclude one another; give one of them")
+            raise InputRefused("edge_length and triangles cannot both be given; remove one of them")
         return 0.0 if edge_length is None else float(edge_length), wanted, None
     if points is None:
-        raise InputRefused(f"edge_length '{AUTO}' goes by the density of points, and there are none")
+        raise InputRefused(f"edge_length '{AUTO}' needs points, and there are none")
     return 0.0, wanted, places_of(points, "points", least=2)
 
 
@@ -88,7 +88,7 @@ def _places_at(entry, item: str, lines: list[np.ndarray], points: np.ndarray | N
             raise InputRefused(f"at must be {_AT}, not {at!r}", item=item)
         places = [*lines, *(points[:, None] if points is not None else [])]
         if not places:
-            raise InputRefused("there are no constraints for it to be at", item=item)
+            raise InputRefused("the rock mass has no constraints", item=item)
         return places
     places = np.asarray(at, object)
     return [places_of([at] if places.ndim == 1 else at, f"{item}, at")]
@@ -99,7 +99,7 @@ def places_of(places, item: str, least: int = 1) -> np.ndarray:
     try:
         array = np.asarray(places, np.float64)
     except (TypeError, ValueError) as error:
-        raise InputRefused("must be places [x, y]", item=item) from error
+        raise InputRefused("must be points [x, y]", item=item) from error
     if array.ndim != 2 or array.shape[1] not in (2, 3):
         raise InputRefused(f"must be an array (N, 2), not {array.shape}", item=item)
     if len(array) < least:

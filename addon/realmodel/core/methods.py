@@ -81,8 +81,8 @@ _NEIGHBOURHOOD = {
     "radius": Setting(
         None,
         "length",
-        "Search Radius",
-        "Points farther away are not used; 0: no limit",
+        "Radius",
+        "Search radius: points farther away are not used; 0: no limit",
         low=0.0,
         above=0.0,
         zero_is_none=True,
@@ -140,7 +140,7 @@ STRUCTURE = {  # of a nested variogram, beside its anisotropy
 }
 _PARTS = {
     "model": Setting(
-        kind="word", label="Variogram", tip="Variogram model", words=VARIOGRAMS, name="variogram_model"
+        kind="word", label="Model", tip="Variogram model", words=VARIOGRAMS, name="variogram_model"
     ),
     "range": _range("Practical range: the distance at which correlation vanishes", "variogram_range"),
     "sill": Setting(

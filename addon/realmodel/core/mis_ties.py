@@ -39,6 +39,6 @@ def without_mis_ties(points: np.ndarray) -> tuple[np.ndarray, str | None]:
     keep[first[tolerated]] = True
     worst = int(np.where(tolerated, apart, 0.0).argmax())
     count = int(tolerated.sum())
-    places = "1 place has" if count == 1 else f"{count} places have"
+    places = "1 position has" if count == 1 else f"{count} positions have"
     most = f"up to {apart[worst]:.6g} apart (at {place_text(points[first[worst], :2])})"
-    return merged[keep], f"{places} several heights, {most}: the mean is taken"
+    return merged[keep], f"{places} several heights, {most}: their mean is used"

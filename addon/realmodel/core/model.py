@@ -143,7 +143,7 @@ class Model:
         from .build import build_stage
 
         if self.is_cut:
-            raise UsageError("a half has no stages: take the stage of the whole model, then cut it")
+            raise UsageError("a cut model has no stages: take the stage of the whole model, then cut that")
 
         return build_stage(self, m, progress, cancel)
 

@@ -47,7 +47,7 @@ def check_layer(given, key: str, refuse: Refuse, is_file: Callable[[Path], bool]
     except ReadingRefused as error:
         raise refuse(error.what, key, error.advice) from error
     if not is_file(Path(layer.file)):
-        raise refuse(f"there is no file {layer.file}", key, "check the path")
+        raise refuse(f"file not found: {layer.file}", key, "check the path")
 
 
 def shapes_of(given, units: str = MODEL_UNIT) -> Shapes | None:
@@ -135,7 +135,7 @@ def places_of_constraint(given) -> np.ndarray:
     try:
         places = np.array(given, np.float64)
     except (TypeError, ValueError) as error:
-        raise InputRefused("a constraint must be places [[x, y], ...] or one place [x, y]") from error
+        raise InputRefused("a constraint must be points [[x, y], ...] or one point [x, y]") from error
     places = places.reshape(1, -1) if places.ndim == 1 else places
     if places.ndim != 2 or places.shape[1] != 2 or not len(places):
         raise InputRefused(f"a constraint must be an array (N, 2), not {places.shape}")

@@ -29,7 +29,7 @@ class PointFile:
     where: {column or attribute: value, or a list of them}; only rows or features that hold it count.
     separator: one character; " " stands for any blanks and tabs; None: told from the file.
     decimal: "." or ","; None: told from the file.
-    nodata: what stands for no value, a number, a text or a list of such; points without a value are left out.
+    nodata: no-data values: a number, a text or a list of them; such points are left out.
     units: of the file, "ft" for all three coordinates, or {"xy": "m", "z": "ft"}; None: those of the model.
     height: the attribute of features that holds their height; None: the z of their positions.
     layer: of a GeoPackage, needed where it has several.
@@ -125,13 +125,13 @@ def check_columns(columns) -> None:
         if isinstance(column, str) and column.strip():
             continue
         if isinstance(column, bool) or not isinstance(column, int) or not 1 <= column <= 100_000:
-            raise ReadingRefused("columns", f"{said}, not {column!r}", "numbers of columns count from 1")
+            raise ReadingRefused("columns", f"{said}, not {column!r}", "column numbers start at 1")
 
 
 def check_where(where) -> None:
     advice = "write where = { val = 60 }"
     if not isinstance(where, Mapping):
-        raise ReadingRefused("where", f"'where' must say what columns hold, not {where!r}", advice)
+        raise ReadingRefused("where", f"'where' must be a table of columns and values, not {where!r}", advice)
     for column, values in where.items():
         if not list_of(values) or not all(_is_value(value) for value in list_of(values)):
             what = f"'where' must give a number or text for '{column}', not {values!r}"

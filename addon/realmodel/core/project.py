@@ -12,10 +12,9 @@ import numpy as np
 
 from .boreholes import Boreholes
 from .errors import InputRefused
-from .finite import is_finite
 from .library import Library
 from .map_layer import MapLayer
-from .mesh_sizes import AUTO, edge_length_fault, local_lengths, triangles_fault
+from .mesh_sizes import AUTO, edge_length_fault, is_number, local_lengths, triangles_fault
 from .meshers import DEFAULT_MESHER, MESHERS
 from .methods import (
     DEFAULT_METHOD,
@@ -255,10 +254,8 @@ def check_project(project: Project) -> None:
         if not _is_name(rock.name):
             raise _refuse(rock.source, "a rock mass", "it has no name", "name")
         if rock.name in seen:
-            advice = "give each rock mass its own name"
-            raise _refuse(
-                rock.source, rock_item(rock), "the name is taken by another rock mass", "name", advice
-            )
+            advice = "give each rock mass a unique name"
+            raise _refuse(rock.source, rock_item(rock), "another rock mass has this name", "name", advice)
         seen.add(rock.name)
         _check_rock(project, rock)
 
@@ -281,19 +278,19 @@ def _check_rock(project: Project, rock: Rock) -> None:
     if not rock.surfaces:
         raise refuse("it has no surface", advice="a block needs two surfaces, or one and a base_elevation")
     _check_mesh(rock, refuse)
-    if rock.base_elevation is not None and not _is_number(rock.base_elevation):
+    if rock.base_elevation is not None and not is_number(rock.base_elevation):
         raise refuse(f"base_elevation must be a finite number, not {rock.base_elevation!r}", "base_elevation")
     if rock.region is None and len(rock.holes):
         raise refuse("it has holes but no region", "holes", "add the outline as region")
     if isinstance(rock.region, (str, Path, MapLayer)) and len(rock.holes):
         raise refuse(
-            "holes go with an outline of coordinates", "holes", "put the holes into the region's file"
+            "holes need a region given by coordinates", "holes", "put the holes into the region's file"
         )
     check_layer(rock.region, "region", refuse, is_file)
     for given in rock.constraints:
         check_layer(given, "constraints", refuse, is_file)
     if len(rock.constraints) and not rock.interpolates:
-        what = "constraints shape the mesh of the region, and no surface is interpolated on it"
+        what = "constraints have no effect, as no surface is interpolated"
         raise refuse(what, "constraints")
     _check_boreholes(rock, refuse)
     names: set[str] = set()
@@ -303,9 +300,9 @@ def _check_rock(project: Project, rock: Rock) -> None:
             raise _refuse(
                 surface.source,
                 surface_item(rock, surface),
-                "the name is taken by another surface",
+                "another surface has this name",
                 "name",
-                "give each surface of a rock mass its own name",
+                "give each surface of a rock mass a unique name",
             )
         names.add(surface.name)
     _check_references(rock)
@@ -320,9 +317,9 @@ def _check_boreholes(rock: Rock, refuse) -> None:
         raise refuse(f"boreholes: {error.what}", "boreholes", error.advice) from error
     for file in rock.boreholes.files:
         if not is_file(file):
-            raise refuse(f"there is no file {file}", "boreholes", "check the path")
+            raise refuse(f"file not found: {file}", "boreholes", "check the path")
     if not rock.interpolates:
-        raise refuse("boreholes give points, and no surface is made from points", "boreholes")
+        raise refuse("boreholes have no effect, as no surface is interpolated", "boreholes")
 
 
 def _check_mesh(rock: Rock, refuse) -> None:
@@ -334,7 +331,7 @@ def _check_mesh(rock: Rock, refuse) -> None:
     if rock.triangles is not None and (fault := triangles_fault(rock.triangles)):
         raise refuse(fault, "triangles")
     if rock.triangles is not None and rock.edge_length not in (None, AUTO):
-        raise refuse("edge_length and triangles exclude one another", "triangles", "give one of them")
+        raise refuse("edge_length and triangles cannot both be given", "triangles", "give one of them")
     try:
         sizes = [_at_a_place(entry, refuse) for entry in rock.size]
         local_lengths(sizes, [np.zeros((1, 2))] if len(rock.constraints) else [], None)
@@ -349,12 +346,6 @@ def _at_a_place(entry, refuse):
         return entry
     check_layer(entry["at"], "size", refuse, is_file)
     return {**entry, "at": [0.0, 0.0]}
-
-
-def _is_number(value) -> bool:
-    if isinstance(value, bool):
-        return False
-    return isinstance(value, (int, float, np.integer, np.floating)) and is_finite(value)
 
 
 def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
@@ -388,12 +379,12 @@ def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
     if no_points and surface.method is None:
         raise refuse("it has neither points nor a mesh", advice="add points = ... or mesh = ...")
     if len(shapes) > 1:
-        raise refuse(f"it has both {shapes[0]} and {shapes[1]}", shapes[1], "keep one of them")
+        raise refuse(f"it has both {shapes[0]} and {shapes[1]}", shapes[1], "use only one of them")
     if arrays and (surface.vertices is None or surface.triangles is None):
         raise refuse("it needs vertices and triangles together")
     file = surface.input_file
     if file is not None and not is_file(file):
-        raise refuse(f"there is no file {file}", shapes[0], "check the path")
+        raise refuse(f"file not found: {file}", shapes[0], "check the path")
     if not surface.interpolated:
         try:
             if surface.mesh_file is not None:
@@ -403,7 +394,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
         given = [*(["method"] if surface.method is not None else []), *surface.options]
         given += ["minimum_thickness"] if surface.minimum_thickness is not None else []
         if given:
-            raise refuse(f"a ready mesh is not interpolated, so '{given[0]}' has no meaning here", given[0])
+            raise refuse(f"'{given[0]}' has no effect, as a mesh is not interpolated", given[0])
         return
     try:
         if surface.point_file is not None:
@@ -445,11 +436,11 @@ def _check_references(rock: Rock) -> None:
                 raise _refuse(surface.source, item, what, option, f"it has {', '.join(numbers)}")
             needed.append((option, numbers[name]))
         if surface.minimum_thickness is not None:
-            if not (_is_number(surface.minimum_thickness) and surface.minimum_thickness >= 0):
+            if not (is_number(surface.minimum_thickness) and surface.minimum_thickness >= 0):
                 what = f"minimum_thickness must be a number from 0, not {surface.minimum_thickness!r}"
                 raise _refuse(surface.source, item, what, "minimum_thickness")
             if number == 0:
-                what = "the oldest surface has none beneath it to keep a minimum_thickness from"
+                what = "the oldest surface cannot have a minimum_thickness, as there is no surface beneath it"
                 raise _refuse(surface.source, item, what, "minimum_thickness")
             needed.append(("minimum_thickness", number - 1))
         needs.append(needed)
@@ -459,7 +450,7 @@ def _check_references(rock: Rock) -> None:
         for option, needed in needs[number]:
             if needed in (*above, number):
                 surface, other = rock.surfaces[number], rock.surfaces[needed]
-                what = f"'{option}' makes it from '{other.name}', which is itself made from it"
+                what = f"'{option}' names '{other.name}', which depends on this surface"
                 raise _refuse(surface.source, surface_item(rock, surface), what, option)
             if needed not in done:
                 visit(needed, (*above, number))

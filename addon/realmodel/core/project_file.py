@@ -35,14 +35,14 @@ def load_project(path: str | Path) -> Project:
     top = Table(document, document.content, (), "")
     version = top.integer("format", required=True)
     if version != FORMAT:
-        raise top.refuse(f"format {version} is not known", "format", f"this version reads format {FORMAT}")
+        raise top.refuse(f"unknown format {version}", "format", f"this version reads format {FORMAT}")
     top.allow_only(PROJECT)
     name = top.text("name", required=True)
     library = None
     if (library_file := top.text("library")) is not None:
         library_path = path.parent / library_file
         if not is_file(library_path):
-            raise top.refuse(f"there is no file {library_path}", "library", "check the path")
+            raise top.refuse(f"file not found: {library_path}", "library", "check the path")
         library = load_library(library_path)
     rocks = [_read_rock(table, path.parent) for table in top.tables("rock", "rock")]
     units = top.text("units") or MODEL_UNIT
@@ -153,7 +153,7 @@ def _read_constraints(table: Table, folder: Path) -> list:
         elif isinstance(entry, list) and entry:
             found.append(_read_ring(table, entry, ("constraints", number)))
         else:
-            raise inner.refuse("'constraints' has an entry that is no file, line or point", advice=advice)
+            raise inner.refuse("'constraints' has an entry that is not a file, line or point", advice=advice)
     return found
 
 
@@ -210,7 +210,7 @@ def _read_surface(table: Table, folder: Path) -> Surface:
         files["mesh"] = MeshFile(files["mesh"], reading.pop("units"))
     if reading and "points" not in files:
         key = next(iter(reading))
-        raise table.refuse(f"'{key}' says how a file of points is read, and there is none", key)
+        raise table.refuse(f"'{key}' needs a file of points", key)
     if reading:
         files["points"] = PointFile(files["points"], **reading)
     property_id = table.integer("property")

@@ -167,10 +167,10 @@ def refused_rings(error, names: Sequence[str], counts: Sequence[int] = ()) -> In
         return InputRefused(what, item=names[ring], place=place, advice=advice)
     if error.kind == "hole_outside":
         what = f"this hole does not lie inside its outline{at}"
-        advice = "holes lie in their outline; an outline of its own is a polygon of its own"
+        advice = "move the hole into the outline, or make it an outline of its own"
         return InputRefused(what, item=names[items[0]], place=place, advice=advice)
     if error.kind == "outline_degenerate":
-        what = f"an outline needs three corners that are not in one line; all of its lie in one{at}"
+        what = f"all corners of an outline lie on one line{at}"
         return InputRefused(what, item=names[items[0]], place=place)
     return InputRefused(str(error), item="region", place=place)
 

@@ -109,7 +109,9 @@ def read_rocks(work: Work, project: Project) -> list[RockInput]:
             faces.append(face)
             done += 1
         if picks.points:
-            what = f"the boreholes met {number_list(picks.points)}, which is no surface made from points here"
+            what = (
+                f"boreholes have picks of {number_list(picks.points)}, which no surface from points is named"
+            )
             warnings.append(BuildWarning(what, "points", rock.name))
         rock = replace(rock, surfaces=surfaces, boreholes=None)
         inputs.append(RockInput(rock, shapes, None, [None] * len(shapes), faces, warnings))
@@ -197,7 +199,7 @@ def _read_surface(
                 own = np.empty((0, 3)) if points is None else checked_points(points)
                 points = np.concatenate([own, met])
             if points is None and surface.needs_points:
-                raise InputRefused("the boreholes did not meet it, and it has no points", file=shape_file)
+                raise InputRefused("it has no points, and no borehole has a pick of it", file=shape_file)
             if points is None or (not len(points) and not surface.needs_points):
                 points = np.empty((0, 3))
             else:

@@ -22,7 +22,7 @@ def refused_stack(error, inputs: list[RockInput]) -> InputRefused | BuildFailed:
             file=file,
             line=line,
             item=rock_item(second),
-            advice="rock masses may share borders but no area: mend the regions",
+            advice="rock masses may share borders but no area: correct the regions",
             place=place,
         )
     entry, number = _surface_at(inputs, error.surface)
@@ -34,7 +34,7 @@ def refused_stack(error, inputs: list[RockInput]) -> InputRefused | BuildFailed:
             (rock.source.document.file, rock.source.line("base_elevation")) if rock.source else (None, None)
         )
         what = f"base_elevation {rock.base_elevation:.9g} is not below all of the rock mass"
-        lowest = f", whose lowest place is {place_text(place)}" if place else ""
+        lowest = f", whose lowest point is {place_text(place)}" if place else ""
         advice = f"choose one below {place[2]:.9g}" if place else "choose a lower one"
         if place and (beyond := _beyond_its_points(entry, place[2])):
             advice = f"{advice}; {beyond}"
@@ -47,7 +47,10 @@ def refused_stack(error, inputs: list[RockInput]) -> InputRefused | BuildFailed:
     named = _triangles(items, entry.file_faces[number])
     if error.kind == "vertical_triangle":
         verb = "is" if len(items) == 1 else "are"
-        what, advice = f"{named} {verb} vertical{near}", f"{_ONE_HEIGHT}: tilt or remove what stands upright"
+        what, advice = (
+            f"{named} {verb} vertical{near}",
+            f"{_ONE_HEIGHT}: tilt or remove the vertical triangles",
+        )
     elif error.kind == "double_valued":
         what, advice = (
             f"{named} overlap in plan{near}",
@@ -83,7 +86,7 @@ def _beyond_its_points(entry, lowest: float) -> str:
             continue
         if surface.points is not None and len(surface.points) and surface.points[:, 2].min() > lowest:
             least = surface.points[:, 2].min()
-            return f"the points of surface '{surface.name}' go down to {least:.6g} only: look at its method"
+            return f"the lowest point of surface '{surface.name}' is {least:.6g}, so check its method"
     return ""
 
 

@@ -142,8 +142,8 @@ def _above_older(work: Work, entry, number: int, shape: Triangulation, threads: 
         return shape, []
     worst = int(lift.argmax())
     text = (
-        f"raised at {int(raised.sum())} of {len(vertices)} nodes to keep {surface.minimum_thickness:g} above "
-        f"'{older.name}', most by {lift[worst]:.4g} at {place_text(vertices[worst, :2])}"
+        f"raised at {int(raised.sum())} of {len(vertices)} nodes to stay {surface.minimum_thickness:g} above "
+        f"'{older.name}', by up to {lift[worst]:.4g} at {place_text(vertices[worst, :2])}"
     )
     vertices = vertices.copy()
     vertices[raised, 2] = least[raised]

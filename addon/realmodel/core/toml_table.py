@@ -31,7 +31,7 @@ class TomlDocument:
                 if isinstance(error, RecursionError)
                 else "a number of too many digits"
             )
-            raise InputRefused(f"not a file to be read: {what}", file=self.file) from error
+            raise InputRefused(f"cannot be read: {what}", file=self.file) from error
 
     @cached_property
     def _lines(self) -> dict:
@@ -91,7 +91,7 @@ class Table:
         for key in self.content:
             if key not in known:
                 near = difflib.get_close_matches(key, known, n=1)
-                advice = f"did you mean '{near[0]}'?" if near else f"known here are {', '.join(known)}"
+                advice = f"did you mean '{near[0]}'?" if near else f"valid keys are {', '.join(known)}"
                 raise self.refuse(f"unknown key '{key}'", key, advice)
 
     def _value(self, key: str, required: bool):
@@ -134,7 +134,7 @@ class Table:
         value = self._value(key, False)
         if not value:
             raise self.refuse(
-                f"there is no [[{'.'.join([*(p for p in self.path if isinstance(p, str)), key])}]]"
+                f"[[{'.'.join([*(p for p in self.path if isinstance(p, str)), key])}]] is missing"
             )
         if not isinstance(value, list) or not all(isinstance(entry, dict) for entry in value):
             raise self.refuse(f"'{key}' must be tables [[{key}]], not {_kind(value)}", key)

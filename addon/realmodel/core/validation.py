@@ -23,17 +23,17 @@ _DTYPES = {
 }
 # By the name of a test: its number in docs/dev/geometry.md, and what it says of the model.
 _SAYS = {
-    "arrays": (0, "the arrays fit together: every number that they name is there"),
+    "arrays": (0, "array lengths and indices are consistent"),
     "closed": (1, "every cell is closed: its faces use each edge once in each direction"),
-    "faces": (2, "faces are simple polygons, each in one plane; convex, or upright walls"),
-    "loops": (2, "no face passes a vertex twice"),
-    "vertices": (2, "no two vertices are in one place, and none is unused"),
-    "outside": (3, "a face has one cell only where the outside begins"),
-    "volumes": (4, "every cell has a volume, none is inside out"),
+    "faces": (2, "faces are simple polygons in one plane, convex or vertical walls"),
+    "loops": (2, "no face repeats a vertex"),
+    "vertices": (2, "vertices are distinct, and all are used"),
+    "outside": (3, "faces with one cell are the outer boundary"),
+    "volumes": (4, "every cell has positive volume"),
     "block volumes": (4, "the volume of each block is the sum of its cells"),
     "places": (5, "on vertical lines the model has the blocks of the closed form, at their heights"),
     "surfaces": (5, "faces lie on the surfaces that they name"),
-    "walls": (5, "on either side of a wall lies what the wall names, a block or the outside"),
+    "walls": (5, "each side of a wall is the block that the wall names, or the outside"),
 }
 _SAYS_OF_BLOCKS = {"closed": "every cell is closed: its faces use each edge as often in either direction"}
 _WIDTH = 100
@@ -122,8 +122,8 @@ class ValidationReport:
         whole = self.seconds - sampled
         line = f"every cell, face and vertex in {whole:.2f} s"
         if self.build_seconds:
-            line += f" ({100 * whole / self.build_seconds:.1f} % of what intersecting took)"
-        return [line, f"places drawn with seed {self.seed} in {sampled:.2f} s"] if sampled else [line]
+            line += f" ({100 * whole / self.build_seconds:.1f} % of the time of intersecting)"
+        return [line, f"random positions with seed {self.seed} in {sampled:.2f} s"] if sampled else [line]
 
     def failure(self) -> str | None:
         """One line about the first test that failed, with its first offender; None where all passed."""
@@ -156,7 +156,7 @@ class ValidationReport:
             rest = " " * len(head)
             lines += textwrap.wrap(test.says, _WIDTH, initial_indent=head, subsequent_indent=rest)
             if test.undecided:
-                lines.append(f"{rest}{test.undecided:,} of them within rounding, left open")
+                lines.append(f"{rest}{test.undecided:,} of them within rounding, undecided")
             if test.failed:
                 lines.append(f"   {test.failed:,} failed:")
                 lines += [f"   - {_offender_line(offender)}" for offender in test.offenders]

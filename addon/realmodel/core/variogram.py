@@ -149,25 +149,25 @@ class Variogram:
 
 
 def fit_warnings(variogram: Variogram, points: np.ndarray) -> list[str]:
-    """What to tell where a fitted variogram means little, as sentences."""
+    """Warnings about a fitted variogram that means little, as sentences."""
     warnings = []
     pairs = int(variogram.pairs.sum())
     if pairs < _FEW_PAIRS:
         number = "no pair" if pairs == 0 else "1 pair" if pairs == 1 else f"{pairs} pairs"
         warnings.append(
-            f"the variogram is fitted to {number} of points and little more than a guess; give one, or use "
-            f'method = "plane" or "tin"'
+            f"the variogram is fitted to only {number} of points and is hardly more than a guess; set one by "
+            "hand, or use the method 'plane' or 'tin'"
         )
     elif variogram.semivariance(variogram.lags[0]) > _PURE_NUGGET * variogram.sill:
         warnings.append(
-            "the fitted variogram is nearly pure nugget: neighbouring points differ almost as much as "
-            "distant ones, and kriging gives little more than local means; look for errors in the points"
+            "the fitted variogram is nearly pure nugget: neighboring points differ almost as much as "
+            "distant ones, so kriging gives hardly more than local means; check the points for errors"
         )
     extent = float(np.hypot(*np.ptp(points[:, :2], axis=0)))
     if variogram.range > extent > 0 and pairs >= _FEW_PAIRS:
         warnings.append(
-            f"the fitted variogram has its range, {variogram.range:.4g}, beyond the extent of the points, "
+            f"the range of the fitted variogram, {variogram.range:.4g}, exceeds the extent of the points, "
             f"{extent:.4g}: its sill, and variances far from points, are extrapolated; the heights may "
-            f'follow a trend, as method = "universal_kriging" has it'
+            "follow a trend: try universal kriging"
         )
     return warnings

@@ -7,6 +7,7 @@ from ..registration import register_modules, unregister_modules
 from . import (
     boreholes,
     build,
+    documentation,
     files,
     judge,
     library,
@@ -34,6 +35,7 @@ _MODULES = (
     results,
     view,
     sections,
+    documentation,
 )
 
 

@@ -73,7 +73,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
         )
         for file in given.files:
             if not file.is_file():
-                raise InputRefused(f"there is no file {file}", advice="check the path")
+                raise InputRefused(f"file not found: {file}", advice="check the path")
         try:
             given.check()
         except ReadingRefused as error:

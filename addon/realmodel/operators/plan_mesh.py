@@ -99,7 +99,7 @@ class REALMODEL_OT_constraint_read(Reporting, bpy.types.Operator, ImportHelper):
         rock = settings.active_rock(context.scene)
         path = project_settings.absolute(needed_path(self.filepath, "the constraints"))
         if not path.is_file():
-            raise InputRefused(f"there is no file {path}", advice="check the path")
+            raise InputRefused(f"file not found: {path}", advice="check the path")
         found = read_constraints([path], context.scene.realmodel.units)
         plan_mesh.add_constraints(rock, found)
         live.touch(context.scene)

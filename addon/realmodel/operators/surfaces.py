@@ -78,7 +78,7 @@ def _check_file(path: Path):
     """Raises InputRefused for a file that cannot be read as what its ending says, however it is looked at:
     what holds the heights of shapes may be chosen once the surface is there."""
     if not path.is_file():
-        raise InputRefused(f"there is no file {path}", advice="check the path")
+        raise InputRefused(f"file not found: {path}", advice="check the path")
     if path.suffix.lower() in MESH_ENDINGS:
         read_mesh(path)
     else:

@@ -38,9 +38,9 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
 
 def _draw_density(layout, rock):
     column = layout.column(align=True)
-    column.prop(rock, "edges_by")
+    column.prop(rock, "edges_by", text="Size From")
     if rock.edges_by == "LENGTH":
-        column.prop(rock, "edge_length")
+        column.prop(rock, "edge_length", text="Length")
         count = region_size.expected_triangles(rock)
         if count is not None:
             hint(layout, f"about {_rounded(count):,} triangles per surface")

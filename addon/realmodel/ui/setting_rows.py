@@ -18,7 +18,9 @@ def draw(layout, row, key, settings):
         for name in names:
             layout.prop(row, name)
         return
-    line = layout.row(heading=setting.label if len(names) == 1 else setting.switch[0])
+    line = layout.row(
+        heading=min(setting.label, setting.switch[0], key=len) if len(names) == 1 else setting.switch[0]
+    )
     line.prop(row, switch, text="")
     if len(names) == 1:
         field = line.row()

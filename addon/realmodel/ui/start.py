@@ -12,6 +12,9 @@ class REALMODEL_PT_start(TabPanel, bpy.types.Panel):
     bl_idname = "REALMODEL_PT_start"
     bl_order = 0
 
+    def draw_header_preset(self, _context):
+        self.layout.operator("realmodel.documentation", text="", icon="HELP", emboss=False)
+
     def draw_in(self, layout, _context, group):
         missing = native.missing()
         if missing:

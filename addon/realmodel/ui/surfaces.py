@@ -112,10 +112,7 @@ class _OfASurface:
         return surface is not None and cls.shown(surface)
 
 
-class REALMODEL_PT_surface_method(_OfASurface, TabPanel, bpy.types.Panel):
-    bl_label = "Method Options"
-    bl_idname = "REALMODEL_PT_surface_method"
-    bl_parent_id = "REALMODEL_PT_surfaces"
+class _OfTheMethod(_OfASurface):
     fold = ""
 
     @classmethod
@@ -136,7 +133,13 @@ class REALMODEL_PT_surface_method(_OfASurface, TabPanel, bpy.types.Panel):
                 setting_rows.draw(layout, surface, key, OPTIONS)
 
 
-class REALMODEL_PT_surface_search(REALMODEL_PT_surface_method):
+class REALMODEL_PT_surface_method(_OfTheMethod, TabPanel, bpy.types.Panel):
+    bl_label = "Method Options"
+    bl_idname = "REALMODEL_PT_surface_method"
+    bl_parent_id = "REALMODEL_PT_surfaces"
+
+
+class REALMODEL_PT_surface_search(_OfTheMethod, TabPanel, bpy.types.Panel):
     bl_label = "Search"
     bl_idname = "REALMODEL_PT_surface_search"
     bl_parent_id = "REALMODEL_PT_surface_method"

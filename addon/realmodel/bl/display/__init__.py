@@ -2,7 +2,7 @@
 """How a built model is shown: the display modes, the stage, the blocks moved apart, the colours, the cut.
 
 The settings call one function here when they change, the build calls `built` and `cleared`. All of it leaves
-the model as it is: see docs/panel.md, "View".
+the model as it is: see docs/guide/tour.md, "View".
 
 shown_models   the model at a stage, from the core
 stages         the blocks' shapes at a stage

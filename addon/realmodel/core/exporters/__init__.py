@@ -22,7 +22,7 @@ def writer_for(path: str | Path) -> Callable[..., None]:
     ending = Path(path).suffix.lower()
     if ending not in WRITERS:
         known = " or ".join(WRITERS)
-        what = f"files ending in '{ending}' are not known" if ending else "the file name has no ending"
+        what = f"files ending in '{ending}' are not supported" if ending else "the file name has no extension"
         raise UsageError(f"{path}: {what}; use {known}")
     return WRITERS[ending]
 

@@ -34,7 +34,7 @@ def section_writer(path: str | Path, exaggeration: float = 1.0) -> Callable[...,
     ending = Path(path).suffix.lower()
     if ending not in SECTION_WRITERS:
         known = ", ".join(SECTION_WRITERS)
-        what = f"sections are not written as '{ending}'" if ending else "the file name has no ending"
+        what = f"sections are not written as '{ending}'" if ending else "the file name has no extension"
         raise UsageError(f"{path}: {what}; use one of {known}")
     if ending in drawing.WRITERS:
         return partial(write_section_drawing, write=drawing.WRITERS[ending], exaggeration=exaggeration)

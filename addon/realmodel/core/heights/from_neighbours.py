@@ -76,8 +76,8 @@ def _without_near_points(alone: int, nodes: int) -> list[str]:
     if not alone:
         return []
     return [
-        f"{100 * alone / nodes:.3g} % of the nodes have no point within the radius: there the nearest "
-        "point alone counts"
+        f"{100 * alone / nodes:.3g} % of the nodes have no point within the radius: there only "
+        "the nearest point is used"
     ]
 
 

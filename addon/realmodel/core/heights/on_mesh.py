@@ -36,29 +36,29 @@ def dsi(task: Task) -> Result:
     warnings = []
     if found["outside"]:
         warnings.append(
-            f"{found['outside']} of {len(task.points)} points lie outside the mesh and do not count; "
-            "other methods take them in"
+            f"{found['outside']} of {len(task.points)} points lie outside the mesh and are ignored; "
+            "other methods use them"
         )
     beyond = [*_beyond(task, "above"), *_beyond(task, "below")]
     warnings += beyond
     if found["missed"] and not beyond:
         warnings.append(
-            f"{found['missed']} of {len(task.points)} points cannot all be met on this mesh, the farthest "
-            f"is missed by {found['misfit']:.3g}: use a shorter edge_length, or give points a weight"
+            f"{found['missed']} of {len(task.points)} points cannot all be honored on this mesh, the "
+            f"largest misfit is {found['misfit']:.3g}: use a shorter edge_length, or give points a weight"
         )
     if not found["converged"]:
         warnings.append(
-            "the heights are not quite as smooth as they could be: the mesh has triangles of unlike sizes "
-            "or shapes; a more even mesh helps"
+            "the solver stopped before the heights were as smooth as possible: triangles of the mesh differ "
+            "much in size or shape; a more even mesh helps"
         )
     return Result(found["z"], warnings=warnings)
 
 
 def _called(reference) -> str:
-    """What messages call the surface or height that an option names."""
+    """The surface or height that an option names, as messages write it."""
     if isinstance(reference, str):
         return f"'{reference}'"
-    return f"{reference:g}" if isinstance(reference, float) else "what was given"
+    return f"{reference:g}" if isinstance(reference, float) else "the given heights"
 
 
 def _refuse_crossed(task: Task, given: dict, lower: str, upper: str) -> None:
@@ -74,7 +74,7 @@ def _refuse_crossed(task: Task, given: dict, lower: str, upper: str) -> None:
     raise InputRefused(
         f"no surface lies between: {names[lower]} is {gap[worst]:.4g} higher than {names[upper]} at "
         f"{place_text(task.nodes[worst])}",
-        advice="take one of them out, or change what they name",
+        advice="remove one of them, or change the surface that it names",
     )
 
 
@@ -93,8 +93,8 @@ def _beyond(task: Task, option: str) -> list[str]:
         return []
     other, worst = "below" if option == "above" else "above", int(past.argmax())
     return [
-        f"{wrong} of {len(past)} points lie {other} {_called(reference)}, which the surface is kept "
-        f"{option}, and are not met, the farthest by {past[worst]:.4g}: point {worst} at "
+        f"{wrong} of {len(past)} points lie {other} {_called(reference)}, but the surface is kept "
+        f"{option} it: they are not honored, the farthest is {other} by {past[worst]:.4g}: point {worst} at "
         f"{place_text(task.points[worst])}"
     ]
 

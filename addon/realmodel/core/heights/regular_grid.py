@@ -58,7 +58,7 @@ def bilinear(task: Task) -> Result:
 def find_grid(points: np.ndarray) -> RegularGrid:
     """The grid whose nodes the points (P, 3) are. Raises InputRefused, naming a point that is off it."""
     if len(points) < 4:
-        raise InputRefused("a grid needs four points or more", item="points")
+        raise InputRefused("a grid needs at least four points", item="points")
     plan = points[:, :2]
     start = plan[0]
     axes = _axes(plan - start)
@@ -76,7 +76,7 @@ def find_grid(points: np.ndarray) -> RegularGrid:
     if off.max() > _OFF_GRID:
         worst = int(off.argmax())
         raise InputRefused(
-            f"the points are no regular grid: {place_text(points[worst])} is {off[worst]:.2g} cells off",
+            f"the points are not a regular grid: {place_text(points[worst])} is {off[worst]:.2g} cells off",
             item="points",
             place=tuple(points[worst]),
             advice='use method = "tin" or "kriging" for scattered points',

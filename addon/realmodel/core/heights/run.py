@@ -78,12 +78,12 @@ def few_points(points: np.ndarray, method: str) -> list[str]:
     if len(points) and not len(elsewhere):
         return ["there is one point only: the surface is its height everywhere"]
     if len(elsewhere) and (elsewhere == elsewhere[0]).all():
-        return ["there are two points only: the surface is known along their line at best"]
+        return ["there are two points only: they do not show the slope across their line"]
     return []
 
 
 def elsewhere(points: np.ndarray, nodes: np.ndarray) -> list[str]:
-    """What to tell where the points are in another place than the nodes: mostly a slip."""
+    """A warning if the points lie elsewhere than the nodes: mostly wrong coordinates or units."""
     if not len(points) or not len(nodes):
         return []
     for axis, name in enumerate("xy"):
@@ -91,14 +91,14 @@ def elsewhere(points: np.ndarray, nodes: np.ndarray) -> list[str]:
         lowest, highest = nodes[:, axis].min(), nodes[:, axis].max()
         if high < lowest or highest < low:
             return [
-                f"no point lies where heights are wanted: {name} of the points is {low:.9g} to {high:.9g}, "
-                f"wanted {lowest:.9g} to {highest:.9g}; check their coordinates and units"
+                f"no point lies in the area of the mesh: {name} of the points is {low:.9g} to {high:.9g}, "
+                f"of the mesh {lowest:.9g} to {highest:.9g}; check their coordinates and units"
             ]
     return []
 
 
 def runs_away(points: np.ndarray, z: np.ndarray, method: str) -> list[str]:
-    """What to tell where heights go much farther than the points do, beyond twice their range."""
+    """A warning if heights go far beyond those of the points, by more than twice their range."""
     tamed_by = METHODS[method].tamed_by
     if tamed_by is None or not len(points) or not np.isfinite(z).any():
         return []

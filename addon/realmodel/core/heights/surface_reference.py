@@ -19,7 +19,7 @@ def heights_of(task: Task, reference, places: np.ndarray, option: str) -> np.nda
     if isinstance(reference, str):
         if reference not in task.surfaces:
             raise OptionRefused(
-                f"'{option}' names surface '{reference}', which is not there",
+                f"'{option}' names surface '{reference}', which does not exist",
                 option=option,
                 advice="outside a project give vertices and triangles",
             )

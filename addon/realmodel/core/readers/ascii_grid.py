@@ -131,7 +131,7 @@ def _heights(file, raw, body, body_line, decimal, count, shape, step: Step) -> n
     z = np.concatenate(found) if found else np.empty(0)
     if len(z) != count:
         raise InputRefused(
-            f"{shape[0]} columns and {shape[1]} rows are announced, {count} heights; there are {len(z)}",
+            f"{shape[0]} columns and {shape[1]} rows need {count} heights; there are {len(z)}",
             file=file,
             advice="the file is cut off or its header is wrong",
         )

@@ -58,7 +58,7 @@ def read_boreholes(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = 
         raise InputRefused("there are no picks in it", file=given.picks)
     picks = Picks({name: np.array(places) for name, places in found.items()})
     if missing:
-        picks.warnings.append(f"{given.picks}: {missing} picks without a depth are left out")
+        picks.warnings.append(f"{given.picks}: {missing} picks have no depth and are left out")
     picks.warnings += holes.warnings()
     return picks
 
@@ -90,7 +90,7 @@ class _Holes:
             place = (row.number("x"), row.number("y"), row.number("z"))
             known = hole in collars
             if collars.setdefault(hole, place) != place:
-                raise row.refuse(f"hole '{hole}' has another collar further up", "give each hole one")
+                raise row.refuse(f"hole '{hole}' has two collars", "give each hole one")
             if row.has("azimuth") and (row.has("dip") or row.has("inclination")):
                 directions.add(row, 0.0)
             elif is_inclined(row) and not known:
@@ -130,7 +130,7 @@ class _Holes:
                 self._inclined[hole] = None
             return np.array((0.0, 0.0, depth))
         if row.called("depth") == "tvd" and not path.is_vertical:
-            what = f"hole '{hole}' is not vertical, and TVD is a depth straight down"
+            what = f"hole '{hole}' is not vertical, and TVD is a vertical depth"
             raise row.refuse(what, "give the depth along the hole (MD)")
         return path.offset(depth)
 
@@ -138,7 +138,7 @@ class _Holes:
         """Refuses an elevation where it does not say at which place the hole was."""
         path = self._paths.get(row.text("hole"))
         if self._collars is not None and path is not None and not path.is_vertical:
-            what = f"hole '{row.text('hole')}' is not vertical: its elevation does not say where it was"
+            what = f"hole '{row.text('hole')}' is not vertical: an elevation does not say where the pick is"
             raise row.refuse(
                 what, "give the depth along the hole, or x, y and elevation of each pick and no collars"
             )
@@ -149,14 +149,14 @@ class _Holes:
         if inclined:
             told.append(
                 f"{self._given.collars or self._given.picks}: {number_list(inclined)} are not vertical, but "
-                "depths are taken as if: give the azimuth as well, or a survey, or x, y and elevation of "
+                "are taken as vertical: add the azimuth, a survey, or x, y and elevation of "
                 "each pick"
             )
         if self._without_survey:
             names = number_list(self._without_survey)
-            told.append(f"{self._given.survey}: there is no direction of {names}: taken as vertical")
+            told.append(f"{self._given.survey}: no direction for {names}: taken as vertical")
         if self._unused:
-            told.append(f"{self._given.collars}: no surface was met in {number_list(sorted(self._unused))}")
+            told.append(f"{self._given.collars}: no picks for {number_list(sorted(self._unused))}")
         if self._collars is not None and (strangers := sorted(self._surveyed - set(self._collars))):
             told.append(
                 f"{self._given.survey}: {number_list(strangers)} have no collar in {self._given.collars}"
@@ -169,4 +169,4 @@ def _depth_column(row: Row) -> str:
     for column in ("depth", "elevation", "z"):
         if column in row.columns:
             return column
-    raise row.refuse("the table has neither a column depth nor one of elevation")
+    raise row.refuse("the table has neither a column for depth nor one for elevation")

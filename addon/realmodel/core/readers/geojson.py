@@ -38,7 +38,7 @@ def read_geojson(file: str | Path, where: Mapping | None = None, heights: Height
         raise InputRefused(f"{error} is not a finite number", file=file, line=line) from error
     except (RecursionError, ValueError) as error:
         what = "lists nested too deep" if isinstance(error, RecursionError) else "a number of too many digits"
-        raise InputRefused(f"not a file to be read: {what}", file=file) from error
+        raise InputRefused(f"cannot be read: {what}", file=file) from error
     walk = _Walk(file, where or {}, heights)
     walk.node(content, "")
     walk.selection.require_some()

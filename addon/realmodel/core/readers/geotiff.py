@@ -90,12 +90,14 @@ def _heights(file: Path, tifffile, tiff, page, step: Step) -> tuple[np.ndarray, 
 
     if page.samplesperpixel != 1:
         advice = "save the band that holds the heights in a file of its own"
-        raise refuse(f"it has {page.samplesperpixel} numbers a pixel; heights are one", advice)
+        raise refuse(f"it has {page.samplesperpixel} numbers per pixel; heights have one", advice)
     if page.dtype is None or page.dtype.kind not in "iuf" or page.bitspersample != 8 * page.dtype.itemsize:
-        raise refuse(f"pixels of {page.bitspersample} bits that are no plain numbers are not read")
+        raise refuse(f"pixels of {page.bitspersample} bits are not supported")
     if page.compression not in (_NONE, _LZW, *_DEFLATE, _PACKBITS):
         name = getattr(page.compression, "name", page.compression)
-        raise refuse(f"its compression, {name}, is not read", "save it with LZW or DEFLATE, or uncompressed")
+        raise refuse(
+            f"its compression, {name}, is not supported", "save it with LZW or DEFLATE, or uncompressed"
+        )
     if page.predictor not in (1, 2, 3):
         raise refuse(f"its predictor {page.predictor} is not known")
     rows, columns = page.imagelength, page.imagewidth
@@ -142,7 +144,7 @@ def _decompressed(tifffile, compression: int, data: bytes, size: int) -> bytes:
     native = native_module()
     if compression == _LZW:
         if data[:2] == b"\0\1":
-            raise ValueError("LZW of before 1992, which no program writes any more")
+            raise ValueError("LZW from before 1992 is not supported")
         try:
             return native.decode_lzw(data, size)
         except native.InputError as error:
@@ -180,7 +182,7 @@ def _no_value(file: Path, tags: dict) -> list[float]:
     try:
         return [float(text)] if text else []
     except ValueError as error:
-        raise InputRefused(f"its nodata is no number: '{text:.40}'", file=file) from error
+        raise InputRefused(f"its nodata is not a number: '{text:.40}'", file=file) from error
 
 
 def _scaled(z: np.ndarray, metadata) -> np.ndarray:
@@ -208,13 +210,13 @@ def _place(file: Path, tags: dict, keys: dict):
         matrix, shift = _world(beside), 0.0
     if matrix is None:
         raise InputRefused(
-            "it does not say where it lies (no georeference, no .tfw beside it)",
+            "it has no georeference (no tags, no .tfw beside it)",
             file=file,
             advice="save it as GeoTIFF from a GIS",
         )
     a, b, c, d, e, f = (float(number) for number in matrix)
     if not np.isfinite([a, b, c, d, e, f]).all() or a * e - b * d == 0:
-        raise InputRefused("its georeference makes no sense: pixels without area", file=file)
+        raise InputRefused("its georeference is invalid: pixels have no area", file=file)
     return (c + shift * (a + b), f + shift * (d + e)), (a, d), (b, e)
 
 
@@ -236,4 +238,4 @@ def _warnings(keys: dict) -> list[str]:
             "project it (to UTM, say) in a GIS"
         ]
     unit = _FEET.get(keys.get(_PLAN_UNIT, 0))
-    return [f"its plan coordinates are in {unit}, as it says itself"] if unit else []
+    return [f"its plan coordinates are in {unit}, according to the file"] if unit else []

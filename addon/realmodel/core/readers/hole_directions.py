@@ -56,12 +56,12 @@ class HoleDirections:
         name = "inclination" if "inclination" in row.columns else "dip"
         if name not in row.columns:
             raise row.refuse(
-                "there is neither a column dip (from the horizontal) nor inclination (from the vertical)",
-                'say which it is: columns = { dip = "..." }',
+                "there is no column for dip (from the horizontal) or inclination (from the vertical)",
+                'name it: columns = { dip = "..." }',
             )
         angle = row.number(name)
         if name == "dip" and not -90 <= angle <= 90:
-            raise row.refuse(f"dip is {angle:g}", "it is measured from the horizontal, -90 to 90")
+            raise row.refuse(f"dip is {angle:g}", "dip is measured from the horizontal, from -90 to 90")
         if name == "inclination" and not 0 <= angle <= 180:
             raise row.refuse(
                 f"inclination is {angle:g}",
@@ -96,7 +96,7 @@ class HoleDirections:
                 if (station.angle < 0) != (first.angle < 0):
                     raise station.row.refuse(
                         f"dip is {station.angle:g}, and {first.angle:g} in line {first.row.line}",
-                        'say which of them go down: downward_dip = "negative" or "positive"',
+                        'say which dips point down: downward_dip = "negative" or "positive"',
                     )
         return -1.0 if first is not None and first.angle < 0 else 1.0
 
@@ -112,9 +112,7 @@ class HoleDirections:
                     raise station.row.refuse(what, "give each depth once")
                 continue
             if bend > _OPPOSITE:
-                what = (
-                    f"hole '{hole}' turns back on itself between depths {depths[-1]:g} and {station.depth:g}"
-                )
+                what = f"hole '{hole}' turns back between depths {depths[-1]:g} and {station.depth:g}"
                 raise station.row.refuse(what, "check its angles")
             if bend > _SHARP:
                 self.warnings.append(

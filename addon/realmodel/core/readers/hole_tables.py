@@ -136,6 +136,6 @@ def _columns(given: Boreholes, table: Table, known: Columns, needed: Sequence[st
         if column not in columns:
             called = given.columns.get(column)
             what = f"the header has no column {called or column}"
-            advice = f'say which it is: columns = {{ {column} = "..." }}'
+            advice = f'name it: columns = {{ {column} = "..." }}'
             raise InputRefused(what, file=table.file, line=table.layout.name_line or 1, advice=advice)
     return columns

@@ -54,10 +54,10 @@ def read_shapes(
     if is_geopackage(head):
         shapes = read_geopackage(file, given.layer, given.where, step, heights)
     elif given.layer is not None:
-        what = f"it is no GeoPackage, so it has no layer '{given.layer}'"
+        what = f"it is not a GeoPackage, so it has no layer '{given.layer}'"
         raise InputRefused(what, file=file, advice="take 'layer' out")
     elif file.suffix.lower() in _BESIDE_SHAPEFILE:
-        raise InputRefused("only a part of a shapefile", file=file, advice="name the .shp beside it")
+        raise InputRefused("this is only a part of a shapefile", file=file, advice="name the .shp beside it")
     elif is_shapefile(head):
         shapes = read_shapefile(file, given.where, step, heights)
     elif _is_json(file, head):
@@ -66,11 +66,11 @@ def read_shapes(
         text = "" if b"\0" in head and not head.startswith(_UTF16) else read_text(file)
         if not begins_as_wkt(text):
             what = "neither GeoJSON, well-known text, a shapefile (.shp) nor a GeoPackage"
-            raise InputRefused(what, file=file, advice="save it as one of these from the program it is of")
+            raise InputRefused(what, file=file, advice="export it in one of these formats")
         if given.where:
-            raise InputRefused("well-known text has no attributes, so 'where' has no meaning here", file=file)
+            raise InputRefused("well-known text has no attributes, so 'where' has no effect", file=file)
         if heights and heights.attribute is not None:
-            what = "well-known text has no attributes, so 'height' has no meaning here"
+            what = "well-known text has no attributes, so 'height' has no effect"
             raise InputRefused(what, file=file, advice="write the heights as z")
         shapes = parse_wkt(text, file, heights is not None)
     return shapes.scaled(factor(given.units, model_unit))

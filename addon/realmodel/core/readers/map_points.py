@@ -31,9 +31,9 @@ def read_map_points(given: PointFile, step: Step = no_step) -> tuple[np.ndarray,
     if not known.any():
         what = "its positions have no height"
         if given.height is not None:
-            what = f"attribute '{given.height}' holds no height"
-        advice = 'say which attribute holds it: height = "ELEVATION"'
+            what = f"attribute '{given.height}' has no heights"
+        advice = 'name the attribute with the height: height = "ELEVATION"'
         raise HeightsMissing(what, file=file, advice=advice if given.height is None else None)
     left_out = int(len(points) - known.sum())
-    warnings = [f"{file}: {left_out} points without a value are left out"] if left_out else []
+    warnings = [f"{file}: {left_out} points have no value and are left out"] if left_out else []
     return points[known], warnings

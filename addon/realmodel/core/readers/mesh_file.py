@@ -43,5 +43,5 @@ def read_mesh(file: str | Path, step: Step = no_step) -> TriangleMesh:
     found = [*(known for known in MESH_FORMATS if known.begins(head)), *by_ending]
     if not found:
         names = ", ".join(known.name for known in MESH_FORMATS)
-        raise InputRefused(f"neither its beginning nor its ending is that of a mesh ({names})", file=file)
+        raise InputRefused(f"neither its content nor its extension is that of a mesh ({names})", file=file)
     return found[0].read(file, step)

@@ -79,11 +79,11 @@ def read_point_file(
         if rows.taken_for_xyz:
             names = ", ".join(f"'{name}'" for name in rows.taken_for_xyz)
             warnings.append(
-                f"{file}: no column is named x, y or z: the first three, {names}, are taken for them; "
-                'say which they are: columns = ["X", "Y", "Z"]'
+                f"{file}: no column is named x, y or z: the first three, {names}, are used; if that "
+                'is wrong, set columns = ["X", "Y", "Z"]'
             )
         if rows.missing:
-            warnings.append(f"{file}: {rows.missing} points without a value are left out")
+            warnings.append(f"{file}: {rows.missing} points have no value and are left out")
     warnings += [f"{file}: {text}" for text in _like_no_value(points[:, 2])]
     for columns, unit in ((slice(0, 2), given.plan_unit), (slice(2, 3), given.height_unit)):
         if (scale := factor(unit, model_unit)) != 1.0:
@@ -106,7 +106,7 @@ def _like_no_value(z: np.ndarray) -> list[str]:
         if min(abs(value - low), abs(value - high)) > max(high - low, 0.5 * abs(value)):
             number = "1 point has" if count == 1 else f"{count} points have"
             said.append(
-                f"{number} the height {value:g}, far from all others, which often means none: if so, say "
+                f"{number} the height {value:g}, far from all others, which often means no data: if so, set "
                 f"nodata = {value:g}"
             )
     return said
@@ -114,7 +114,7 @@ def _like_no_value(z: np.ndarray) -> list[str]:
 
 def _refuse_keys(file: Path, what: str, keys: list[str]) -> None:
     if keys:
-        raise InputRefused(f"it {what}, so '{keys[0]}' has no meaning here", file=file, advice="take it out")
+        raise InputRefused(f"it {what}, so '{keys[0]}' has no effect", file=file, advice="take it out")
 
 
 def companions(file: Path) -> list[Path]:

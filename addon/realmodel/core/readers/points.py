@@ -92,7 +92,7 @@ def read_point_rows(
         return replace(rows, taken_for_xyz=guessed)
     if rows.filtered:
         raise _nothing_matches(table, where)
-    what = "all its points are without a value" if rows.missing else "there are no points in it"
+    what = "none of its points has a value" if rows.missing else "there are no points in it"
     raise InputRefused(what, file=file)
 
 
@@ -161,7 +161,7 @@ def _wanted_columns(table: Table, columns: Sequence[str | int] | None) -> list[i
         count = names.count(alias) if alias else 0
         if count != 1:
             said = f"{count} columns named {alias}" if count else f"no column {axis}"
-            advice = 'name the columns x, y and z, or say which they are: columns = ["X", "Y", "Z"]'
+            advice = 'name the columns x, y and z, or set columns = ["X", "Y", "Z"]'
             raise InputRefused(
                 f"the header has {said}", file=table.file, line=table.layout.name_line, advice=advice
             )
@@ -264,10 +264,10 @@ def _has_decimal_commas(table: Table, columns: Sequence[int], error) -> bool:
     told = decimal_comma([*others, entry])
     if told is None and is_number(entry, ",") and not any("." in other for other in others):
         raise InputRefused(
-            f"'{entry}' may have a comma for the decimals or between thousands",
+            f"'{entry}' may have a decimal comma or a thousands separator",
             file=table.file,
             line=error.items[0],
-            advice='say decimal = "," where it is the decimals; take out commas between thousands',
+            advice='set decimal = "," for decimal commas, or remove the separators',
         ) from error
     return bool(told)
 
@@ -286,7 +286,7 @@ def _refused(table: Table, columns, names, decimal, error) -> InputRefused:
         )
     name, entry = names[error.items[1]], _entry(table, error)
     if error.kind == "not_finite":
-        advice = "leave out points without a value, or say nodata = nan"
+        advice = "remove points without a value, or set nodata = nan"
         return InputRefused(
             f"{name} is {entry}, not a finite number", file=table.file, line=line, advice=advice
         )
@@ -296,9 +296,9 @@ def _refused(table: Table, columns, names, decimal, error) -> InputRefused:
     if decimal == "." and "," in entry:
         advice = "write decimals with a point"
     elif decimal == "," and "." in entry:
-        advice = "the decimals of this file have commas: write all of them so"
+        advice = "this file has decimal commas: use them in all numbers"
     elif not entry:
-        advice = 'leave out points without a value, or say nodata = ""'
+        advice = 'remove points without a value, or set nodata = ""'
     return InputRefused(f"{name} is not a number: '{entry:.40}'", file=table.file, line=line, advice=advice)
 
 

@@ -155,7 +155,7 @@ def column_number(file: Path, layout: TableLayout, column: str | int) -> int:
     if names is None:
         if column.strip().isdecimal():
             return int(column) - 1
-        advice = "its columns go by number, from 1: columns = [1, 2, 3]"
+        advice = "use column numbers, from 1: columns = [1, 2, 3]"
         raise InputRefused(f"there is no header that names a column '{column}'", file=file, advice=advice)
     for same in (str.strip, lambda name: name.strip().lower()):
         found = [n for n, name in enumerate(names) if same(name) == same(column)]

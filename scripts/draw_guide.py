@@ -1,0 +1,428 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes the pictures of docs/guide in a real window under Xvfb, and makes them small.
+
+    build/venv/bin/python scripts/draw_guide.py [NAME ...]      (default: all; it needs Pillow)
+
+Each function in PICTURES is one chapter: it sets up a scene with the operators that the guide names and
+keeps pictures. docs/images/walk.png is the contact sheet that scripts/test.sh --only gui left, if any.
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+IMAGES = ROOT / "docs" / "images" / "guide"
+SAMPLES = ROOT / "blend_samples"
+SIZE = (1900, 1400)
+SCALE = 1.5  # of the interface, so that its letters are sharp in print
+COLORS = 128  # of a picture in its palette
+WIDEST = 1200  # pixels
+
+
+def main(names):
+    """Outside Blender: runs this file in a window, then gives each picture a palette."""
+    size = f"{SIZE[0]}x{SIZE[1]}"
+    command = ["xvfb-run", "-a", "-s", f"-screen 0 {size}x24", "blender", "--factory-startup"]
+    command += ["--enable-event-simulate", "--window-geometry", "0", "0", *map(str, SIZE)]
+    command += ["-P", __file__, "--", *names]
+    done = subprocess.run(command, cwd=ROOT, check=False)
+    for path in sorted(IMAGES.glob("*.png")):
+        shrink(path, path)
+    sheet = ROOT / "build" / "gui" / "contact_sheet.png"
+    if sheet.is_file():
+        shrink(sheet, ROOT / "docs" / "images" / "walk.png")
+    return done.returncode
+
+
+def shrink(source, target):
+    """Writes a picture with a palette; one that has a palette already stays as it is."""
+    from PIL import Image
+
+    with Image.open(source) as picture:
+        if picture.mode == "P":
+            return
+        small = picture.convert("RGB")
+        small.thumbnail((WIDEST, 10 * WIDEST), Image.Resampling.LANCZOS)
+        small.quantize(COLORS, dither=Image.Dither.NONE).save(target, optimize=True)
+
+
+# -- in Blender
+
+
+def begin(names):
+    """Registers the add-on and runs the chapters, one after another."""
+    import bpy
+
+    sys.path[:0] = [str(ROOT / "addon"), str(ROOT / "tests" / "gui")]
+    import realmodel
+    from driver import Walk
+
+    preferences = bpy.context.preferences
+    preferences.view.show_splash = False
+    preferences.view.ui_scale = SCALE
+    preferences.system.use_region_overlap = False
+    realmodel.register()
+    TAB.update({cls: set(getattr(cls, "bl_options", ())) for cls in tab_panels()})
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    chapters = [(draw.__name__, lambda walk, draw=draw: chapter(walk, draw)) for draw in CHAPTERS]
+    Walk(IMAGES).run([c for c in chapters if not names or c[0] in names], at_end)
+
+
+def at_end(walk):
+    if walk.failure:
+        print(walk.failure, flush=True)
+    os._exit(1 if walk.failure else 0)
+
+
+def chapter(walk, draw):
+    """One chapter in a new file with an empty scene, and the tab open in the sidebar. In the first one panels
+    are open or closed as users find them; in the others all are open."""
+    import bpy
+
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    yield walk.redrawn(2)
+    for item in list(bpy.data.objects):
+        bpy.data.objects.remove(item)
+    for cls, options in TAB.items():
+        cls.bl_options = options - (set() if draw is start else {"DEFAULT_CLOSED"})
+    yield from show_panels(walk)
+    space = walk.area.spaces.active
+    space.overlay.show_floor = space.overlay.show_axis_x = space.overlay.show_axis_y = False
+    space.overlay.show_cursor = space.show_gizmo = False
+    space.show_region_ui, space.show_region_toolbar = True, False
+    yield lambda: walk.region("UI").width > 50
+    yield from open_tab(walk)
+    yield from draw(walk)
+
+
+TAB = {}  # the panels of the tab in their order, and their options
+
+
+def tab_panels():
+    """The panels of the tab, a parent before its children."""
+    import bpy
+
+    kinds = bpy.types.Panel.__subclasses__()
+    found = [cls for cls in kinds if getattr(cls, "bl_category", "") == "RealModel" and cls.is_registered]
+    return sorted(found, key=lambda cls: hasattr(cls, "bl_parent_id"))
+
+
+def open_tab(walk):
+    """Opens the tab RealModel of the sidebar; the names of the tabs stand at its right border."""
+    drawn = []
+    panel = next(iter(TAB))
+    before = panel.draw
+
+    def draw(self, context):
+        drawn.append(True)
+        before(self, context)
+
+    panel.draw = draw
+    region = walk.region("UI")
+    for down in range(30, region.height - 30, 30):
+        walk.click(region.x + region.width - 10, region.y + region.height - down)
+        yield walk.redrawn()
+        if drawn:
+            break
+    panel.draw = before
+    if not drawn:
+        raise AssertionError("the tab RealModel was not found")
+    walk.over_viewport()
+    yield walk.redrawn()
+
+
+def keep(walk, name, region=None, panels=()):
+    """Keeps a picture of a region of the 3D viewport, or of all of it with the sidebar, as NAME.png. panels:
+    of the sidebar these alone, open; their idnames end so."""
+    if panels:
+        yield from show_panels(walk, panels)
+    yield walk.redrawn(3)
+    picture = seen(walk, walk.area if region is None else walk.region(region))
+    write(without_tabs(picture) if region == "UI" else picture, IMAGES / f"{name}.png")
+
+
+def seen(walk, part):
+    """(height, width, 3) a part of the window as it is on the screen."""
+    picture = walk.shot("part")
+    walk.pictures.pop().unlink()
+    return picture[part.y : part.y + part.height, part.x : part.x + part.width]
+
+
+def without_tabs(picture):
+    """The sidebar without the names of its tabs, and without the empty part below its panels."""
+    width = picture.shape[1] - int(30 * SCALE)
+    picture = picture[:, :width]
+    background = picture[2, width // 2]
+    drawn = (abs(picture[:, 10:-10] - background) > 0.02).any(axis=(1, 2))
+    lowest = int(drawn.argmax())
+    return picture[max(lowest - 8, 0) :]
+
+
+def write(picture, path):
+    """(height, width, 3) from 0 to 1, the bottom row first, to a PNG."""
+    import bpy
+    import numpy as np
+
+    height, width = picture.shape[:2]
+    image = bpy.data.images.new("picture", width, height)
+    image.colorspace_settings.name = "Non-Color"
+    opaque = np.ones((height, width, 1), np.float32)
+    image.pixels.foreach_set(np.concatenate([picture, opaque], axis=2).astype(np.float32).ravel())
+    image.filepath_raw, image.file_format = str(path), "PNG"
+    image.save()
+    bpy.data.images.remove(image)
+
+
+def show_panels(walk, names=()):
+    """Registers these panels of the tab alone, so that no other takes room; none given: all."""
+    import bpy
+
+    for cls in reversed(list(TAB)):
+        if cls.is_registered:
+            bpy.utils.unregister_class(cls)
+    for cls in TAB:
+        if not names or cls.bl_idname.removeprefix("REALMODEL_PT_") in names:
+            bpy.utils.register_class(cls)
+    yield walk.redrawn(3)
+
+
+def build(walk):
+    """Builds as a press of the button does, and waits."""
+    import bpy
+
+    with viewport(walk):
+        bpy.ops.realmodel.build("EXEC_DEFAULT")
+    yield walk.redrawn(3)
+
+
+def viewport(walk):
+    import bpy
+
+    return bpy.context.temp_override(window=walk.window, area=walk.area, region=walk.region("WINDOW"))
+
+
+def example(walk, name):
+    import bpy
+
+    with viewport(walk):
+        bpy.ops.realmodel.open_sample(sample=name)
+    if not len(bpy.context.scene.realmodel.results):
+        yield from build(walk)
+    frame(walk)
+    yield walk.redrawn(3)
+
+
+def frame(walk):
+    import bpy
+    from realmodel.bl import picture
+
+    walk.area.spaces.active.region_3d.view_rotation = picture.view_rotation().to_quaternion()
+    walk.area.spaces.active.region_3d.view_perspective = "PERSP"
+    for item in bpy.context.selected_objects:
+        item.select_set(False)
+    with viewport(walk):
+        bpy.ops.realmodel.view_all()
+
+
+def side_by_side(pictures, name, columns, smaller=1):
+    """Keeps several pictures of one size as one, so many times smaller, with white lines between them."""
+    import numpy as np
+
+    tiles = []
+    for picture in pictures:
+        height, width = (size // smaller * smaller for size in picture.shape[:2])
+        blocks = picture[:height, :width].reshape(height // smaller, smaller, width // smaller, smaller, 3)
+        tiles.append(np.pad(blocks.mean(axis=(1, 3)), ((4, 4), (4, 4), (0, 0)), constant_values=1.0))
+    rows = [np.concatenate(tiles[n : n + columns], axis=1) for n in range(0, len(tiles), columns)]
+    write(np.concatenate(rows[::-1]), IMAGES / f"{name}.png")
+
+
+# -- chapters
+
+
+def start(walk):
+    """The tab in a new file, and the window with an example."""
+    yield from keep(walk, "start", "UI")
+    yield from example(walk, "haut_barr")
+    yield from keep(walk, "window")
+
+
+def tour(walk):
+    """Each panel by itself."""
+    import bpy
+
+    yield from example(walk, "haut_barr")
+    group = bpy.context.scene.realmodel
+    group.active_result = len(group.results) - 4
+    group.rocks[0].active_surface = 2
+    for name in ("build", "results", "view", "surfaces", "rocks", "library"):
+        yield from keep(walk, name, "UI", [name])
+
+
+def modes(walk):
+    """The display modes, a stage, moved apart, cut open: docs/images/view_modes.png."""
+    import bpy
+
+    yield from show_panels(walk, ["start"])
+    walk.area.spaces.active.show_region_ui = False
+    yield from example(walk, "haut_barr")
+    group = bpy.context.scene.realmodel
+    pictures = []
+    for mode in ("POINTS", "LINES", "AREAS", "SURFACES", "POLYHEDRA", "BLOCKS"):
+        group.display = mode
+        yield from settled(walk)
+        pictures.append(seen(walk, walk.region("WINDOW")))
+    group.display = "BLOCKS"
+    group.stage = 5
+    yield from settled(walk)
+    pictures.append(seen(walk, walk.region("WINDOW")))
+    group.stage, group.explode = len(group.rocks[0].surfaces) - 1, 0.4
+    yield from settled(walk)
+    pictures.append(seen(walk, walk.region("WINDOW")))
+    group.explode = 0.0
+    bpy.ops.realmodel.section_plane(axis="Y")
+    yield from settled(walk)
+    pictures.append(seen(walk, walk.region("WINDOW")))
+    side_by_side(pictures, "../view_modes", 3, 2)
+    for stage in (3, 6, 10):
+        bpy.context.scene.realmodel.view.use_section = False
+        group.stage = stage
+        yield from settled(walk)
+        pictures.append(seen(walk, walk.region("WINDOW")))
+    side_by_side(pictures[-3:], "stages", 3, 2)
+
+
+def settled(walk):
+    """Nothing is being made any more, and all of it was drawn."""
+    import bpy
+    from realmodel.bl.display import cuts, preparing
+
+    yield walk.redrawn(2)
+    yield lambda: not preparing.is_working(bpy.context.scene) and not cuts.is_working(bpy.context.scene)
+    yield walk.redrawn(3)
+
+
+def csv(walk):
+    """Two tables of points become a model."""
+    import bpy
+
+    for name in ("clay", "ground"):
+        bpy.ops.realmodel.surface_add(filepath=str(SAMPLES / "two_layers" / f"{name}.csv"))
+    frame(walk)
+    yield from keep(walk, "csv_points", panels=["start", "surfaces"])
+    rock = bpy.context.scene.realmodel.rocks[0]
+    bpy.ops.realmodel.region_around()
+    rock.edge_length = 4.0
+    rock.use_base, rock.base_elevation = True, 0.0
+    yield from keep(walk, "csv_rocks", "UI", ["rocks"])
+    yield from build(walk)
+    frame(walk)
+    yield from keep(walk, "csv_built", panels=["build", "results"])
+
+
+def grid(name, height, size, strength, seed):
+    """A grid with a Displace modifier, as an artist makes it."""
+    import bpy
+
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=60, y_subdivisions=60, size=size, location=(0, 0, height))
+    item = bpy.context.active_object
+    item.name = name
+    texture = bpy.data.textures.new(name, "CLOUDS")
+    texture.noise_scale = 0.35 * size + 0.1 * seed
+    modifier = item.modifiers.new("Displace", "DISPLACE")
+    modifier.texture, modifier.strength, modifier.mid_level = texture, strength, 0.5
+    return item
+
+
+def sculpt(walk):
+    """Three grids become strata."""
+    import bpy
+
+    for number, (name, height, strength) in enumerate((("clay", 0, 2), ("sand", 1, 3), ("ground", 2, 6))):
+        grid(name, height, 12.0, strength, number)
+    for item in bpy.data.objects:
+        item.select_set(True)
+    look(walk, bpy.data.objects)
+    yield from keep(walk, "sculpt_grids", "WINDOW", ["start"])
+    bpy.ops.realmodel.from_selected()
+    yield from build(walk)
+    frame(walk)
+    yield from keep(walk, "sculpt_built", panels=["build", "surfaces"])
+
+
+def look(walk, items):
+    """Turns the viewport to objects."""
+    import bpy
+    from realmodel.bl import picture
+
+    walk.area.spaces.active.region_3d.view_rotation = picture.view_rotation().to_quaternion()
+    for item in items:
+        item.select_set(True)
+    with viewport(walk):
+        bpy.ops.view3d.view_selected()
+
+
+def section(walk):
+    """A model cut open by a plane."""
+    import bpy
+
+    yield from example(walk, "gravel_plain")
+    bpy.ops.realmodel.section_plane(axis="Y")
+    yield from settled(walk)
+    yield from keep(walk, "section_plane", panels=["view", "view_section"])
+
+
+def trim_above(item, ground):
+    """Ends a mesh where it comes out of the ground, whose vertices are given (N, 3)."""
+    import bmesh
+    import numpy as np
+
+    mesh = bmesh.new()
+    mesh.from_mesh(item.data)
+    out = []
+    for vertex in mesh.verts:
+        place = np.array(item.matrix_world @ vertex.co)
+        nearest = ground[np.hypot(*(ground[:, :2] - place[:2]).T).argmin()]
+        if place[2] > nearest[2] + 1.5:
+            out.append(vertex)
+    bmesh.ops.delete(mesh, geom=out, context="VERTS")
+    mesh.to_mesh(item.data)
+    mesh.free()
+
+
+def quarry(walk):
+    """A pit as the youngest surface."""
+    import bpy
+    import numpy as np
+
+    yield from example(walk, "two_layers")
+    group = bpy.context.scene.realmodel
+    ground = group.rocks[0].surfaces[-1].interface
+    heights = np.array([vertex.co[:] for vertex in ground.data.vertices])
+    middle, top = heights.mean(axis=0), heights[:, 2].max()
+    bpy.ops.mesh.primitive_grid_add(
+        x_subdivisions=40, y_subdivisions=40, size=44.0, location=(*middle[:2], 0)
+    )
+    pit = bpy.context.active_object
+    pit.name = "pit"
+    for vertex in pit.data.vertices:
+        away = max(abs(vertex.co.x), abs(vertex.co.y))
+        vertex.co.z = top - 9.0 + max(0.0, away - 12.0) * 1.2
+    trim_above(pit, heights)
+    bpy.ops.realmodel.surface_add(use_object=True)
+    yield from build(walk)
+    pit.hide_set(True)
+    frame(walk)
+    yield from keep(walk, "quarry", panels=["surfaces", "results"])
+
+
+CHAPTERS = (start, tour, modes, csv, sculpt, section, quarry)
+
+if __name__ == "__main__":
+    if "bpy" in sys.modules:
+        begin(sys.argv[sys.argv.index("--") + 1 :])
+    else:
+        sys.exit(main(sys.argv[1:]))
