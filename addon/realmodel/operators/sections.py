@@ -44,19 +44,16 @@ def _plane_of(operator, context):
     return tuple(point - project_settings.model_origin(scene)), normal
 
 
-class OnPlane:
-    """Where an operator cuts."""
-
-    location: place_property("A point of the plane, in the coordinates of the scene")
-    normal: FloatVectorProperty(
-        name="Normal",
-        description="The direction that the plane is square to",
-        subtype="XYZ",
-        default=(0.0, -1.0, 0.0),
-    )
+_PLACE = place_property("A point of the plane, in the coordinates of the scene")
+_NORMAL = FloatVectorProperty(
+    name="Normal",
+    description="The direction that the plane is square to",
+    subtype="XYZ",
+    default=(0.0, -1.0, 0.0),
+)
 
 
-class REALMODEL_OT_section(OnPlane, Reporting, bpy.types.Operator):
+class REALMODEL_OT_section(Reporting, bpy.types.Operator):
     """Make an exact section of the model as a mesh object in the materials of its layers, where the section
     plane is unless a location is given"""
 
@@ -64,6 +61,8 @@ class REALMODEL_OT_section(OnPlane, Reporting, bpy.types.Operator):
     bl_label = "Make Section"
     needs = (a_model,)
 
+    location: _PLACE
+    normal: _NORMAL
     flat: BoolProperty(name="Flat", description=_FLAT)
 
     def act(self, context):
@@ -86,7 +85,7 @@ class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
         _show(self, context, sections.add(context.scene, found, "Fence", self.flat))
 
 
-class REALMODEL_OT_save_section(OnPlane, Exporting, bpy.types.Operator):
+class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
     """Save a section as a drawing with axes, legend, and scale, or as polygons"""
 
     bl_idname = "realmodel.save_section"
@@ -95,6 +94,8 @@ class REALMODEL_OT_save_section(OnPlane, Exporting, bpy.types.Operator):
 
     format: format_menu(SECTIONS)
     filter_glob: format_filter(SECTIONS)
+    location: _PLACE
+    normal: _NORMAL
     along: EnumProperty(
         name="Along",
         description="Where the model is cut",

@@ -122,18 +122,18 @@ class REALMODEL_PT_view_section(_OfABuiltModel, TabPanel, bpy.types.Panel):
                 hint(layout, "cutting ...")
         layout.prop(view, "plane", text="Plane")
         if plane is not None:
-            _section_buttons(layout, "section", "PLANE", "Section")
+            _section_buttons(layout, "section", "PLANE", "Save Section...")
         hint(layout, "Sections along a line: draw a curve, seen from above, and select it.")
-        _section_buttons(layout, "fence", "LINE", "Fence")
+        _section_buttons(layout, "fence", "LINE", "Save Fence...")
 
 
-def _section_buttons(layout, operator, along, name):
+def _section_buttons(layout, operator, along, saving):
     """What is made of a cut: an object in its place, one beside the model, a file."""
     column = layout.column(align=True)
     row = column.row(align=True)
     row.operator(f"realmodel.{operator}", icon="MOD_BOOLEAN").flat = False
     row.operator(f"realmodel.{operator}", text="Flat").flat = True
-    column.operator("realmodel.save_section", text=f"Save {name}...", icon="FILE_TICK").along = along
+    column.operator("realmodel.save_section", text=saving, icon="FILE_TICK").along = along
 
 
 class REALMODEL_PT_view_camera(TabPanel, bpy.types.Panel):
