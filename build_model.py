@@ -401,8 +401,10 @@ def _write(options: argparse.Namespace, model, outputs, progress, validation, er
 
 
 def _write_with_blender(options: argparse.Namespace, model, outputs, progress) -> None:
+    import realmodel
     from realmodel.bl import batch
 
+    realmodel.register_for_batch()
     progress(1.0, "making the scene")
     batch.write_scene(model)
     if options.blend is not None:

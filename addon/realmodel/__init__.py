@@ -40,6 +40,21 @@ def register():
     _at_exit(True)
 
 
+def register_for_batch():
+    """Registers this copy of RealModel where none is, or another one: build_model.py brings its own along."""
+    import bpy
+
+    from . import handlers
+
+    known = bpy.types.Scene.bl_rna.properties.get("realmodel")
+    owner = type(known.fixed_type).__module__.rpartition(".")[0] if known else None
+    if owner != __name__:
+        if owner:
+            sys.modules[owner].unregister()
+        register()
+    handlers.migrate_all()
+
+
 def unregister():
     """Called by Blender when the add-on is disabled; nothing stays: no class, property, handler, timer."""
     _at_exit(False)

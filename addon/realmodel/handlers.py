@@ -10,16 +10,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import versioning
-from .bl import (
-    built_models,
-    display,
-    live,
-    project_settings,
-    quality,
-    region_size,
-    stored_arrays,
-    stored_project,
-)
+from .bl import caches, display, live, quality, region_size
 from .core import RealModelError
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
@@ -52,10 +43,9 @@ def _patient(handler):
 
 @persistent
 def _loaded(*_arguments):
-    built_models.forget()
-    stored_arrays.forget()
-    quality.forget()
-    display.forget()
+    display.stop()
+    quality.stop()
+    caches.clear()
     migrate_all()
     display.opened()
     live.switched()
@@ -68,30 +58,10 @@ def _before_loading(*_arguments):
     quality.stop()
 
 
-@persistent
-def _before_saving(*_arguments):
-    """The project goes into the .blend for programs that read it without the panel."""
-    for scene in bpy.data.scenes:
-        group = scene.realmodel
-        if not len(group.results) or stored_project.KEY in scene or scene.library is not None:
-            continue
-        try:
-            composed = project_settings.compose(scene, _depsgraph(scene), whole=False)
-            stored_project.store(scene, project_settings.read_project(composed))
-        except RealModelError as error:
-            _tell(f"scene '{scene.name}': its project is not stored in the .blend: {error}")
-
-
 def _tell(text):
     """The panel shows it, and whoever reads the console."""
     print(f"RealModel: {text}")
     bpy.context.window_manager.realmodel.problem = text
-
-
-def _depsgraph(scene):
-    layer = scene.view_layers[0]
-    layer.update()
-    return layer.depsgraph
 
 
 @persistent
@@ -136,7 +106,6 @@ def _render_ends(scene, *_arguments):
 _HANDLERS = (
     ("load_post", _loaded),
     ("load_pre", _before_loading),
-    ("save_pre", _before_saving),
     ("undo_post", _undone),
     ("redo_post", _undone),
     ("depsgraph_update_post", _changed),
@@ -168,5 +137,4 @@ def unregister():
             registered.remove(handler)
     live.stop()
     region_size.stop()
-    built_models.forget()
-    stored_arrays.forget()
+    caches.clear()

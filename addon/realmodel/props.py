@@ -18,7 +18,7 @@ from bpy.props import (
 )
 
 from . import props_rock, props_stage, props_surface, props_view
-from .bl import changes, display, library_rows, quality, results, units
+from .bl import changes, display, quality, results, units
 from .core.units import MODEL_UNIT
 
 DISPLAYS = (
@@ -38,14 +38,14 @@ class RealModelProperty(bpy.types.PropertyGroup):
         name="ID",
         description="Number by which surfaces refer to this property; unique in the library",
         default=1,
-        update=library_rows.id_changed,
+        update=changes.property_id,
         options=set(),
     )
     known_id: IntProperty(options={"HIDDEN"})
     name: StringProperty(
         name="Name",
         description="Name of the rock, and of the material of its blocks",
-        update=library_rows.changed,
+        update=changes.property_name,
     )
     color: FloatVectorProperty(
         name="Color",
@@ -55,7 +55,7 @@ class RealModelProperty(bpy.types.PropertyGroup):
         min=0.0,
         max=1.0,
         default=(0.7019608, 0.7019608, 0.7019608),
-        update=library_rows.colour_changed,
+        update=changes.property_colour,
         options=set(),
     )
     has_color: BoolProperty(options={"HIDDEN"})

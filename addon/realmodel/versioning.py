@@ -1,18 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Older .blend files brought up to date, one step for each version of the settings.
 
-Version 0 is a scene that build_model.py wrote: it has the stored project and the objects, but no settings.
+Version 0 is a scene that build_model.py wrote: it had a stored project and the objects, but no settings.
 tests/data/versions has a file of each version.
 """
 
 import json
 
-from .bl import adoption, method_settings, plan_mesh, reading_text, settings, units
+from .bl import built_scene, method_settings, plan_mesh, reading_text, settings, stored_project, units
+from .bl import scene as model_tree
+from .core import build
 
 
 def _from_0(scene):
-    """Settings for a model that was built in batch."""
-    adoption.adopt(scene)
+    """The model is built again, in the place of the objects of batch; its settings are of today."""
+    model = build(stored_project.unpack(scene[stored_project.KEY]))
+    model_tree.remove_tree(scene)
+    built_scene.write_model(scene, model)
 
 
 def _from_1(scene):
@@ -52,7 +56,7 @@ def needs_migration(scene):
     group = scene.realmodel
     if group.exists:
         return group.version < settings.VERSION
-    return adoption.can_be_adopted(scene)
+    return stored_project.KEY in scene
 
 
 def migrate(scene):
@@ -60,7 +64,8 @@ def migrate(scene):
     they stay as they were."""
     if not needs_migration(scene) or scene.library is not None:
         return
-    version = scene.realmodel.version if scene.realmodel.exists else 0
-    for step in _STEPS[version:]:
+    steps = _STEPS[scene.realmodel.version :] if scene.realmodel.exists else _STEPS[:1]
+    for step in steps:
         step(scene)
     scene.realmodel.version = settings.VERSION
+    scene.pop(stored_project.KEY, None)

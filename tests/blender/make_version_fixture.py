@@ -4,7 +4,7 @@
     blender -b --factory-startup -P tests/blender/make_version_fixture.py
 
 Run it once when settings.VERSION goes up, and keep the file; what is in it is told in test_panel_versions.py.
-Version 0 is what build_model.py wrote before there were settings: --batch writes that one.
+Version 0 is what build_model.py wrote before there were settings; nothing writes that one any more.
 """
 
 import shutil
@@ -18,8 +18,7 @@ FOLDER = Path(__file__).resolve().parent
 sys.path[:0] = [str(FOLDER.parents[1] / "addon"), str(FOLDER)]
 
 import realmodel  # noqa: E402
-from realmodel.bl import batch, settings  # noqa: E402
-from realmodel.core import build, load_project  # noqa: E402
+from realmodel.bl import settings  # noqa: E402
 
 VERSIONS = FOLDER.parent / "data" / "versions"
 SAMPLE = FOLDER.parents[1] / "blend_samples" / "two_layers"
@@ -30,14 +29,10 @@ def main():
     VERSIONS.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         copy = shutil.copytree(SAMPLE, Path(folder) / "two_layers")
-        if "--batch" in sys.argv:
-            batch.write_scene(build(load_project(copy / "project.toml")))
-            target = VERSIONS / "v0.blend"
-        else:
-            realmodel.register()
-            bpy.ops.realmodel.open_project(filepath=str(copy / "project.toml"))
-            bpy.ops.realmodel.build()
-            target = VERSIONS / f"v{settings.VERSION}.blend"
+        realmodel.register()
+        bpy.ops.realmodel.open_project(filepath=str(copy / "project.toml"))
+        bpy.ops.realmodel.build()
+        target = VERSIONS / f"v{settings.VERSION}.blend"
         bpy.ops.wm.save_as_mainfile(filepath=str(target), compress=True)
 
 

@@ -9,7 +9,7 @@ import unittest
 import bpy
 import numpy as np
 from panel_case import PanelCase, ops
-from realmodel.bl import model_at_hand
+from realmodel.bl.display import shown_models
 from realmodel.core import BuildFailed, build, load_project
 from realmodel.core.readers.vendored import vendored
 
@@ -113,7 +113,7 @@ class InputFiles(PanelCase):
             model = build(load_project(path))
             ops.open_project(filepath=str(path))
             ops.build()
-            mine = model_at_hand.model_of(bpy.context)
+            mine = shown_models.whole(bpy.context.scene)
             self.assertTrue(np.array_equal(mine.surface_vertices, model.surface_vertices), keys)
             for key, value in expected.items():
                 self.assertEqual(getattr(self.model.rocks[0], key), value)

@@ -5,7 +5,7 @@ import unittest
 from unittest import mock
 
 import numpy as np
-from realmodel.bl import built_models, stored_arrays
+from realmodel.bl import built_models, caches, stored_arrays
 
 
 class _Model:
@@ -17,8 +17,8 @@ class _Model:
 
 class KeptModels(unittest.TestCase):
     def setUp(self):
-        built_models.forget()
-        self.addCleanup(built_models.forget)
+        caches.clear()
+        self.addCleanup(caches.clear)
 
     def kept(self):
         return [model.vertices.nbytes for model in built_models._models.values()]
@@ -37,8 +37,6 @@ class KeptModels(unittest.TestCase):
         self.assertEqual(len(self.kept()), 20)
 
     def test_arrays_of_files_likewise(self):
-        stored_arrays.forget()
-        self.addCleanup(stored_arrays.forget)
         texts = [stored_arrays.pack(a=np.full(100, n, np.uint8)) for n in range(3)]
         with mock.patch.object(stored_arrays, "_MOST_BYTES", 250):
             for text in texts:

@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 from blender_state import inventory, volume
 from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet, stack
-from realmodel.bl import method_settings, model_at_hand, region_size, results, surface_figures
+from realmodel.bl import method_settings, region_size, results, surface_figures
+from realmodel.bl.display import shown_models
 from realmodel.core import load_library, load_project
 from realmodel.core.methods import METHODS, NEIGHBOURS_OF_FITTED
 from realmodel.core.project_writer import off_text, points_text
@@ -195,7 +196,7 @@ class Surfaces(PanelCase):
         self.assertEqual((row.name, row.source), ("p", "POINTS_FILE"))
         (self.folder / "bad.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 x 0\n3 0 1 2\n")
         before = inventory()
-        self.refused(ops.surface_add, r"bad\.off:5.*not a number", filepath=str(self.folder / "bad.off"))
+        self.refused(ops.surface_add, r"bad\.off:5.*3 finite", filepath=str(self.folder / "bad.off"))
         self.refused(ops.surface_add, "file not found", filepath=str(self.folder / "none.csv"))
         self.refused(ops.surface_add, "active object is no mesh", use_object=True)
         self.assertEqual((inventory(), self.names()), (before, ["p"]))
@@ -254,7 +255,7 @@ class Surfaces(PanelCase):
         ops.open_sample(sample="two_layers")
         ops.build()
         row = self.rock().surfaces[0]
-        found = model_at_hand.model_of(bpy.context).interpolations[0].variogram
+        found = shown_models.whole(bpy.context.scene).interpolations[0].variogram
         self.assertTrue(found.fitted)
         volumes = self.volumes()
         row.fit_variogram = False

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from blender_state import inventory
 from panel_case import SAMPLES, PanelCase, ops, outline, raise_by, select, sheet, stack
-from realmodel.bl import model_at_hand
+from realmodel.bl.display import shown_models
 from realmodel.core import build, load_project
 
 ARRAYS = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
@@ -38,7 +38,7 @@ class Start(PanelCase):
         ops.build()
         model = build(load_project(path))
         self.assertEqual(self.volumes(), {b.name: b.volume for b in model.blocks})
-        mine = model_at_hand.model_of(bpy.context)
+        mine = shown_models.whole(bpy.context.scene)
         for name in ARRAYS:
             self.assertEqual(getattr(mine, name).tobytes(), getattr(model, name).tobytes(), name)
 
@@ -101,7 +101,7 @@ class Saved(PanelCase):
         path.parent.mkdir()
         self.assertEqual(ops.save_project(filepath=str(path)), {"FINISHED"})
         batch = build(load_project(path))
-        mine = model_at_hand.model_of(bpy.context)
+        mine = shown_models.whole(bpy.context.scene)
         for name in ARRAYS:
             self.assertEqual(getattr(mine, name).tobytes(), getattr(batch, name).tobytes(), name)
         self.assertEqual(mine.blocks, batch.blocks)

@@ -7,8 +7,7 @@ import random
 import bpy
 from blender_state import empty_file, inventory, open_edges, volume
 from panel_case import PanelCase, ops, raise_by, select, sheet, stack
-from realmodel.bl import built_models, stored_project
-from realmodel.core import build
+from realmodel.bl import built_models
 
 
 def block(name):
@@ -49,14 +48,6 @@ class Persistence(PanelCase):
         walk(self.model, "")
         self.assertGreater(len(found), 100)
         return found
-
-    def test_the_saved_project_is_what_was_built(self):
-        ops.open_sample(sample="two_layers")
-        ops.build()
-        volumes = self.volumes()
-        self.save_and_open()
-        model = build(stored_project.project_from_scene(self.scene))
-        self.assertEqual({b.name: b.volume for b in model.blocks}, volumes)
 
     def test_an_interface_that_moves_between_coordinates_of_utm(self):
         """A vertex never loses a millimetre over 10 km."""

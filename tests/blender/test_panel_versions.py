@@ -7,11 +7,10 @@ import math
 from pathlib import Path
 
 import bpy
-from blender_state import empty_file
-from panel_case import SAMPLES, PanelCase, ops, raise_by
+import realmodel
+from panel_case import PanelCase, ops, raise_by
 from realmodel import handlers, versioning
-from realmodel.bl import batch, reading_text, settings
-from realmodel.core import build, load_project
+from realmodel.bl import reading_text, settings
 
 FILES = Path(__file__).resolve().parents[1] / "data" / "versions"
 CLAY, SAND = 105000.0, 25400.0  # about: methods become better
@@ -77,21 +76,19 @@ class Versions(PanelCase):
         for name, expected in (("Clay", clay), ("Sand", sand)):
             self.assertTrue(math.isclose(volumes[name], expected, rel_tol=tolerance), volumes)
 
-    def test_a_model_of_batch_in_this_session(self):
-        empty_file()
-        batch.write_scene(build(load_project(SAMPLES / "two_layers" / "project.toml")))
-        handlers.migrate_all()
-        self.assert_volumes(CLAY, SAND)
-        handlers.migrate_all()
-        self.assertEqual(len(self.model.rocks), 1)
-
-    def test_damage_is_told_and_left_alone(self):
-        empty_file()
-        batch.write_scene(build(load_project(SAMPLES / "two_layers" / "project.toml")))
-        self.scene["realmodel_project"] = self.scene["realmodel_project"][:200]
-        handlers.migrate_all()
-        self.assertFalse(self.model.exists)
-        self.assertEqual(len([o for o in self.scene.objects if o.get("realmodel")]), 4)
+    def test_damage_is_reported_and_left_alone(self):
+        realmodel.unregister()
+        bpy.ops.wm.open_mainfile(filepath=str(FILES / "v0.blend"))
+        text = self.scene["realmodel_project"]
+        realmodel.register()
+        middle = len(text) // 2
+        spoiled = text[:middle] + "AAAA" * 50 + text[middle + 200 :]
+        for value in (text[:middle], text[:middle] + "!" + text[middle:], "", "UEsDBA==", 5, spoiled):
+            self.scene["realmodel_project"] = value
+            handlers.migrate_all()
+            self.assertFalse(self.model.exists)
+            self.assertIn("cannot be read", bpy.context.window_manager.realmodel.problem)
+            self.assertEqual(len([o for o in self.scene.objects if o.get("realmodel")]), 4)
 
     def test_a_newer_file_is_left_alone(self):
         ops.rock_add()

@@ -3,14 +3,13 @@
 
 import colorsys
 import tempfile
-import unittest
 from pathlib import Path
 
-import bpy
 import numpy as np
 from blender_state import empty_file, inventory, pixels
 from made_projects import LIBRARY, other_rock, surface, two_rocks
-from realmodel.bl import arrangement, batch, cutaway, picture, scene
+from panel_case import PanelCase
+from realmodel.bl import arrangement, batch, cutaway, picture
 from realmodel.core import OutputFailed, Project, Rock, build
 
 
@@ -23,7 +22,7 @@ def share_of_hue(image, colour, tolerance=0.05):
     return float(np.mean((away < tolerance) & (hsv[:, 1] > 0.3)))
 
 
-class Render(unittest.TestCase):
+class Render(PanelCase):
     def render(self, model, size=(240, 150)):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "picture.png.part"
@@ -96,8 +95,7 @@ class Render(unittest.TestCase):
             self.assertEqual(list(Path(folder).iterdir()), [])
 
     def test_a_folder_that_is_not_there(self):
-        current = empty_file()
-        scene.write_model(current, build(two_rocks()))
+        batch.write_scene(build(two_rocks()))
         before = inventory()
         with self.assertRaises(OutputFailed):
             batch.render("/nowhere/p.png", (16, 10), samples=1)
@@ -118,7 +116,7 @@ class Render(unittest.TestCase):
             self.assertGreater(reach.max(), 0.85)
 
 
-class Cutaway(unittest.TestCase):
+class Cutaway(PanelCase):
     """Cut solids stay solid: the volume of what is kept is known."""
 
     def volume(self, triangles):
@@ -126,10 +124,8 @@ class Cutaway(unittest.TestCase):
         return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0)
 
     def bodies(self):
-        empty_file()
-        project = scene.write_model(bpy.context.scene, build(two_rocks()))
-        blocks = [o for o in project.all_objects if o["realmodel"] == "block"]
-        return [arrangement.Body.of(item) for item in blocks]
+        batch.write_scene(build(two_rocks()))
+        return [arrangement.Body.of(row.object) for row in self.model.results if row.object]
 
     def test_two_halves_make_the_whole(self):
         for body in self.bodies():

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is known of the heights of interpolated interfaces, as attributes of their meshes."""
 
-import unittest
-
 import bpy
 import numpy as np
-from blender_state import empty_file
 from made_projects import interpolated, two_rocks
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import scene, surface_figures, uncertainty
+from realmodel.bl import batch, scene, surface_figures, uncertainty
 from realmodel.core import build
 
 
@@ -18,13 +15,10 @@ def values(mesh, name):
     return read
 
 
-class Uncertainty(unittest.TestCase):
-    def setUp(self):
-        empty_file()
-
+class Uncertainty(PanelCase):
     def test_interpolated_interfaces_have_variance_distance_and_colour(self):
         model = build(interpolated())
-        scene.write_model(bpy.context.scene, model)
+        batch.write_scene(model)
         interfaces = scene.model_objects(bpy.context.scene, "interface")
         self.assertEqual(len(interfaces), 3)
         for number, item in enumerate(interfaces):
@@ -47,7 +41,7 @@ class Uncertainty(unittest.TestCase):
             np.testing.assert_allclose(least_sure, (0.995, 0.910, 0.215, 1.0), atol=0.01)
 
     def test_ready_meshes_have_none(self):
-        scene.write_model(bpy.context.scene, build(two_rocks()))
+        batch.write_scene(build(two_rocks()))
         for item in scene.model_objects(bpy.context.scene, "interface"):
             self.assertFalse({"variance", "distance", "uncertainty"} & set(item.data.attributes.keys()))
 

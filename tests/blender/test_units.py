@@ -6,8 +6,7 @@ from types import SimpleNamespace
 
 import bpy
 from panel_case import PanelCase, ops
-from realmodel.bl import scene as batch_scene
-from realmodel.bl import units
+from realmodel.bl import batch, units
 from realmodel.core import build, load_project
 from realmodel.core.units import METRES
 
@@ -113,7 +112,7 @@ class ModelInFeet(PanelCase):
     def test_a_batch_build_does_the_same(self):
         path = self.folder / "p.toml"
         path.write_text(PROJECT.format(unit="ft"))
-        batch_scene.write_model(self.scene, build(load_project(path)))
+        batch.write_scene(build(load_project(path)))
         self.assertAlmostEqual(self.scene.unit_settings.scale_length, 0.3048, places=6)
 
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The only place where arrays meet bpy.
 
-scene           a model as collections, objects and custom properties of a scene
-stored_project  the project inside the .blend, from which the model can be built again
+scene           names and tags of a model's collections and objects
+built_scene     a built model as collections and objects of a scene with its settings
+project_settings  from the settings to a project, and back
 meshes          arrays to meshes and back
 materials       one for each property of the library
 origin          what keeps UTM coordinates exact in float32

@@ -7,7 +7,7 @@ import bpy
 
 from ..core import BuildFailed, InputRefused, RealModelError, build, work
 from ..core.project import surface_item
-from . import built_models, built_scene, display, meshes, project_settings, settings
+from . import built_scene, meshes, project_settings, settings
 from .threads import threads
 
 
@@ -23,8 +23,6 @@ class BuildJob:
         """Composes the project. Raises InputRefused."""
         self.scene_name = current.name
         self.cells = cells or current.realmodel.cells.lower()
-        if not len(current.realmodel.rocks):
-            raise InputRefused("there is no rock mass", advice="add one, or open a project file")
         self.composed = project_settings.compose(current, depsgraph, whole)
         group = current.realmodel
         is_stage = len(group.results) and group.stage < settings.last_stage(current)
@@ -95,20 +93,8 @@ class BuildJob:
             raise BuildFailed(
                 f"scene '{self.scene_name}' is gone; build again in the scene that has the model"
             )
-        last = settings.last_stage(current)
-        group = current.realmodel
-        whole = group.stage >= last or not len(group.results)
         built_scene.put(current, prepared, self.composed, in_place)
-        model = prepared.model
-        with settings.filling():
-            group.exists = True
-            group.version = settings.VERSION
-            group.built_stamp = built_models.remember(model)
-            group.warnings = "\n".join(str(warning) for warning in model.warnings)
-            if whole:
-                group.stage = last
-        display.built(current, prepared.bounds, prepared.stage)
-        return model
+        return prepared.model
 
 
 def refused_surface(current, error):

@@ -9,8 +9,10 @@ import secrets
 
 import numpy as np
 
+from . import caches
+
 MOST_BYTES = 1 << 30  # that kept models may take; the newest stays, however large
-_models = {}  # (stamp, cells) -> realmodel.core.Model, the oldest first
+_models = caches.new()  # (stamp, cells) -> realmodel.core.Model, the oldest first
 
 
 def remember(model, stamp=None):
@@ -43,8 +45,3 @@ def current(scene, cells=None):
     stamp = scene.realmodel.built_stamp
     kinds = ("columns", "blocks") if cells is None else (cells,)
     return next((_models[stamp, kind] for kind in kinds if (stamp, kind) in _models), None)
-
-
-def forget():
-    """Lets go of all models."""
-    _models.clear()

@@ -13,9 +13,10 @@ import bpy
 import numpy as np
 
 from ..core import BuildFailed, polygon_mesh
-from ..core.build import build_stage
+from ..core.assembly import build_stage
 from . import (
     block_shapes,
+    built_models,
     display,
     exaggeration,
     library_rows,
@@ -29,9 +30,9 @@ from . import (
     surface_figures,
     uncertainty,
 )
+from .display import visible
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin, offsets_from
-from .stored_project import KEY as PROJECT_KEY
 
 
 @dataclass
@@ -137,8 +138,17 @@ def _mode_name(item):
     return item.bl_rna.properties["mode"].enum_items[item.mode].name.lower()
 
 
+def write_model(current, model):
+    """Puts a model that was built elsewhere into a scene with its settings, in place of the model there. What
+    is the user's stays; materials of earlier properties are used again."""
+    _remove_model(current)
+    project_settings.fill(current, model.project)
+    composed = project_settings.Composed(model.project, np.zeros(3), origin_is_free=True)
+    put(current, prepare(model, composed, threads=model.threads), composed)
+
+
 def put(current, prepared, composed, in_place=False):
-    """Puts a prepared model into a scene.
+    """Puts a prepared model into a scene, and shows it.
 
     current: the bpy.types.Scene. in_place: give the blocks' meshes other contents instead of other meshes,
     so that what points to them - Blender's undo among it - need not know; not for what may fail.
@@ -147,26 +157,33 @@ def put(current, prepared, composed, in_place=False):
     model = prepared.model
     check_rows(current, model.project)
     check_modes(current, prepared)
-    created = scene.Created()
+    created = []  # datablocks
     try:
         palette, updates = _palette(current, model, created)
         interfaces = _new_interfaces(current, prepared, composed, created)
         blocks = _new_blocks(current, prepared, created, in_place)
     except BaseException:
-        created.remove()
+        bpy.data.batch_remove(created)
         raise
+    group, last = current.realmodel, settings.last_stage(current)
     with settings.filling():
+        if group.stage >= last or not len(group.results):
+            group.stage = last
         _settle_edited(current, composed)
         tree = _tree(current, model.project)
         _place_interfaces(current, tree, interfaces)
         _place_blocks(current, prepared, tree, blocks, palette)
+        scene.remove_unused_materials()
         for name, colour, material in updates:
             scene.give_name(bpy.data.materials, material, name)
             materials.set_colour(material, colour)
         _keep(current, prepared)
         current[ORIGIN_KEY] = [float(value) for value in prepared.origin]
-        if PROJECT_KEY in current:
-            del current[PROJECT_KEY]  # made anew when the file is saved
+        group.exists = True
+        group.version = settings.VERSION
+        group.built_stamp = built_models.remember(model)
+        group.warnings = "\n".join(str(warning) for warning in model.warnings)
+    display.built(current, prepared.bounds, prepared.stage)
 
 
 def _keep(current, prepared):
@@ -188,15 +205,12 @@ def _palette(current, model, created):
     """Material of each property that a block has, and which are to be renamed or recoloured."""
     palette, updates = {}, []
     for property_id in sorted({int(block.property) for block in model.blocks if block.cells}):
+        there = len(bpy.data.materials)
+        palette[property_id] = library_rows.material_of(current, property_id)
+        if len(bpy.data.materials) > there:
+            created.append(palette[property_id])
         name, colour = materials.name_and_colour(model.project.library, property_id)
-        known = library_rows.scene_materials(current, property_id)
-        if known:
-            material = known[0]
-            updates.append((name, colour, material))
-        else:
-            material = materials.new_material(name, property_id, colour)
-            created.materials.append(material)
-        palette[property_id] = material
+        updates.append((name, colour, palette[property_id]))
     return palette, updates
 
 
@@ -219,11 +233,11 @@ def _new_interfaces(current, prepared, composed, created):
             mesh = None
             if own is None or digest != row.interface_digest:
                 mesh = meshes.new_mesh(row.name, shape)
-                created.meshes.append(mesh)
+                created.append(mesh)
                 uncertainty.add_attributes(mesh, prepared.told[r, s])
             if own is None:
                 own = bpy.data.objects.new(row.name, mesh)
-                created.objects.append(own)
+                created.append(own)
             found[r, s] = (own, mesh, digest)
     return found
 
@@ -252,23 +266,17 @@ def _new_blocks(current, prepared, created, in_place):
             found.append((item, None))
             continue
         mesh = meshes.new_mesh(block.name, shape)
-        created.meshes.append(mesh)
+        created.append(mesh)
         if item is None:
             item = bpy.data.objects.new(block.name, mesh)
-            created.objects.append(item)
+            created.append(item)
         found.append((item, mesh))
     return found
 
 
-@dataclass
-class _Tree:
-    """The collections of a model: for each rock mass (interfaces, blocks)."""
-
-    rocks: list
-
-
 def _tree(current, project):
-    """The model's collections, linked where they were taken out, new where there are none."""
+    """The model's collections, linked where they were taken out, new where there are none: for each rock mass
+    (interfaces, blocks)."""
     group = current.realmodel
     top = _collection(current, current.collection, group, "collection", project.name, "project")
     rocks = []
@@ -278,7 +286,7 @@ def _tree(current, project):
         for kind in ("interfaces", "blocks"):
             pair.append(_collection(current, parent, row, kind, f"{row.name} {kind}", kind, row.name))
         rocks.append(tuple(pair))
-    return _Tree(rocks)
+    return rocks
 
 
 def _collection(current, parent, row, pointer, name, kind, rock_name=None):
@@ -309,7 +317,7 @@ def _place_interfaces(current, tree, interfaces):
             item[scene.ROCK] = rock.name
             item[scene.SURFACE] = row.name
             item[scene.PROPERTY] = row.property_id
-        _link(current, tree.rocks[r][0], item, move=not adopted)
+        _link(current, tree[r][0], item, move=not adopted)
         if item.library is None and not scene.is_name_of(item.name, row.name):
             scene.give_name(bpy.data.objects, item, row.name)
         row.interface = item
@@ -332,26 +340,17 @@ def _place_blocks(current, prepared, tree, blocks, palette):
                 meshes.refill(item.data, shape)
         elif item.data != mesh:
             _change_mesh(item, mesh)
-        _give_material(item, palette[int(block.property)])
+        materials.give(item, palette[int(block.property)])
         rock_name = model.project.rocks[block.rock].name
         item[scene.TAG] = "block"
         item[scene.ROCK] = rock_name
         item[scene.SURFACE] = str(model.surface_names[block.surface])
         item[scene.BLOCK] = block.name
         item[scene.PROPERTY] = int(block.property)
-        _link(current, tree.rocks[block.rock][1], item)
+        _link(current, tree[block.rock][1], item)
         kept.append(item)
-    remove_objects([item for item in before if item is not None and item not in kept])
+    scene.remove_objects([item for item in before if item is not None and item not in kept])
     fill_results(current, model, kept)
-
-
-def _give_material(item, material):
-    """The property's material, unless the user has given the block another."""
-    slots = item.data.materials
-    if not len(slots):
-        slots.append(material)
-    elif slots[0] is None or materials.KEY in slots[0]:
-        slots[0] = material
 
 
 def _change_mesh(item, mesh):
@@ -399,28 +398,31 @@ def fill_results(current, model, objects):
     group.active_result = min(chosen, max(len(group.results) - 1, 0))
 
 
-def remove_objects(objects):
-    """Removes objects with their meshes, and the model's materials that nothing uses then."""
-    scene.remove_objects([item for item in objects if item.library is None])
-
-
 def clear(current):
     """Takes the blocks out of a scene; the interfaces and all settings stay."""
+    _clear(current)
+    scene.remove_unused_materials()
+
+
+def _clear(current):
     objects = [row.object for row in current.realmodel.results if row.object is not None]
     with settings.filling():
         current.realmodel.results.clear()
         current.realmodel.built_stamp = ""
         current.realmodel.warnings = ""
-    remove_objects(objects)
-    if PROJECT_KEY in current:
-        del current[PROJECT_KEY]
+    scene.remove_objects(objects)
     display.cleared(current)
 
 
 def remove_model(current):
     """Takes a whole model out of a scene: blocks, the interfaces that were made for it, collections,
     settings. Objects that the user brought stay, outside of the model's collections."""
-    clear(current)
+    _remove_model(current)
+    scene.remove_unused_materials()
+
+
+def _remove_model(current):
+    _clear(current)
     group = current.realmodel
     for row in group.rocks:
         for surface in row.surfaces:
@@ -429,7 +431,7 @@ def remove_model(current):
                 continue
             if surface.interface_digest:
                 surface.interface = surface.object = None
-                remove_objects([item])
+                scene.remove_objects([item])
             else:
                 _release(current, item)
     collections = [(row.interfaces, row.blocks, row.collection) for row in group.rocks]
@@ -438,7 +440,7 @@ def remove_model(current):
         getattr(group, key).clear()
     group.collection = None
     for collection in [c for three in collections for c in three] + [top]:
-        _remove_if_empty(collection)
+        scene.release_collection(collection)
     if ORIGIN_KEY in current:
         del current[ORIGIN_KEY]
     exaggeration.apply(current, [], 0.0)
@@ -456,7 +458,7 @@ def _release(current, item):
             collection.objects.unlink(item)
     if current not in item.users_scene:
         current.collection.objects.link(item)
-    display.show(current, item, True)
+    visible.show(current, item, True)
 
 
 def remove_rock(current, row):
@@ -471,14 +473,10 @@ def remove_rock(current, row):
         objects = [group.results[n].object for n in gone]
         for n in reversed(gone):
             group.results.remove(n)
-        remove_objects([item for item in objects if item is not None])
+        scene.remove_objects([item for item in objects if item is not None])
+        scene.remove_unused_materials()
         for collection in (row.interfaces, row.blocks, row.collection):
-            _remove_if_empty(collection)
-
-
-def _remove_if_empty(collection):
-    if collection is not None and not len(collection.objects) and not len(collection.children):
-        bpy.data.collections.remove(collection)
+            scene.release_collection(collection)
 
 
 def release_surface(current, row):
@@ -490,6 +488,6 @@ def release_surface(current, row):
         return
     if row.interface_digest and item.library is None:
         row.object = row.object if row.object != item else None
-        remove_objects([item])
+        scene.remove_objects([item])
     else:
         _release(current, item)

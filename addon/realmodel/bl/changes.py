@@ -2,7 +2,17 @@
 """What follows when a setting is changed by hand or by a script: each update callback is one function
 here."""
 
-from . import display, live, method_settings, reading_text, region_size, settings, surface_figures, units
+from . import (
+    display,
+    library_rows,
+    live,
+    method_settings,
+    reading_text,
+    region_size,
+    settings,
+    surface_figures,
+    units,
+)
 
 
 def setting(row, _context):
@@ -125,3 +135,24 @@ def section(row, _context):
     """Another section plane, or none."""
     if not settings.is_filling():
         display.section_changed(row.id_data)
+
+
+def property_id(row, _context):
+    """What has a property keeps it under its new ID. One that is no ID, or another entry's, is not taken."""
+    if settings.is_filling() or row.id == row.known_id:
+        return
+    if library_rows.take_id(row):
+        live.touch(row.id_data)
+
+
+def property_name(row, _context):
+    if not settings.is_filling():
+        library_rows.update_material(row)
+        live.touch(row.id_data)
+
+
+def property_colour(row, _context):
+    if not settings.is_filling():
+        row.has_color = True
+        library_rows.update_material(row)
+        display.colours_changed(row.id_data)

@@ -6,7 +6,7 @@ import colorsys
 import bpy
 
 from ..core import Library, Property
-from . import display, live, materials, settings
+from . import materials, settings
 
 _TEXTS = ("rock", "age", "structure", "description")
 
@@ -72,15 +72,14 @@ def hex_colour(color):
     return "#" + "".join(f"{round(255 * min(max(channel, 0.0), 1.0)):02x}" for channel in color)
 
 
-def id_changed(row, _context):
-    """What has a property keeps it under its new ID. One that is no ID, or another entry's, is not taken."""
-    if settings.is_filling() or row.id == row.known_id:
-        return
+def take_id(row):
+    """Whether a row's new ID can be taken; then what had the property has it under that ID, else the row has
+    its old ID again."""
     scene, old = row.id_data, row.known_id
     with settings.filling():
         if row.id < 1 or sum(other.id == row.id for other in scene.realmodel.library) > 1:
             row.id = old
-            return
+            return False
         row.known_id = row.id
         for material in scene_materials(scene, old):
             material[materials.KEY] = row.id
@@ -93,24 +92,10 @@ def id_changed(row, _context):
     for item in scene.objects:
         if item.get(materials.KEY) == old:
             item[materials.KEY] = row.id
-    live.touch(scene)
+    return True
 
 
-def changed(row, _context):
-    """A name was changed."""
-    if not settings.is_filling():
-        _update_material(row)
-        live.touch(row.id_data)
-
-
-def colour_changed(row, _context):
-    if not settings.is_filling():
-        row.has_color = True
-        _update_material(row)
-        display.colours_changed(row.id_data)
-
-
-def _update_material(row):
+def update_material(row):
     """The material of the property in this scene takes its name and colour at once."""
     for material in scene_materials(row.id_data, row.id):
         if material.name != row.name and row.name and row.name not in bpy.data.materials:
@@ -121,7 +106,19 @@ def _update_material(row):
 def update_materials(scene):
     """All materials take the names and colours of the library."""
     for row in scene.realmodel.library:
-        _update_material(row)
+        update_material(row)
+
+
+def material_of(scene, property_id):
+    """The material of a property: of the scene's blocks, else one that nothing uses, else a new one.
+    Raises InputRefused for a library that is not valid."""
+    known = scene_materials(scene, property_id) or [
+        m for m in bpy.data.materials if m.get(materials.KEY) == property_id and not (m.users or m.library)
+    ]
+    if known:
+        return known[0]
+    name, colour = materials.name_and_colour(library_of(scene), property_id)
+    return materials.new_material(name, property_id, colour)
 
 
 def scene_materials(scene, property_id):

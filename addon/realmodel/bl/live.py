@@ -12,13 +12,14 @@ from contextlib import contextmanager
 import bpy
 
 from ..core import Cancelled
+from . import build_job, built_scene, caches, plan_mesh, problems, region_size, viewports
 from .debounce import DebouncedJob
 
 REST_SECONDS = 0.03  # without a change, after which it is built
 _SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
 
 _at_work = False  # what Blender tells of now is our own doing
-measured = {}  # by the name of a scene: seconds from the last change to the new blocks
+measured = caches.new()  # by the name of a scene: seconds from the last change to the new blocks
 
 
 def touch(scene):
@@ -41,8 +42,6 @@ def is_working():
 
 def changed(scene, depsgraph):
     """Blender has evaluated changed objects."""
-    from . import plan_mesh, region_size
-
     group = scene.realmodel
     if _at_work or not len(group.rocks):
         return
@@ -88,7 +87,6 @@ def stop_work():
 def stop():
     """Ends everything: the add-on is disabled."""
     _work.stop()
-    measured.clear()
 
 
 def _finish(name, job, changed_at):
@@ -118,16 +116,12 @@ def _our_own(scene):
 
 
 def _begin(name, _changed_at):
-    from . import build_job, built_scene
-
     scene = bpy.data.scenes.get(name)
     if scene is None or not scene.realmodel.live:
         return None
-    layer = next((w.view_layer for w in bpy.context.window_manager.windows if w.scene == scene), None)
-    layer = layer or scene.view_layers[0]
     try:
         with _our_own(scene):
-            layer.update()
+            layer = viewports.updated_layer(scene)
             built_scene.check_modes(scene)
             job = build_job.BuildJob(scene, layer.depsgraph, "blocks", whole=False)
     except Exception as error:
@@ -140,8 +134,6 @@ def _begin(name, _changed_at):
 def _tell(scene, error):
     """The panel shows what is wrong with the model of a scene, or no longer is; nothing is selected or moved
     for it."""
-    from . import problems, viewports
-
     problems.forget()
     if scene is not None:
         problems.remember(scene, error)

@@ -50,6 +50,15 @@ def new_material(name, property_id, colour):
     return material
 
 
+def give(item, material):
+    """Gives a block the material of its property, unless the user has given it another."""
+    slots = item.data.materials
+    if not len(slots):
+        slots.append(material)
+    elif slots[0] is None or KEY in slots[0]:
+        slots[0] = material
+
+
 def set_colour(material, colour):
     """Set the colour "#rrggbb" of a material in its Principled shader and for the viewport."""
     rgba = (*linear_colour(colour), 1.0)

@@ -11,8 +11,10 @@ import time
 
 import bpy
 
+from . import caches
+
 _MARK = "realmodel_ahead"  # on a mesh that was made ahead: by which slice
-_made = {}  # id of a shape -> (the shape, the name of its mesh, what its mark says)
+_made = caches.new()  # id of a shape -> (the shape, the name of its mesh, what its mark says)
 
 
 class Slices:

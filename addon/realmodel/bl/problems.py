@@ -9,7 +9,8 @@ import numpy as np
 from mathutils import Vector
 
 from ..core import InputRefused
-from . import build_job, display, project_settings, shapes, viewports
+from . import build_job, project_settings, shapes, viewports
+from .display import visible
 
 _FRAMED = 0.05  # of the object's size, at least, around a bad place
 
@@ -48,7 +49,7 @@ def show(context):
     triangles = json.loads(activity.problem_triangles or "[]")
     if context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
-    display.show(context.scene, item, True)
+    visible.show(context.scene, item, True)
     _open_eyes(context.view_layer.layer_collection, item)
     depsgraph = context.evaluated_depsgraph_get()
     with shapes.evaluated_mesh(item, depsgraph) as mesh:

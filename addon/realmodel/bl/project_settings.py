@@ -75,9 +75,11 @@ def compose(scene, depsgraph, whole=True):
     """
     origin = model_origin(scene)
     group = scene.realmodel
+    if not len(group.rocks):
+        raise InputRefused("there is no rock mass", advice="add one, or open a project file")
     project = Project(group.name, [], library_rows.library_of(scene), units=group.units)
     composed = Composed(project, origin, _origin_is_free(scene))
-    for number, row in enumerate(scene.realmodel.rocks):
+    for number, row in enumerate(group.rocks):
         rock = Rock(row.name, [], base_elevation=method_settings.value(row, "base_elevation", ROCK))
         plan_mesh.compose(rock, row, depsgraph, origin)
         _region(composed, number, rock, row, depsgraph, whole)
@@ -265,11 +267,10 @@ def packed_region(rock):
     return stored_arrays.pack(**{f"ring{n}": ring for n, ring in enumerate(rings)})
 
 
-def fill(scene, project, stored=False):
+def fill(scene, project):
     """Rows for a project, in place of those that are there.
 
-    project: realmodel.core.Project. Files stay files, unless they have been read (stored=True, as
-    `Model.project`): then their arrays are kept.
+    project: realmodel.core.Project. Files stay files; what has been read, as of `Model.project`, is kept.
     """
     group = scene.realmodel
     with settings.filling():

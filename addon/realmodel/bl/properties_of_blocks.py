@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Another property for blocks that are there: no build is needed for it, only other materials."""
 
-import bpy
-
 from . import display, library_rows, materials, scene, settings
 
 
@@ -19,7 +17,6 @@ def assign(current, rows, property_id):
 def follow_surfaces(current):
     """The blocks take the properties that their surfaces have now."""
     wanted = {(r.name, s.name): s.property_id for r, s in settings.surface_rows(current)}
-    palette = {}
     for row in current.realmodel.results:
         property_id = wanted.get((row.rock, row.surface), row.property_id)
         if property_id == row.property_id:
@@ -27,30 +24,9 @@ def follow_surfaces(current):
         row.property_id = property_id
         if row.object is not None:
             row.object[scene.PROPERTY] = property_id
-            _give_material(row.object, _material(current, property_id, palette))
+            materials.give(row.object, library_rows.material_of(current, property_id))
     for _, surface in settings.surface_rows(current):
         if surface.interface is not None and surface.interface.library is None:
             surface.interface[scene.PROPERTY] = surface.property_id
     display.colours_changed(current)
-
-
-def _material(current, property_id, palette):
-    """The material of a property, one for all blocks that have it."""
-    if property_id not in palette:
-        known = library_rows.scene_materials(current, property_id)
-        name, colour = materials.name_and_colour(library_rows.library_of(current), property_id)
-        palette[property_id] = known[0] if known else materials.new_material(name, property_id, colour)
-    return palette[property_id]
-
-
-def _give_material(item, material):
-    """Puts a material in the place of the block's own one; one that nothing uses any more goes."""
-    slots = item.data.materials
-    if not len(slots):
-        slots.append(material)
-        return
-    old = slots[0]
-    if old is None or materials.KEY in old:
-        slots[0] = material
-        if old is not None and not old.users:
-            bpy.data.materials.remove(old)
+    scene.remove_unused_materials()

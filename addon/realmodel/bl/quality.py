@@ -11,7 +11,7 @@ from ..core.drawing.raster import rasterize
 from ..core.surface_quality import surface_quality
 from ..core.volume_uncertainty import volume_deviations
 from ..core.work import Job
-from . import build_job, settings, viewports
+from . import caches, settings, viewports
 from .display import shown_models
 from .threads import threads
 
@@ -25,8 +25,10 @@ _MOST = 64  # results and pictures that are kept
 _PAGE = 220.0  # points: of a chart in a wide sidebar
 _PIXELS = 1.2  # for a point, at least: the texts stay legible
 
-_found = {}  # key -> SurfaceQuality
-_deviations = {}  # stamp of a model -> {(rock mass, block): what its volume's standard deviation is at most}
+_found = caches.new()  # key -> SurfaceQuality
+_deviations = (
+    caches.new()
+)  # stamp of a model -> {(rock mass, block): what its volume's standard deviation is at most}
 _working = {}  # the job, its recipe, and its key, while there is one
 _pictures = None  # previews of charts, by their key
 
@@ -119,7 +121,7 @@ def _look():
     except Cancelled:
         pass
     except RealModelError as error:
-        bpy.context.window_manager.realmodel.problem = build_job.message(error)
+        bpy.context.window_manager.realmodel.problem = str(error)
     return None
 
 

@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from ..core import InputRefused
+from . import caches
 
 _BROKEN = (KeyError, TypeError, ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
 _MOST_BYTES = 256 << 20  # that arrays read lately may take; the newest stay, however large
-_unpacked = {}  # by digest of the text: arrays read lately, not to be written to
+_unpacked = caches.new()  # by digest of the text: arrays read lately, not to be written to
 
 
 def pack(**arrays):
@@ -53,11 +54,6 @@ def unpack(text):
 
 def _bytes_of(arrays):
     return sum(array.nbytes for array in arrays.values())
-
-
-def forget():
-    """Lets go of what was read lately."""
-    _unpacked.clear()
 
 
 def file_stamp(path):

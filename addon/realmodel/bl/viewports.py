@@ -38,6 +38,14 @@ def all_spaces():
     ]
 
 
+def updated_layer(scene):
+    """The view layer of a scene that a window shows, else its first one, brought up to date."""
+    windows = bpy.context.window_manager.windows
+    layer = next((w.view_layer for w in windows if w.scene == scene), scene.view_layers[0])
+    layer.update()
+    return layer
+
+
 def still_open(remembered):
     """Those viewports of some that are still there, by their pointers."""
     return [space for space in all_spaces() if space.as_pointer() in remembered]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """RealModel without Blender: from a project to a model of polyhedral cells, and out of it to files."""
 
+from .blocks import Block, BlockBoundary
 from .boreholes import Boreholes
 from .build import build
 from .build_warning import BuildWarning
@@ -21,7 +22,7 @@ from .heights import Interpolation
 from .interpolation import interpolate
 from .library import Library, Property, load_library
 from .map_layer import MapLayer
-from .model import Block, BlockBoundary, Model
+from .model import Model
 from .planar_mesh import MeshEstimate, estimate_mesh, mesh_region, triangulate_polygon
 from .point_file import MeshFile, PointFile
 from .project import Project, Rock, Surface

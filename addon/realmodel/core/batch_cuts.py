@@ -9,9 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from .build import build
 from .errors import InputRefused, UsageError
 from .exporters import write_model, writer_for
 from .exporters.sections import section_writer
+from .project_file import load_project
 from .readers import MESH_ENDINGS, read_mesh
 from .readers.text import read_text
 
@@ -73,8 +75,6 @@ class CutRequest:
         if isinstance(self.cutter, Path):
             return [self.cutter]
         if isinstance(self.cutter, tuple) and self.cutter[0] is not None:
-            from .project_file import load_project
-
             return [self.cutter[0], *load_project(self.cutter[0]).input_files()]
         return []
 
@@ -83,9 +83,6 @@ class CutRequest:
         if isinstance(self.cutter, Path):
             self._mesh = read_mesh(self.cutter)
         elif isinstance(self.cutter, tuple) and self.cutter[0] is not None:
-            from .build import build
-            from .project_file import load_project
-
             self._other = build(load_project(self.cutter[0]), cells="blocks")
 
     def run(self, model, outputs, threads: int, progress) -> str:

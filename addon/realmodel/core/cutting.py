@@ -6,15 +6,19 @@ from __future__ import annotations
 import itertools
 import time
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .blocks import count_blocks
 from .errors import InputRefused, UsageError, number_list, place_text
 from .method_options import check_threads
-from .model import Model, count_blocks
 from .rock_input import checked_triangulation
 from .section import Fence, Section
 from .work import Cancel, Progress, Work, native_module, run
+
+if TYPE_CHECKING:
+    from .model import Model
 
 _CUT_SHARE = 0.97
 _ARRAYS = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")

@@ -4,59 +4,29 @@
 from __future__ import annotations
 
 import colorsys
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from . import cutting
+from .assembly import build_stage
+from .blocks import Block, BlockBoundary
 from .build_warning import BuildWarning
+from .cutting import Cut
 from .erosion import Erosion, eroded
 from .errors import UsageError
+from .exporters import save_model
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
+from .section import Fence, Section
 from .surface_set import vertex_attributes
 from .validation import PLACES_OF_CHECK, ValidationReport, validate
 from .work import Cancel, Progress, native_module
 
-if TYPE_CHECKING:
-    from .cutting import Cut
-    from .section import Fence, Section
-
 _GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
-
-
-@dataclass(frozen=True)
-class Block:
-    """One layer's block. `rock` is the index of its rock mass, `surface` the global index of the surface
-    that it was deposited beneath (block 0: of the oldest surface), `property` the library id (0: none).
-    volume is in model units cubed; cells counts its cells, components its connected parts."""
-
-    name: str
-    rock: int
-    surface: int
-    property: int
-    volume: float
-    cells: int
-    components: int
-
-
-@dataclass(frozen=True)
-class BlockBoundary:
-    """The closed boundary of a block: faces counter-clockwise seen from outside the block.
-
-    vertices (V, 3) float64, face_offsets (F+1,) int64, face_vertices int32 into `vertices`,
-    face_surface (F,) int32 as in the model, faces (F,) int64 the model's numbers of these faces.
-    """
-
-    vertices: np.ndarray
-    face_offsets: np.ndarray
-    face_vertices: np.ndarray
-    face_surface: np.ndarray
-    faces: np.ndarray
 
 
 @dataclass(eq=False)
@@ -132,19 +102,14 @@ class Model:
 
         Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
         """
-        from .exporters import save_model
-
         save_model(self, path)
 
     def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
         """The model as it was just after surface m (from 0) of each rock mass. Raises UsageError where no
         rock mass has a surface m, or the model is a half: cut the stage instead. It is built anew from the
         surfaces up to m."""
-        from .build import build_stage
-
         if self.is_cut:
             raise UsageError("a cut model has no stages: take the stage of the whole model, then cut that")
-
         return build_stage(self, m, progress, cancel)
 
     def eroded(self, progress: Progress | None = None, cancel: Cancel | None = None) -> Erosion:
@@ -186,9 +151,7 @@ class Model:
         point, normal: three numbers each; the normal may have any length. This model stays as it is.
         Raises UsageError for a plane that is none, BuildFailed, Cancelled.
         """
-        from .cutting import cut_by_plane
-
-        return cut_by_plane(self, point, normal, threads, progress, cancel)
+        return cutting.cut_by_plane(self, point, normal, threads, progress, cancel)
 
     def cut_by_surface(
         self,
@@ -204,9 +167,7 @@ class Model:
         Raises InputRefused for a surface that does not part the model, branches, has no two sides or crosses
         itself; BuildFailed, Cancelled.
         """
-        from .cutting import cut_by_surface
-
-        return cut_by_surface(self, vertices, triangles, threads, progress, cancel)
+        return cutting.cut_by_surface(self, vertices, triangles, threads, progress, cancel)
 
     def cut_by_block(
         self,
@@ -220,9 +181,7 @@ class Model:
 
         Raises UsageError for a block that is not there, InputRefused, BuildFailed, Cancelled.
         """
-        from .cutting import cut_by_block
-
-        return cut_by_block(self, other, block, threads, progress, cancel)
+        return cutting.cut_by_block(self, other, block, threads, progress, cancel)
 
     def section(
         self,
@@ -233,9 +192,7 @@ class Model:
         cancel: Cancel | None = None,
     ) -> Section:
         """The section by a plane alone, in a fraction of the time of cut_by_plane."""
-        from .cutting import section
-
-        return section(self, point, normal, threads, progress, cancel)
+        return cutting.section(self, point, normal, threads, progress, cancel)
 
     def fence(
         self,
@@ -245,9 +202,7 @@ class Model:
         cancel: Cancel | None = None,
     ) -> Fence:
         """Vertical sections along a polyline in plan, (N, 2), each between its two ends."""
-        from .cutting import fence
-
-        return fence(self, polyline, threads, progress, cancel)
+        return cutting.fence(self, polyline, threads, progress, cancel)
 
     @cached_property
     def face_blocks(self) -> np.ndarray:
@@ -312,10 +267,3 @@ class Model:
     def cell_component(self) -> np.ndarray:
         """(C,) int32: the least cell of the connected part of a block that each cell belongs to."""
         return native_module().cell_components(self.face_cells, self.cell_block)
-
-
-def count_blocks(cell_block: np.ndarray, component: np.ndarray, blocks: int) -> tuple[Sequence, Sequence]:
-    """Cells and connected parts of each block."""
-    cells = np.bincount(cell_block, minlength=blocks)
-    roots = component == np.arange(len(component))
-    return cells, np.bincount(cell_block[roots], minlength=blocks)

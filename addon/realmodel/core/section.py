@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from .atomic import Outputs
+from .exporters.sections import section_writer
 
 
 @dataclass(eq=False)
@@ -76,8 +77,6 @@ class Section:
         """Writes the polygons, with block and property, to a .vtu, .obj, .csv or .npz, or a drawing of them
         to a .svg, .dxf or .png, heights exaggerated. The file appears whole or not at all. Raises
         UsageError, OutputFailed."""
-        from .exporters.sections import section_writer
-
         writer = section_writer(path, exaggeration)
         with Outputs() as outputs, outputs.file(path) as file:
             writer(self, file)

@@ -4,14 +4,18 @@ age, and the coordinates of both ends."""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from .drawing.charts import Axes, legend, legend_size, tick_texts
 from .drawing.drawing import BLACK, Drawing
 from .drawing.glyphs import text_width
 from .errors import UsageError
-from .section import Fence, Section
 from .units import METRES
+
+if TYPE_CHECKING:
+    from .section import Section
 
 MOST_EXAGGERATION = 1000.0
 _POINT = 0.0254 / 72  # meters
@@ -38,7 +42,7 @@ def draw_section(section: Section, exaggeration: float = 1.0, title: str | None 
     flat = flattened(section)
     exaggeration = exaggeration if is_vertical(section) else 1.0
     low, high = flat.min(axis=0), flat.max(axis=0)
-    if isinstance(section, Fence):
+    if _is_fence(section):
         low[0], high[0] = 0.0, section.length
     if is_vertical(section):
         high[1] += _SKY * (high[1] - low[1])
@@ -76,7 +80,7 @@ def draw_section(section: Section, exaggeration: float = 1.0, title: str | None 
 
 def is_vertical(section: Section) -> bool:
     """Whether heights are upright in the picture: of fences and vertical planes."""
-    return isinstance(section, Fence) or abs(_unit_normal(section)[2]) < _UPRIGHT
+    return _is_fence(section) or abs(_unit_normal(section)[2]) < _UPRIGHT
 
 
 def flattened(section: Section) -> np.ndarray:
@@ -85,7 +89,7 @@ def flattened(section: Section) -> np.ndarray:
     Of a fence and a vertical plane the distance from its left end and the elevation, of a level plane x and
     y, of others distances along strike and up dip. Planes are seen from where their normal points.
     """
-    if isinstance(section, Fence):
+    if _is_fence(section):
         return section.unrolled()
     right, up = _directions(section)
     if right is None:
@@ -131,6 +135,10 @@ def block_outlines(section: Section, flat: np.ndarray, block: int) -> list[np.nd
                 at = onward[at].pop()
             rings.append(flat[some[ring]])
     return rings
+
+
+def _is_fence(section: Section) -> bool:
+    return hasattr(section, "panel")
 
 
 def _unit_normal(section: Section) -> np.ndarray:
@@ -187,7 +195,7 @@ def _ends(drawing: Drawing, axes: Axes, section: Section, flat: np.ndarray) -> N
     if not is_vertical(section):
         return
     x, y, width, height = axes.box
-    if isinstance(section, Fence):
+    if _is_fence(section):
         ends = section.polyline[[0, -1]]
         for at in section.bends[1:-1]:
             ((place, _),) = axes.at([(at, axes.y_range[0])]).tolist()

@@ -11,6 +11,7 @@ import numpy as np
 from .build_options import check_stage
 from .build_warning import BuildWarning
 from .errors import UsageError
+from .exporters.surfaces import save_surfaces
 from .heights import Interpolation
 from .method_options import check_threads
 from .project import Project, check_project
@@ -50,8 +51,6 @@ class SurfaceSet:
 
         Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
         """
-        from .exporters.surfaces import save_surfaces
-
         save_surfaces(self, path)
 
 

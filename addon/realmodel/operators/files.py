@@ -7,9 +7,10 @@ import bpy
 from bpy.props import EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import model_at_hand, project_settings, results
+from ..bl import project_settings, results
+from ..bl.display import shown_models
 from ..core import UsageError
-from ..core.atomic import atomic_file
+from ..core.atomic import Outputs
 from ..core.exporters import save_model
 from ..core.exporters.report import write_report
 from .reporting import Reporting, a_model, needed_path
@@ -90,7 +91,7 @@ class REALMODEL_OT_export(Exporting, bpy.types.Operator):
     filter_glob: format_filter(_MODELS)
 
     def write(self, context, path):
-        save_model(model_at_hand.model_of(context), path)
+        save_model(shown_models.whole(context.scene), path)
 
 
 class REALMODEL_OT_report(Exporting, bpy.types.Operator):
@@ -105,8 +106,8 @@ class REALMODEL_OT_report(Exporting, bpy.types.Operator):
 
     def write(self, context, path):
         is_table = path.suffix.lower() == ".csv"
-        model = None if is_table else model_at_hand.model_of(context)
-        with atomic_file(path) as file:
+        model = None if is_table else shown_models.whole(context.scene)
+        with Outputs() as outputs, outputs.file(path) as file:
             if is_table:
                 file.write(results.as_csv(context.scene).encode())
             else:

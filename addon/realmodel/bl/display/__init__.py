@@ -21,72 +21,51 @@ coordinates    what is under the cursor
 
 import json
 
+import bpy
+
 from ...core import RealModelError
 from .. import exaggeration, settings
 from ..scene import TAG
-from .visible import show
-
-__all__ = [
-    "built",
-    "changed",
-    "cleared",
-    "colours_changed",
-    "exaggeration_changed",
-    "explode_changed",
-    "forget",
-    "frame_changed",
-    "let_go",
-    "mode_changed",
-    "opened",
-    "register",
-    "render_begins",
-    "render_ends",
-    "section_changed",
-    "show",
-    "show_all",
-    "stage_changed",
-    "undone",
-    "unregister",
-]
+from . import (
+    bodies,
+    colours,
+    coordinates,
+    cuts,
+    drawing,
+    explosion,
+    modes,
+    preparing,
+    render_marks,
+    replacing,
+    shown_models,
+    stages,
+)
 
 _ANIMATED = ("stage", "explode", "explode_direction", "display", "color_by")
 
 
 def register():
     """Called when the add-on is enabled."""
-    from . import drawing
-
+    cuts.show_with(mode_changed)
+    preparing.show_with(show_all)
     drawing.register()
 
 
 def unregister():
     """Called when the add-on is disabled: no handler of drawing may stay."""
-    from . import cuts, drawing, preparing, replacing, shown_models, viewpoints
-
     drawing.unregister()
+    stop()
+
+
+def stop():
+    """Ends what is under way: another file was opened, or the add-on is disabled."""
     cuts.stop()
     preparing.stop()
     replacing.stop()
-    shown_models.forget()
-    viewpoints.forget()
-
-
-def forget():
-    """Another file was opened."""
-    from . import cuts, preparing, replacing, shown_models, viewpoints
-
-    cuts.stop()
-    preparing.stop()
-    replacing.stop()
-    forget_meshes()
-    shown_models.forget()
-    viewpoints.forget()
 
 
 def forget_meshes():
     """Lets go of what was read from meshes."""
-    from . import coordinates, drawing
-
     drawing.forget()
     coordinates.forget()
 
@@ -98,8 +77,6 @@ def show_all(scene):
 
 def opened():
     """A .blend was opened, which may have been saved before all that its settings ask for was made."""
-    import bpy
-
     for scene in bpy.data.scenes:
         group = scene.realmodel
         different = {
@@ -129,8 +106,6 @@ def explode_changed(scene):
 
 def exaggeration_changed(scene):
     """The vertical is stretched more, or less; or there are other objects that are to be."""
-    from . import cuts, explosion
-
     items = [item for item in scene.objects if TAG in item]
     exaggeration.apply(scene, [*items, cuts.plane_of(scene)], explosion.bounds(scene)[0][2])
 
@@ -142,8 +117,6 @@ def colours_changed(scene):
 
 def section_changed(scene):
     """The section plane is another one, or the cut is wanted or not wanted."""
-    from . import cuts
-
     if not cuts.is_on(scene):
         cuts.take_off(scene)
         mode_changed(scene)
@@ -159,8 +132,6 @@ def built(scene, bounds, stage=None):
     """A model was built anew: `built_models.current(scene)` has it. bounds: lowest and highest coordinates of
     its blocks, (3,) each. stage: the stage that is shown, where it was made with the model: (number, model,
     shapes)."""
-    from . import explosion, shown_models
-
     made = [row.object for row in scene.realmodel.results]
     made += [surface.interface for _, surface in settings.surface_rows(scene)]
     for layer in scene.view_layers:
@@ -179,15 +150,11 @@ def built(scene, bounds, stage=None):
 
 def let_go(item):
     """An interface is one no more: it is drawn as any object."""
-    from . import modes
-
     modes.let_go(item)
 
 
 def cleared(scene):
     """The blocks are gone."""
-    from . import bodies, colours, cuts, modes
-
     forget_meshes()
     bodies.remove(scene, bodies.CELLS)
     cuts.take_off(scene)
@@ -210,8 +177,6 @@ def frame_changed(scene, depsgraph=None):
     different = {key: value for key, value in now.items() if before.get(key) != value}
     if different:
         _show(scene, **different)
-    from . import cuts
-
     try:
         if cuts.follow(scene, depsgraph):
             _show(scene, display=now["display"])
@@ -221,8 +186,6 @@ def frame_changed(scene, depsgraph=None):
 
 def render_begins(scene):
     """From now on nothing may be freed that a renderer may hold."""
-    from . import render_marks, replacing
-
     replacing.tidy()
     replacing.begin_render()
     if len(scene.realmodel.results) and scene.library is None:
@@ -231,8 +194,6 @@ def render_begins(scene):
 
 def render_ends(scene):
     """The render is complete or cancelled."""
-    from . import bodies, replacing
-
     if scene.library is None:
         bodies.remove(scene, bodies.MARKS)
     replacing.end_render()
@@ -240,10 +201,6 @@ def render_ends(scene):
 
 def undone():
     """Blender has undone or redone something: what was read from meshes may be of others now."""
-    import bpy
-
-    from . import cuts
-
     forget_meshes()
     for scene in bpy.data.scenes:
         if cuts.is_on(scene):
@@ -252,10 +209,6 @@ def undone():
 
 def changed(scene, depsgraph):
     """Blender has evaluated changed objects."""
-    import bpy
-
-    from . import coordinates, cuts, drawing
-
     plane = scene.realmodel.view.plane
     for update in depsgraph.updates:
         item = update.id.original
@@ -274,8 +227,6 @@ def _applied(scene):
 def _show(scene, has_shapes=False, **wanted):
     """Shows what is wanted: any of the settings that can be animated, by their names. has_shapes: the blocks
     have the shapes of the stage already."""
-    from . import colours, cuts, explosion, modes, preparing, render_marks, replacing, stages
-
     group = scene.realmodel
     if not len(group.results) or scene.library is not None:
         return

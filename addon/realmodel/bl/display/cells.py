@@ -4,12 +4,12 @@
 import json
 
 from ...core import polygon_mesh
-from .. import block_shapes, project_settings
+from .. import block_shapes, caches, project_settings
 from ..threads import threads
 from . import cuts, shown_models
 
 SHRINK = 0.88  # of a cell's size: the gaps let each be seen
-_kept = {}  # by the name of a scene: (what the cells are of, {(rock mass, block): PolygonMesh})
+_kept = caches.new()  # by the name of a scene: (what the cells are of, {(rock mass, block): PolygonMesh})
 
 
 def made_of(scene, stage):

@@ -6,10 +6,10 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from .. import exaggeration, library_rows, meshes, project_settings, shapes
+from .. import caches, exaggeration, library_rows, meshes, project_settings, shapes
 from . import modes, stages
 
-_soups = {}  # by the name of a mesh: its triangles, (T, 3, 3) float32
+_soups = caches.new()  # by the name of a mesh: its triangles, (T, 3, 3) float32
 _MOST_SOUPS = 64
 
 

@@ -12,13 +12,13 @@ import numpy as np
 
 from ...core import Cancelled, InputRefused, RealModelError, polygon_mesh, work
 from ...core.polygon_mesh import PolygonMesh
-from .. import block_shapes, exaggeration, meshes, project_settings, scene, settings, viewports
+from .. import block_shapes, caches, exaggeration, meshes, project_settings, scene, settings, viewports
 from ..debounce import DebouncedJob
 from ..threads import threads
 from . import bodies, explosion, replacing, shown_models
 
 REST_SECONDS = 0.08  # without a movement of the plane, after which it is cut
-_halves = {}  # by the name of a scene: (what it was cut from and where, the half as a Model)
+_halves = caches.new()  # by the name of a scene: (what it was cut from and where, the half as a Model)
 
 
 def is_on(current):
@@ -101,7 +101,7 @@ def known_half(current, state, cells=None):
 def cut_now(current, stage=None, matrix=None):
     """Makes the cut in this thread. Raises RealModelError; then the earlier one stays."""
     if matrix is None:
-        _layer(current).update()  # the plane's matrix may be of before it was moved
+        viewports.updated_layer(current)  # the plane's matrix may be of before it was moved
     state = _state(current, current.realmodel.stage if stage is None else stage, matrix)
     job = _begun(current, state)
     _take(current, job.result())
@@ -129,11 +129,6 @@ def refresh(current, stage=None):
         cut_now(current, stage)
     else:
         touch(current)
-
-
-def _layer(current):
-    windows = bpy.context.window_manager.windows
-    return next((w.view_layer for w in windows if w.scene == current), current.view_layers[0])
 
 
 def _wanted_cells(current):
@@ -188,7 +183,7 @@ def _begin(name, _changed_at):
     if current is None or not is_on(current):
         return None
     try:
-        _layer(current).update()
+        viewports.updated_layer(current)
         state = _state(current, current.realmodel.stage)
         if state != current.realmodel.view.cut:
             return _begun(current, state)
@@ -209,9 +204,7 @@ def _finish(name, job, _changed_at):
         _tell(current, error)
         return
     _tell(current, None)
-    from . import mode_changed
-
-    mode_changed(current)
+    _show(current)
 
 
 def _tell(current, error):
@@ -224,15 +217,16 @@ def is_working(current):
     return _work.is_working(current.name)
 
 
-def forget():
-    """Lets go of halves; for another file, or another model."""
-    _halves.clear()
+def show_with(show):
+    """show(scene) is called when a cut was made that nobody waited for."""
+    global _show
+    _show = show
 
 
 def stop():
     """Ends what is under way."""
     _work.stop()
-    forget()
 
 
+_show = None
 _work = DebouncedJob(REST_SECONDS, _begin, _finish)

@@ -7,11 +7,11 @@ arrays go to the card when they are first drawn, and again when a mesh has chang
 
 import bpy
 
-from .. import exaggeration, meshes, versions
+from .. import caches, exaggeration, meshes, versions
 from . import colours, modes
 
 POINT_SIZE = 4.0  # pixels
-_batches = {}  # (mesh name, "POINTS" or "LINES") -> (vertices, edges of the mesh, gpu batch)
+_batches = caches.new()  # (mesh name, "POINTS" or "LINES") -> (vertices, edges of the mesh, gpu batch)
 _handle = None
 
 
@@ -92,4 +92,3 @@ def unregister():
     if _handle is not None:
         bpy.types.SpaceView3D.draw_handler_remove(_handle, "WINDOW")
         _handle = None
-    forget()

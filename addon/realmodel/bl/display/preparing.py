@@ -66,14 +66,14 @@ def _hand_over(name, job):
 
 def _finish(name, job, changed_at):
     try:
-        _show(name, job)
+        _take(name, job)
     finally:
         slices = _slices.pop(name, None)
         if slices is not None:
             slices.clear()
 
 
-def _show(name, job):
+def _take(name, job):
     scene = bpy.data.scenes.get(name)
     if scene is None or not len(scene.realmodel.results):
         return
@@ -89,9 +89,7 @@ def _show(name, job):
     stage.keep(shapes)
     if wanted is not None:
         wanted.keep()
-    from . import show_all
-
-    show_all(scene)
+    _show_all(scene)
     viewports.redraw()
 
 
@@ -100,10 +98,15 @@ def is_working(scene):
     return _work.is_working(scene.name)
 
 
+def show_with(show_all):
+    """show_all(scene) is called when what was lacking has been made."""
+    global _show_all
+    _show_all = show_all
+
+
 def stop():
     """Ends what is under way."""
     _work.stop()
-    cells.forget()
     for slices in _slices.values():
         slices.clear()
     _slices.clear()
@@ -111,4 +114,5 @@ def stop():
 
 _SLICE = 0.05  # seconds in which Blender is given meshes, before the window is looked after again
 _slices = {}  # by the name of a scene: the meshes that are being made for it
+_show_all = None
 _work = DebouncedJob(0.0, _begin, _finish, hand_over=_hand_over)

@@ -7,11 +7,11 @@ meshes are then exchanged instead of filled anew, and what is left over is remov
 
 import bpy
 
-from .. import meshes, meshes_ahead, scene
+from .. import caches, meshes, meshes_ahead, scene
 
 _rendering = False
-_left_meshes = []  # names
-_left_objects = []
+_left_meshes = caches.new(list)  # names
+_left_objects = caches.new(list)
 
 
 def begin_render():
@@ -70,13 +70,10 @@ def remove(item):
 
 
 def _remove(item):
-    if item.get(scene.TAG) == "block":
-        scene.remove_objects([item])
-        return
-    mesh = item.data
-    bpy.data.objects.remove(item)
-    if mesh is not None and not mesh.users:
-        bpy.data.meshes.remove(mesh)
+    is_block = item.get(scene.TAG) == "block"
+    scene.remove_objects([item])
+    if is_block:
+        scene.remove_unused_materials()
 
 
 def tidy():
@@ -91,11 +88,6 @@ def tidy():
         mesh = bpy.data.meshes.get(name)
         if mesh is not None and not mesh.users:
             bpy.data.meshes.remove(mesh)
-    forget()
-
-
-def forget():
-    """Another file was opened: the names mean nothing in it."""
     _left_objects.clear()
     _left_meshes.clear()
 
@@ -105,4 +97,3 @@ def stop():
     _rendering = False
     if bpy.app.timers.is_registered(tidy):
         bpy.app.timers.unregister(tidy)
-    forget()

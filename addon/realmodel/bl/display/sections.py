@@ -7,7 +7,7 @@ import numpy as np
 from ...core import InputRefused
 from ...core.polygon_mesh import PolygonMesh
 from ...core.section_drawing import flattened, is_vertical
-from .. import library_rows, materials, meshes, project_settings, scene, shapes
+from .. import library_rows, meshes, project_settings, scene, shapes
 from ..origin import offsets_from
 from . import bodies, explosion, shown_models
 
@@ -60,7 +60,7 @@ def add(current, found, name, flat=False):
     mesh = meshes.new_mesh(name, shape)
     ids = np.unique(found.property)
     for property_id in ids.tolist():
-        mesh.materials.append(_material(current, property_id))
+        mesh.materials.append(library_rows.material_of(current, property_id))
     slots = np.searchsorted(ids, found.property).astype(np.int32)
     mesh.polygons.foreach_set("material_index", slots)
     attribute = mesh.attributes.new(BLOCK_ATTRIBUTE, "INT", "FACE")
@@ -93,11 +93,3 @@ def _beside(current, found, origin):
     upright = flat[:, 1] - origin[2] if is_vertical(found) else low[2] + flat[:, 1]
     south = np.full(len(flat), low[1] - (number + 1) * _BESIDE * size)
     return np.column_stack([low[0] + flat[:, 0], south, upright]).astype(np.float32)
-
-
-def _material(current, property_id):
-    known = library_rows.scene_materials(current, property_id)
-    if known:
-        return known[0]
-    name, colour = materials.name_and_colour(library_rows.library_of(current), property_id)
-    return materials.new_material(name, property_id, colour)

@@ -6,13 +6,13 @@ only the blocks that differ go to Blender.
 """
 
 from ...core import build, polygon_mesh
-from ...core.build import build_stage
-from .. import block_shapes, built_models, project_settings, settings
+from ...core.assembly import build_stage
+from .. import block_shapes, built_models, caches, project_settings, settings, viewports
 from ..threads import threads
 
 _MOST_CORNERS = 20_000_000  # of the faces of all stages that are kept: about 0.6 GB with their shapes
-_stages = {}  # (stamp, stage, cells) -> realmodel.core.Model, the one that was used last at the end
-_shapes = {}  # (stamp, stage) -> {(rock mass, block): PolygonMesh}
+_stages = caches.new()  # (stamp, stage, cells) -> realmodel.core.Model, the one that was used last at the end
+_shapes = caches.new()  # (stamp, stage) -> {(rock mass, block): PolygonMesh}
 
 
 class Recipe:
@@ -31,7 +31,7 @@ class Recipe:
         self.origin = project_settings.model_origin(scene)
         self.model = self._known(scene)
         self._base = None if self.model else built_models.current(scene)
-        self._project = None if self.model or self._base else _composed(scene, self.cells)
+        self._project = None if self.model or self._base else _composed(scene)
         self._is_new = self.model is None
 
     def _known(self, scene):
@@ -88,6 +88,12 @@ def at_stage(scene, stage, cells=None):
     return model
 
 
+def whole(scene, cells="columns"):
+    """The whole realmodel.core.Model of a scene, made in this thread where it is not at hand. Raises as
+    `at_stage`."""
+    return at_stage(scene, settings.last_stage(scene), cells)
+
+
 def shapes_at_stage(scene, stage):
     """{(rock mass, block): PolygonMesh} at a stage, made in this thread. Raises as `at_stage`."""
     recipe = Recipe(scene, stage)
@@ -108,12 +114,9 @@ def remember_stage(scene, stage, model, shapes):
     _shapes[stamp, stage] = shapes
 
 
-def _composed(scene, cells):
-    from .. import build_job  # which tells this package of its builds
-
-    layer = scene.view_layers[0]
-    layer.update()
-    return build_job.BuildJob(scene, layer.depsgraph, cells or "blocks", whole=False).composed.project
+def _composed(scene):
+    depsgraph = viewports.updated_layer(scene).depsgraph
+    return project_settings.compose(scene, depsgraph, whole=False).project
 
 
 def _make_room():

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from ...core.polygon_mesh import PolygonMesh
-from .. import library_rows, materials, meshes, scene
+from .. import library_rows, meshes, scene
 from . import replacing, shown_models
 
 STAGE_ONLY = "realmodel_stage_only"  # on an object: its block is not in the whole model
@@ -48,9 +48,7 @@ def _new(current, row, shape):
     if rock is None or rock.blocks is None:
         return
     item = bpy.data.objects.new(row.name, meshes.new_mesh(row.name, shape))
-    known = library_rows.scene_materials(current, row.property_id)
-    name, colour = materials.name_and_colour(library_rows.library_of(current), row.property_id)
-    item.data.materials.append(known[0] if known else materials.new_material(name, row.property_id, colour))
+    item.data.materials.append(library_rows.material_of(current, row.property_id))
     item[scene.TAG], item[scene.ROCK], item[scene.SURFACE] = "block", row.rock, row.surface
     item[scene.BLOCK], item[scene.PROPERTY] = row.name, row.property_id
     item[STAGE_ONLY] = True

@@ -11,7 +11,7 @@ import numpy as np
 from mathutils import Quaternion, Vector
 
 from ...core import InputRefused
-from .. import exaggeration, meshes, viewports
+from .. import caches, exaggeration, meshes, viewports
 from . import bodies
 
 _H = 0.5**0.5
@@ -25,7 +25,7 @@ DIRECTIONS = {  # as Blender's own axis views
 }
 _MARGIN = 1.1
 _MOST_KEPT = 50
-_history = []  # views that were left, and the one that is shown, the oldest first
+_history = caches.new(list)  # views that were left, and the one that is shown, the oldest first
 _at = -1  # which of them is shown
 
 
@@ -101,13 +101,6 @@ def _remember(space):
     _history.append(now)
     del _history[:-_MOST_KEPT]
     _at = len(_history) - 1
-
-
-def forget():
-    """Lets go of all views."""
-    global _at
-    _history.clear()
-    _at = -1
 
 
 def model_points(scene):

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..methods import checked_options
 from . import from_neighbours
-from .interpolation import Result, Task
+from .interpolation import Result, Task, run_method
 
 _FEW = 10  # points: below this a variogram shows nothing
 _TOLD = 2000  # points that are left out and told, where there are so many
@@ -46,8 +47,6 @@ class Trial:
     known: from_neighbours.Structure | None
 
     def run(self, task: Task, points: np.ndarray, nodes: np.ndarray) -> Result:
-        from .run import run_method  # this method runs others
-
         task = replace(task, points=points, nodes=nodes, settings=self.settings)
         if self.known is not None:
             return from_neighbours.krige(task, self.known)
@@ -102,9 +101,7 @@ def choose(task: Task) -> tuple[Trial, str]:
 
 
 def _trial(task: Task, candidate: Candidate) -> Trial:
-    from .run import settings_of
-
-    settings = settings_of(candidate.method, candidate.options)
+    settings = checked_options(candidate.method, candidate.options)
     known = None
     if "kriging" in candidate.method:
         known = from_neighbours.structure(replace(task, settings=settings))

@@ -5,9 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from importlib import import_module
 
 import numpy as np
 
+from ..methods import METHODS
 from ..variogram import Variogram
 from ..work import Work
 
@@ -64,3 +66,9 @@ class Result:
     warnings: list[str] = field(default_factory=list)
     outside: np.ndarray | None = None
     neighbours: int | None = None
+
+
+def run_method(method: str, task: Task) -> Result:
+    """Runs a method that is not "auto"."""
+    module, _, function = METHODS[method].run.rpartition(".")
+    return getattr(import_module(f".{module}", __package__), function)(task)

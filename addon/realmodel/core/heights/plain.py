@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import InputRefused
-from .interpolation import Result, Task
+from ..methods import checked_options
+from .interpolation import Result, Task, run_method
 from .surface_reference import heights_of
 
 # Of the greatest spread of the points: below this they lie in one line, and show no slope across it.
@@ -75,8 +76,6 @@ def _with_variance(z, terms, start, terms_at_nodes) -> Result:
 def parallel(task: Task) -> Result:
     """The surface `to` and a thickness above it: `thickness`, or where it is not given what the points show,
     spread by `thickness_method`."""
-    from .run import run_method, settings_of  # this method runs another one
-
     below = heights_of(task, task.settings["to"], task.nodes, "to")
     thickness = task.settings["thickness"]
     if thickness is not None:
@@ -90,7 +89,7 @@ def parallel(task: Task) -> Result:
     points = task.points[known].copy()
     points[:, 2] -= under[known]
     method = task.settings["thickness_method"]
-    shown = run_method(method, replace(task, points=points, settings=settings_of(method)))
+    shown = run_method(method, replace(task, points=points, settings=checked_options(method, {})))
     warnings = list(shown.warnings)
     if not known.all():
         left_out = int((~known).sum())

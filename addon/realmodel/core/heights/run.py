@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from importlib import import_module
 
 import numpy as np
 
@@ -14,18 +13,7 @@ from ..mis_ties import without_mis_ties
 from ..work import Work, native_module
 from . import automatic
 from .extrapolation import outside_hull, replace_extrapolated
-from .interpolation import Interpolation, Result, Task
-
-
-def run_method(method: str, task: Task) -> Result:
-    """Runs a method that is not "auto"."""
-    module, _, function = METHODS[method].run.rpartition(".")
-    return getattr(import_module(f".{module}", __package__), function)(task)
-
-
-def settings_of(method: str, options: dict | None = None) -> dict:
-    """The settings of a method, options that are not given at their defaults."""
-    return checked_options(method, options or {})
+from .interpolation import Interpolation, Result, Task, run_method
 
 
 def heights(
@@ -44,7 +32,7 @@ def heights(
     try:
         if method == "auto":
             method, reason, result = automatic.automatic(task)
-            settings = {**settings_of(method), "extrapolate": settings["extrapolate"]}
+            settings = {**checked_options(method, {}), "extrapolate": settings["extrapolate"]}
             task = replace(task, settings=settings)
         else:
             result = run_method(method, task)

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The last steps of a build, from what each rock mass is made of to the model; a stage needs only them."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .blocks import Block, count_blocks
+from .build_options import check_cells, check_stage
+from .build_warning import BuildWarning
+from .rock_input import RockInput
+from .stack_refusals import refused_stack
+from .work import Cancel, Progress, Work, native_module, run
+
+if TYPE_CHECKING:
+    from .model import Model
+
+_STAGE_INTERSECTED = 0.99  # of the time of a stage: nothing is read again
+
+
+def build_stage(
+    model: Model,
+    m: int,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    cells: str | None = None,
+) -> Model:
+    """Model.stage. cells: another kind of cells than the model has; nothing is interpolated again for it."""
+    check_stage(model.project, m)
+    kind = model.cell_kind if cells is None else cells
+    check_cells(kind)
+    inputs = [entry.stage(m) for entry in model.rock_inputs]
+    if kind == model.cell_kind and all(
+        len(entry.surfaces) == len(whole.surfaces)
+        for entry, whole in zip(inputs, model.rock_inputs, strict=True)
+    ):
+        return model
+    given = model.project
+    project = replace(given, rocks=[entry.rock for entry in inputs])
+
+    def task(work: Work) -> Model:
+        built = intersect(work, inputs, kind, model.threads, 0.0, _STAGE_INTERSECTED)
+        timings = {"intersect": time.perf_counter() - began}
+        return assemble(
+            type(model), work, project, inputs, built, kind, model.threads, timings, _STAGE_INTERSECTED
+        )
+
+    began = time.perf_counter()
+    return run(task, progress, cancel)
+
+
+def intersect(work: Work, inputs, cells: str, threads: int, start: float, end: float) -> dict:
+    """The native result of all rock masses."""
+    native = native_module()
+    rocks = [
+        (
+            entry.surfaces,
+            entry.region,
+            entry.rock.base_elevation,
+            [surface.rule for surface in entry.rock.surfaces],
+        )
+        for entry in inputs
+    ]
+    with work.phase(start, end, "intersecting and cutting"):
+        try:
+            return work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)
+        except native.InputError as error:
+            raise refused_stack(error, inputs) from error
+
+
+def assemble(
+    kind: type[Model],
+    work: Work,
+    project,
+    inputs: list[RockInput],
+    built: dict,
+    cells,
+    threads,
+    timings,
+    start: float,
+) -> Model:
+    """The model that the native arrays are of. kind: the class Model."""
+    began = time.perf_counter()
+    with work.phase(start, 1.0, "assembling the model"):
+        arrays = _arrays(inputs, built)
+        component = work.native(native_module().cell_components, arrays["face_cells"], arrays["cell_block"])
+        work.step(0.8)
+        blocks = _blocks(inputs, built["volumes"], arrays["cell_block"], component)
+        names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
+        model = kind(
+            **arrays,
+            cell_kind=cells,
+            blocks=blocks,
+            surface_names=names,
+            project=project,
+            rock_inputs=inputs,
+            warnings=_warnings(inputs, built, blocks),
+            timings=timings,
+            threads=threads,
+        )
+        model.cell_component = component
+    timings["merge"] = time.perf_counter() - began
+    return model
+
+
+def _arrays(inputs: list[RockInput], built: dict) -> dict[str, np.ndarray]:
+    """The arrays that docs/dev/geometry.md names; blocks are numbered without those that cannot exist."""
+    exists = [
+        number > 0 or _first_block(entry) == 0 for entry in inputs for number in range(len(entry.surfaces))
+    ]
+    block_of_surface = np.cumsum(exists, dtype=np.int32) - 1
+    names = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface")
+    arrays = {name: built[name] for name in names}
+    arrays["cell_block"] = block_of_surface[built["cell_block"]].astype(np.int32, copy=False)
+    surfaces = [surface for entry in inputs for surface in entry.surfaces]
+    arrays["surface_vertices"] = np.concatenate([vertices for vertices, _ in surfaces])
+    arrays["surface_triangles"] = np.concatenate([triangles for _, triangles in surfaces])
+    for name, column in (("surface_vertex_offsets", 0), ("surface_triangle_offsets", 1)):
+        arrays[name] = np.cumsum([0, *(len(surface[column]) for surface in surfaces)], dtype=np.int64)
+    return arrays
+
+
+def _first_block(entry: RockInput) -> int:
+    """The number of a rock mass's first block: 0 lies on the base elevation."""
+    return 0 if entry.rock.base_elevation is not None else 1
+
+
+def _blocks(inputs, volumes: np.ndarray, cell_block: np.ndarray, component: np.ndarray) -> list[Block]:
+    total = sum(len(entry.surfaces) - _first_block(entry) for entry in inputs)
+    cells, components = count_blocks(cell_block, component, total)
+    blocks, first_surface = [], 0
+    for number, entry in enumerate(inputs):
+        for k in range(_first_block(entry), len(entry.surfaces)):
+            surface = entry.rock.surfaces[k]
+            at = len(blocks)
+            blocks.append(
+                Block(
+                    name=surface.block_name if k else surface.block or "base block",
+                    rock=number,
+                    surface=first_surface + k,
+                    property=int(surface.property),
+                    volume=float(volumes[first_surface + k]),
+                    cells=int(cells[at]),
+                    components=int(components[at]),
+                )
+            )
+        first_surface += len(entry.surfaces)
+    return blocks
+
+
+def _warnings(inputs, built: dict, blocks: list[Block]) -> list[BuildWarning]:
+    warnings = [warning for entry in inputs for warning in entry.warnings]
+    owners = [(entry.rock.name, surface.name) for entry in inputs for surface in entry.rock.surfaces]
+    for kind, surface, items, text in built["warnings"]:
+        rock, named = owners[surface] if 0 <= surface < len(owners) else (None, None)
+        warnings.append(BuildWarning(text, kind, rock, named, tuple(int(i) for i in items)))
+    for number, entry in enumerate(inputs):
+        if len(entry.surfaces) == 1 and entry.rock.base_elevation is None:
+            text = "a single surface does not bound a block"
+        elif not any(block.cells for block in blocks if block.rock == number):
+            text = "no block is left: its surfaces (and region) share no place, or all was cut away"
+        else:
+            continue
+        warnings.append(BuildWarning(text, "no_block", entry.rock.name))
+    return warnings

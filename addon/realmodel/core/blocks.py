@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The blocks of a model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Block:
+    """One layer's block. `rock` is the index of its rock mass, `surface` the global index of the surface
+    that it was deposited beneath (block 0: of the oldest surface), `property` the library id (0: none).
+    volume is in model units cubed; cells counts its cells, components its connected parts."""
+
+    name: str
+    rock: int
+    surface: int
+    property: int
+    volume: float
+    cells: int
+    components: int
+
+
+@dataclass(frozen=True)
+class BlockBoundary:
+    """The closed boundary of a block: faces counter-clockwise seen from outside the block.
+
+    vertices (V, 3) float64, face_offsets (F+1,) int64, face_vertices int32 into `vertices`,
+    face_surface (F,) int32 as in the model, faces (F,) int64 the model's numbers of these faces.
+    """
+
+    vertices: np.ndarray
+    face_offsets: np.ndarray
+    face_vertices: np.ndarray
+    face_surface: np.ndarray
+    faces: np.ndarray
+
+
+def count_blocks(cell_block: np.ndarray, component: np.ndarray, blocks: int) -> tuple[Sequence, Sequence]:
+    """Cells and connected parts of each block."""
+    cells = np.bincount(cell_block, minlength=blocks)
+    roots = component == np.arange(len(component))
+    return cells, np.bincount(cell_block[roots], minlength=blocks)
