@@ -7,6 +7,7 @@ import bpy.utils.previews
 import numpy as np
 
 from ..core import Cancelled, InputRefused, RealModelError, plots
+from ..core.drawing.glyphs import text_width
 from ..core.drawing.raster import rasterize
 from ..core.surface_quality import surface_quality
 from ..core.volume_uncertainty import volume_deviations
@@ -26,9 +27,8 @@ _PAGE = 220.0  # points: of a chart in a wide sidebar
 _PIXELS = 1.2  # for a point, at least: the texts stay legible
 
 _found = caches.new()  # key -> SurfaceQuality
-_deviations = (
-    caches.new()
-)  # stamp of a model -> {(rock mass, block): what its volume's standard deviation is at most}
+# Stamp of a model -> {(rock mass, block): what its volume's standard deviation is at most}.
+_deviations = caches.new()
 _working = {}  # the job, its recipe, and its key, while there is one
 _pictures = None  # previews of charts, by their key
 
@@ -83,6 +83,7 @@ def _asked(current):
     recipe = shown_models.Recipe(current, settings.last_stage(current))
 
     def task(_work):
+        text_width("0", 1.0)  # reads the letters of charts, which the drawing of a panel should not
         model = recipe.make()
         names = [(r.name, s.name) for r in model.project.rocks for s in r.surfaces]
         if wanted not in names:
