@@ -9,8 +9,10 @@ from . import (
     build,
     documentation,
     files,
+    imports,
     judge,
     library,
+    origin,
     plan_mesh,
     results,
     rocks,
@@ -23,8 +25,10 @@ from . import (
 
 _MODULES = (
     start,
+    origin,
     rocks,
     plan_mesh,
+    imports,
     surfaces,
     boreholes,
     variograms,
