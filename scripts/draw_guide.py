@@ -233,11 +233,12 @@ def frame(walk):
 
 
 def side_by_side(pictures, name, columns, smaller=1):
-    """Keeps several pictures of one size as one, so many times smaller, with white lines between."""
+    """Keeps several pictures of one width as one, so many times smaller, with white lines between."""
     import numpy as np
 
-    tiles = []
+    tiles, highest = [], max(len(picture) for picture in pictures)
     for picture in pictures:
+        picture = np.pad(picture, ((0, highest - len(picture)), (0, 0), (0, 0)), constant_values=1.0)
         height, width = (size // smaller * smaller for size in picture.shape[:2])
         blocks = picture[:height, :width].reshape(height // smaller, smaller, width // smaller, smaller, 3)
         tiles.append(np.pad(blocks.mean(axis=(1, 3)), ((4, 4), (4, 4), (0, 0)), constant_values=1.0))
