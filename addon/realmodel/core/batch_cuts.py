@@ -112,9 +112,6 @@ class CutRequest:
         return f"cut {text}: volume {cut.below.volume:.2f} {low}, {cut.above.volume:.2f} {high}"
 
 
-Request = SectionRequest | CutRequest
-
-
 def section_request(text: str) -> SectionRequest:
     """X,Y,Z,NX,NY,NZ=FILE. Raises UsageError."""
     what, file = _divided("--section", text, "X,Y,Z,NX,NY,NZ=FILE")
