@@ -27,10 +27,11 @@ def register():
         )
     from . import handlers, operators, props, ui
     from .bl import display
+    from .bl.overlay import viewport
 
     done = []
     try:
-        for part in (props, operators, ui, display, handlers):
+        for part in (props, operators, ui, display, viewport, handlers):
             part.register()
             done.append(part)
     except BaseException:
@@ -60,8 +61,9 @@ def unregister():
     _at_exit(False)
     from . import handlers, operators, props, ui
     from .bl import display
+    from .bl.overlay import viewport
 
-    for part in (handlers, display, ui, operators, props):
+    for part in (handlers, viewport, display, ui, operators, props):
         part.unregister()
 
 

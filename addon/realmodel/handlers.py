@@ -11,6 +11,8 @@ from bpy.app.handlers import persistent
 
 from . import versioning
 from .bl import caches, display, live, region_size
+from .bl.display import replacing
+from .bl.overlay import rendered
 from .core import RealModelError
 
 _PATIENCE = 5.0  # seconds that a render may wait for the window
@@ -78,6 +80,8 @@ def _changed(scene, depsgraph):
 @_patient
 def _frame_changed(scene, depsgraph=None, *_arguments):
     display.frame_changed(scene, depsgraph)
+    if replacing.is_rendering() and len(scene.realmodel.results) and scene.library is None:
+        rendered.put(scene, depsgraph=depsgraph)
 
 
 def migrate_all():
@@ -93,11 +97,15 @@ def migrate_all():
 @_patient
 def _render_begins(scene, *_arguments):
     display.render_begins(scene)
+    if len(scene.realmodel.results) and scene.library is None:
+        rendered.put(scene)
 
 
 @persistent
 @_patient
 def _render_ends(scene, *_arguments):
+    if scene.library is None:
+        rendered.remove(scene)
     display.render_ends(scene)
 
 

@@ -178,9 +178,10 @@ class RealModelSettings(bpy.types.PropertyGroup):
             (
                 "UNCERTAINTY",
                 "Standard Deviation",
-                "Standard deviation of interpolated elevations, with Show: Surfaces. Dark blue: 0; "
-                "yellow: the largest of the surface",
+                "Standard deviation of the elevations of an interpolated surface, on blocks of the one above",
             ),
+            ("ELEVATION", "Elevation", "Elevation in the coordinates of the model"),
+            ("THICKNESS", "Thickness", "Vertical thickness of the layer"),
         ),
         update=lambda self, _context: display.colours_changed(self.id_data),
     )

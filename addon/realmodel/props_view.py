@@ -56,6 +56,52 @@ class RealModelView(bpy.types.PropertyGroup):
         options=set(),
         update=changes.exaggeration,
     )
+    surfaces: EnumProperty(
+        name="Surfaces",
+        description="Which part of the surfaces is displayed",
+        items=(
+            ("INTERPOLATED", "As Interpolated", "The whole surfaces, including what was eroded"),
+            ("SURVIVING", "As They Survive", "What erosion has left of the surfaces"),
+        ),
+        options=set(),
+        update=changes.view,
+    )
+    surviving_of: StringProperty(
+        options={"HIDDEN"}
+    )  # JSON of what the bodies of kind "surviving" are made of
+    show_residuals: BoolProperty(
+        name="Residuals",
+        description="Show the points of the surfaces, colored by point minus surface",
+        options=set(),
+        update=changes.residuals,
+    )
+    residuals: StringProperty(options={"HIDDEN"})  # JSON: what the residuals of each surface are
+    show_legend: BoolProperty(
+        name="Legend",
+        description="Show what the colors mean, in the viewport and in pictures",
+        default=True,
+        options=set(),
+        update=changes.overlay,
+    )
+    show_north: BoolProperty(
+        name="North Arrow",
+        description="Show where north is, in the viewport and in pictures",
+        options=set(),
+        update=changes.overlay,
+    )
+    show_scale: BoolProperty(
+        name="Scale Bar",
+        description="Show a bar of a round length, in the viewport and in pictures",
+        options=set(),
+        update=changes.overlay,
+    )
+    show_axes: BoolProperty(
+        name="Axes",
+        description="Show the coordinates of the model around it, in the viewport and in pictures",
+        options=set(),
+        update=changes.overlay,
+    )
+    shade_limits: FloatVectorProperty(size=2, options={"HIDDEN"})  # values at the ends of the color scale
     cut: StringProperty(options={"HIDDEN"})  # JSON of the plane that the bodies of kind "cut" were made with
     cells_of: StringProperty(options={"HIDDEN"})  # JSON of what the bodies of kind "cells" were made of
     applied: StringProperty(options={"HIDDEN"})  # JSON of the settings that the objects show

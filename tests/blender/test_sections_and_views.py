@@ -228,9 +228,9 @@ class Pictures(Viewed):
         return found
 
     def test_each_mode_is_a_picture_of_its_own(self):
-        from realmodel.bl import picture
+        from realmodel.bl import viewports
 
-        self.view().view_rotation = picture.view_rotation().to_quaternion()
+        self.view().view_rotation = viewports.view_rotation().to_quaternion()
         bpy.ops.realmodel.view_all()
         seen, before = {}, blender_state.inventory()
         for mode in ("POINTS", "LINES", "AREAS", "SURFACES", "POLYHEDRA", "BLOCKS"):

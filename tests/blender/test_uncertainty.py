@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 from made_projects import interpolated, two_rocks
 from panel_case import SAMPLES, PanelCase, ops
-from realmodel.bl import batch, scene, surface_figures, uncertainty
-from realmodel.core import build
+from realmodel.bl import batch, scene, surface_figures
+from realmodel.core import build, layer_values
 
 
 def values(mesh, name):
@@ -16,7 +16,7 @@ def values(mesh, name):
 
 
 class Uncertainty(PanelCase):
-    def test_interpolated_interfaces_have_variance_distance_and_colour(self):
+    def test_interpolated_interfaces_have_variance_and_distance(self):
         model = build(interpolated())
         batch.write_scene(model)
         interfaces = scene.model_objects(bpy.context.scene, "interface")
@@ -28,29 +28,14 @@ class Uncertainty(PanelCase):
             self.assertGreater(distance.max(), 1.0)
             if number == 2:  # inverse distance tells no variance
                 self.assertNotIn("variance", item.data.attributes)
-                self.assertNotIn("uncertainty", item.data.color_attributes)
                 continue
             variance = values(item.data, "variance")
             np.testing.assert_allclose(variance, told["variance"], rtol=1e-6)
-            layer = item.data.color_attributes["uncertainty"]
-            colours = np.empty(4 * len(variance), np.float32)
-            layer.data.foreach_get("color_srgb", colours)
-            colours = colours.reshape(-1, 4)
-            surest, least_sure = colours[variance.argmin()], colours[variance.argmax()]
-            self.assertGreater(least_sure[:3].sum(), surest[:3].sum() + 0.5)
-            np.testing.assert_allclose(least_sure, (0.995, 0.910, 0.215, 1.0), atol=0.01)
 
     def test_ready_meshes_have_none(self):
         batch.write_scene(build(two_rocks()))
         for item in scene.model_objects(bpy.context.scene, "interface"):
-            self.assertFalse({"variance", "distance", "uncertainty"} & set(item.data.attributes.keys()))
-
-    def test_colours_of_what_is_not_known(self):
-        found = uncertainty.colours(np.array([0.0, np.nan, 4.0]))
-        self.assertEqual(found.shape, (3, 4))
-        np.testing.assert_allclose(found[1], (0.35, 0.35, 0.35, 1.0), atol=1e-6)
-        sure = uncertainty.colours(np.zeros(2))
-        np.testing.assert_allclose(sure, [(0.0, 0.135, 0.305, 1.0)] * 2, atol=1e-6)
+            self.assertFalse({"variance", "distance"} & set(item.data.attributes.keys()))
 
 
 class UncertaintyInThePanel(PanelCase):
@@ -62,25 +47,61 @@ class UncertaintyInThePanel(PanelCase):
             self.assertTrue(found)
             for item in found:
                 names = set(item.data.attributes.keys())
-                self.assertLessEqual({"variance", "distance", "uncertainty"}, names)
+                self.assertLessEqual({"variance", "distance"}, names)
                 self.assertEqual(len(item.data.attributes["variance"].data), len(item.data.vertices))
 
-    def test_it_can_be_seen(self):
+    def colors(self, item):
+        found = np.empty(4 * len(item.data.vertices), np.float32)
+        item.data.color_attributes["realmodel_shade"].data.foreach_get("color_srgb", found)
+        return found.reshape(-1, 4)[:, :3]
+
+    def test_all_surfaces_have_one_scale(self):
         ops.open_project(filepath=str(SAMPLES / "two_layers" / "project.toml"))
         ops.build()
         item = self.model.rocks[0].surfaces[1].interface
         own = item.material_slots[0].material
         self.model.display, self.model.color_by = "SURFACES", "UNCERTAINTY"
-        material = item.material_slots[0].material
-        self.assertEqual(material.name, "Uncertainty")
-        given = next(node for node in material.node_tree.nodes if node.type == "ATTRIBUTE")
-        self.assertEqual(given.attribute_name, "uncertainty")
-        self.assertEqual(item.data.color_attributes.active_color_index, 0)
-        self.assertEqual(self.model.results[0].object.material_slots[0].material.name, "Clay")
+        interfaces = [surface.interface for surface in self.model.rocks[0].surfaces]
+        deviations = [np.sqrt(values(each.data, "variance")) for each in interfaces]
+        most = max(each.max() for each in deviations)
+        self.assertAlmostEqual(self.model.view.shade_limits[1], most, places=5)
+        self.assertEqual(self.model.view.shade_limits[0], 0.0)
+        for each, deviation in zip(interfaces, deviations, strict=True):
+            expected = layer_values.colors(deviation, (0.0, most))[:, :3]
+            np.testing.assert_allclose(self.colors(each), expected, atol=0.01)
+        self.assertEqual(item.material_slots[0].material.name, "Color Scale")
+        self.assertEqual(item.data.color_attributes.active_color.name, "realmodel_shade")
+        self.assertEqual(self.model.results[1].object.material_slots[0].material.name, "Color Scale")
         self.assertGreater(surface_figures.read(self.model.rocks[0].surfaces[1])["deviation"], 0.0)
-        path = self.folder / "uncertain.png"
-        ops.view(direction="TOP")
-        ops.capture(filepath=str(path), width=64, height=64)
         self.model.color_by = "PROPERTY"
         self.assertEqual(item.material_slots[0].material, own)
-        self.assertNotIn("Uncertainty", bpy.data.materials)
+        self.assertNotIn("Color Scale", bpy.data.materials)
+        self.assertNotIn("realmodel_shade", item.data.attributes)
+
+    def test_elevation_and_thickness(self):
+        ops.open_project(filepath=str(SAMPLES / "two_layers" / "project.toml"))
+        ops.build()
+        self.model.color_by = "ELEVATION"
+        block = self.model.results[1].object
+        heights = np.array([v.co.z for v in block.data.vertices])
+        low, high = self.model.view.shade_limits
+        self.assertAlmostEqual(
+            high, max(max(v.co.z for v in o.data.vertices) for o in self.shown()), places=4
+        )
+        np.testing.assert_allclose(
+            self.colors(block), layer_values.colors(heights, (low, high))[:, :3], atol=0.01
+        )
+        self.model.color_by = "THICKNESS"
+        thickest = self.model.view.shade_limits[1]
+        self.assertGreater(thickest, 0.0)
+        self.assertLess(thickest, high - low)
+        before = self.colors(block)
+        ops.build()
+        np.testing.assert_array_equal(self.colors(block), before)
+        ops.section_plane(axis="Y")
+        half = next(o for o in self.scene.objects if o.get("realmodel_view") == "cut")
+        self.assertEqual(len(self.colors(half)), len(half.data.vertices))
+
+    def shown(self):
+        rows = [row.object for row in self.model.results]
+        return rows + [surface.interface for surface in self.model.rocks[0].surfaces]

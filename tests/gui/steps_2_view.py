@@ -16,7 +16,7 @@ from driver import hue_differs, read_alpha, read_picture
 sys.path.append(str(Path(__file__).resolve().parents[1] / "blender"))
 
 from made_projects import surface
-from realmodel.bl import picture
+from realmodel.bl import viewports
 from realmodel.bl.display import preparing
 from realmodel.core import Library, Project, Property, Rock
 from realmodel.core.project_writer import save_project
@@ -90,7 +90,7 @@ def in_the_viewport(walk):
 
 
 def modes(walk):
-    walk.area.spaces.active.region_3d.view_rotation = picture.view_rotation().to_quaternion()
+    walk.area.spaces.active.region_3d.view_rotation = viewports.view_rotation().to_quaternion()
     with in_the_viewport(walk):
         bpy.ops.realmodel.view_all()
     seen = {}
@@ -247,4 +247,119 @@ def coordinates_under_the_mouse(walk):
     assert abs(place.thickness - 15.0) < 1e-3, place
 
 
-STEPS = (layers, modes, hidden, stage_and_explode, cut, captures, an_animation, coordinates_under_the_mouse)
+def overlays(walk):
+    """Each is there when it is on, and nowhere when it is off."""
+    view = bpy.context.scene.realmodel.view
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.view(direction="FRONT")
+    names = ("show_legend", "show_north", "show_scale", "show_axes")
+    for name in names:
+        setattr(view, name, False)
+    yield walk.redrawn(3)
+    bare = viewport(walk, walk.shot("no_overlays"))
+    for name in names:
+        setattr(view, name, True)
+        yield walk.redrawn(3)
+        shown = viewport(walk, walk.shot(name))
+        different = (np.abs(shown - bare).max(axis=2) > 0.2).mean()
+        assert 0.002 < different < 0.25, (name, different)
+        setattr(view, name, False)
+    for name in names:
+        setattr(view, name, True)
+    walk.area.spaces.active.region_3d.view_rotation = viewports.view_rotation().to_quaternion()
+    yield walk.redrawn(3)
+    walk.shot("all_overlays")
+    path = walk.folder / "capture_overlays.png"
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.capture(filepath=str(path), width=900, height=600)
+    paper = read_picture(path)[8:60, 8:60]
+    assert (paper.min(axis=2) > 0.85).mean() > 0.1, "there is no legend in the capture"
+
+
+def exaggerated(walk):
+    """Twice as high in the viewport, and not in the mesh."""
+    view = bpy.context.scene.realmodel.view
+    for name in ("show_north", "show_scale", "show_axes"):
+        setattr(view, name, False)
+    item = bpy.data.objects["Cap"]
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.view(direction="FRONT")
+    yield walk.redrawn(3)
+    first = walk.shot("true_heights")
+    assert hue_differs(walk.colour_at(first, (50, 0, 32)), rgb(3)) < ALIKE
+    before = [tuple(vertex.co) for vertex in item.data.vertices]
+    view.exaggeration = 2.0
+    yield walk.redrawn(3)
+    shown = walk.shot("exaggerated")
+    for place, key in (((50, 0, 5), 1), ((50, 0, 39), 2), ((50, 0, 69), 3)):
+        assert hue_differs(walk.colour_at(shown, place), rgb(key)) < ALIKE, place
+    assert [tuple(vertex.co) for vertex in item.data.vertices] == before
+    view.exaggeration = 1.0
+    yield walk.redrawn(2)
+
+
+def colors_of_values(walk):
+    """The top is yellow, the bottom dark blue, and the legend says so."""
+    scene = bpy.context.scene
+    scene.realmodel.color_by = "ELEVATION"
+    yield walk.redrawn(3)
+    shown = walk.shot("ELEVATION")
+    high, low = (walk.colour_at(shown, (50, 0, z)) for z in (39, -4))
+    assert high[0] > high[2] + 0.1 and low[2] > low[0], (high, low)
+    for by in ("THICKNESS", "UNCERTAINTY"):
+        scene.realmodel.color_by = by
+        yield walk.redrawn(3)
+        walk.shot(by)
+    scene.realmodel.color_by = "PROPERTY"
+    yield walk.redrawn(3)
+    assert hue_differs(walk.colour_at(walk.shot("PROPERTY"), (50, 0, 32)), rgb(3)) < ALIKE
+
+
+def surfaces_as_they_survive(walk):
+    scene = bpy.context.scene
+    scene.realmodel.display, scene.realmodel.view.surfaces = "SURFACES", "SURVIVING"
+    yield walk.redrawn(3)
+    walk.shot("surviving")
+    scene.realmodel.rocks[0].active_surface = 2
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.edit_surface()
+    yield walk.redrawn(3)
+    walk.shot("edit_surface")
+    assert bpy.context.mode == "EDIT_MESH"
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.edit_done()
+    scene.realmodel.display = "BLOCKS"
+    yield walk.redrawn(2)
+
+
+def camera_and_sun(walk):
+    """The camera sees what the viewport sees."""
+    scene = bpy.context.scene
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.set_up_picture()
+    camera = scene.camera
+    view = walk.area.spaces.active.region_3d
+    turned = camera.matrix_world.to_quaternion().rotation_difference(view.view_rotation).angle
+    assert min(turned, 6.2832 - turned) < 1e-3, turned
+    view.view_perspective = "CAMERA"
+    yield walk.redrawn(3)
+    walk.shot("camera")
+    view.view_perspective = "PERSP"
+    yield walk.redrawn(1)
+
+
+STEPS = (
+    layers,
+    modes,
+    hidden,
+    stage_and_explode,
+    cut,
+    captures,
+    overlays,
+    exaggerated,
+    colors_of_values,
+    surfaces_as_they_survive,
+    an_animation,
+    coordinates_under_the_mouse,
+    camera_and_sun,
+)

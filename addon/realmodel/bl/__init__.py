@@ -8,6 +8,6 @@ meshes          arrays to meshes and back
 materials       one for each property of the library
 origin          what keeps UTM coordinates exact in float32
 batch           scene, .blend file and picture without a window, for build_model.py
-picture, arrangement, cutaway   the rendered picture and how the model is opened in it
+picture         camera and sun; the picture of build_model.py
 versions        every difference between Blender versions
 """

@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 
 from ..core import OutputFailed
-from . import built_scene, picture, scene, viewports
+from . import built_scene, picture, viewports
 
 
 def write_scene(model, project=None):
@@ -41,15 +41,14 @@ def render(path, size=(1600, 1000), samples=picture.SAMPLES, time_limit=picture.
 
     path: the file, whatever its ending. size: (width, height) in pixels. samples: rays per pixel.
     time_limit: seconds after which no more of them are begun, 0 for no limit.
-    Returns a picture.Picture; the scene and the file's other data stay as they are.
+    Returns by how much the heights were exaggerated; the scene and the file's other data stay as they are.
     Raises OutputFailed where there is nothing to see or the picture cannot be written.
     """
     if not Path(path).parent.is_dir():  # newer versions of Blender would make the folder
         raise OutputFailed(f"{path}: there is no folder {Path(path).parent}")
-    blocks = scene.model_objects(bpy.context.scene, "block")
     try:
         with without_chatter():
-            return picture.render_picture(blocks, path, size, samples, time_limit)
+            return picture.render_picture(bpy.context.scene, path, size, samples, time_limit)
     except RuntimeError as error:
         raise _failed(path, error) from error
 

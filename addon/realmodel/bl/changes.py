@@ -12,6 +12,7 @@ from . import (
     settings,
     surface_figures,
     units,
+    viewports,
 )
 
 
@@ -124,6 +125,15 @@ def view(row, _context):
     """What is drawn in the display modes."""
     if not settings.is_filling():
         display.mode_changed(row.id_data)
+
+
+def overlay(_row, _context):
+    viewports.redraw()
+
+
+def residuals(row, _context):
+    if not settings.is_filling():
+        display.residuals_changed(row.id_data)
 
 
 def exaggeration(row, _context):

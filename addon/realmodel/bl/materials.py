@@ -23,6 +23,12 @@ def linear_colour(colour):
     return tuple(channels)
 
 
+def srgb(value):
+    """The sRGB of a scene-linear channel, both from 0 to 1."""
+    value = min(max(value, 0.0), 1.0)
+    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
+
+
 def name_and_colour(library, property_id):
     """What the library says of a property: its name and "#rrggbb".
 

@@ -1,178 +1,235 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A picture of a model, rendered without a window or a graphics card.
+"""Camera, sun and sky for pictures of a model, and the picture that build_model.py writes.
 
-It is set up in a scene of its own that shares the blocks' materials and is removed afterwards, so
-that nothing of it reaches the model's scene or a saved file. The camera looks from the south-east,
-the sun stands further east, and the model is opened between the two. Of the ways to open it the
-first is taken in which every block is seen; that is found out by casting rays from the camera.
+The camera looks from the south-east, the sun stands further east. What build_model.py renders is set up in a
+scene of its own that is removed afterwards: the model is cut by one upright plane, which is where it meets
+the most blocks.
 """
 
+import contextlib
 import math
-from dataclasses import dataclass
-from functools import partial
 
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-from . import arrangement, meshes, versions
+from ..core import polygon_mesh
+from . import block_shapes, exaggeration, materials, meshes, project_settings, settings, versions
+from .display import shown_models
+from .overlay import drawing_for, legend_share, rendered
+from .viewports import towards, view_rotation
+
+KEY = "realmodel_picture"  # on what is set up here: what it is
 
 # Azimuths are clockwise from north (+y).
-CAMERA_AZIMUTH = math.radians(152.0)
-CAMERA_ELEVATION = math.radians(27.0)
 FIELD_OF_VIEW = math.radians(26.0)  # across the longer side of the picture
 MARGIN = 1.06
 OPEN_AZIMUTH = math.radians(125.0)
+_OPENED = np.linspace(0.16, 0.7, 19)  # of the model, in front of the cut
+_SEEN = 1e-3  # of a cut's area: a block that has less is hardly seen in it
 
-# Sun and sky add up to about 1 on a face turned to the sun, so library colours read true there.
+# Sun and sky add up to about 1 on a face turned to the sun, so library colors read true there.
 SUN_AZIMUTH = math.radians(112.0)
 SUN_ELEVATION = math.radians(40.0)
 SUN_ANGLE = math.radians(4.0)  # softens the shadows' edges
 SUN_STRENGTH = 2.35
-SKY_COLOUR = (0.92, 0.96, 1.0)
+SKY_COLOR = (0.92, 0.96, 1.0)
 SKY_STRENGTH = 0.42
-FLOOR_COLOUR = (0.8, 0.8, 0.8)
+GROUND_COLOR = "#e8e8e8"
 
 SAMPLES = 64
 TIME_LIMIT = 30.0  # seconds of sampling; a slow machine gets a grainier picture, not a late one
-RAYS = 240  # across the longer side, to find out which blocks are seen
-MOST_SECTIONS = 3  # sections that are tried to bring hidden blocks to light
-SEEN = 12  # rays that must meet a block: some 500 pixels of the picture in its usual size
+# A model flatter than this (height over width) is shown with its heights exaggerated.
+FLATTEST = 0.12
 
 
-@dataclass
-class Picture:
-    """What was rendered: how the model was opened, its heights exaggerated, blocks that stay hidden."""
+def set_up(current, points, size, space=None, studio=False, left=0.0):
+    """Gives a scene a camera, light, sky and ground of its own; they are used again the next time. Cameras
+    and lights of the user stay.
 
-    arrangement: str
-    exaggeration: float
-    hidden_blocks: list
-
-
-class Stage:
-    """A scene for one picture and the datablocks made for it."""
-
-    def __init__(self):
-        self.scene = bpy.data.scenes.new("RealModel picture")
-        self._made = []
-        self._images = list(bpy.data.images)
-
-    def remove(self):
-        bpy.data.scenes.remove(self.scene)
-        for image in [i for i in bpy.data.images if i.type == "RENDER_RESULT" and i not in self._images]:
-            image.user_clear()  # Blender counts itself as one
-            bpy.data.images.remove(image)
-        for store, datablock in reversed(self._made):
-            store.remove(datablock)
-
-    def keep(self, store, datablock):
-        self._made.append((store, datablock))
-        return datablock
-
-    def add(self, name, data):
-        """An object for a mesh, camera or light, standing in the scene."""
-        item = self.keep(bpy.data.objects, bpy.data.objects.new(name, data))
-        self.scene.collection.objects.link(item)
-        return item
-
-    def add_triangles(self, name, triangles, material):
-        """A mesh object from a triangle soup, (T, 3, 3)."""
-        coordinates = triangles.reshape(-1, 3)
-        corners = np.arange(len(coordinates)).reshape(-1, 3)
-        mesh = self.keep(bpy.data.meshes, meshes.triangle_mesh(name, coordinates, corners))
-        mesh.materials.append(material)
-        return self.add(name, mesh)
-
-
-def render_picture(block_objects, path, size=(1600, 1000), samples=SAMPLES, time_limit=TIME_LIMIT):
-    """Render blocks to a PNG file.
-
-    block_objects: the model's block objects, oldest first. path: the file, whatever its ending.
-    size: (width, height) in pixels. samples: rays per pixel. time_limit: seconds after which no
-    more of them are begun, 0 for no limit. Returns a Picture.
-    Raises RuntimeError where there is nothing to see or Blender cannot render or write.
+    points: (N, 3) of what is to be seen. size: (width, height) of the picture. space: a 3D viewport that the
+    camera is to look as; without one it sees all points. studio: a lamp beside the camera, an even sky and no
+    ground, so that all that faces the eye has its own color. left: the part of the picture's width that is
+    kept free where the camera sees all points, for a legend.
     """
-    if not block_objects:
-        raise RuntimeError("there is no block to render: the model is empty")
-    bodies, exaggeration = arrangement.centred(_bodies(block_objects))
-    layout, hidden = _choose_layout(bodies, size)
-    stage = Stage()
-    try:
-        camera = _set_up(stage, layout, size)
-        _add_light(stage, layout, camera)
-        set_renderer(stage.scene, path, size, samples, time_limit)
-        bpy.ops.render.render(write_still=True, scene=stage.scene.name)
-    finally:
-        stage.remove()
-    return Picture(layout.name, exaggeration, hidden)
+    camera = _own(current, "camera", lambda: bpy.data.cameras.new("RealModel Camera"))
+    reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
+    camera.data.sensor_fit = "HORIZONTAL" if size[0] >= size[1] else "VERTICAL"
+    if space is None:
+        camera.data.type, camera.data.angle = "PERSP", FIELD_OF_VIEW
+        camera.data.shift_x = -left / 2 * size[0] / max(size)
+        camera.matrix_world, away = camera_matrix(points, size, left)
+    else:
+        away = _look_as(camera, space, reach)
+    camera.data.clip_start, camera.data.clip_end = away / 1e3, 10.0 * (away + reach)
+    current.camera = camera
+    sun = _own(current, "sun", lambda: bpy.data.lights.new("RealModel Sun", "SUN"))
+    sun.data.energy, sun.data.angle = (2.0, 0.0) if studio else (SUN_STRENGTH, SUN_ANGLE)
+    if studio:
+        sun.matrix_world = camera.matrix_world @ Matrix.Rotation(0.5, 4, "Y")
+    else:
+        sun.rotation_euler = towards(SUN_AZIMUTH, SUN_ELEVATION).to_track_quat("Z", "Y").to_euler()
+        _put_ground(current, points, 10.0 * (away + reach))
+    _set_sky(current, *((1.0, 1.0, 1.0), 0.4) if studio else (SKY_COLOR, SKY_STRENGTH))
+    return camera
 
 
-def _bodies(block_objects):
-    ranks = {}
-    bodies = []
-    for item in block_objects:
-        rock = item.get("realmodel_rock")
-        bodies.append(arrangement.Body.of(item, ranks.get(rock, 0)))
-        ranks[rock] = ranks.get(rock, 0) + 1
-    return bodies
-
-
-def _choose_layout(bodies, size):
-    """The first way to open the model in which all blocks are seen, or else the one that hides fewest.
-
-    Returns the layout and the names of the blocks hidden in it.
-    """
-
-    def judged(layout):
-        stage = Stage()
-        try:
-            return layout, _hidden(stage.scene, _set_up(stage, layout, size), layout.bodies, size)
-        finally:
-            stage.remove()
-
-    towards = _towards(OPEN_AZIMUTH, 0.0)
-    best = judged(arrangement.peeled(bodies, towards))
-    others = [partial(arrangement.section_through, bodies, towards, name) for name in best[1][:MOST_SECTIONS]]
-    others += [partial(arrangement.exploded, bodies, gap) for gap in arrangement.GAPS]
-    for layout in others:
-        if not best[1]:
-            break
-        best = min(best, judged(layout()), key=lambda found: len(found[1]))
-    return best
-
-
-def _set_up(stage, layout, size):
-    """Put bodies and camera into the scene; returns the camera object."""
-    for number, body in enumerate(layout.bodies):
-        stage.add_triangles(f"block {number}", body.triangles, body.material)["block"] = number
-    camera = stage.keep(bpy.data.cameras, bpy.data.cameras.new("RealModel picture"))
-    matrix, distance = camera_matrix(layout.points(), size)
-    camera.sensor_fit = "HORIZONTAL" if size[0] >= size[1] else "VERTICAL"
-    camera.angle = FIELD_OF_VIEW
-    camera.clip_start, camera.clip_end = distance / 100.0, distance * 100.0
-    item = stage.add("camera", camera)
-    item.matrix_world = matrix
-    stage.scene.camera = item
+def _own(current, kind, data):
+    """The object of a kind that belongs to the picture of a scene, new where there is none."""
+    item = next((item for item in current.objects if item.get(KEY) == kind), None)
+    if item is None:
+        made = data()
+        item = bpy.data.objects.new(made.name, made)
+        item[KEY] = kind
+        current.collection.objects.link(item)
     return item
 
 
-def _towards(azimuth, elevation):
-    """Unit vector towards an azimuth (clockwise from north) and elevation, radians."""
-    flat = math.cos(elevation)
-    return Vector((flat * math.sin(azimuth), flat * math.cos(azimuth), math.sin(elevation)))
+def _look_as(camera, space, reach):
+    """Has a camera look as a viewport does; returns how far it is from what the viewport turns around."""
+    view, data = space.region_3d, camera.data
+    data.shift_x = 0.0
+    is_flat = view.view_perspective == "ORTHO"
+    away = view.view_distance + (2.0 * reach if is_flat else 0.0)
+    turned = view.view_rotation.to_matrix().to_4x4()
+    camera.matrix_world = (
+        Matrix.Translation(view.view_location) @ turned @ Matrix.Translation((0.0, 0.0, away))
+    )
+    data.type = "ORTHO" if is_flat else "PERSP"
+    data.lens, data.sensor_width, data.sensor_height = space.lens / 2.0, 36.0, 36.0
+    data.ortho_scale = view.view_distance * 72.0 / space.lens  # Blender's viewports show 72 mm
+    return away
 
 
-def camera_matrix(points, size):
+def _set_sky(current, color, strength):
+    world = current.world
+    if world is None or KEY not in world:
+        if world is not None:
+            world.use_fake_user = True  # the user's own stays in the file
+        world = bpy.data.worlds.new("RealModel Sky")
+        world[KEY] = "sky"
+        world.use_nodes = True
+        # Left to the rays that bounce off: then each sample asks the sun, and an open ground has no noise.
+        versions.leave_sky_to_bounces(world)
+        current.world = world
+    sky = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
+    sky.inputs["Color"].default_value = (*color, 1.0)
+    sky.inputs["Strength"].default_value = strength
+
+
+def _put_ground(current, points, reach):
+    """A light plane that takes the shadow, in renders only; its rim is beyond the frame."""
+    extent = np.ptp(points, axis=0).max()
+    x, y = points[:, :2].mean(axis=0)
+    z = points[:, 2].min() - 0.002 * extent
+    corners = np.array([[x + a * reach, y + b * reach, z] for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+    ground = _own(current, "ground", lambda: _ground_mesh(corners))
+    ground.data.vertices.foreach_set("co", corners.astype(np.float32).ravel())
+    ground.data.update()
+    ground.hide_viewport = ground.hide_select = True
+
+
+def _ground_mesh(corners):
+    mesh = meshes.triangle_mesh("RealModel Ground", corners, np.array([[0, 1, 2], [0, 2, 3]]))
+    material = bpy.data.materials.new("RealModel Ground")
+    material.use_nodes = True
+    materials.set_colour(material, GROUND_COLOR)
+    versions.make_matt(next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED"))
+    mesh.materials.append(material)
+    return mesh
+
+
+@contextlib.contextmanager
+def throw_away(current):
+    """A scene for one picture: it and all datablocks that are made meanwhile are removed at the end."""
+    stores = (bpy.data.objects, bpy.data.meshes, bpy.data.cameras, bpy.data.lights, bpy.data.worlds)
+    stores += (bpy.data.materials, bpy.data.images, bpy.data.collections)
+    before = [set(store) for store in stores]
+    try:
+        yield current
+    finally:
+        bpy.data.scenes.remove(current)
+        for store, known in zip(stores, before, strict=True):
+            for datablock in [datablock for datablock in store if datablock not in known]:
+                if isinstance(datablock, bpy.types.Image):
+                    datablock.user_clear()  # Blender counts itself as a user of a render's result
+                store.remove(datablock)
+
+
+def render_picture(current, path, size, samples=SAMPLES, time_limit=TIME_LIMIT):
+    """Renders a scene's model, cut open, to a PNG file; the scene stays as it is.
+
+    path: the file, whatever its ending. size: (width, height) in pixels. samples: rays per pixel.
+    time_limit: seconds after which no more of them are begun, 0 for no limit. Returns by how much the heights
+    were exaggerated. Raises RuntimeError where there is nothing to see or Blender cannot render or write,
+    RealModelError.
+    """
+    rows = {(row.rock, row.name): row.object for row in current.realmodel.results if row.object is not None}
+    if not rows:
+        raise RuntimeError("there is no block to render: the model is empty")
+    origin = project_settings.model_origin(current)
+    half = _opened(shown_models.at_stage(current, settings.last_stage(current)))
+    shapes = block_shapes.by_name(half, polygon_mesh.of_blocks(half, origin))
+    coordinates = np.concatenate([shape.coordinates for shape in shapes.values()])
+    factor = exaggeration_of(np.ptp(coordinates, axis=0))
+    if current.realmodel.view.exaggeration != 1.0:
+        factor = exaggeration.factor(current)
+    with throw_away(bpy.data.scenes.new("RealModel picture")) as stage:
+        for key, shape in shapes.items():
+            made = bpy.data.objects.new(key[1], meshes.new_mesh(key[1], shape))
+            made.data.materials.append(rows[key].data.materials[0])
+            made.scale.z = factor
+            stage.collection.objects.link(made)
+        set_up(stage, coordinates * (1.0, 1.0, factor), size, left=legend_share(current, size))
+        set_renderer(stage, path, size, samples, time_limit)
+        stretched = np.diag([1.0, 1.0, factor, 1.0])
+        rendered.put(stage, lambda _, *eye: drawing_for(current, *eye, stretched=stretched))
+        bpy.ops.render.render(write_still=True, scene=stage.name)
+    return factor
+
+
+def exaggeration_of(extent):
+    """1, 2, 5, 10, 20, 50, ...: by how much the heights of a model of an extent (3,) are exaggerated."""
+    width, height = extent[:2].max(), extent[2]
+    if not 0.0 < height < FLATTEST * width:
+        return 1.0
+    wanted = FLATTEST * width / height
+    decade = 10.0 ** math.floor(math.log10(wanted))
+    return next(decade * step for step in (1.0, 2.0, 5.0, 10.0) if decade * step >= wanted)
+
+
+def _opened(model):
+    """The model without what is before an upright plane: of some planes the one that takes the fewest blocks
+    away, meets the most, and of these the smallest in the largest area."""
+    ahead = np.array(towards(OPEN_AZIMUTH, 0.0))
+    reach = model.vertices @ ahead
+    nearest = np.full(len(model.blocks) + 1, np.inf)
+    of_faces = np.minimum.reduceat(reach[model.face_vertices], model.face_offsets[:-1])
+    for side in range(2):
+        np.minimum.at(nearest, model.face_blocks[:, side], of_faces)
+    found = []
+    for share in _OPENED:
+        offset = reach.max() - share * np.ptp(reach)
+        areas = model.section(offset * ahead, ahead).area_by_block()
+        met = areas[areas > _SEEN * areas.sum()]
+        found.append((np.count_nonzero(nearest[:-1] < offset), len(met), met.min(initial=np.inf), offset))
+    return model.cut_by_plane(max(found)[-1] * ahead, ahead).below
+
+
+def camera_matrix(points, size, left=0.0):
     """World matrix of a camera that has all points centred in its frame, and its distance.
 
-    points: (N, 3) float64. size: (width, height) in pixels. The place follows from the four planes
+    points: (N, 3) float64. size: (width, height) in pixels. left: the part of
+    the width that is kept free. The place follows from the four planes
     of the frame: in camera axes, z towards the camera, a point is inside where
     |x - cx| <= tx (d - z) and |y - cy| <= ty (d - z).
     """
     rotation = view_rotation()
     axes = np.array(rotation).T
     local = points @ axes.T
-    tangents = np.array(size, float) / max(size) * math.tan(FIELD_OF_VIEW / 2.0) / MARGIN
+    tangents = (
+        np.array([size[0] * (1.0 - left), size[1]]) / max(size) * math.tan(FIELD_OF_VIEW / 2.0) / MARGIN
+    )
     distance, centre = 0.0, []
     for axis, tangent in enumerate(tangents):
         high = (local[:, axis] + tangent * local[:, 2]).max()
@@ -183,63 +240,8 @@ def camera_matrix(points, size):
     return Matrix.Translation(position) @ rotation.to_4x4(), distance
 
 
-def view_rotation():
-    """How the camera is turned, (3, 3): its columns point right, up, and back from where it looks."""
-    back = _towards(CAMERA_AZIMUTH, CAMERA_ELEVATION)
-    right = Vector((0.0, 0.0, 1.0)).cross(back).normalized()
-    return Matrix((right, back.cross(right), back)).transposed()
-
-
-def _hidden(scene, camera, bodies, size):
-    """Names of the blocks that fewer than SEEN rays from the camera meet."""
-    view_layer = scene.view_layers[0]
-    view_layer.update()
-    matrix = np.array(camera.matrix_world, np.float64)
-    columns, rows = (max(2, round(RAYS * length / max(size))) for length in size)
-    tangents = np.array(size, float) / max(size) * math.tan(FIELD_OF_VIEW / 2.0)
-    x = (np.arange(columns) + 0.5) / columns * 2.0 - 1.0
-    y = (np.arange(rows) + 0.5) / rows * 2.0 - 1.0
-    grid = np.stack([*np.meshgrid(x * tangents[0], y * tangents[1]), -np.ones((rows, columns))], axis=-1)
-    rays = grid.reshape(-1, 3) @ matrix[:3, :3].T
-    origin = Vector(matrix[:3, 3])
-    met = np.zeros(len(bodies), int)
-    for ray in rays:
-        hit, _, _, _, item, _ = scene.ray_cast(view_layer.depsgraph, origin, Vector(ray))
-        if hit:
-            met[item["block"]] += 1
-    return [body.name for body, rays_met in zip(bodies, met, strict=True) if rays_met < SEEN]
-
-
-def _add_light(stage, layout, camera):
-    """A sun, an even sky, and a light floor that takes the shadow."""
-    sun = stage.keep(bpy.data.lights, bpy.data.lights.new("RealModel picture", "SUN"))
-    sun.energy, sun.angle = SUN_STRENGTH, SUN_ANGLE
-    direction = _towards(SUN_AZIMUTH, SUN_ELEVATION)
-    stage.add("sun", sun).rotation_euler = direction.to_track_quat("Z", "Y").to_euler()
-    world = stage.keep(bpy.data.worlds, bpy.data.worlds.new("RealModel picture"))
-    world.use_nodes = True
-    sky = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
-    sky.inputs["Color"].default_value = (*SKY_COLOUR, 1.0)
-    sky.inputs["Strength"].default_value = SKY_STRENGTH
-    # Left to the rays that bounce off: then each sample asks the sun, and an open floor has no noise.
-    versions.leave_sky_to_bounces(world)
-    stage.scene.world = world
-    points = layout.points()
-    low, extent = points[:, 2].min(), np.ptp(points, axis=0).max()
-    # Far enough that its rim is beyond the frame, which looks down on it.
-    reach = 10.0 * camera.location.length
-    z = low - 0.002 * extent
-    corners = np.array([[-reach, -reach, z], [reach, -reach, z], [reach, reach, z], [-reach, reach, z]])
-    floor = stage.keep(bpy.data.materials, bpy.data.materials.new("RealModel picture"))
-    floor.use_nodes = True
-    principled = next(node for node in floor.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
-    principled.inputs["Base Color"].default_value = (*FLOOR_COLOUR, 1.0)
-    versions.make_matt(principled)
-    stage.add_triangles("floor", corners[[[0, 1, 2], [0, 2, 3]]], floor)
-
-
 def set_renderer(scene, path, size, samples, time_limit):
-    """Has a scene render a PNG by what renderer this Blender has, in the colours as they are."""
+    """Has a scene render a PNG of a size in pixels."""
     render = scene.render
     render.resolution_x, render.resolution_y = size
     render.resolution_percentage = 100
@@ -247,6 +249,12 @@ def set_renderer(scene, path, size, samples, time_limit):
     render.use_file_extension = False
     render.image_settings.file_format = "PNG"
     render.image_settings.color_mode = "RGB"
+    choose_renderer(scene, samples, time_limit)
+
+
+def choose_renderer(scene, samples, time_limit):
+    """Has a scene render by what renderer this Blender has, in the colors as they are."""
+    render = scene.render
     versions.plain_colours(scene)
     if not versions.cycles_available(scene):
         # Workbench knows the materials' viewport colours; light and shadow are plainer.

@@ -4,6 +4,7 @@
 The rest of the add-on asks this module and never looks at `bpy.app.version` itself.
 """
 
+import blf
 import bpy
 import numpy as np
 
@@ -150,6 +151,38 @@ def plain_colours(scene):
     scene.view_settings.look = "None"
     scene.view_settings.exposure = 0.0
     scene.view_settings.gamma = 1.0
+
+
+def text_size(font, size):
+    """Sets the size of blf's text in pixels; the resolution went in 4.0."""
+    if bpy.app.version >= (4, 0, 0):
+        blf.size(font, size)
+    else:
+        blf.size(font, size, 72)
+
+
+def depsgraph(scene):
+    """The dependency graph of a scene's first view layer; one that was never shown has none before an
+    update."""
+    layer = scene.view_layers[0]
+    if layer.depsgraph is None:
+        layer.update()
+    return layer.depsgraph
+
+
+def let_through(material):
+    """Has Eevee draw what is transparent of a material so; Cycles always does."""
+    if hasattr(material, "surface_render_method"):  # from 4.2 on
+        material.surface_render_method = "BLENDED"
+    else:
+        material.blend_method, material.shadow_method = "BLEND", "NONE"
+
+
+def colored_shader():
+    """The built-in shader of triangles whose corners have colors."""
+    import gpu
+
+    return gpu.shader.from_builtin("SMOOTH_COLOR" if bpy.app.version >= (4, 0, 0) else "3D_SMOOTH_COLOR")
 
 
 def plain_shader(points):

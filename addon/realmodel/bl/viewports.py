@@ -5,11 +5,30 @@ What a user asks for in one viewport happens in that one: its `space_data` is th
 background mode have none; then it happens in all of them.
 """
 
+import math
+
 import bpy
 import numpy as np
-from mathutils import Vector
+from mathutils import Matrix, Vector
 
-from . import picture, scene
+from . import scene
+
+# Where the usual view of a model is from. Azimuths are clockwise from north (+y).
+CAMERA_AZIMUTH = math.radians(152.0)
+CAMERA_ELEVATION = math.radians(27.0)
+
+
+def towards(azimuth, elevation):
+    """Unit vector towards an azimuth (clockwise from north) and elevation, radians."""
+    flat = math.cos(elevation)
+    return Vector((flat * math.sin(azimuth), flat * math.cos(azimuth), math.sin(elevation)))
+
+
+def view_rotation():
+    """How the usual view is turned, (3, 3): its columns point right, up, and back from where it looks."""
+    back = towards(CAMERA_AZIMUTH, CAMERA_ELEVATION)
+    right = Vector((0.0, 0.0, 1.0)).cross(back).normalized()
+    return Matrix((right, back.cross(right), back)).transposed()
 
 
 def areas():
@@ -67,7 +86,7 @@ def frame(current, shown):
         space.clip_start, space.clip_end = diagonal / 1e4, diagonal * 10.0
         space.region_3d.view_location = middle
         space.region_3d.view_distance = diagonal
-        space.region_3d.view_rotation = picture.view_rotation().to_quaternion()
+        space.region_3d.view_rotation = view_rotation().to_quaternion()
 
 
 def redraw():

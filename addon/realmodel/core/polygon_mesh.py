@@ -5,6 +5,7 @@ them."""
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -46,6 +47,38 @@ def of_triangles(coordinates: np.ndarray, triangles: np.ndarray, smooth: bool = 
     corners = np.ascontiguousarray(triangles, np.int32).reshape(-1)
     edges, corner_edges = native_module().polygon_edges(offsets, corners, len(coordinates))
     return PolygonMesh(coordinates, offsets, corners, None, edges, corner_edges, smooth)
+
+
+def of_surfaces(model: Model, origin: np.ndarray) -> list[PolygonMesh | None]:
+    """For each surface of a model, by its global index, the faces that are left of it; None where it is all
+    eroded. origin: as for `of_blocks`."""
+    order = np.argsort(model.face_surface, kind="stable")
+    begin = np.searchsorted(model.face_surface[order], np.arange(len(model.surface_names) + 1))
+    found: list[PolygonMesh | None] = []
+    for first, last in pairwise(begin.tolist()):
+        if first == last:
+            found.append(None)
+            continue
+        faces = order[first:last]
+        # The cell that a face is numbered for lies below it or above; seen from above all turn the same way.
+        offsets, corners = model.face_corners(faces, _seen_from_below(model, faces))
+        used, corners = np.unique(corners, return_inverse=True)
+        coordinates = (model.vertices[used] - origin).astype(np.float32)
+        offsets, corners = offsets.astype(np.int32), corners.astype(np.int32).ravel()
+        edges, corner_edges = native_module().polygon_edges(offsets, corners, len(used))
+        found.append(PolygonMesh(coordinates, offsets, corners, None, edges, corner_edges))
+    return found
+
+
+def _seen_from_below(model: Model, faces: np.ndarray) -> np.ndarray:
+    """(N,) bool: the faces whose corners go clockwise seen from above."""
+    offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
+    x, y = model.vertices[corners, 0], model.vertices[corners, 1]
+    following = np.arange(1, len(corners) + 1)
+    following[offsets[1:] - 1] = offsets[:-1]
+    first = np.repeat(offsets[:-1], np.diff(offsets))
+    x, y = x - x[first], y - y[first]
+    return np.add.reduceat(x * y[following] - y * x[following], offsets[:-1]) < 0
 
 
 def of_blocks(

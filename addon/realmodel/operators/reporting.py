@@ -64,6 +64,16 @@ def a_model(context):
     return None if len(context.scene.realmodel.results) else "there is no model yet; press Build first"
 
 
+def an_interface(context):
+    row = settings.active_surface(context.scene)
+    there = row is not None and row.interface is not None and row.interface.name in context.view_layer.objects
+    return None if there else "the surface has no interface yet; press Build first"
+
+
+def an_edit(context):
+    return None if context.mode == "EDIT_MESH" else "nothing is being edited"
+
+
 def a_library(context):
     return None if len(context.scene.realmodel.library) else "the library is empty; add a property first"
 

@@ -6,10 +6,19 @@ from bpy.props import EnumProperty, IntProperty, StringProperty
 from bpy_extras import view3d_utils
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import display, project_settings, units
-from ..bl.display import capture, coordinates, modes, viewpoints
+from ..bl import display, overlay, picture, project_settings, settings, units
+from ..bl.display import capture, coordinates, modes, viewpoints, visible
 from ..core import InputRefused, UsageError
-from .reporting import Reporting, a_model, a_viewport, needed_path, place_property
+from .reporting import (
+    Reporting,
+    a_model,
+    a_surface,
+    a_viewport,
+    an_edit,
+    an_interface,
+    needed_path,
+    place_property,
+)
 
 _LOOKING = {
     "FRONT": ("Front", "From the south"),
@@ -119,6 +128,85 @@ class REALMODEL_OT_capture(Reporting, bpy.types.Operator, ExportHelper):
         width = self.width or round(self.height * usual[0] / usual[1])
         height = self.height or round(self.width * usual[1] / usual[0])
         return max(1, width), max(1, height)
+
+
+class REALMODEL_OT_set_up_picture(Reporting, bpy.types.Operator):
+    """Add a camera, sun, sky and ground for the model and choose the renderer, so that Render Image (F12)
+    gives a good picture. Your own cameras and lights stay"""
+
+    bl_idname = "realmodel.set_up_picture"
+    bl_label = "Set Up Camera and Sun"
+    needs = (a_model,)
+
+    view: EnumProperty(
+        name="View",
+        description="Where the camera looks from",
+        items=(
+            ("VIEWPORT", "Viewport", "As the viewport does"),
+            ("MODEL", "Whole Model", "From the southeast, at the whole model"),
+        ),
+    )
+
+    def act(self, context):
+        scene = context.scene
+        found = capture.viewport(context) if self.view == "VIEWPORT" and not bpy.app.background else None
+        render = scene.render
+        picture.set_up(
+            scene,
+            viewpoints.model_points(scene),
+            (render.resolution_x, render.resolution_y),
+            None if found is None else found[2],
+            left=overlay.legend_share(scene, (render.resolution_x, render.resolution_y)),
+        )
+        picture.choose_renderer(scene, picture.SAMPLES, picture.TIME_LIMIT)
+
+
+class REALMODEL_OT_render_picture(Reporting, bpy.types.Operator):
+    """Render the model with its camera; where the scene has none, set up camera and sun first"""
+
+    bl_idname = "realmodel.render_picture"
+    bl_label = "Render Picture"
+    needs = (a_model,)
+
+    def act(self, context):
+        if context.scene.camera is None:
+            bpy.ops.realmodel.set_up_picture()
+        how = "EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT"  # with a window it stays alive
+        bpy.ops.render.render(how)
+
+
+class REALMODEL_OT_edit_surface(Reporting, bpy.types.Operator):
+    """Edit the interface of the active surface: show the blocks with it and enter Edit Mode"""
+
+    bl_idname = "realmodel.edit_surface"
+    bl_label = "Edit Surface"
+    needs = (a_surface, an_interface)
+
+    def act(self, context):
+        item = settings.active_surface(context.scene).interface
+        if context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        context.scene.realmodel.display = "BLOCKS"
+        visible.show(context.scene, item, True)
+        for other in context.selected_objects:
+            other.select_set(False)
+        item.select_set(True)
+        context.view_layer.objects.active = item
+        bpy.ops.object.mode_set(mode="EDIT")
+        display.mode_changed(context.scene)
+
+
+class REALMODEL_OT_edit_done(Reporting, bpy.types.Operator):
+    """Leave Edit Mode and show the surfaces again"""
+
+    bl_idname = "realmodel.edit_done"
+    bl_label = "Done"
+    needs = (an_edit,)
+
+    def act(self, context):
+        bpy.ops.object.mode_set(mode="OBJECT")
+        display.mode_changed(context.scene)
+        context.scene.realmodel.display = "SURFACES"
 
 
 class REALMODEL_OT_hide_property(Reporting, bpy.types.Operator):
@@ -287,6 +375,10 @@ CLASSES = (
     REALMODEL_OT_view_next,
     REALMODEL_OT_view_all,
     REALMODEL_OT_capture,
+    REALMODEL_OT_edit_surface,
+    REALMODEL_OT_edit_done,
+    REALMODEL_OT_set_up_picture,
+    REALMODEL_OT_render_picture,
     REALMODEL_OT_hide_property,
     REALMODEL_OT_coordinates,
     REALMODEL_OT_set_origin,

@@ -5,7 +5,7 @@ import bpy
 
 from .. import props_stage
 from ..bl import library_rows, settings, units
-from ..bl.display import coordinates, cuts, modes, preparing
+from ..bl.display import coordinates, cuts, modes, preparing, residuals
 from .panel import TabPanel, hint, wrapped
 
 _WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
@@ -24,10 +24,9 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
         column.prop(group, "display", text="Show")
         if group.display in _WITH_SUBJECT:
             column.prop(group.view, "subject")
+        if group.display == "SURFACES":
+            column.prop(group.view, "surfaces", text="Part")
         column.prop(group, "color_by")
-        if group.color_by == "UNCERTAINTY":
-            text = "Dark blue: certain; yellow: the largest deviation of each surface, told in Surfaces."
-            hint(layout, text if group.display == "SURFACES" else "Choose Surfaces to see it.")
         _stage(layout, context.scene)
         if preparing.is_working(context.scene):
             hint(layout, "being made ...")
@@ -36,6 +35,21 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
         if group.explode > 0.0:
             column.prop(group, "explode_direction", text="Direction")
         column.prop(group.view, "exaggeration")
+        if context.mode == "EDIT_MESH":
+            layout.operator("realmodel.edit_done", icon="CHECKMARK")
+        elif group.display == "SURFACES":
+            layout.operator("realmodel.edit_surface", icon="EDITMODE_HLT")
+        layout.prop(group.view, "show_residuals")
+        for _, name, count, _, spread, largest, outside in residuals.rows(context.scene):
+            column = layout.column(align=True)
+            column.label(text=f"{name}: {count} points")
+            values = [units.length_text(context.scene, value) for value in (spread, largest)]
+            column.label(text=f"RMS {values[0]}, largest {values[1]}")
+            if outside:
+                column.label(text=f"{outside} outside of the surface")
+        grid = layout.grid_flow(row_major=True, columns=2, align=True)
+        for name in ("show_legend", "show_north", "show_scale", "show_axes"):
+            grid.prop(group.view, name, toggle=True)
         if group.view.message:
             box = layout.box()
             box.alert = True
@@ -138,7 +152,9 @@ class REALMODEL_PT_view_camera(TabPanel, bpy.types.Panel):
         row.operator("realmodel.view_previous", text="", icon="LOOP_BACK")
         row.operator("realmodel.view_next", text="", icon="LOOP_FORWARDS")
         row.operator("realmodel.view_all", text="Frame", icon="ZOOM_ALL")
-        layout.operator("realmodel.capture", text="Capture...", icon="RENDER_STILL")
+        layout.operator("realmodel.capture", text="Capture...", icon="RESTRICT_RENDER_OFF")
+        layout.operator("realmodel.set_up_picture", icon="CAMERA_DATA")
+        layout.operator("realmodel.render_picture", icon="RENDER_STILL")
 
 
 class REALMODEL_PT_view_coordinates(_OfABuiltModel, TabPanel, bpy.types.Panel):

@@ -37,6 +37,8 @@ from . import (
     preparing,
     render_marks,
     replacing,
+    residuals,
+    shades,
     shown_models,
     stages,
 )
@@ -110,6 +112,18 @@ def exaggeration_changed(scene):
     exaggeration.apply(scene, [*items, cuts.plane_of(scene)], explosion.bounds(scene)[0][2])
 
 
+def residuals_changed(scene):
+    """The residuals of points are wanted, or not; or there is another model."""
+    try:
+        if scene.realmodel.view.show_residuals and len(scene.realmodel.results):
+            residuals.show(scene)
+        else:
+            residuals.hide(scene)
+    except RealModelError as error:
+        scene.realmodel.view.message = str(error)
+    exaggeration_changed(scene)
+
+
 def colours_changed(scene):
     """Another rule of colouring, or another colour in the library."""
     _show(scene, color_by=scene.realmodel.color_by)
@@ -143,7 +157,9 @@ def built(scene, bounds, stage=None):
         shown_models.remember_stage(scene, *stage)
     explosion.set_bounds(scene, *bounds)
     group = scene.realmodel
-    group.view.cells_of = ""
+    group.view.cells_of = group.view.surviving_of = ""
+    if group.view.show_residuals:
+        residuals_changed(scene)
     whole = group.stage >= settings.last_stage(scene)
     _show(scene, whole, **{key: getattr(group, key) for key in _ANIMATED})
 
@@ -156,7 +172,10 @@ def let_go(item):
 def cleared(scene):
     """The blocks are gone."""
     forget_meshes()
-    bodies.remove(scene, bodies.CELLS)
+    for kind in (bodies.CELLS, bodies.SURVIVING):
+        bodies.remove(scene, kind)
+    scene.realmodel.view.surviving_of = ""
+    residuals.hide(scene)
     cuts.take_off(scene)
     colours.forget(scene)
     modes.without_blocks(scene)
@@ -251,10 +270,9 @@ def _show(scene, has_shapes=False, **wanted):
         modes.apply(scene, now["display"], now["stage"])
         if replacing.is_rendering():
             render_marks.put(scene, now["display"])
-    if "color_by" in wanted or "stage" in wanted:
+    if "color_by" in wanted or "stage" in wanted or now["color_by"] in shades.TITLES:
         colours.apply(scene)
-    if "color_by" in wanted or "display" in wanted:
-        colours.shade_viewports(now["color_by"], now["display"], _applied(scene))
+        colours.shade_viewports(now["color_by"], _applied(scene))
     if not replacing.is_rendering():
         exaggeration_changed(scene)
     group.view.applied = json.dumps({key: now[key] for key in _ANIMATED})

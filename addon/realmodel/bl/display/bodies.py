@@ -4,12 +4,15 @@ stand beside the model, in the collection "<project> view", each a child of the 
 go where that goes."""
 
 import bpy
+import numpy as np
+from mathutils import Matrix
 
-from .. import meshes, scene
+from .. import exaggeration, meshes, scene
 from . import replacing
 
 KIND = "realmodel_view"  # on an object: what it is for
 CUT, CELLS, MARKS, PLANE, SECTION = "cut", "cells", "marks", "plane", "section"
+SURVIVING, RESIDUALS = "surviving", "residuals"
 
 
 def of_kind(current, kind):
@@ -23,10 +26,10 @@ def _listed(current, kind):
     return [] if collection is None else [item for item in collection.objects if item.get(KIND) == kind]
 
 
-def put(current, kind, shapes):
+def put(current, kind, shapes, material=None):
     """Makes the bodies of a kind, in place of those that are there.
 
-    shapes: for each block that has one (block object, PolygonMesh).
+    shapes: for each block that has one (block object, PolygonMesh). material: where it is not the block's.
     """
     known = of_kind(current, kind)
     wanted = {block for block, _ in shapes}
@@ -38,7 +41,12 @@ def put(current, kind, shapes):
             replacing.give_shape(item, shape)
         else:
             item = _new(collection, kind, block, meshes.new_mesh(f"{block.name} {kind}", shape))
-        _take_material(item, block)
+        if kind == SURVIVING:  # its mesh is in the coordinates of the model, not in those of the interface
+            item.matrix_parent_inverse = Matrix(np.linalg.inv(exaggeration.true_matrix(block)))
+        if material is None:
+            _take_material(item, block)
+        elif not len(item.data.materials):
+            item.data.materials.append(material)
 
 
 def _new(collection, kind, block, mesh):
@@ -64,7 +72,7 @@ def _take_material(item, block):
 
 def follow_materials(current):
     """The bodies take the materials that their blocks have now."""
-    for kind in (CUT, CELLS):
+    for kind in (CUT, CELLS, SURVIVING):
         for block, item in of_kind(current, kind).items():
             _take_material(item, block)
 

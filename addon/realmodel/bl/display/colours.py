@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the colours of the blocks tell: their property, themselves, their rock mass, their age; and those of
-the interfaces, how sure their heights are.
+"""What the colors of blocks and interfaces mean: their property, themselves, their rock mass, their age, or a
+value (`shades`).
 
 The mesh of a block keeps its property's material. Other colours are materials that the object, not the mesh,
 has in its slot, so they show in every way of shading and in renders, and go without a trace.
@@ -9,9 +9,12 @@ has in its slot, so they show in every way of shading and in renders, and go wit
 import colorsys
 
 import bpy
+import numpy as np
 
-from .. import library_rows, materials, settings, uncertainty, viewports
-from . import bodies
+from ...core import layer_values
+from ...core.drawing.overlay import ColorKey
+from .. import library_rows, materials, settings, viewports
+from . import bodies, modes, shades, stages
 
 KEY = "realmodel_colour"  # on a material: what it stands for
 _GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
@@ -19,15 +22,15 @@ _OLD, _YOUNG = (0.72, 0.62, 0.55), (0.13, 0.55, 0.95)  # hue, saturation, value 
 
 
 def apply(scene):
-    """Gives all blocks and interfaces the colours that the settings ask for."""
+    """Gives all blocks and interfaces the colors that the settings ask for."""
     by = scene.realmodel.color_by
     places = _places(scene)
+    shades.apply(scene, by)
+    common = shades.material() if by in shades.TITLES else None
     for row in scene.realmodel.results:
         if _can_take(row.object):
-            material = (
-                None if by in ("PROPERTY", "UNCERTAINTY") else _material(*_entry(scene, by, row, places))
-            )
-            _put_into_slot(row.object, material)
+            plain = None if by == "PROPERTY" or common else plain_material(*_entry(scene, by, row, places))
+            _put_into_slot(row.object, common or plain)
     blocks = {(row.rock, row.surface): row for row in scene.realmodel.results}
     for rock, surface in settings.surface_rows(scene):
         item, row = surface.interface, blocks.get((rock.name, surface.name))
@@ -35,12 +38,12 @@ def apply(scene):
             continue
         if any(m is not None for m in item.data.materials):
             continue  # the user's own
-        if by == "UNCERTAINTY" and uncertainty.UNCERTAINTY in item.data.color_attributes:
-            material = _of_vertices()
-        elif by in ("PROPERTY", "UNCERTAINTY") or row is None:
+        if common is not None:
+            material = common
+        elif by == "PROPERTY" or row is None:
             material = _of_property(scene, surface.property_id)
         else:
-            material = _material(*_entry(scene, by, row, places))
+            material = plain_material(*_entry(scene, by, row, places))
         if not len(item.data.materials):
             item.data.materials.append(None)
         _put_into_slot(item, material)
@@ -48,17 +51,40 @@ def apply(scene):
     _remove_unused()
 
 
+def key(scene):
+    """The core's ColorKey of what is in sight, or None where nothing is."""
+    by, group = scene.realmodel.color_by, scene.realmodel
+    if by in shades.TITLES:
+        low, high = shades.limits(scene)
+        colors = layer_values.colors(np.linspace(0.0, 1.0, 64), (0.0, 1.0))
+        title = f"{shades.TITLES[by]} ({group.units})"
+        return ColorKey(title, limits=(low, high), colors=colors) if high > low else None
+    places, entries, library = _places(scene), {}, library_rows.library_of(scene)
+    for row in reversed(group.results):
+        item = modes.body_of(scene, row)
+        if item is None or not stages.present(row) or modes.is_hidden(scene, row):
+            continue
+        if by == "PROPERTY":
+            name, _ = materials.name_and_colour(library, row.property_id)
+            entries.setdefault(name, shown_colour(item))
+        else:
+            _, colour = _entry(scene, by, row, places)
+            name = {"ROCK": row.rock, "BLOCK": row.name, "AGE": row.surface}[by]
+            entries.setdefault(name, tuple(int(colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5)))
+    titles = {"PROPERTY": "Property", "ROCK": "Rock Mass", "BLOCK": "Block", "AGE": "Age"}
+    return ColorKey(titles[by], list(entries.items())) if entries else None
+
+
 def has_shades(item):
-    """Whether an object's colours are those of its vertices."""
+    """Whether an object's colors are those of its vertices."""
     material = item.material_slots[0].material if len(item.material_slots) else None
-    return material is not None and material.get(KEY) == uncertainty.UNCERTAINTY
+    return material is not None and shades.ATTRIBUTE in material
 
 
-def shade_viewports(by, display, before):
-    """Viewports of solid shading show the colours of vertices while these are what is to be seen, and those
+def shade_viewports(by, before):
+    """Viewports of solid shading show the colors of vertices while these are what is to be seen, and those
     of materials again afterwards. before: the settings that were shown before."""
-    wanted = by == "UNCERTAINTY" and display == "SURFACES"
-    was = before.get("color_by") == "UNCERTAINTY" and before.get("display") == "SURFACES"
+    wanted, was = by in shades.TITLES, before.get("color_by") in shades.TITLES
     if wanted == was:
         return
     old, new = ("MATERIAL", "VERTEX") if wanted else ("VERTEX", "MATERIAL")
@@ -75,12 +101,13 @@ def forget(scene):
         if slot.link == "OBJECT" and not _is_of_user(slot):
             slot.material = None
             slot.link = "DATA"
+    shades.apply(scene, None)
     _remove_unused()
 
 
 def shown_colour(item):
     """(red, green, blue) of an object's material from 0 to 1, sRGB, as the screen has it."""
-    return tuple(_srgb(channel) for channel in shown_linear(item))
+    return tuple(materials.srgb(channel) for channel in shown_linear(item))
 
 
 def shown_linear(item):
@@ -89,11 +116,6 @@ def shown_linear(item):
     if material is None:
         return materials.linear_colour(materials.NEUTRAL_GREY)
     return tuple(material.diffuse_color[:3])
-
-
-def _srgb(value):
-    value = min(max(value, 0.0), 1.0)
-    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
 
 
 def _coloured(scene):
@@ -139,7 +161,7 @@ def _hue(number):
     return library_rows.hex_colour(colorsys.hsv_to_rgb((0.06 + number * _GOLDEN) % 1.0, 0.65, brightness))
 
 
-def _material(name, colour):
+def plain_material(name, colour):
     """The material of a name and colour that another scene or block may have already."""
     stands_for = f"{name} {colour}"
     for material in bpy.data.materials:
@@ -151,28 +173,16 @@ def _material(name, colour):
     return material
 
 
-def _of_vertices():
-    """The material that shows how sure the heights of an interface are."""
-    name = "Uncertainty"
-    known = next((m for m in bpy.data.materials if m.get(KEY) == uncertainty.UNCERTAINTY), None)
-    if known is not None and known.library is None:
-        return known
-    material = materials.new_material(name, materials.NO_PROPERTY, materials.NEUTRAL_GREY)
-    del material[materials.KEY]
-    material[KEY] = uncertainty.UNCERTAINTY
-    nodes = material.node_tree.nodes
-    given = nodes.new("ShaderNodeAttribute")
-    given.attribute_name = uncertainty.UNCERTAINTY
-    shader = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
-    material.node_tree.links.new(given.outputs["Color"], shader.inputs["Base Color"])
-    return material
+def dark():
+    """The material of edges."""
+    return plain_material("Edges", "#050505")
 
 
 def _of_property(scene, property_id):
     known = library_rows.scene_materials(scene, property_id)
     if known:
         return known[0]
-    return _material(*materials.name_and_colour(library_rows.library_of(scene), property_id))
+    return plain_material(*materials.name_and_colour(library_rows.library_of(scene), property_id))
 
 
 def _put_into_slot(item, material):
@@ -193,9 +203,9 @@ def _put_into_slot(item, material):
 def _is_of_user(slot):
     """Whether the user has given the object, not its mesh, a material."""
     given = slot.material if slot.link == "OBJECT" else None
-    return given is not None and KEY not in given and materials.KEY not in given
+    return given is not None and not {KEY, materials.KEY, shades.ATTRIBUTE} & set(given.keys())
 
 
 def _remove_unused():
-    for material in [m for m in bpy.data.materials if KEY in m and not m.users]:
+    for material in [m for m in bpy.data.materials if (KEY in m or shades.ATTRIBUTE in m) and not m.users]:
         bpy.data.materials.remove(material)

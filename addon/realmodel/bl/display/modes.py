@@ -12,9 +12,9 @@ BLOCKS      the blocks, or their cut halves                Blender
 
 import json
 
-from ...core import RealModelError
-from .. import settings
-from . import bodies, cells, cuts, stages
+from ...core import RealModelError, polygon_mesh
+from .. import project_settings, settings
+from . import bodies, cells, cuts, shown_models, stages
 from .visible import WANTED, want
 
 WIRE = "realmodel_wire"  # on an object whose wires the view has switched on
@@ -35,6 +35,15 @@ def apply(scene, mode, stage):
     else:
         bodies.remove(scene, bodies.CELLS)
         view.cells_of = ""
+    surviving = {}
+    if mode == "SURFACES" and view.surfaces == "SURVIVING":
+        try:
+            surviving = _make_surviving(scene, stage)
+        except RealModelError as error:
+            view.message = str(error)
+    else:
+        bodies.remove(scene, bodies.SURVIVING)
+        view.surviving_of = ""
     cell_bodies = bodies.of_kind(scene, bodies.CELLS)
     halves = bodies.of_kind(scene, bodies.CUT)
     cut = cuts.is_shown(scene)
@@ -49,7 +58,10 @@ def apply(scene, mode, stage):
         want(scene, cell_bodies.get(row.object), here, here)
         for item in (row.object, half):
             _wires(item, mode == "AREAS")
-    _interfaces(scene, with_interfaces and mode not in DRAWN, mode == "AREAS", with_blocks)
+    shown = with_interfaces and mode not in DRAWN and view.surviving_of == ""
+    _interfaces(scene, shown, mode == "AREAS", with_blocks)
+    for _, surface in settings.surface_rows(scene):
+        want(scene, surviving.get(surface.interface), not surface.hide, not surface.hide)
 
 
 def shown_kinds(mode, subject):
@@ -57,6 +69,16 @@ def shown_kinds(mode, subject):
     if mode in _WITH_SUBJECT:
         return subject != "INTERFACES", subject != "BLOCKS"
     return mode != "SURFACES", mode == "SURFACES"
+
+
+def shows_something(scene):
+    """Whether anything of the model is in sight."""
+    blocks, interfaces = shown_kinds(scene.realmodel.display, scene.realmodel.view.subject)
+    rows = [row for row in scene.realmodel.results if stages.present(row) and not is_hidden(scene, row)]
+    surfaces = [
+        surface for _, surface in settings.surface_rows(scene) if not surface.hide and surface.interface
+    ]
+    return bool((blocks and rows) or (interfaces and surfaces))
 
 
 def drawn(scene, mode=None):
@@ -132,6 +154,24 @@ def _make_cells(scene, stage):
     bodies.put(scene, bodies.CELLS, [(rows[key], shape) for key, shape in shapes.items() if rows.get(key)])
     group.view.cells_of = made_of
     cells.forget()
+
+
+def _make_surviving(scene, stage):
+    """What is left of each interface, or of its half: {interface: body}."""
+    view = scene.realmodel.view
+    made_of = cells.made_of(scene, stage)
+    if view.surviving_of != made_of:
+        half = cuts.known_half(scene, view.cut) if cuts.is_shown(scene) else None
+        model = half or shown_models.at_stage(scene, stage)
+        shapes = polygon_mesh.of_surfaces(model, project_settings.model_origin(scene))
+        names = [(rock.name, surface.name) for rock in model.project.rocks for surface in rock.surfaces]
+        named = dict(zip(names, shapes, strict=False))  # a stage has fewer surfaces
+        pairs = [
+            (row.interface, named.get((rock.name, row.name))) for rock, row in settings.surface_rows(scene)
+        ]
+        bodies.put(scene, bodies.SURVIVING, [pair for pair in pairs if None not in pair])
+        view.surviving_of = made_of
+    return bodies.of_kind(scene, bodies.SURVIVING)
 
 
 def without_blocks(scene):

@@ -5,19 +5,19 @@ beside it, as thick as points and lines are on the screen."""
 import numpy as np
 
 from .. import meshes, versions
-from . import bodies, marks, modes, viewpoints
+from . import bodies, colours, marks, modes, viewpoints
 
 POINT_RADIUS, LINE_RADIUS = 2.0, 0.8  # pixels
 
 
 def put(scene, mode):
     """Makes the bodies of what a display mode draws, or removes them in the other modes."""
-    if mode not in modes.DRAWN:
+    if mode not in (*modes.DRAWN, "AREAS"):
         bodies.remove(scene, bodies.MARKS)
         return
     pixel = _pixel_size(scene)
     shapes = []
-    for item in modes.drawn(scene, mode):
+    for item in modes.drawn(scene, "LINES" if mode == "AREAS" else mode):
         coordinates = meshes.mesh_coordinates(item.data)
         if mode == "POINTS":
             shapes.append((item, marks.points(coordinates, POINT_RADIUS * pixel)))
@@ -25,7 +25,7 @@ def put(scene, mode):
             shapes.append(
                 (item, marks.lines(coordinates, versions.edge_vertices(item.data), LINE_RADIUS * pixel))
             )
-    bodies.put(scene, bodies.MARKS, shapes)
+    bodies.put(scene, bodies.MARKS, shapes, colours.dark() if mode == "AREAS" else None)
 
 
 def _pixel_size(scene):

@@ -52,7 +52,7 @@ class Text:
     layer: str
 
 
-@dataclass
+@dataclass(eq=False)
 class Drawing:
     """Items from the first, below, to the last, above.
 

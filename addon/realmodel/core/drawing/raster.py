@@ -24,7 +24,7 @@ def rasterize(drawing: Drawing, scale: float, background=WHITE) -> np.ndarray:
         pixels[:] = _rgba(background)
         pixels[..., :3] *= pixels[..., 3:]
     for item in drawing.items:
-        for rings, color in _shapes(item):
+        for rings, color in item_shapes(item):
             _fill(pixels, [(0.0, height) + ring * (scale, -scale) for ring in rings], _rgba(color))
     alpha = pixels[..., 3:]
     np.divide(pixels[..., :3], alpha, out=pixels[..., :3], where=alpha > 0)
@@ -43,8 +43,8 @@ def _rgba(color) -> np.ndarray:
     return np.array([*color, 1.0][:4], np.float32)
 
 
-def _shapes(item):
-    """What an item covers, as (rings, color)."""
+def item_shapes(item):
+    """What an item covers, as (rings, color): rings (N, 2) in points."""
     if isinstance(item, Polygon):
         if item.fill is not None:
             yield item.rings, item.fill

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Colors that change within an object: elevation, thickness of the layer, standard deviation.
+
+They are a color attribute, as Blender's solid shading shows no other colors within a mesh; renders take the
+same attribute by the material `material()`. All objects have one scale, which the legend shows.
+"""
+
+import bpy
+import numpy as np
+
+from ...core import layer_values
+from .. import materials, meshes, project_settings, settings, shapes, uncertainty
+from . import bodies
+
+ATTRIBUTE = "realmodel_shade"
+TITLES = {"ELEVATION": "Elevation", "THICKNESS": "Thickness", "UNCERTAINTY": "Standard Deviation"}
+_FROM_ZERO = ("THICKNESS", "UNCERTAINTY")
+
+
+def apply(scene, by):
+    """Gives the meshes of blocks and interfaces, and what stands for them, their colors. by: a key of
+    TITLES; any other takes the colors out of the meshes."""
+    shown = list(_shown(scene))
+    if by not in TITLES:
+        for item, _ in shown:
+            remove(item)
+        return
+    value = _value_of(scene, by)
+    found = [(item, value(pair, meshes.mesh_coordinates(item.data))) for item, pair in shown if _takes(item)]
+    known = [values[np.isfinite(values)] for _, values in found]
+    known = np.concatenate(known) if known else np.empty(0)
+    low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 0.0)
+    limits = (0.0 if by in _FROM_ZERO else low, high)
+    scene.realmodel.view.shade_limits = limits
+    for item, values in found:
+        write(item.data, layer_values.colors(values, limits))
+
+
+def limits(scene):
+    """The values at the ends of the scale."""
+    return tuple(scene.realmodel.view.shade_limits)
+
+
+def remove(item):
+    attribute = item.data.color_attributes.get(ATTRIBUTE) if _takes(item) else None
+    if attribute is not None:
+        item.data.color_attributes.remove(attribute)
+
+
+def material():
+    """The material that shows the attribute."""
+    known = next((m for m in bpy.data.materials if m.get(ATTRIBUTE) and m.library is None), None)
+    if known is not None:
+        return known
+    made = materials.new_material("Color Scale", materials.NO_PROPERTY, materials.NEUTRAL_GREY)
+    del made[materials.KEY]
+    made[ATTRIBUTE] = True
+    nodes = made.node_tree.nodes
+    given = nodes.new("ShaderNodeAttribute")
+    given.attribute_name = ATTRIBUTE
+    shader = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
+    made.node_tree.links.new(given.outputs["Color"], shader.inputs["Base Color"])
+    return made
+
+
+def _takes(item):
+    return item.type == "MESH" and item.mode == "OBJECT" and item.data.library is None
+
+
+def _shown(scene):
+    """(object, (rock mass, surface) whose layer it shows) of all that has colors."""
+    of_blocks = {
+        row.object: (row.rock, row.surface) for row in scene.realmodel.results if row.object is not None
+    }
+    yield from of_blocks.items()
+    for kind in (bodies.CUT, bodies.CELLS):
+        yield from (
+            (body, of_blocks[block])
+            for block, body in bodies.of_kind(scene, kind).items()
+            if block in of_blocks
+        )
+    for rock, surface in settings.surface_rows(scene):
+        items = [surface.interface, bodies.of_kind(scene, bodies.SURVIVING).get(surface.interface)]
+        yield from (
+            (item, (rock.name, surface.name)) for item in items if item is not None and item.type == "MESH"
+        )
+
+
+def _value_of(scene, by):
+    """A function of (rock mass, surface) and coordinates (N, 3): the values there, (N,), NaN for unknown."""
+    if by == "ELEVATION":
+        base = project_settings.model_origin(scene)[2]
+        return lambda pair, places: places[:, 2] + base
+    sources = {}
+    if by == "THICKNESS":
+        for row in scene.realmodel.results:
+            if row.object is not None and row.object.type == "MESH" and len(row.object.data.polygons):
+                mesh = row.object.data
+                sources[row.rock, row.surface] = meshes.mesh_coordinates(mesh), shapes.mesh_triangles(mesh)
+        function = layer_values.thickness
+    else:
+        for rock, surface in settings.surface_rows(scene):
+            deviation = None if surface.interface is None else uncertainty.deviation(surface.interface)
+            if deviation is not None:
+                mesh = surface.interface.data
+                plan = meshes.mesh_coordinates(mesh)[:, :2]
+                sources[rock.name, surface.name] = (
+                    np.column_stack([plan, deviation]),
+                    shapes.mesh_triangles(mesh),
+                )
+        function = layer_values.at_places
+
+    def value(pair, places):
+        if pair not in sources:
+            return np.full(len(places), np.nan)
+        vertices, triangles = sources[pair]
+        return function(vertices.astype(np.float64), triangles, places[:, :2])
+
+    return value
+
+
+def write(mesh, colors):
+    """Gives the vertices of a mesh colors, (V, 4) sRGB."""
+    if not len(colors):
+        return
+    attribute = mesh.color_attributes.get(ATTRIBUTE)
+    if attribute is None:
+        attribute = mesh.color_attributes.new(ATTRIBUTE, "BYTE_COLOR", "POINT")
+    attribute.data.foreach_set("color_srgb", colors.ravel())
+    mesh.color_attributes.active_color = mesh.color_attributes[ATTRIBUTE]
+    mesh.update()

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Legend, north arrow, scale bar and axes over the viewport and in every picture: one drawing of the core
+(`core.drawing.overlay`), which `viewport` draws with the graphics card and `rendered` puts before a camera as
+an image."""
+
+import pickle
+
+import numpy as np
+
+from ...core.drawing.overlay import Eye, Shown, draw_overlay, legend_extent
+from .. import exaggeration, project_settings
+from ..display import colours, explosion, residuals
+
+WIDTH = 900.0  # points across the longer side of a picture
+_MOST_KEPT = 8
+_drawings = {}  # by what they are made of: a viewport is drawn again and again
+
+
+def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0), stretched=None):
+    """The Drawing of what a scene's settings ask for, or None where that is nothing.
+
+    projection: (4, 4), from the camera's axes to the picture. view: (4, 4), from the world to these axes.
+    size: of the picture in points. margins: at the left and right what else covers it, in points. stretched:
+    (4, 4), by what the vertical is exaggerated, where it is not as in the scene.
+    """
+    group = scene.realmodel
+    view_settings = group.view
+    if not len(group.results):
+        return None
+    keys = _keys(scene)
+    wanted = (
+        view_settings.show_north,
+        view_settings.show_scale,
+        view_settings.show_axes and not group.explode,
+    )
+    if not keys and not any(wanted):
+        return None
+    if not any(wanted):
+        view = projection = np.eye(4)  # a legend stays the same when the view turns
+    view = np.array(view, np.float64)
+    right, up, back = view[:3, :3] / np.linalg.norm(view[:3, :3], axis=1)[:, None]
+    at = -view[:3, :3].T @ view[:3, 3]
+    eye = Eye(
+        np.array(projection, np.float64) @ view,
+        np.array([*at, 1.0] if is_perspective else [*back, 0.0]),
+        right,
+        up,
+        tuple(size),
+    )
+    origin = project_settings.model_origin(scene)
+    placed = np.array(exaggeration.matrix(scene) if stretched is None else stretched)
+    factor = float(placed[2, 2])
+    placed[:3, 3] -= placed[:3, :3] @ origin
+    low, high = explosion.bounds(scene)
+    shown = Shown(low + origin, high + origin, placed, group.units, factor)
+    given = (eye, shown, keys, *wanted, margins)
+    name = pickle.dumps(given)
+    if name not in _drawings:
+        while len(_drawings) >= _MOST_KEPT:
+            del _drawings[next(iter(_drawings))]
+        _drawings[name] = draw_overlay(*given)
+    return _drawings[name]
+
+
+def _keys(scene):
+    """The core's ColorKeys of what colors are to be seen."""
+    if not (len(scene.realmodel.results) and scene.realmodel.view.show_legend):
+        return ()
+    return tuple(key for key in (colours.key(scene), residuals.key(scene)) if key is not None)
+
+
+def legend_share(scene, size):
+    """The part of a picture's width, of a size in pixels, that the legends of a scene take at the left."""
+    width = sum(1.1 * legend_extent(key)[0] for key in _keys(scene))
+    return min(0.4, width / WIDTH * max(size) / size[0])

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The overlay in 3D viewports, and in pictures of them, by the graphics card."""
+
+from itertools import groupby
+
+import blf
+import bpy
+import numpy as np
+from mathutils import Matrix
+from mathutils.geometry import tessellate_polygon
+
+from ...core.drawing.drawing import ANCHORS, Text
+from ...core.drawing.raster import item_shapes
+from .. import versions
+from . import drawing_for
+
+_FONT = 0  # Blender's own
+_PIXELS = 1.25  # for a point, where Blender's interface is not scaled
+_MOST_KEPT = 4
+_batches = []  # (drawing, scale, texts and batches), the last one drawn at the end
+_handle = None
+
+
+def draw():
+    """The handler of drawing."""
+    context = bpy.context
+    scene, region, space = context.scene, context.region, context.space_data
+    if not hasattr(scene, "realmodel") or not space.overlay.show_overlays:
+        return
+    scale = _PIXELS * context.preferences.system.ui_scale
+    draw_for(scene, region.width, region.height, context.region_data, scale, _margins(context.area, scale))
+
+
+def draw_for(scene, width, height, view, scale, margins=(0.0, 0.0), projection=None):
+    """Draws the overlay of a scene into what is bound, so many pixels large. view: RegionView3D. scale:
+    pixels for a point. projection: where it is not that of the view."""
+    projection = view.window_matrix if projection is None else projection
+    size = width / scale, height / scale
+    found = drawing_for(scene, projection, view.view_matrix, view.is_perspective, size, margins)
+    if found is not None:
+        draw_items(found, scale)
+
+
+def draw_items(drawing, scale):
+    """Draws a Drawing with the lower left corner of what is bound as its own."""
+    import gpu  # not there in Blender's background mode before 4.0
+
+    if not _batches or _batches[-1][:2] != (drawing, scale):
+        kept = next((entry for entry in _batches if entry[:2] == (drawing, scale)), None)
+        _batches.append(kept or (drawing, scale, list(_prepared(drawing, scale))))
+        del _batches[:-_MOST_KEPT]
+    shader = versions.colored_shader()
+    gpu.state.blend_set("ALPHA")
+    for item in _batches[-1][2]:
+        if isinstance(item, Text):
+            _text(item, scale)
+        else:
+            item.draw(shader)
+    gpu.state.blend_set("NONE")
+
+
+def _prepared(drawing, scale):
+    """Texts, and batches of what lies between them."""
+    for is_text, items in groupby(drawing.items, key=lambda item: isinstance(item, Text)):
+        if is_text:
+            yield from items
+        else:
+            yield _batch([shape for item in items for shape in item_shapes(item)], scale)
+
+
+def _batch(shapes, scale):
+    """A gpu batch of shapes (rings, color)."""
+    from gpu_extras.batch import batch_for_shader
+
+    places, colors, indices = [], [], []
+    for rings, color in shapes:
+        triangles = np.array(tessellate_polygon([[(x, y, 0.0) for x, y in ring] for ring in rings]))
+        indices += (triangles.reshape(-1, 3) + len(places)).tolist()
+        corners = np.concatenate(rings) * scale
+        places += [(x, y, 0.0) for x, y in corners.tolist()]
+        colors += [(*color, 1.0)[:4]] * len(corners)
+    shader = versions.colored_shader()
+    return batch_for_shader(shader, "TRIS", {"pos": places, "color": colors}, indices=indices)
+
+
+def _text(item, scale):
+    versions.text_size(_FONT, item.size * scale)
+    blf.color(_FONT, *(*item.color, 1.0)[:4])
+    left = item.x * scale - ANCHORS[item.anchor] * blf.dimensions(_FONT, item.text)[0]
+    blf.position(_FONT, left, item.y * scale, 0.0)
+    blf.draw(_FONT, item.text)
+
+
+def _margins(area, scale):
+    """What the tools at the left and the sidebar at the right cover, in points."""
+    widths = {region.type: region.width for region in area.regions if region.width > 1}
+    if not bpy.context.preferences.system.use_region_overlap:
+        return 0.0, 0.0
+    return widths.get("TOOLS", 0) / scale, widths.get("UI", 0) / scale
+
+
+def pixel_matrix(width, height):
+    """(4, 4): from pixels to the picture, as handlers of Blender find it."""
+    return Matrix(((2 / width, 0, 0, -1), (0, 2 / height, 0, -1), (0, 0, 1, 0), (0, 0, 0, 1)))
+
+
+def register():
+    global _handle
+    if not bpy.app.background:
+        _handle = bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL")
+
+
+def unregister():
+    global _handle
+    if _handle is not None:
+        bpy.types.SpaceView3D.draw_handler_remove(_handle, "WINDOW")
+        _handle = None
+    _batches.clear()
