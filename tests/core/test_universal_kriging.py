@@ -108,7 +108,7 @@ def test_fits_that_mean_nothing_warn(method):
     assert any("pairs of points and is hardly more than a guess" in w for w in few)
     x = np.linspace(0, 100, 60)
     trend = np.column_stack([x, own.random(60) * 100, 3 * x + own.normal(0, 1, 60)])
-    assert any("exceeds the extent" in w for w in interpolate(trend, NODES[:1]).warnings)
+    assert any("far exceeds the extent" in w for w in interpolate(trend, NODES[:1]).warnings)
     well = np.column_stack([noise[:, :2], np.sin(noise[:, 0] / 5)])
     assert interpolate(well, [[50.0, 50.0]], method).warnings == ()
     far = interpolate(well, NODES[:1], "universal_kriging").warnings
@@ -209,3 +209,13 @@ def test_any_points_give_heights_or_are_refused_as_contradicting(points, drift, 
     assert np.isfinite(result.z).all()
     assert (result.variance >= 0).all()
     assert isinstance(result.variogram, Variogram)
+
+
+def test_a_trend_is_told_where_there_is_none_in_the_method():
+    steep = np.column_stack([PLAN, PLAN[:, 0] - UTM[0] + RNG.normal(0, 30, len(PLAN))])
+    told = interpolate(steep, NODES).warnings
+    assert len(told) == 1
+    assert "far exceeds the extent of the points" in told[0]
+    assert "universal kriging" in told[0]
+    told = interpolate(steep, NODES, method="universal_kriging").warnings
+    assert not any("range" in text for text in told)
