@@ -198,6 +198,7 @@ def put(current, prepared, composed, in_place=False):
         tree = _tree(current, model.project)
         _place_interfaces(current, tree, interfaces)
         _place_blocks(current, prepared, tree, blocks, palette)
+        scene.remove_unused_materials(besides=palette.values())  # their names are free then
         for name, colour, material in updates:
             scene.give_name(bpy.data.materials, material, name)
             materials.set_colour(material, colour)
