@@ -18,7 +18,7 @@ IMAGES = ROOT / "docs" / "images" / "guide"
 SAMPLES = ROOT / "blend_samples"
 SIZE = (1900, 1400)
 SCALE = 1.5  # of the interface, so that its letters are sharp in print
-COLORS = 128  # of a picture in its palette
+COLORS = 256  # of a picture in its palette
 WIDEST = 1200  # pixels
 
 
@@ -46,7 +46,9 @@ def shrink(source, target):
             return
         small = picture.convert("RGB")
         small.thumbnail((WIDEST, 10 * WIDEST), Image.Resampling.LANCZOS)
-        small.quantize(COLORS, dither=Image.Dither.NONE).save(target, optimize=True)
+        small.quantize(COLORS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
+            target, optimize=True
+        )
 
 
 # -- in Blender
@@ -64,6 +66,8 @@ def begin(names):
     preferences.view.show_splash = False
     preferences.view.ui_scale = SCALE
     preferences.system.use_region_overlap = False
+    background = preferences.themes[0].view_3d.space.gradients
+    background.background_type = "SINGLE_COLOR"  # a gradient needs many colors of the palette
     realmodel.register()
     TAB.update({cls: set(getattr(cls, "bl_options", ())) for cls in tab_panels()})
     IMAGES.mkdir(parents=True, exist_ok=True)
