@@ -10,7 +10,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import versioning
-from .bl import caches, display, live, region_size
+from .bl import caches, display, live, region_size, viewports
 from .bl.display import replacing
 from .bl.overlay import rendered
 from .core import RealModelError
@@ -45,6 +45,7 @@ def _patient(handler):
 
 @persistent
 def _loaded(*_arguments):
+    viewports.forget_status()
     display.stop()
     caches.clear()
     migrate_all()
@@ -143,4 +144,5 @@ def unregister():
             registered.remove(handler)
     live.stop()
     region_size.stop()
+    viewports.forget_status()
     caches.clear()

@@ -432,10 +432,12 @@ class Results(PanelCase):
         ops.report(filepath=str(self.folder / "r.json"))
         report = json.loads((self.folder / "r.json").read_text())
         self.assertTrue(report["validation"]["passed"])
+        ops.report(filepath=str(self.folder / "t.csv"))
+        self.assertEqual((self.folder / "t.csv").read_text(), results.as_csv(self.scene))
         for operator, name in ((ops.export, "m.xyz"), (ops.export, "m"), (ops.report, "r.txt")):
             self.refused(operator, "", filepath=str(self.folder / name))
         self.refused(ops.export, "no folder", filepath=str(self.folder / "none" / "m.npz"))
-        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["m.npz", "r.json"])
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["m.npz", "r.json", "t.csv"])
 
     def test_export_after_opening_and_of_whole_blocks(self):
         stack(0.0, 10.0)

@@ -204,7 +204,8 @@ def put(current, prepared, composed, in_place=False):
             move_helpers(current, moved)
         group.exists = True
         group.version = settings.VERSION
-        group.built_stamp = built_models.remember(model)
+        before = group.built_stamp if in_place else None
+        group.built_stamp = built_models.remember(model, instead_of=before)
         group.warnings = notices.of_model(model)
     display.built(current, prepared.bounds, prepared.stage)
 
