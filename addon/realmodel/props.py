@@ -18,7 +18,7 @@ from bpy.props import (
 )
 
 from . import preferences, props_rock, props_stage, props_surface, props_view
-from .bl import changes, data_objects, display, results, units
+from .bl import changes, data_objects, display, quality, results, units
 from .core.units import MODEL_UNIT
 
 
@@ -77,6 +77,9 @@ class RealModelBlock(bpy.types.PropertyGroup):
     cells: IntProperty(name="Cells", options=set())
     components: IntProperty(
         name="Components", description="Number of separate parts of the block", options=set()
+    )
+    slivers: IntProperty(
+        name="Slivers", description="How many of the parts have less than 0.1 % of its volume", options=set()
     )
     object: PointerProperty(type=bpy.types.Object)
 
@@ -224,6 +227,12 @@ class RealModelActivity(bpy.types.PropertyGroup):
         options={"SKIP_SAVE"},
     )
     text: StringProperty(options={"SKIP_SAVE"})
+    chart: EnumProperty(
+        name="Chart",
+        description="What the panel Quality shows of the active surface",
+        items=quality.CHARTS,
+        options={"SKIP_SAVE"},
+    )
     unfolded: BoolProperty(name="Warnings", description="Show all warnings in full", options={"SKIP_SAVE"})
     problem: StringProperty(options={"SKIP_SAVE"})
     problem_object: StringProperty(options={"SKIP_SAVE"})

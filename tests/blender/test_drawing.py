@@ -8,7 +8,7 @@ import bpy
 from blender_state import empty_file, inventory
 from panel_case import PanelCase, ops, select, sheet, stack
 from realmodel import preferences
-from realmodel.bl import samples, settings
+from realmodel.bl import quality, samples, settings
 from realmodel.core.methods import METHODS
 from recording_layout import Drawing, Layout, Refused, draw, draw_tab
 
@@ -225,6 +225,13 @@ class States(PanelCase):
         ops.section_plane()
         activity.problem, activity.problem_object = "a problem", "field"
         drawn |= self.draw().operators
+        quality.start(self.scene)
+        drawn |= self.draw().operators
+        quality.stop()
+        ops.check_quality()
+        for chart, *_ in quality.CHARTS:
+            activity.chart = chart
+            drawn |= self.draw().operators
         self.model.display = "SURFACES"
         drawn |= self.draw().operators
         ops.edit_surface()

@@ -421,6 +421,18 @@ class Results(PanelCase):
         self.assertEqual([o.name for o in self.scene.objects if o.select_get()], ["S2 block"])
         self.assertEqual(bpy.context.view_layer.objects.active.name, "S2 block")
 
+    def test_slivers_are_counted_apart(self):
+        """A sheet that looks out of the one below in the east, and at one corner of its mesh."""
+
+        def height(x, y):
+            return 10.0 if x > 50.0 else 0.05 if (x, y) == (10.0, 10.0) else -5.0
+
+        select(sheet("low", 0.0, n=10), sheet("high", height, n=10))
+        ops.from_selected()
+        ops.build()
+        (row,) = self.model.results
+        self.assertEqual((row.components, row.slivers), (2, 1))
+
     def test_export_and_report(self):
         stack(0.0, 10.0)
         self.refused(ops.export, "there is no model yet", filepath=str(self.folder / "m.npz"))

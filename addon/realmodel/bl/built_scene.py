@@ -28,6 +28,7 @@ from . import (
     meshes,
     notices,
     project_settings,
+    results,
     scene,
     settings,
     shapes,
@@ -419,14 +420,15 @@ def fill_results(current, model, objects):
     chosen = group.active_result
     group.results.clear()
     total = model.volume
-    for block, item in zip(model.blocks, objects, strict=True):
+    slivers = results.slivers(model)
+    for number, (block, item) in enumerate(zip(model.blocks, objects, strict=True)):
         row = group.results.add()
         row.name, row.rock = block.name, model.project.rocks[block.rock].name
         row.surface = str(model.surface_names[block.surface])
         row.property_id = int(block.property)
         row.volume, row.volume_exact = block.volume, repr(block.volume)
         row.share = 100.0 * block.volume / total if total else 0.0
-        row.cells, row.components = block.cells, block.components
+        row.cells, row.components, row.slivers = block.cells, block.components, slivers[number]
         row.object = item
     group.active_result = min(chosen, max(len(group.results) - 1, 0))
 

@@ -23,6 +23,19 @@ _REPORTS = (
     ("JSON", "Report (.json)", "Volumes, settings, warnings, and the proof of the model"),
     ("CSV", "Table of Blocks (.csv)", "Volumes, shares, and counts of the blocks, for a spreadsheet"),
 )
+DRAWINGS = (
+    ("SVG", "SVG (.svg)", "Scalable drawing, for documents and web pages"),
+    ("PNG", "PNG (.png)", "Picture, 200 dots per inch"),
+    ("DXF", "DXF (.dxf)", "Lines on layers, for CAD programs"),
+)
+
+SECTIONS = (
+    *DRAWINGS,
+    ("VTU", "VTK Unstructured Grid (.vtu)", "Polygons that know their block, for ParaView"),
+    ("OBJ", "Wavefront OBJ (.obj)", "Polygons, a group for each block"),
+    ("CSV", "Table of Corners (.csv)", "The corners of the polygons"),
+    ("NPZ", "NumPy (.npz)", "All arrays of the section, for Python"),
+)
 
 
 def format_menu(formats):
