@@ -5,7 +5,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import borehole_points, live, project_settings, reading_text, settings
+from ..bl import borehole_picks, borehole_points, live, project_settings, reading_text, settings
 from ..core import InputRefused
 from ..core.boreholes import COLUMNS, Boreholes
 from ..core.point_file import ReadingRefused
@@ -80,6 +80,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
             raise InputRefused(error.what, advice=error.advice) from error
         found = read_boreholes(given, context.scene.realmodel.units)
         told = borehole_points.give(context.scene, rock, found.points, self.add_surfaces)
+        borehole_picks.keep(rock, found.holes)
         live.touch(context.scene)
         for text in [*found.warnings, *told]:
             self.report({"WARNING"}, text)

@@ -39,6 +39,8 @@ class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
             layout.operator("realmodel.edit_done", icon="CHECKMARK")
         elif group.display == "SURFACES":
             layout.operator("realmodel.edit_surface", icon="EDITMODE_HLT")
+        if any(rock.hole_picks for rock in group.rocks):
+            layout.prop(group.view, "show_boreholes")
         layout.prop(group.view, "show_residuals")
         for _, name, count, _, spread, largest, outside in residuals.rows(context.scene):
             column = layout.column(align=True)

@@ -41,7 +41,7 @@ def apply(scene):
         if common is not None:
             material = common
         elif by == "PROPERTY" or row is None:
-            material = _of_property(scene, surface.property_id)
+            material = of_property(scene, surface.property_id)
         else:
             material = plain_material(*_entry(scene, by, row, places))
         if not len(item.data.materials):
@@ -178,7 +178,8 @@ def dark():
     return plain_material("Edges", "#050505")
 
 
-def _of_property(scene, property_id):
+def of_property(scene, property_id):
+    """The material of a property, whether a block has it or not."""
     known = library_rows.scene_materials(scene, property_id)
     if known:
         return known[0]
