@@ -196,7 +196,7 @@ class Surfaces(PanelCase):
         self.assertEqual((row.name, row.source), ("p", "POINTS_FILE"))
         (self.folder / "bad.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 x 0\n3 0 1 2\n")
         before = inventory()
-        self.refused(ops.surface_add, r"bad\.off:5.*not a number", filepath=str(self.folder / "bad.off"))
+        self.refused(ops.surface_add, r"bad\.off:5.*3 finite", filepath=str(self.folder / "bad.off"))
         self.refused(ops.surface_add, "file not found", filepath=str(self.folder / "none.csv"))
         self.refused(ops.surface_add, "active object is no mesh", use_object=True)
         self.assertEqual((inventory(), self.names()), (before, ["p"]))

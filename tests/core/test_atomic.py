@@ -12,7 +12,7 @@ from contextlib import suppress
 
 import pytest
 from realmodel.core import OutputFailed
-from realmodel.core.atomic import Outputs, atomic_file, atomic_path
+from realmodel.core.atomic import Outputs
 
 FORK = multiprocessing.get_context("fork")
 SIZE = 300_000
@@ -83,20 +83,32 @@ def test_what_was_published_is_taken_back_when_the_next_fails(out):
 def test_links_are_followed(out):
     (out / "real").write_text("old")
     (out / "link").symlink_to("real")
-    with atomic_file(out / "link") as file:
+    with Outputs() as outputs, outputs.file(out / "link") as file:
         file.write(b"new")
     assert (out / "link").is_symlink()
     assert (out / "real").read_text() == "new"
 
 
 def test_places_that_cannot_be_written_to_are_named(out):
-    with pytest.raises(OutputFailed, match="this is a folder"), atomic_file(out):
+    with pytest.raises(OutputFailed, match="this is a folder"), Outputs() as outputs, outputs.file(out):
         pass
-    with pytest.raises(OutputFailed, match="there is no folder"), atomic_file(out / "none" / "a"):
+    with (
+        pytest.raises(OutputFailed, match="there is no folder"),
+        Outputs() as outputs,
+        outputs.file(out / "none" / "a"),
+    ):
         pass
-    with pytest.raises(OutputFailed, match="not an ordinary file"), atomic_file("/dev/null"):
+    with (
+        pytest.raises(OutputFailed, match="not an ordinary file"),
+        Outputs() as outputs,
+        outputs.file("/dev/null"),
+    ):
         pass
-    with pytest.raises(OutputFailed, match="nothing was written"), atomic_path(out / "a.png"):
+    with (
+        pytest.raises(OutputFailed, match="nothing was written"),
+        Outputs() as outputs,
+        outputs.path(out / "a.png"),
+    ):
         pass
     assert names(out) == []
 

@@ -2,13 +2,14 @@
 """Files damaged at random are either read or refused in one line; nothing else ever comes out."""
 
 import os
+import struct
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from realmodel.core import InputRefused, PointFile, load_library, load_project
-from realmodel.core.readers import read_off, read_point_file, read_points, read_region
+from realmodel.core.readers import read_mesh, read_point_file, read_points, read_region
 
 PROJECT = b"""format = 1
 name = "x"
@@ -40,6 +41,19 @@ PIECES = [b"9" * 400, b"9" * 5000, b"[" * 5000, b"\x00", b"\xff", b"\xef\xbb\xbf
 PIECES += rb"""nan -1 1e999 [ ] { " ''' # = [[rock]] true , ; . null 0x1 1_0 rock.x inf \u0041""".split()
 
 
+OBJ = b"# a mesh\nv 0 0 1\nv 1 0 2.5\nvn 0 0 1\nv 1 1 -3e-1\nv 0 1 0\ng one\nf 1//1 2//1 3//1\nf -4 3 4\n"
+TSURF = b"GOCAD TSurf 1\nHEADER {\n}\nTFACE\nVRTX 1 0 0 1\nPVRTX 2 1 0 2.5 7\nVRTX 3 1 1 0\nTRGL 1 2 3\nEND\n"
+PLY = b"ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+PLY += b"element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+PLY += b"0 0 1\n1 0 2.5\n1 1 -3e-1\n0 1 0\n3 0 1 2\n3 0 2 3\n"
+BINARY_PLY = PLY.partition(b"0 0 1")[0].replace(b"ascii", b"binary_little_endian")
+BINARY_PLY += struct.pack("<12f", *range(12)) + 2 * struct.pack("<B3i", 3, 0, 1, 2)
+STL = b"solid a\n" + 2 * (
+    b"facet normal 0 0 1\nouter loop\nvertex 0 0 1\nvertex 1 0 2.5\nvertex 1 1 -3e-1\nendloop\nendfacet\n"
+)
+STL += b"endsolid a\n"
+BINARY_STL = bytes(80) + struct.pack("<I", 2) + 2 * struct.pack("<12fH", *range(12), 0)
+
 GRID = b"ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1.5\nNODATA_value -9\n1 2 3\n4 -9 6e0\n"
 
 
@@ -48,7 +62,13 @@ READERS = {
     "library.toml": (LIBRARY, load_library),
     "p.csv": (POINTS, read_points),
     "g.asc": (GRID, lambda file: read_point_file(PointFile(file))),
-    "m.off": (OFF, read_off),
+    "m.off": (OFF, read_mesh),
+    "m.obj": (OBJ, read_mesh),
+    "m.ts": (TSURF, read_mesh),
+    "a.ply": (PLY, read_mesh),
+    "b.ply": (BINARY_PLY, read_mesh),
+    "a.stl": (STL, read_mesh),
+    "b.stl": (BINARY_STL, read_mesh),
     "r.geojson": (REGION, read_region),
 }
 
@@ -100,7 +120,7 @@ def test_read_or_refused(folder, name):
             if read is read_points:
                 assert np.isfinite(result).all()
                 assert result.shape[1] == 3
-            if read is read_off:
+            if read is read_mesh:
                 assert np.isfinite(result.vertices).all()
                 assert result.triangles.min() >= 0
                 assert result.triangles.max() < len(result.vertices)

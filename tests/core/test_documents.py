@@ -168,22 +168,6 @@ def test_commands_run(command, tmp_path):
     assert len(list(tmp_path.iterdir())) > 2, "it wrote nothing"
 
 
-def test_drawing_is_what_its_script_draws(monkeypatch):
-    monkeypatch.syspath_prepend(ROOT / "scripts")
-    drawn = runpy.run_path(str(ROOT / "scripts" / "draw_architecture.py"))["drawing"]().svg()
-    committed = (ROOT / "docs" / "images" / "architecture.svg").read_text(encoding="utf-8")
-    assert drawn == committed, "run scripts/draw_architecture.py"
-
-
-def test_pictures_of_the_algorithm_are_what_their_script_draws(monkeypatch):
-    monkeypatch.syspath_prepend(ROOT / "scripts")
-    drawn = runpy.run_path(str(ROOT / "scripts" / "draw_algorithm.py"))["drawings"]()
-    images = ROOT / "docs" / "images"
-    assert sorted(drawn) == sorted(path.name for path in images.glob("algorithm_*.svg"))
-    for name, svg in drawn.items():
-        assert (images / name).read_bytes() == svg.encode(), f"{name}: run scripts/draw_algorithm.py"
-
-
 def test_the_project_that_is_shown_is_the_example():
     shown = (ROOT / "docs" / "reference" / "project_file.md").read_text(encoding="utf-8")
     project = (ROOT / "blend_samples" / "two_layers" / "project.toml").read_text(encoding="utf-8")

@@ -113,7 +113,7 @@ def test_well_known_text(write, text):
 
 def test_lines_and_points_of_well_known_text():
     shapes = parse_wkt(
-        "LINESTRING (0 0, 1 2)\nMULTILINESTRING ((0 0, 1 1), (2 2, 3 3));POINT (5 6)\nMULTIPOINT (1 2, (3 4))"
+        "LINESTRING (0 0, 1 2)\nMULTILINESTRING ((0 0, 1 1), (2 2, 3 3));POINT (5 6)\nMULTIPOINT (1 2, 3 4)"
     )
     assert [line.tolist() for _, line in shapes.lines] == [
         [[0, 0], [1, 2]],

@@ -95,20 +95,6 @@ def _remove(folders: list[Path]) -> None:
         folders.pop()
 
 
-@contextmanager
-def atomic_file(target: str | Path) -> Iterator[BinaryIO]:
-    """One output file of its own."""
-    with Outputs() as outputs, outputs.file(target) as file:
-        yield file
-
-
-@contextmanager
-def atomic_path(target: str | Path) -> Iterator[Path]:
-    """One output of its own, for software that writes files by name."""
-    with Outputs() as outputs, outputs.path(target) as path:
-        yield path
-
-
 def writable_target(target: str | Path) -> Path:
     """The path, links followed, where an output will stand. Raises OutputFailed where it cannot."""
     with _explained(target):

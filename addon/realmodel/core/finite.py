@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 
 def is_finite(value: float) -> bool:
     """Whether a number is neither infinite nor NaN, nor a whole number beyond the range of doubles."""
@@ -12,3 +14,12 @@ def is_finite(value: float) -> bool:
         return math.isfinite(value)
     except OverflowError:
         return False
+
+
+def is_number(value) -> bool:
+    """Whether a value is a finite number (a truth value is none)."""
+    return (
+        isinstance(value, (int, float, np.integer, np.floating))
+        and not isinstance(value, bool)
+        and is_finite(value)
+    )

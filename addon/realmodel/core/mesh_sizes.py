@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from .errors import InputRefused, UsageError
-from .finite import is_finite
+from .finite import is_number
 from .meshers import MESHERS
 
 AUTO = "auto"  # an edge length by the density of points
@@ -20,13 +20,6 @@ _AT = "'outline', 'constraints', a place [x, y] or a line [[x, y], ...]"
 def check_mesher(mesher) -> None:
     if mesher not in MESHERS:
         raise UsageError(f"mesher {mesher!r} is unknown; use {', '.join(map(repr, MESHERS))}")
-
-
-def is_number(value) -> bool:
-    """Whether a value is a finite number (a truth value is none)."""
-    if isinstance(value, (bool, np.bool_)):
-        return False
-    return isinstance(value, (int, float, np.integer, np.floating)) and is_finite(value)
 
 
 def edge_length_fault(edge_length) -> str | None:

@@ -12,9 +12,10 @@ import numpy as np
 
 from .boreholes import Boreholes
 from .errors import InputRefused
+from .finite import is_number
 from .library import Library
 from .map_layer import MapLayer
-from .mesh_sizes import AUTO, edge_length_fault, is_number, local_lengths, triangles_fault
+from .mesh_sizes import AUTO, edge_length_fault, local_lengths, triangles_fault
 from .meshers import DEFAULT_MESHER, MESHERS
 from .methods import (
     DEFAULT_METHOD,

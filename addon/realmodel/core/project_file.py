@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from .boreholes import Boreholes
-from .finite import is_finite
+from .finite import is_number
 from .library import load_library
 from .map_layer import MapLayer, is_wkt
 from .meshers import DEFAULT_MESHER
@@ -148,7 +148,7 @@ def _read_constraints(table: Table, folder: Path) -> list:
             found.append(entry if is_wkt(entry) else folder / inner.text("file"))
         elif isinstance(entry, dict):
             found.append(_layer_table(Table(table.document, entry, inner.path, table.item), folder))
-        elif isinstance(entry, list) and entry and all(_is_coordinate(value) for value in entry):
+        elif isinstance(entry, list) and entry and all(is_number(value) for value in entry):
             found.append(_read_ring(table, [entry], ("constraints", number))[0])
         elif isinstance(entry, list) and entry:
             found.append(_read_ring(table, entry, ("constraints", number)))
@@ -191,13 +191,9 @@ def _read_ring(table: Table, ring, path: tuple) -> np.ndarray:
         raise refuse(f"{path[0]}: an outline must be a list of corners")
     for number, corner in enumerate(ring):
         is_pair = isinstance(corner, list) and len(corner) == 2
-        if not is_pair or not all(_is_coordinate(c) for c in corner):
+        if not is_pair or not all(is_number(c) for c in corner):
             raise refuse(f"{path[0]}: a corner must be two finite numbers, not {corner!r}", number)
     return np.array(ring, np.float64).reshape(-1, 2)
-
-
-def _is_coordinate(value) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and is_finite(value)
 
 
 def _read_surface(table: Table, folder: Path) -> Surface:

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputRefused
-from ..finite import is_finite
+from ..finite import is_number
 from .shapes import Heights, Selection, Shapes
 
 _BETWEEN = re.compile(r"[ \t\r\n\x1e]*")
@@ -139,13 +139,7 @@ class _Walk:
     def position(self, position, item: str, number: int) -> tuple[float, ...]:
         count = self.shapes.ordinates
         plain = isinstance(position, list) and len(position) >= 2
-        if not plain or not all(_is_number(coordinate) for coordinate in position[:count]):
-            raise self.refuse(f"position {number} is not [x, y]: {position!r:.40}", item)
-        if not all(is_finite(coordinate) for coordinate in position[:count]):
-            raise self.refuse(f"position {number} is not finite", item)
+        if not plain or not all(is_number(coordinate) for coordinate in position[:count]):
+            raise self.refuse(f"position {number} is not [x, y], finite numbers: {position!r:.40}", item)
         plan_and_height = [float(coordinate) for coordinate in position[:count]]
         return (*plan_and_height, float("nan")) if len(plan_and_height) < count else tuple(plan_and_height)
-
-
-def _is_number(value) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ..errors import InputRefused
 from .off import begins_as_off, read_off
+from .surface_meshes import read_obj, read_ply, read_stl, read_tsurf
 from .text import Step, no_step
 from .triangle_mesh import TriangleMesh
 
@@ -27,7 +28,17 @@ class MeshFormat:
     read: Callable[[Path, Step], TriangleMesh]
 
 
-MESH_FORMATS = (MeshFormat("OFF", (".off",), begins_as_off, read_off),)
+def _by_ending(_head: bytes) -> bool:
+    return False
+
+
+MESH_FORMATS = (
+    MeshFormat("OFF", (".off",), begins_as_off, read_off),
+    MeshFormat("PLY", (".ply",), lambda head: head.startswith((b"ply\n", b"ply\r")), read_ply),
+    MeshFormat("GOCAD TSurf", (".ts",), lambda head: head.startswith(b"GOCAD TSurf"), read_tsurf),
+    MeshFormat("OBJ", (".obj",), _by_ending, read_obj),
+    MeshFormat("STL", (".stl",), _by_ending, read_stl),
+)
 MESH_ENDINGS = tuple(ending for known in MESH_FORMATS for ending in known.endings)
 
 

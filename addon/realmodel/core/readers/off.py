@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import re
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputRefused
-from .text import LINES_AT_ONCE, NOT_FINITE, NUMBER, Step, column_numbers, no_step, read_text
-from .triangle_mesh import TriangleMesh
+from .text import LINES_AT_ONCE, NUMBER, Step, column_numbers, no_step, read_text
+from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 _WHOLE = re.compile(r"-?[0-9]{1,18}")
 _HEADERS = ("OFF", "COFF", "NOFF", "CNOFF")  # colours and normals behind the coordinates are not used
@@ -52,8 +51,9 @@ def read_off(file: str | Path, step: Step = no_step) -> TriangleMesh:
             advice="correct the counts",
         )
     vertices = _vertices(file, body[:vertex_count], numbers, lambda f: step(0.4 * f))
-    faces, lines_of_faces = body[vertex_count:], numbers[vertex_count:]
-    return _faces(file, vertices, faces, lines_of_faces, lambda f: step(0.4 + 0.6 * f))
+    lines_of_faces = numbers[vertex_count:]
+    faces = _faces(body[vertex_count:], lines_of_faces, file, lambda f: step(0.4 + 0.6 * f))
+    return mesh_of_faces(file, vertices, faces, lines_of_faces)
 
 
 def _numbered_lines(text: str, step: Step) -> tuple[list[str], list[int]]:
@@ -107,64 +107,30 @@ def _vertices(file: Path, lines: list[str], numbers: list[int], step: Step) -> n
         pass
     for line, number in zip(lines, numbers, strict=False):
         entries = line.split()[:3]
-        if len(entries) < 3:
-            raise InputRefused(
-                f"a vertex needs 3 coordinates, there are {len(entries)}", file=file, line=number
-            )
-        for entry in entries:
-            if NOT_FINITE.fullmatch(entry):
-                raise InputRefused(f"a coordinate is {entry}, not a finite number", file=file, line=number)
-            if not NUMBER.fullmatch(entry) or not np.isfinite(float(entry)):
-                raise InputRefused(f"a coordinate is not a number: '{entry}'", file=file, line=number)
+        are_numbers = all(NUMBER.fullmatch(entry) and np.isfinite(float(entry)) for entry in entries)
+        if len(entries) < 3 or not are_numbers:
+            what = f"a vertex needs 3 finite coordinates, there is '{' '.join(entries):.40}'"
+            raise InputRefused(what, file=file, line=number)
     raise InputRefused("the vertices cannot be read", file=file, line=numbers[0])
 
 
-def _faces(
-    file: Path, vertices: np.ndarray, lines: list[str], numbers: list[int], step: Step
-) -> TriangleMesh:
+def _faces(lines: list[str], numbers: list[int], file: Path, step: Step) -> np.ndarray | list[list[int]]:
+    """The corners of each face."""
     try:
         table = column_numbers(lines, (0, 1, 2, 3), None, np.int64, step)
+        if len(table) == len(lines) and (table[:, 0] == 3).all():
+            return table[:, 1:]
     except ValueError:
-        table = None
-    if table is not None and len(table) == len(lines) and (table[:, 0] == 3).all():
-        bad = np.flatnonzero(((table[:, 1:] < 0) | (table[:, 1:] >= len(vertices))).any(axis=1))
-        if len(bad):
-            raise _no_vertex(file, numbers[bad[0]], table[bad[0], 1:], len(vertices))
-        return TriangleMesh(vertices, np.ascontiguousarray(table[:, 1:], np.int32))
-    triangles, owner = [], []
+        pass
+    faces = []
     for face, (line, number) in enumerate(zip(lines, numbers, strict=True)):
         if face % LINES_AT_ONCE == 0:
             step(face / len(lines))
-        corners = _polygon(file, line, number, len(vertices))
-        triangles += [(corners[0], b, c) for b, c in pairwise(corners[1:])]
-        owner += [face] * (len(corners) - 2)
-    return TriangleMesh(vertices, np.array(triangles, np.int32), np.array(owner, np.int64))
-
-
-def _polygon(file: Path, line: str, number: int, vertex_count: int) -> list[int]:
-    entries = line.split()
-    if not _WHOLE.fullmatch(entries[0]):
-        raise InputRefused(
-            f"a face must begin with its number of corners, not '{entries[0]}'", file=file, line=number
-        )
-    size = int(entries[0])
-    if size < 3:
-        raise InputRefused(f"a face needs at least 3 corners, not {size}", file=file, line=number)
-    if len(entries) <= size:
-        raise InputRefused(f"a face of {size} corners names only {len(entries) - 1}", file=file, line=number)
-    if not all(_WHOLE.fullmatch(entry) for entry in entries[1 : size + 1]):
-        raise InputRefused("the corners of a face must be vertex numbers", file=file, line=number)
-    corners = [int(entry) for entry in entries[1 : size + 1]]
-    if min(corners) < 0 or max(corners) >= vertex_count:
-        raise _no_vertex(file, number, corners, vertex_count)
-    return corners
-
-
-def _no_vertex(file: Path, line: int, corners, vertex_count: int) -> InputRefused:
-    corner = next(c for c in corners if not 0 <= c < vertex_count)
-    return InputRefused(
-        f"there is no vertex {corner}",
-        file=file,
-        line=line,
-        advice=f"they are numbered from 0 to {vertex_count - 1}",
-    )
+        entries = line.split()
+        size = int(entries[0]) if _WHOLE.fullmatch(entries[0]) else 0
+        corners = entries[1 : size + 1]
+        if size < 3 or len(corners) < size or not all(map(_WHOLE.fullmatch, corners)):
+            what = f"a face is its number of corners, at least 3, and their vertex numbers, not '{line:.40}'"
+            raise InputRefused(what, file=file, line=number)
+        faces.append([int(entry) for entry in corners])
+    return faces

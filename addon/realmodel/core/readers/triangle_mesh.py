@@ -3,9 +3,14 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+
+from ..errors import InputRefused
 
 
 @dataclass(frozen=True)
@@ -18,3 +23,31 @@ class TriangleMesh:
     vertices: np.ndarray
     triangles: np.ndarray
     face_of_triangle: np.ndarray | None = None
+
+
+def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | None = None) -> TriangleMesh:
+    """The mesh of vertices (V, 3) and the corners of each face, from 0: (F, K), or a list of any lengths.
+    lines: where each face stands in the file. Raises InputRefused."""
+    vertices = np.ascontiguousarray(vertices, np.float64).reshape(-1, 3)
+    if not len(faces):
+        raise InputRefused("the mesh has no faces", file=file, advice="if it holds points, read it as points")
+    bad = np.flatnonzero(~np.isfinite(vertices).all(axis=1))
+    if len(bad):
+        raise InputRefused(f"vertex {bad[0] + 1} is not finite", file=file)
+    if isinstance(faces, np.ndarray):
+        sizes, given = np.full(len(faces), faces.shape[1]), faces.ravel()
+    else:
+        sizes = np.array([len(face) for face in faces])
+        given = np.array(list(itertools.chain.from_iterable(faces)))
+    exists = (given >= 0) & (given < len(vertices))
+    corners = np.where(exists, given, 0).astype(np.int64)
+    wrong = ~exists | (corners != given)
+    face_of_corner = np.repeat(np.arange(len(sizes)), sizes)
+    for face in (*np.flatnonzero(sizes < 3)[:1], *face_of_corner[wrong][:1]):
+        what = f"face {face + 1} has a corner that is no vertex" if sizes[face] > 2 else "a face of 2 corners"
+        raise InputRefused(what, file=file, line=None if lines is None else lines[face])
+    begin, fans = np.cumsum(sizes) - sizes, sizes - 2
+    owner = np.repeat(np.arange(len(sizes)), fans)
+    second = np.arange(len(owner)) - np.repeat(np.cumsum(fans) - fans, fans) + begin[owner] + 1
+    triangles = np.stack([corners[begin[owner]], corners[second], corners[second + 1]], axis=1)
+    return TriangleMesh(vertices, triangles.astype(np.int32), None if (fans == 1).all() else owner)

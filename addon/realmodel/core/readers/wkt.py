@@ -22,6 +22,7 @@ _KINDS = (
     "MULTIPOLYGON",
     "GEOMETRYCOLLECTION",
 )
+_BARE = re.compile(r"\s*\(\s*[-+.\d]")  # points of a MULTIPOINT without brackets of their own
 _DEEPEST = 50
 
 
@@ -111,7 +112,7 @@ class _Parser:
         add = {"POINT": self.point, "LINESTRING": self.line, "POLYGON": self.polygon}[
             kind.removeprefix("MULTI")
         ]
-        if not several:
+        if not several or (kind == "MULTIPOINT" and _BARE.match(self.text, self.at)):
             add(item)
             return
         more = self.opens()
@@ -164,17 +165,4 @@ class _Parser:
             self.shapes.lines.append((item, places))
 
     def point(self, item: str) -> None:
-        if self.peek() not in ("(", None) and (self.peek() or "").upper() != "EMPTY":
-            places = self.bare_point()  # in a MULTIPOINT brackets may be left out
-        else:
-            places = self.positions()
-        self.shapes.points += [(item, place) for place in places]
-
-    def bare_point(self) -> np.ndarray:
-        numbers = []
-        while self.peek() not in (",", ")", None):
-            numbers.append(self.next())
-        try:
-            return np.array([self.ordinates(numbers)]).reshape(1, self.shapes.ordinates)
-        except (ValueError, IndexError) as error:
-            raise self.refuse(f"'{' '.join(numbers):.40}' is no position x y") from error
+        self.shapes.points += [(item, place) for place in self.positions()]
