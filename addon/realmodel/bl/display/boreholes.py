@@ -18,14 +18,16 @@ def show(current):
     bodies.remove_kind(current, bodies.BOREHOLES)
     places, properties = [], []
     for rock in current.realmodel.rocks:
-        of_surface = {surface.name: surface.property_id for surface in rock.surfaces}
+        ids = [surface.property_id for surface in rock.surfaces]
+        below = {surface.name: number for surface, number in zip(rock.surfaces, ids, strict=True)}
+        above = {surface.name: number for surface, number in zip(rock.surfaces, ids[1:], strict=False)}
         for collar, picks in borehole_picks.of_rock(rock).values():
-            stops = [] if collar is None else [(None, collar)]
-            stops += [(of_surface.get(name), place) for name, place in picks]
-            for (below, begin), (_, end) in pairwise(stops):
+            stops = [] if collar is None else [(above.get(picks[0][0]), collar)]
+            stops += [(below.get(name), place) for name, place in picks]
+            for (layer, begin), (_, end) in pairwise(stops):
                 if begin != end:
                     places += [begin, end]
-                    properties.append(below)
+                    properties.append(layer)
     if not places:
         return
     low, high = explosion.bounds(current)
