@@ -18,7 +18,7 @@ from bpy.props import (
 )
 
 from . import props_rock, props_stage, props_surface, props_view
-from .bl import changes, display, results, units
+from .bl import changes, data_objects, display, results, units
 from .core.units import MODEL_UNIT
 
 DISPLAYS = (
@@ -105,6 +105,22 @@ class RealModelSettings(bpy.types.PropertyGroup):
         default=MODEL_UNIT,
         update=changes.model_unit,
         options=set(),
+    )
+    origin: FloatVectorProperty(
+        name="Origin",
+        description="What is added to the coordinates of the scene to get those of the model",
+        size=3,
+        subtype="XYZ",
+        precision=1,
+        options=set(),
+        get=data_objects.origin_of,
+        set=data_objects.set_origin,
+    )
+    show_data: BoolProperty(
+        name="Show Data",
+        description="Show the points of the surfaces and the outlines of the rock masses as they were read",
+        options=set(),
+        update=data_objects.shown_changed,
     )
     project_file: StringProperty(
         name="Project File",
@@ -220,6 +236,7 @@ class RealModelActivity(bpy.types.PropertyGroup):
         options={"SKIP_SAVE"},
     )
     text: StringProperty(options={"SKIP_SAVE"})
+    unfolded: BoolProperty(name="Warnings", description="Show all warnings in full", options={"SKIP_SAVE"})
     problem: StringProperty(options={"SKIP_SAVE"})
     problem_object: StringProperty(options={"SKIP_SAVE"})
     problem_triangles: StringProperty(options={"SKIP_SAVE"})

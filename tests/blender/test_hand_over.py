@@ -79,7 +79,7 @@ class BeingEdited(PanelCase):
         self.assertAlmostEqual(volume(bpy.data.objects["S2 block"].data), 13e4, delta=1.0)
 
     def test_an_interface_whose_heights_become_others(self):
-        ops.open_sample(sample="two_layers")
+        ops.open_sample(sample="two_layers", build=False)
         ops.build()
         row = self.model.rocks[0].surfaces[1]
         item, digest = row.interface, row.interface_digest

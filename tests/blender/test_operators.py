@@ -5,11 +5,9 @@ import bpy
 from panel_case import PanelCase, stack
 
 ALWAYS = {  # operators that can be used in every scene of one's own, and why
-    "new": "begins",
-    "open_project": "begins",
-    "open_sample": "begins",
     "rock_add": "begins a model where there is none",
     "surface_add": "adds a rock mass where there is none",
+    "boreholes_read": "as surface_add",
     "library_add": "the library may be there before the model",
     "library_import": "as library_add",
     "set_origin": "its action is known only when it is used",

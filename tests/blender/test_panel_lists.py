@@ -79,7 +79,7 @@ class Rocks(PanelCase):
         self.assertEqual(inventory(), before)
 
     def test_a_region_that_was_deleted(self):
-        ops.open_sample(sample="two_layers")
+        ops.open_sample(sample="two_layers", build=False)
         rock = self.model.rocks[0]
         rock.region = outline("field", [(0, 0), (100, 0), (100, 60), (0, 60)])
         ops.build()
@@ -90,7 +90,7 @@ class Rocks(PanelCase):
         self.assertEqual(self.volumes(), before)
 
     def test_the_number_of_triangles_beside_the_edge_length(self):
-        ops.open_sample(sample="two_layers")
+        ops.open_sample(sample="two_layers", build=False)
         rock = self.model.rocks[0]
         for edge_length in (2.0, 4.0, 8.0):
             rock.edge_length = edge_length
@@ -319,10 +319,14 @@ class Surfaces(PanelCase):
 
 
 class Library(PanelCase):
+    def without_properties(self):
+        self.model.library.clear()
+        for row in self.model.rocks[0].surfaces:
+            row.property_id = 0
+
     def test_another_id_goes_to_all_that_has_the_property(self):
         stack(0.0, 10.0)
         ops.library_add(name="Sand")
-        ops.library_add(name="Clay")
         self.model.rocks[0].surfaces[1].property_id = 1
         ops.build()
         material = bpy.data.objects["S1 block"].data.materials[0]
@@ -335,10 +339,11 @@ class Library(PanelCase):
         self.assertEqual(bpy.data.objects["S1 block"].data.materials[0], material)
         for taken in (2, 0, -1):  # another entry's, and what is no ID
             self.model.library[0].id = taken
-            self.assertEqual([entry.id for entry in self.model.library], [7, 2])
+            self.assertEqual([entry.id for entry in self.model.library], [7, 2, 3])
 
     def test_add_edit_remove(self):
         stack(0.0, 10.0)
+        self.without_properties()
         ops.library_add(name="Sand")
         ops.library_add(name="Clay")
         self.assertEqual([(e.id, e.name) for e in self.model.library], [(1, "Sand"), (2, "Clay")])
@@ -380,6 +385,7 @@ class Library(PanelCase):
 
     def test_assign_to_selected_blocks(self):
         stack(0.0, 10.0, 20.0)
+        self.without_properties()
         self.refused(ops.assign_property, "the library is empty")
         ops.library_add(name="Sand")
         ops.build()
@@ -397,8 +403,8 @@ class Library(PanelCase):
     def test_choosing_a_property_for_a_surface(self):
         stack(0.0, 10.0)
         ops.library_add(name="Sand")
-        ops.surface_property(property_id="1")
-        self.assertEqual(self.model.rocks[0].surfaces[1].property_id, 1)
+        ops.surface_property(property_id="3")
+        self.assertEqual(self.model.rocks[0].surfaces[1].property_id, 3)
 
 
 class Results(PanelCase):

@@ -118,7 +118,7 @@ class Live(PanelCase):
         self.assertIsNone(live._work.look())
 
     def test_an_interpolated_interface_follows_its_settings_and_hands(self):
-        ops.open_sample(sample="two_layers")
+        ops.open_sample(sample="two_layers", build=False)
         self.model.live = True
         self.live_is_done()
         row, before = self.model.rocks[0].surfaces[1], self.volumes()

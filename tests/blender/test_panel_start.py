@@ -118,7 +118,7 @@ class Saved(PanelCase):
         self.assertEqual(len(list(written.glob("*.csv"))), 10)
 
     def test_before_it_was_built(self):
-        ops.open_sample(sample="two_layers")
+        ops.open_sample(sample="two_layers", build=False)
         self.assert_same_in_batch()
 
     def test_objects_region_and_rules(self):
@@ -135,7 +135,7 @@ class Saved(PanelCase):
         self.assert_same_in_batch()
 
     def test_an_edited_interface(self):
-        ops.open_sample(sample="two_layers")
+        ops.open_sample(sample="two_layers", build=False)
         ops.build()
         raise_by(self.model.rocks[0].surfaces[1].interface, 2.0)
         ops.build()

@@ -16,7 +16,7 @@ def block(name):
 
 class Persistence(PanelCase):
     def test_save_open_edit_build(self):
-        ops.open_sample(sample="two_layers")
+        ops.open_sample(sample="two_layers", build=False)
         ops.build()
         before, settings = self.volumes(), self.all_settings()
         self.save_and_open()
@@ -139,7 +139,7 @@ class Deleted(PanelCase):
         self.assertIn(block("S1"), list(self.scene.objects))
 
     def test_an_interface_made_from_a_file_comes_back(self):
-        ops.open_sample(sample="two_layers")
+        ops.open_sample(sample="two_layers", build=False)
         ops.build()
         volumes = self.volumes()
         bpy.data.objects.remove(self.model.rocks[0].surfaces[0].interface)
@@ -227,7 +227,7 @@ class SeveralScenes(PanelCase):
         self.assertEqual(len([o for o in second.objects if o.get("realmodel") == "block"]), 2)
 
     def written(self):
-        ops.open_sample(sample="two_layers")
+        ops.open_sample(sample="two_layers", build=False)
         ops.build()
         path = self.folder / "library.blend"
         bpy.ops.wm.save_as_mainfile(filepath=str(path))

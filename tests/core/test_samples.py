@@ -50,3 +50,4 @@ def test_the_model_is_what_its_files_were_made_of(made):
     assert sum(volumes.values()) == pytest.approx(25 * (ground - 400).sum(), rel=0.002)
     told = [str(warning) for warning in model.warnings]
     assert any("2 picks have no depth" in text for text in told)
+    assert not any("range" in text for text in told)

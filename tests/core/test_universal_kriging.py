@@ -209,3 +209,13 @@ def test_any_points_give_heights_or_are_refused_as_contradicting(points, drift, 
     assert np.isfinite(result.z).all()
     assert (result.variance >= 0).all()
     assert isinstance(result.variogram, Variogram)
+
+
+def test_a_trend_is_told_where_there_is_none_in_the_method():
+    steep = np.column_stack([PLAN, PLAN[:, 0] - UTM[0] + RNG.normal(0, 30, len(PLAN))])
+    told = interpolate(steep, NODES).warnings
+    assert len(told) == 1
+    assert "far exceeds the extent of the points" in told[0]
+    assert "universal kriging" in told[0]
+    told = interpolate(steep, NODES, method="universal_kriging").warnings
+    assert not any("range" in text for text in told)

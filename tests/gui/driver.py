@@ -161,8 +161,8 @@ class Walk:
         """A screenshot of the window, kept as NN_name.png; returns (height, width, 3) from 0 to 1, the bottom
         row first. Waits for all threads: see `shot_while_working`."""
         for thread in threading.enumerate():
-            if thread is not threading.current_thread():
-                thread.join(PATIENCE)
+            if thread is not threading.current_thread() and not isinstance(thread, threading._DummyThread):
+                thread.join(PATIENCE)  # a dummy stands for a thread of Blender's, such as a render's
         path = self._next_picture(name)
         with bpy.context.temp_override(window=self.window, screen=self.window.screen, area=self.area):
             bpy.ops.screen.screenshot(filepath=str(path))

@@ -5,7 +5,7 @@ import numpy as np
 
 from ..core import PointFile
 from ..core.readers import read_point_file
-from . import project_settings, reading_text, settings, stored_arrays
+from . import library_rows, project_settings, reading_text, settings, stored_arrays
 
 
 def give(scene, rock, points, add_surfaces=False):
@@ -23,6 +23,7 @@ def give(scene, rock, points, add_surfaces=False):
             for name in sorted(new, key=lambda name: float(points[name][:, 2].mean())):
                 row = rock.surfaces.add()
                 row.name = name
+                row.property_id = library_rows.for_surface(scene, name)
                 own[name] = np.empty((0, 3))
         else:
             told += [f"the boreholes met '{name}', which is no surface of {rock.name}" for name in new]

@@ -14,14 +14,19 @@ import numpy as np
 
 from ..core import BuildFailed, polygon_mesh
 from ..core.assembly import build_stage
+from ..core.build_warning import BuildWarning
+from ..core.errors import place_text
+from ..core.units import length_text
 from . import (
     block_shapes,
     built_models,
+    data_objects,
     display,
     exaggeration,
     library_rows,
     materials,
     meshes,
+    notices,
     project_settings,
     scene,
     settings,
@@ -31,7 +36,7 @@ from . import (
 )
 from .display import visible
 from .origin import KEY as ORIGIN_KEY
-from .origin import choose_origin, offsets_from
+from .origin import choose_origin, far_from, offsets_from
 
 
 @dataclass
@@ -60,8 +65,10 @@ def prepare(model, composed, stage=None, threads=0):
     """Prepared arrays of a model; may run in a thread of its own. stage: the one that will be shown, where it
     is not the whole. threads: as for `build`."""
     origin = composed.origin
-    if composed.origin_is_free:
+    if not composed.has_origin and composed.origin_is_free:
         origin = choose_origin(model.surface_vertices)
+    elif (away := far_from(origin, model.surface_vertices)) is not None:
+        origin = _other_origin(model, composed, away)
     prepared = Prepared(model, origin)
     surface = 0
     for r, rock in enumerate(model.project.rocks):
@@ -91,6 +98,20 @@ def prepare(model, composed, stage=None, threads=0):
         found = block_shapes.by_name(at_stage, polygon_mesh.of_blocks(at_stage, origin, threads))
         prepared.stage = (stage, at_stage, found)
     return prepared
+
+
+def _other_origin(model, composed, away):
+    """The origin of a model that lies far from the one it has, and a warning."""
+    text = f"the model lay {length_text(away, model.project.units)} from the zero of the scene"
+    if not composed.origin_is_free:
+        text += (
+            ", where Blender's numbers are coarse: use Start > Units and Origin > Move Model to Scene's Zero"
+        )
+        model.warnings.append(BuildWarning(text.replace(" lay ", " lies "), "origin"))
+        return composed.origin
+    origin = choose_origin(model.surface_vertices)
+    model.warnings.append(BuildWarning(f"{text}: it has got another origin, {place_text(origin)}", "origin"))
+    return origin
 
 
 def shapes_to_come(current, prepared, composed):
@@ -172,17 +193,30 @@ def put(current, prepared, composed, in_place=False):
         tree = _tree(current, model.project)
         _place_interfaces(current, tree, interfaces)
         _place_blocks(current, prepared, tree, blocks, palette)
-        scene.remove_unused_materials()
         for name, colour, material in updates:
             scene.give_name(bpy.data.materials, material, name)
             materials.set_colour(material, colour)
+        scene.remove_unused_materials()
         _keep(current, prepared)
+        moved = project_settings.model_origin(current) - prepared.origin
         current[ORIGIN_KEY] = [float(value) for value in prepared.origin]
+        if moved.any():
+            move_helpers(current, moved)
         group.exists = True
         group.version = settings.VERSION
         group.built_stamp = built_models.remember(model)
-        group.warnings = "\n".join(str(warning) for warning in model.warnings)
+        group.warnings = notices.of_model(model)
     display.built(current, prepared.bounds, prepared.stage)
+
+
+def move_helpers(current, moved):
+    """What stands beside a model goes with it: its section plane and sections, the objects of its data."""
+    items = [item for item in current.objects if item.get(scene.TAG) == "section"]
+    if (plane := current.realmodel.view.plane) is not None and plane.get(scene.TAG) == "view":
+        items.append(plane)
+    for item in items:
+        item.location = np.array(item.location) + moved
+    data_objects.place(current)
 
 
 def _keep(current, prepared):

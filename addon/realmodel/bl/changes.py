@@ -3,6 +3,7 @@
 here."""
 
 from . import (
+    data_objects,
     display,
     library_rows,
     live,
@@ -66,6 +67,9 @@ def region(rock, context):
     rock.region_stored = rock.region_stamp = ""
     rock.region_area = -1.0
     region_size.ask()
+    data_objects.update(rock.id_data)
+    if context is not None and len(shown := data_objects.objects(rock.id_data)) == 1:
+        viewports.frame_items(shown, viewports.spaces(context))  # the first that is to be seen
     setting(rock, context)
 
 
@@ -78,6 +82,7 @@ def source(surface, context):
         reading_text.fill(surface, {})
     if surface.source != "MESH_OBJECT":
         surface.stored_stamp = ""
+    data_objects.update(surface.id_data)
     setting(surface, context)
 
 
@@ -89,6 +94,7 @@ def reading(row, context):
     surface.interface_digest = ""
     if surface.filepath:
         surface.stored = surface.stored_stamp = ""
+    data_objects.update(surface.id_data)
     setting(surface, context)
 
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The library's rows in the settings, and the materials that follow them."""
 
-import colorsys
-
 import bpy
 
 from ..core import Library, Property
@@ -52,10 +50,36 @@ def add(scene, entry):
     return row
 
 
+# Colors of rocks for what has none: any two differ, and most of all neighbors, also for people who confuse
+# red and green or blue and yellow (CIE76 of 21 or more in the simulations of Machado et al., 2009).
+PALETTE = (
+    *("#acb960", "#432f7e", "#b6dae3", "#1f515c", "#e6a396", "#e45d20"),
+    *("#f4f7d7", "#6d7365", "#efd951", "#ac5132", "#6aa7c7", "#663428"),
+)
+
+
 def next_colour(scene):
-    """An "#rrggbb" for one more property, unlike those that are there."""
-    hue = 0.09 + 0.618034 * len(scene.realmodel.library)  # golden section: never the same again
-    return hex_colour(colorsys.hsv_to_rgb(hue % 1.0, 0.45, 0.8))
+    """An "#rrggbb" of the palette for one more property: the first of those that are used least."""
+    used = [hex_colour(row.color) for row in scene.realmodel.library]
+    return min(PALETTE, key=used.count)
+
+
+def for_surface(scene, name):
+    """The ID of the property called so, for a surface of that name; one is added where there is none."""
+    same = (row.id for row in scene.realmodel.library if row.name.casefold() == name.casefold())
+    found = next(same, None)
+    return add(scene, Property(free_id(scene), name, color=next_colour(scene))).id if found is None else found
+
+
+def remove_made(scene, surface):
+    """A surface leaves the list: the entry that was added for it goes, where nothing was made of it."""
+    row = find(scene, surface.property_id)
+    users = sum(other.property_id == surface.property_id for _, other in settings.surface_rows(scene))
+    if row is None or users > 1 or row.name != surface.name or row.density or any(map(row.get, _TEXTS)):
+        return
+    group = scene.realmodel
+    group.library.remove(list(group.library).index(row))
+    group.active_property = max(0, min(group.active_property, len(group.library) - 1))
 
 
 def find(scene, property_id):

@@ -17,6 +17,18 @@ KEY = "realmodel_origin"
 FAR = 8.0
 
 
+TOO_FAR = 100.0  # sizes of a model: coordinates in 32 bits then have steps of a hundred-thousandth of it
+
+
+def far_from(origin, vertices):
+    """How far a model with these vertices (V, 3) lies from its origin, where that is too far; else None."""
+    if not len(vertices):
+        return None
+    low, high = vertices.min(axis=0) - origin, vertices.max(axis=0) - origin
+    away = float(np.linalg.norm(np.maximum(0.0, np.maximum(low, -high))))
+    return away if away > TOO_FAR * float((high - low).max()) else None
+
+
 def choose_origin(vertices):
     """Origin for a model with these vertices.
 

@@ -4,6 +4,7 @@ be, where they are smaller, what lines and points the mesh must contain.
 """
 
 import json
+import math
 
 import numpy as np
 
@@ -19,6 +20,18 @@ KINDS = (  # each with the number by which Blender stores it
     ("TRIANGLES", "Triangle Count", "A number of triangles", "", 2),
 )
 _WORDS = {"OUTLINE": "outline", "CONSTRAINTS": "constraints"}
+
+
+def propose_edge_length(row, points):
+    """An edge length of 1, 2 or 5 times a power of ten by the extent of points (P, 3), where none is given:
+    some ten thousand triangles."""
+    extent = math.hypot(*np.ptp(points[:, :2], axis=0)) if len(points) else 0.0
+    if row.edge_length > 0.0 or row.edges_by != "LENGTH" or not extent > 0.0:
+        return
+    least = extent / 100.0
+    power = 10.0 ** math.floor(math.log10(least))
+    with settings.filling():
+        settings.set_number(row, "edge_length", next(n * power for n in (1, 2, 5, 10) if n * power >= least))
 
 
 def compose(rock, row, depsgraph, origin):

@@ -33,13 +33,15 @@ from .origin import KEY as ORIGIN_KEY
 @dataclass
 class Composed:
     """A project as the scene has it. read: by (rock number, surface number or None for the region) the stamp
-    of the file that it is yet to be read from. origin_is_free: nothing in the scene holds it fast. edited:
+    of the file that it is yet to be read from. origin_is_free: no object of the user says where the model
+    stands. has_origin: the origin was chosen before. edited:
     (rock, surface) numbers of the interfaces that were changed by hand since they were made, and therefore
     count as they are."""
 
     project: Project
     origin: np.ndarray
     origin_is_free: bool
+    has_origin: bool = False
     read: dict = field(default_factory=dict)
     edited: list = field(default_factory=list)
     objects: set = field(default_factory=set)
@@ -54,11 +56,16 @@ def model_origin(scene):
     return np.array(scene.get(ORIGIN_KEY, (0.0, 0.0, 0.0)), np.float64)
 
 
-def _origin_is_free(scene):
-    """Whether the origin may yet be chosen: no object of the scene stands where it says."""
-    pointed = [row.region for row in scene.realmodel.rocks]
-    pointed += [item for _, row in settings.surface_rows(scene) for item in (row.object, row.interface)]
-    return ORIGIN_KEY not in scene and not any(pointed)
+def user_objects(scene):
+    """The objects of the user that a model is made from: where they stand fixes its origin."""
+    found = [row.region for row in scene.realmodel.rocks]
+    found += [item for row in scene.realmodel.rocks for item in plan_mesh.objects(row)]
+    found += [
+        row.object
+        for _, row in settings.surface_rows(scene)
+        if row.source in ("POINTS_OBJECT", "MESH_OBJECT")
+    ]
+    return [item for item in found if item is not None]
 
 
 def absolute(path):
@@ -79,7 +86,7 @@ def compose(scene, depsgraph, whole=True):
     if not len(group.rocks):
         raise InputRefused("there is no rock mass", advice="add one, or open a project file")
     project = Project(group.name, [], library_rows.library_of(scene), units=group.units)
-    composed = Composed(project, origin, _origin_is_free(scene))
+    composed = Composed(project, origin, not user_objects(scene), ORIGIN_KEY in scene)
     for number, row in enumerate(group.rocks):
         rock = Rock(row.name, [], base_elevation=method_settings.value(row, "base_elevation", ROCK))
         plan_mesh.compose(rock, row, depsgraph, origin)
@@ -94,6 +101,7 @@ def compose(scene, depsgraph, whole=True):
             rock.surfaces.append(surface)
         if not rock.interpolates:  # nothing is meshed that they could shape
             rock.constraints, rock.size = [], []
+    composed.origin_is_free = composed.origin_is_free and not composed.edited
     return composed
 
 
@@ -198,6 +206,8 @@ def _from_object(composed, place, surface, row, depsgraph):
         if not len(surface.points):
             raise InputRefused(f"object '{row.object.name}' has no vertices", advice="choose another object")
         return
+    if not row.object.modifiers:
+        shapes.require_open(row.object)
     given, triangles = shapes.triangulation(row.object, depsgraph)
     composed.objects.add(place)
     base = stored_arrays.unpack(row.stored_mesh) if row.stored_mesh else {}

@@ -31,6 +31,11 @@ def enum_items(_operator, _context):
     return _items or [("NONE", "No examples", "The folder blend_samples is not there")]
 
 
+def label(name):
+    """How an example is called."""
+    return next((item[1] for item in enum_items(None, None) if item[0] == name), name)
+
+
 def project_file(name):
     """The project file of an example. Raises InputRefused."""
     place = folder()

@@ -9,6 +9,8 @@ import numpy as np
 
 VERSION = 4  # of the settings; versioning.py brings older ones up to it
 
+DATA = "realmodel_data"  # on an object: it shows data of a model, and is no input of one
+
 _quiet = 0  # how many blocks of code fill in settings at the moment
 
 
@@ -29,12 +31,12 @@ def is_filling():
 
 def is_mesh_object(_row, item):
     """Poll of pointers to objects: what has vertices."""
-    return item.type == "MESH"
+    return item.type == "MESH" and DATA not in item
 
 
 def is_region_object(_row, item):
     """Poll of pointers to objects: what can bound a region."""
-    return item.type in {"MESH", "CURVE"}
+    return item.type in {"MESH", "CURVE"} and DATA not in item
 
 
 def active_rock(scene):

@@ -8,6 +8,7 @@ geometry nodes count: the evaluated mesh is taken, and an edit that is under way
 import hashlib
 from contextlib import contextmanager
 
+import bpy
 import numpy as np
 
 from ..core import InputRefused
@@ -65,6 +66,18 @@ def triangle_polygons(mesh):
     return polygons
 
 
+def require_open(item):
+    """Refuses an object whose mesh is closed: it has two heights over each place. Raises InputRefused."""
+    mesh = item.data
+    used = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("edge_index", used)
+    if len(used) and (np.bincount(used, minlength=len(mesh.edges)) == 2).all():
+        raise InputRefused(
+            f"{item.name} is a closed solid; RealModel takes open sheets, such as a grid",
+            advice="choose a mesh with one height everywhere",
+        )
+
+
 def triangulation(item, depsgraph):
     """(V, 3) float64 offsets from the origin and (T, 3) int32 triangles of a mesh object."""
     with evaluated_mesh(item, depsgraph) as mesh:
@@ -113,6 +126,19 @@ def rings(item, depsgraph):
             "it has no edges", item=where, advice="draw an outline, or choose a curve or a mesh that has one"
         )
     return [plan[ring] for ring in _closed_chains(edges, len(plan), where, plan)]
+
+
+def new_outline(scene, name, corners, z):
+    """A closed curve object through corners (N, 2), at a height, in the coordinates of a scene."""
+    curve = bpy.data.curves.new(name, "CURVE")
+    curve.dimensions = "3D"
+    spline = curve.splines.new("POLY")
+    spline.points.add(len(corners) - 1)
+    spline.points.foreach_set("co", np.array([(x, y, z, 1.0) for x, y in corners], np.float32).ravel())
+    spline.use_cyclic_u = True
+    item = bpy.data.objects.new(name, curve)
+    scene.collection.objects.link(item)
+    return item
 
 
 def plan_lines(item, depsgraph):

@@ -72,11 +72,12 @@ def still_open(remembered):
 
 def frame(current, shown):
     """Turns viewports to the model of a scene, and lets them see that far."""
-    corners = [
-        item.matrix_world @ Vector(corner)
-        for item in scene.model_objects(current)
-        for corner in item.bound_box
-    ]
+    frame_items(scene.model_objects(current), shown)
+
+
+def frame_items(items, shown):
+    """Turns viewports to objects, and lets them see that far."""
+    corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
     if not corners:
         return
     corners = np.array(corners)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from .build_warning import BuildWarning
+from .distant_points import require_points_near
 from .errors import InputRefused, number_list, place_text
 from .heights import Interpolation
 from .interpolation import checked_points
@@ -114,6 +115,7 @@ def read_rocks(work: Work, project: Project) -> list[RockInput]:
             )
             warnings.append(BuildWarning(what, "points", rock.name))
         rock = replace(rock, surfaces=surfaces, boreholes=None, hole_picks=picks.holes)
+        require_points_near(rock, project.units)
         inputs.append(RockInput(rock, shapes, None, [None] * len(shapes), faces, warnings))
     return inputs
 

@@ -34,6 +34,7 @@ NO_ANISOTROPY = {"ratio": 1.0, "azimuth": 0.0}
 # A fit means nothing where neighbouring points differ as much as any, or the range is beyond what they show.
 _PURE_NUGGET = 0.75
 _FEW_PAIRS = 30
+_FAR_RANGE = 1.5  # extents of the points: near twice of them the fit has found no sill
 
 
 @dataclass(frozen=True)
@@ -148,8 +149,9 @@ class Variogram:
         }
 
 
-def fit_warnings(variogram: Variogram, points: np.ndarray) -> list[str]:
-    """Warnings about a fitted variogram that means little, as sentences."""
+def fit_warnings(variogram: Variogram, points: np.ndarray, has_trend: bool = False) -> list[str]:
+    """What to tell where a fitted variogram means little, as sentences. has_trend: heights far from points
+    follow a trend."""
     warnings = []
     pairs = int(variogram.pairs.sum())
     if pairs < _FEW_PAIRS:
@@ -164,10 +166,10 @@ def fit_warnings(variogram: Variogram, points: np.ndarray) -> list[str]:
             "distant ones, so kriging gives hardly more than local means; check the points for errors"
         )
     extent = float(np.hypot(*np.ptp(points[:, :2], axis=0)))
-    if variogram.range > extent > 0 and pairs >= _FEW_PAIRS:
+    if not has_trend and variogram.range > _FAR_RANGE * extent > 0 and pairs >= _FEW_PAIRS:
         warnings.append(
-            f"the range of the fitted variogram, {variogram.range:.4g}, exceeds the extent of the points, "
-            f"{extent:.4g}: its sill, and variances far from points, are extrapolated; the heights may "
-            "follow a trend: try universal kriging"
+            f"the range of the fitted variogram, {variogram.range:.4g}, far exceeds the extent of the "
+            f"points, {extent:.4g}: its sill, and variances far from points, are extrapolated; the heights "
+            "may follow a trend: try universal kriging"
         )
     return warnings

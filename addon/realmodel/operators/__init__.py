@@ -9,7 +9,9 @@ from . import (
     build,
     documentation,
     files,
+    imports,
     library,
+    origin,
     plan_mesh,
     results,
     rocks,
@@ -22,8 +24,10 @@ from . import (
 
 _MODULES = (
     start,
+    origin,
     rocks,
     plan_mesh,
+    imports,
     surfaces,
     boreholes,
     variograms,

@@ -5,14 +5,16 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import borehole_picks, borehole_points, live, project_settings, reading_text, settings
+from ..bl import borehole_picks, borehole_points, project_settings, reading_text, settings
 from ..core import InputRefused
 from ..core.boreholes import COLUMNS, Boreholes
 from ..core.point_file import ReadingRefused
-from ..core.readers import read_boreholes
+from ..core.readers import TABLE_ENDINGS, read_boreholes
 from ..core.schema import READING
 from ..props_schema import items
-from .reporting import Reporting, a_rock, needed_path
+from .imports import arrived
+from .reporting import Reporting, needed_path
+from .rocks import add_rock
 
 
 class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
@@ -20,11 +22,12 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     these points beside their own, and are added where they are not there yet"""
 
     bl_idname = "realmodel.boreholes_read"
-    bl_label = "Read Boreholes"
-    needs = (a_rock,)
+    bl_label = "Import Boreholes"
 
     filename_ext = ""
-    filter_glob: StringProperty(default="*.csv;*.txt;*.dat;*.tsv", options={"HIDDEN"})
+    filter_glob: StringProperty(
+        default=";".join(f"*{ending}" for ending in TABLE_ENDINGS), options={"HIDDEN"}
+    )
     collars: StringProperty(
         name="Collars",
         description="Table with hole, x, y and z of each borehole, beside the table of picks or anywhere; "
@@ -61,7 +64,6 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     )
 
     def act(self, context):
-        rock = settings.active_rock(context.scene)
         picks = project_settings.absolute(needed_path(self.filepath, "the picks"))
         given = Boreholes(
             picks,
@@ -79,9 +81,10 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
         except ReadingRefused as error:
             raise InputRefused(error.what, advice=error.advice) from error
         found = read_boreholes(given, context.scene.realmodel.units)
+        rock = settings.active_rock(context.scene) or add_rock(context.scene)
         told = borehole_points.give(context.scene, rock, found.points, self.add_surfaces)
         borehole_picks.keep(rock, found.holes)
-        live.touch(context.scene)
+        arrived(context, rock, list(found.points.values()))
         for text in [*found.warnings, *told]:
             self.report({"WARNING"}, text)
         self.report({"INFO"}, f"Points for {len(found.points)} surfaces: {', '.join(found.points)}")

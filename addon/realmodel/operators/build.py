@@ -171,7 +171,33 @@ class REALMODEL_OT_show_problem(Reporting, bpy.types.Operator):
         problems.show(context)
 
 
-CLASSES = (REALMODEL_OT_build, REALMODEL_OT_cancel, REALMODEL_OT_clear, REALMODEL_OT_show_problem)
+def a_message(context):
+    told = context.window_manager.realmodel.problem or context.scene.realmodel.warnings
+    return None if told else "there is no message"
+
+
+class REALMODEL_OT_dismiss(Reporting, bpy.types.Operator):
+    """Take the message out of the panel; the report of the model keeps its warnings"""
+
+    bl_idname = "realmodel.dismiss"
+    bl_label = "Dismiss Message"
+    bl_options = {"REGISTER", "INTERNAL"}
+    needs = (a_message,)
+
+    def act(self, context):
+        if context.window_manager.realmodel.problem:
+            problems.forget()
+        else:
+            context.scene.realmodel.warnings = ""
+
+
+CLASSES = (
+    REALMODEL_OT_build,
+    REALMODEL_OT_cancel,
+    REALMODEL_OT_clear,
+    REALMODEL_OT_show_problem,
+    REALMODEL_OT_dismiss,
+)
 
 
 def unregister():

@@ -84,7 +84,7 @@ def a_section_plane(context):
 
 
 def selected_meshes(context):
-    there = any(item.type == "MESH" for item in context.selected_objects)
+    there = any(settings.is_mesh_object(None, item) for item in context.selected_objects)
     return None if there else "no mesh object is selected; select the surfaces of your model first"
 
 

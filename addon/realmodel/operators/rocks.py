@@ -2,8 +2,12 @@
 """The list of rock masses."""
 
 import bpy
+import numpy as np
+from bpy.props import EnumProperty, FloatProperty, IntProperty
+from mathutils.geometry import convex_hull_2d
 
-from ..bl import built_scene, live, settings
+from ..bl import built_scene, data_objects, live, project_settings, settings, shapes
+from ..core import InputRefused
 from .reporting import Reporting, a_rock
 
 
@@ -46,6 +50,7 @@ class REALMODEL_OT_rock_remove(Reporting, bpy.types.Operator):
             group.rocks.remove(list(group.rocks).index(row))
             group.active_rock = max(0, min(group.active_rock, len(group.rocks) - 1))
             group.stage = settings.last_stage(scene)
+        data_objects.update(scene)
         live.touch(scene)
 
 
@@ -73,4 +78,72 @@ class REALMODEL_OT_rock_copy(Reporting, bpy.types.Operator):
         live.touch(context.scene)
 
 
-CLASSES = (REALMODEL_OT_rock_add, REALMODEL_OT_rock_remove, REALMODEL_OT_rock_copy)
+class REALMODEL_OT_region_around(Reporting, bpy.types.Operator):
+    """Draw the region of the rock mass around the points of its surfaces, as a curve that you can edit"""
+
+    bl_idname = "realmodel.region_around"
+    bl_label = "Region Around Points"
+    needs = (a_rock,)
+
+    shape: EnumProperty(
+        name="Shape",
+        description="What is drawn around the points",
+        items=(
+            (
+                "RECTANGLE",
+                "Rectangle",
+                "From the westernmost to the easternmost point, and likewise north",
+            ),
+            ("HULL", "Convex Hull", "As near around the points as an outline without dents can be"),
+        ),
+    )
+    margin: FloatProperty(
+        name="Margin",
+        description="How far the region goes beyond the points, in percent of their extent",
+        subtype="PERCENTAGE",
+        default=5.0,
+        min=0.0,
+        soft_max=50.0,
+    )
+    rock: IntProperty(
+        name="Rock Mass",
+        description="Its number, counted from 0; -1: the active one",
+        default=-1,
+        min=-1,
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
+
+    def act(self, context):
+        scene, group = context.scene, context.scene.realmodel
+        row = settings.active_rock(context.scene)
+        if self.rock >= 0:
+            if self.rock >= len(group.rocks):
+                raise InputRefused(f"there is no rock mass {self.rock}", advice="they are counted from 0")
+            row = group.rocks[self.rock]
+        points = data_objects.points_of(scene, row, context.evaluated_depsgraph_get())
+        data_objects.begin(scene, points)
+        places = points - project_settings.model_origin(scene)
+        low, high = places.min(axis=0), places.max(axis=0)
+        margin = self.margin / 100.0 * float(np.hypot(*(high - low)[:2]))
+        if self.shape == "HULL":
+            corners = places[convex_hull_2d(places[:, :2].tolist()), :2]
+            middle = corners.mean(axis=0)
+            away = corners - middle
+            corners = middle + away * (1.0 + margin / np.linalg.norm(away, axis=1, keepdims=True).min())
+        else:
+            (x, y), (east, north) = low[:2] - margin, high[:2] + margin
+            corners = [(x, y), (east, y), (east, north), (x, north)]
+        if len(corners) < 3 or not (high - low)[:2].all():
+            raise InputRefused(
+                "the points lie in one line", advice="draw the region, or import further points"
+            )
+        row.region = shapes.new_outline(scene, f"{row.name} region", corners, low[2])
+        self.report({"INFO"}, f"{row.region.name}: a curve, which you can edit")
+
+
+CLASSES = (
+    REALMODEL_OT_region_around,
+    REALMODEL_OT_rock_add,
+    REALMODEL_OT_rock_remove,
+    REALMODEL_OT_rock_copy,
+)

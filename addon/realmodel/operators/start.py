@@ -1,32 +1,89 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How a model begins: empty, from a project file, from meshes; and how it goes to a project file."""
 
+import math
 from pathlib import Path
 
 import bpy
-from bpy.props import EnumProperty, StringProperty
+import numpy as np
+from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from ..bl import built_scene, live, project_settings, region_size, samples, settings
+from ..bl import (
+    built_scene,
+    data_objects,
+    library_rows,
+    live,
+    project_settings,
+    region_size,
+    samples,
+    scene,
+    settings,
+    shapes,
+)
+from ..bl.display import cuts
 from ..bl.origin import KEY as ORIGIN_KEY
-from ..core import load_project
+from ..core import BuildFailed, load_project
 from ..core.project_writer import save_project
 from ..core.rock_input import with_arrays
-from .reporting import Reporting, any_surface, needed_path, selected_meshes
+from .reporting import Reporting, any_surface, needed_path, not_building, selected_meshes
 
 
-def _begin(scene, name):
-    """An empty model in a scene, in place of the one that is there."""
-    built_scene.remove_model(scene)
-    group = scene.realmodel
+def _begin(current, name):
+    """An empty model in a scene, in place of the one that is there with its sections."""
+    built_scene.remove_model(current)
+    if cuts.plane_of(current) is not None:
+        cuts.remove_plane(current)
+    scene.remove_objects([item for item in current.objects if item.get(scene.TAG) == "section"])
+    group = current.realmodel
     with settings.filling():
         group.version, group.exists = settings.VERSION, True
         group.name, group.project_file, group.library_path = name, "", ""
         group.active_rock = group.stage = group.active_property = group.active_result = 0
         group.explode = 0.0
+        group.show_data = False
+    data_objects.update(current)
 
 
-class REALMODEL_OT_new(Reporting, bpy.types.Operator):
+def invoke(call, operator, **arguments):
+    """Has another operator go on: with its window where the first was invoked. Raises BuildFailed."""
+    try:
+        call("INVOKE_DEFAULT" if operator.options.is_invoke else "EXEC_DEFAULT", **arguments)
+    except RuntimeError as error:
+        raise BuildFailed(str(error).removeprefix("Error: ").strip()) from error
+
+
+class Replacing(Reporting):
+    """An operator that puts a model in the place of the scene's, and asks first where it is invoked."""
+
+    _asked = False
+
+    needs = (not_building,)
+
+    def comes(self, context):
+        """What comes in the place of the model: "open Haut-Barr"."""
+        raise NotImplementedError
+
+    def ask(self, context):
+        """Carries on, or opens the question first."""
+        group = context.scene.realmodel
+        if not (settings.has_rows(context.scene) or len(group.results)):
+            return self.execute(context)
+        self._asked = True
+        return context.window_manager.invoke_props_dialog(self, width=360)
+
+    def invoke(self, context, event):
+        return self.ask(context)
+
+    def draw(self, context):
+        column = self.layout.column(align=True)
+        group = context.scene.realmodel
+        what = "blocks" if len(group.results) else "surfaces"
+        column.label(text=f"Remove the {what} of {group.name}", icon="QUESTION")
+        column.label(text=f"and {self.comes(context)}?", icon="BLANK1")
+
+
+class REALMODEL_OT_new(Replacing, bpy.types.Operator):
     """Begin an empty model in this scene. The blocks of an earlier one are removed, your own meshes stay"""
 
     bl_idname = "realmodel.new"
@@ -35,18 +92,17 @@ class REALMODEL_OT_new(Reporting, bpy.types.Operator):
     def act(self, context):
         _begin(context.scene, "Model")
 
-    def invoke(self, context, event):
-        if settings.has_rows(context.scene):
-            return context.window_manager.invoke_confirm(self, event)
-        return self.execute(context)
+    def comes(self, _context):
+        return "begin an empty model"
 
 
-class REALMODEL_OT_open_project(Reporting, bpy.types.Operator, ImportHelper):
+class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
     """Open a RealModel project file (TOML) in this scene, in place of the model that is there"""
 
     bl_idname = "realmodel.open_project"
     bl_label = "Open RealModel Project"
 
+    _browses = False
     filename_ext = ".toml"
     # not kept from one time to the next: with a path, as of a dropped file, no file browser opens
     filepath: StringProperty(
@@ -58,36 +114,63 @@ class REALMODEL_OT_open_project(Reporting, bpy.types.Operator, ImportHelper):
     )
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
 
+    build: BoolProperty(
+        name="Build", description="Build the model as soon as it is opened", options={"SKIP_SAVE"}
+    )
+
     def act(self, context):
         path = project_settings.absolute(needed_path(self.filepath, "the project"))
+        if self._browses and not self._asked:  # the file was chosen: now it can be named in the question
+            invoke(bpy.ops.realmodel.open_project, self, filepath=self.filepath, build=self.build)
+            return
         _open(context.scene, path)
-        self.report({"INFO"}, f"Opened {path.name}; press Build to see the model")
+        self.report({"INFO"}, f"Opened {path.name}")
+        if self.build:
+            invoke(bpy.ops.realmodel.build, self)
+
+    def comes(self, _context):
+        return f"open {Path(self.filepath).name}"
 
     def invoke(self, context, event):
-        if self.filepath and self.options.is_invoke and Path(self.filepath).suffix.lower() == ".toml":
-            return self.execute(context)  # a file that was dropped
+        if not self.properties.is_property_set("build"):
+            self.build = True
+        if self.filepath and Path(self.filepath).suffix.lower() == ".toml":
+            return self.ask(context)  # a file that was dropped, or chosen before
+        self._browses = True
         return ImportHelper.invoke(self, context, event)
 
+    def draw(self, context):
+        if context.space_data is not None and context.space_data.type == "FILE_BROWSER":
+            self.layout.prop(self, "build")
+        else:
+            super().draw(context)
 
-def _open(scene, path):
+
+def _open(current, path):
     project = with_arrays(load_project(path))
-    _begin(scene, project.name)
-    project_settings.fill(scene, project)
+    _begin(current, project.name)
+    project_settings.fill(current, project)
+    data_objects.update(current)
     region_size.ask()
-    live.touch(scene)
+    live.touch(current)
 
 
-class REALMODEL_OT_open_sample(Reporting, bpy.types.Operator):
-    """Open one of the examples that come with RealModel"""
+class REALMODEL_OT_open_sample(Replacing, bpy.types.Operator):
+    """Open one of the examples that come with RealModel, and build it"""
 
     bl_idname = "realmodel.open_sample"
     bl_label = "Open Example"
 
     sample: EnumProperty(name="Example", description="Which of them", items=samples.enum_items)
+    build: BoolProperty(name="Build", description="Build the model as soon as it is opened", default=True)
 
     def act(self, context):
         _open(context.scene, samples.project_file(self.sample))
-        self.report({"INFO"}, "Opened the example; press Build to see the model")
+        if self.build:
+            invoke(bpy.ops.realmodel.build, self)
+
+    def comes(self, _context):
+        return f"open the example {samples.label(self.sample)}"
 
 
 class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
@@ -115,34 +198,67 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
         return ExportHelper.invoke(self, context, event)
 
 
-class REALMODEL_OT_from_selected(Reporting, bpy.types.Operator):
+class REALMODEL_OT_from_selected(Replacing, bpy.types.Operator):
     """Make a model with one rock mass from the selected mesh objects: the lowest is taken as the oldest"""
 
     bl_idname = "realmodel.from_selected"
     bl_label = "Model from Selected Meshes"
-    needs = (selected_meshes,)
+    needs = (not_building, selected_meshes)
+
+    add_base: BoolProperty(
+        name="Base",
+        description="Lay a block beneath the oldest surface, down to a fifth of the height of all below it",
+        options={"SKIP_SAVE"},
+    )
 
     def act(self, context):
+        chosen = _chosen(context)
+        for item in chosen:
+            shapes.require_open(item)
         depsgraph = context.evaluated_depsgraph_get()
-        chosen = [item for item in context.selected_objects if item.type == "MESH"]
         ordered = project_settings.oldest_first(chosen, depsgraph)
-        scene = context.scene
-        origin = project_settings.model_origin(scene)  # the objects stand where it says
-        had_one = ORIGIN_KEY in scene
-        _begin(scene, "Model")
+        current = context.scene
+        origin = project_settings.model_origin(current)  # the objects stand where it says
+        had_one = ORIGIN_KEY in current
+        heights = np.concatenate([shapes.points(item, depsgraph)[:, 2] for item in chosen]) + origin[2]
+        _begin(current, "Model")
         if had_one:
-            scene[ORIGIN_KEY] = [float(value) for value in origin]
+            current[ORIGIN_KEY] = [float(value) for value in origin]
         with settings.filling():
-            rock = scene.realmodel.rocks.add()
+            rock = current.realmodel.rocks.add()
             rock.name = "rock mass"
             for item in ordered:
                 row = rock.surfaces.add()
                 row.name = settings.free_name(rock.surfaces, item.name, own=row)
+                row.property_id = library_rows.for_surface(current, row.name)
                 row.source = "MESH_OBJECT"
                 row.object = item
             rock.active_surface = len(ordered) - 1
-        live.touch(scene)
+            settings.set_number(rock, "base_elevation", _base_below(heights))
+            rock.use_base = self.add_base
+        live.touch(current)
         self.report({"INFO"}, f"{len(ordered)} surfaces, oldest first: {', '.join(i.name for i in ordered)}")
+
+    def comes(self, _context):
+        return "make one from the selected meshes"
+
+    def invoke(self, context, event):
+        self.add_base = len(_chosen(context)) < 3  # of two sheets one block is all there is without it
+        return self.ask(context)
+
+
+def _chosen(context):
+    return [item for item in context.selected_objects if settings.is_mesh_object(None, item)]
+
+
+def _base_below(heights):
+    """A round elevation about a fifth of the range of some heights below the lowest of them."""
+    if not len(heights):
+        return 0.0
+    low = float(heights.min())
+    below = 0.2 * float(np.ptp(heights)) or 1.0
+    step = 10.0 ** math.floor(math.log10(below))
+    return math.floor((low - below) / step) * step
 
 
 def _import_menu(self, _context):

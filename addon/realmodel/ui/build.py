@@ -1,44 +1,48 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Building, its progress, and what it had to tell."""
+"""Building, its progress, what is missing for it, and what it had to tell."""
 
 import bpy
 
-from ..bl import settings
-from .panel import TabPanel, hint, wrapped
+from ..bl import method_settings, notices, settings
+from .panel import OfAModel, TabPanel, hint, letters, wrapped
 
-_MOST_WARNINGS = 4
+_FOLDED = 3  # lines of warnings that are shown until they are unfolded
 _ICON = 5  # letters that are as wide as an icon and the border of a box
 
 
-class REALMODEL_PT_build(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_build(OfAModel, TabPanel, bpy.types.Panel):
     bl_label = "Build"
     bl_idname = "REALMODEL_PT_build"
-    bl_order = 3
+    bl_order = 1
 
     def draw_in(self, layout, context, group):
         activity = context.window_manager.realmodel
-        if not settings.has_rows(context.scene):
-            hint(layout, "Add surfaces first; then the blocks between them are built here.")
-            return
         if activity.running:
             _draw_progress(layout, activity)
-        else:
+        elif settings.has_rows(context.scene):
             row = layout.row(align=True)
             row.use_property_split = False
             row.scale_y = 1.4
             row.operator("realmodel.build", icon="MOD_BUILD")
             row.prop(group, "live", text="Live", toggle=True, icon="RECOVER_LAST")
-        layout.prop(group, "cells")
-        if len(group.results):
-            layout.operator("realmodel.clear", icon="X")
+            _draw_missing(layout, group)
+        else:
+            hint(layout, "Add surfaces first; then the blocks between them are built here.")
         if activity.problem:
-            box = layout.box()
-            box.alert = True
-            for line in wrapped(activity.problem):
-                box.label(text=line)
-            box.operator("realmodel.show_problem", icon="VIEWZOOM")
+            _draw_problem(layout.box(), activity)
         elif group.warnings:
-            _draw_warnings(layout.box(), group.warnings.split("\n"))
+            _draw_warnings(layout.box(), group, activity)
+
+
+class REALMODEL_PT_build_options(TabPanel, bpy.types.Panel):
+    bl_label = "Options"
+    bl_idname = "REALMODEL_PT_build_options"
+    bl_parent_id = "REALMODEL_PT_build"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_in(self, layout, _context, group):
+        layout.prop(group, "cells")
+        layout.operator("realmodel.clear", icon="TRASH")
 
 
 def _draw_progress(layout, activity):
@@ -48,13 +52,51 @@ def _draw_progress(layout, activity):
     column.operator("realmodel.cancel", text="Cancel (Esc)", icon="CANCEL")
 
 
-def _draw_warnings(box, warnings):
-    for warning in warnings[:_MOST_WARNINGS]:
+def _draw_missing(layout, group):
+    """What a build would ask for, with the button that gives it."""
+    for number, rock in enumerate(group.rocks):
+        has_region = rock.region is not None or rock.region_file or rock.region_stored
+        if method_settings.interpolates(rock) and not has_region:
+            hint(layout, f"{rock.name} has no region yet: draw one, choose a file in Rock Masses, or")
+            layout.operator("realmodel.region_around", icon="SHADING_BBOX").rock = number
+
+
+def _draw_problem(box, activity):
+    box.alert = True
+    row = box.row()
+    lines = wrapped(notices.in_panel_words(activity.problem), taken=_ICON)
+    column = row.column(align=True)
+    for line in lines:
+        column.label(text=line)
+    row.operator("realmodel.dismiss", text="", icon="X", emboss=False)
+    if activity.problem_object:
+        box.operator("realmodel.show_problem", icon="VIEWZOOM")
+
+
+def _draw_warnings(box, group, activity):
+    """Folded: a line for each of the first ones. Unfolded: all of them in full."""
+    given = notices.read(group.warnings)
+    row = box.row(align=True)
+    count = "1 Warning" if len(given) == 1 else f"{len(given)} Warnings"
+    icon = "DISCLOSURE_TRI_DOWN" if activity.unfolded else "DISCLOSURE_TRI_RIGHT"
+    row.use_property_split = False
+    row.alignment = "LEFT"
+    row.prop(activity, "unfolded", text=count, icon=icon, emboss=False)
+    cross = row.row()
+    cross.alignment = "RIGHT"
+    cross.operator("realmodel.dismiss", text="", icon="X", emboss=False)
+    if not activity.unfolded:
+        for text in given[:_FOLDED]:
+            box.label(text=_cut(text, letters() - _ICON), icon="INFO")
+        return
+    for text in given:
         column = box.column(align=True)
-        for number, line in enumerate(wrapped(warning, taken=_ICON)):
+        for number, line in enumerate(wrapped(text, taken=_ICON)):
             column.label(text=line, icon="INFO" if number == 0 else "BLANK1")
-    if len(warnings) > _MOST_WARNINGS:
-        box.label(text=f"and {len(warnings) - _MOST_WARNINGS} more: see the report")
 
 
-CLASSES = (REALMODEL_PT_build,)
+def _cut(text, most):
+    return text if len(text) <= most else f"{text[: most - 3].rstrip()}..."
+
+
+CLASSES = (REALMODEL_PT_build, REALMODEL_PT_build_options)

@@ -20,6 +20,39 @@ class TabPanel:
         self.draw_in(layout, context, context.scene.realmodel)
 
 
+class OfAModel:
+    """A panel that has nothing to show before a model is begun."""
+
+    @classmethod
+    def poll(cls, context):
+        return context.scene.realmodel.exists
+
+
+class OfABuiltModel:
+    """A panel that has nothing to show before a build."""
+
+    @classmethod
+    def poll(cls, context):
+        return len(context.scene.realmodel.results) > 0
+
+
+def file_field(layout, row, key, text=""):
+    """A field of a file that shows its name; the icon beside it is of the field with the whole path."""
+    path = getattr(row, key)
+    if not path:
+        layout.prop(row, key, **({"text": text} if text else {}))
+        return
+    line = layout.split(factor=0.4)
+    label = line.row()
+    label.alignment = "RIGHT"
+    label.label(text=text or row.bl_rna.properties[key].name)
+    field = line.row(align=True)
+    field.label(text=re.split(r"[\\\\/]", path)[-1])
+    button = field.row()
+    button.ui_units_x = 1.2
+    button.prop(row, key, text="")
+
+
 def hint(layout, text):
     """An empty state: what to do first, in as many lines as the sidebar's width asks for."""
     column = layout.column(align=True)
@@ -28,7 +61,7 @@ def hint(layout, text):
         column.label(text=line)
 
 
-def _letters():
+def letters():
     """How many letters fit into a line of the sidebar that is being drawn."""
     region = bpy.context.region
     if region is None:
@@ -42,7 +75,7 @@ _UNIT = re.compile(r"(?<=\d) (?=(?:[mck]?m[²³]?|%|ft|mi|yd|in)(?!\w))")  # bet
 def wrapped(text, taken=0):
     """The lines of a text, none longer than about the width of the sidebar, of which something else has
     `taken` so many letters; a number stays with its unit."""
-    width = max(_letters() - taken, 12)
+    width = max(letters() - taken, 12)
     lines, line = [], ""
     for word in _UNIT.sub("\u00a0", text).split(" "):
         if line and len(line) + 1 + len(word) > width:

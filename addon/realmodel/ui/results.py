@@ -5,18 +5,15 @@ import bpy
 
 from ..bl import units
 from .lists import result_columns
-from .panel import TabPanel, hint
+from .panel import OfABuiltModel, TabPanel
 
 
-class REALMODEL_PT_results(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_results(OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_label = "Results"
     bl_idname = "REALMODEL_PT_results"
-    bl_order = 6
+    bl_order = 3
 
     def draw_in(self, layout, context, group):
-        if not len(group.results):
-            hint(layout, "Build the model first; its blocks and their volumes are listed here.")
-            return
         headings = ("Block", units.unit_text(context.scene, 3), "%")
         for column, heading in zip(result_columns(layout), headings, strict=True):
             column.label(text=heading)

@@ -6,13 +6,14 @@ import bpy
 from ..bl import method_settings, plan_mesh, region_size, settings
 from ..core.schema import ROCK, SIZE
 from . import setting_rows
-from .panel import TabPanel, hint
+from .panel import OfAModel, TabPanel, file_field, hint
 
 
-class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_rocks(OfAModel, TabPanel, bpy.types.Panel):
     bl_label = "Rock Masses"
     bl_idname = "REALMODEL_PT_rocks"
-    bl_order = 1
+    bl_order = 5
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, group):
         if not len(group.rocks):
@@ -28,9 +29,10 @@ class REALMODEL_PT_rocks(TabPanel, bpy.types.Panel):
         rock = settings.active_rock(context.scene)
         layout.prop(rock, "region")
         if rock.region is None:
-            layout.prop(rock, "region_file", text="or file")
+            file_field(layout, rock, "region_file", text="or file")
             if rock.region_stored and not rock.region_file:
                 hint(layout, "The outline is stored in the .blend.")
+        layout.operator("realmodel.region_around", icon="SHADING_BBOX")
         if method_settings.interpolates(rock):
             _draw_density(layout, rock)
         setting_rows.draw(layout, rock, "base_elevation", ROCK)

@@ -4,7 +4,7 @@
 import bpy
 
 from ..bl import native
-from .panel import TabPanel, hint, wrapped
+from .panel import OfAModel, TabPanel, hint, wrapped
 
 
 class REALMODEL_PT_start(TabPanel, bpy.types.Panel):
@@ -24,20 +24,50 @@ class REALMODEL_PT_start(TabPanel, bpy.types.Panel):
             for line in wrapped(missing):
                 box.label(text=line)
         if group.exists:
-            layout.prop(group, "name")
-            layout.prop(group, "units")
-        else:
-            hint(
-                layout,
-                "No model in this scene yet. Open an example to see what RealModel does, or begin here:",
-            )
+            row = layout.row(align=True)
+            row.prop(group, "name", text="")
+            row.menu("REALMODEL_MT_start", text="", icon="FILE_FOLDER")
+            return
+        hint(layout, "Open an example to see what RealModel does, or begin with your own data:")
         column = layout.column(align=True)
-        column.operator("realmodel.new", icon="FILE_NEW")
-        column.operator("realmodel.open_project", text="Open Project...", icon="FILE_FOLDER")
         column.operator_menu_enum("realmodel.open_sample", "sample", text="Open Example", icon="EXPERIMENTAL")
+        column.operator("realmodel.surface_add", text="Import Surfaces...", icon="IMPORT")
+        column.operator("realmodel.boreholes_read", text="Import Boreholes...", icon="EMPTY_SINGLE_ARROW")
         column.operator("realmodel.from_selected", text="From Selected Meshes", icon="OUTLINER_OB_MESH")
-        if group.exists:
-            layout.operator("realmodel.save_project", text="Save Project...", icon="FILE_TICK")
+        column.operator("realmodel.open_project", text="Open Project...", icon="FILE_FOLDER")
+        column.operator("realmodel.new", icon="FILE_NEW")
 
 
-CLASSES = (REALMODEL_PT_start,)
+class REALMODEL_MT_start(bpy.types.Menu):
+    """Another model, and this one to a project file"""
+
+    bl_label = "Model"
+    bl_idname = "REALMODEL_MT_start"
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.operator_context = "INVOKE_DEFAULT"
+        layout.operator("realmodel.new", icon="FILE_NEW")
+        layout.operator_menu_enum("realmodel.open_sample", "sample", text="Open Example", icon="EXPERIMENTAL")
+        layout.operator("realmodel.open_project", text="Open Project...", icon="FILE_FOLDER")
+        layout.operator("realmodel.from_selected", text="From Selected Meshes", icon="OUTLINER_OB_MESH")
+        layout.separator()
+        layout.operator("realmodel.save_project", text="Save Project...", icon="FILE_TICK")
+
+
+class REALMODEL_PT_start_origin(OfAModel, TabPanel, bpy.types.Panel):
+    bl_label = "Units and Origin"
+    bl_idname = "REALMODEL_PT_start_origin"
+    bl_parent_id = "REALMODEL_PT_start"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_in(self, layout, _context, group):
+        layout.prop(group, "units")
+        layout.prop(group, "show_data")
+        column = layout.column()
+        column.enabled = not len(group.results)
+        column.prop(group, "origin")
+        layout.operator("realmodel.move_to_zero", icon="EMPTY_AXIS")
+
+
+CLASSES = (REALMODEL_PT_start, REALMODEL_MT_start, REALMODEL_PT_start_origin)

@@ -8,18 +8,18 @@ from ..core.methods import METHODS, OPTIONS, STRUCTURE
 from ..core.schema import READING, SURFACE
 from ..core.variogram import VARIOGRAMS
 from . import setting_rows
-from .panel import TabPanel, hint, wrapped
+from .panel import OfAModel, TabPanel, file_field, hint, wrapped
 
 
-class REALMODEL_PT_surfaces(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_surfaces(OfAModel, TabPanel, bpy.types.Panel):
     bl_label = "Surfaces"
     bl_idname = "REALMODEL_PT_surfaces"
-    bl_order = 2
+    bl_order = 4
 
     def draw_in(self, layout, context, _group):
         rock = settings.active_rock(context.scene)
         if rock is None:
-            hint(layout, "Add a rock mass first.")
+            _draw_adding(layout)
             return
         row = layout.row()
         row.template_list("REALMODEL_UL_surfaces", "", rock, "surfaces", rock, "active_surface", rows=4)
@@ -35,13 +35,17 @@ class REALMODEL_PT_surfaces(TabPanel, bpy.types.Panel):
                 layout,
                 "No surfaces yet. Add the oldest first.",
             )
-        line = layout.column(align=True)
-        line.operator("realmodel.surface_add", text="Add from File...", icon="FILE_FOLDER")
-        line.operator("realmodel.surface_add", text="Add Active Mesh", icon="OBJECT_DATA").use_object = True
-        line.operator("realmodel.boreholes_read", text="Import Boreholes...", icon="EMPTY_SINGLE_ARROW")
+        _draw_adding(layout)
         surface = settings.active_surface(context.scene)
         if surface is not None:
             _draw_surface(layout, context, surface)
+
+
+def _draw_adding(layout):
+    line = layout.column(align=True)
+    line.operator("realmodel.surface_add", text="Import Surfaces...", icon="IMPORT")
+    line.operator("realmodel.surface_add", text="Add Active Mesh", icon="OBJECT_DATA").use_object = True
+    line.operator("realmodel.boreholes_read", text="Import Boreholes...", icon="EMPTY_SINGLE_ARROW")
 
 
 def _draw_surface(layout, context, surface):
@@ -50,7 +54,7 @@ def _draw_surface(layout, context, surface):
     if surface.source in ("POINTS_OBJECT", "MESH_OBJECT"):
         layout.prop(surface, "object")
     elif surface.source in ("POINTS_FILE", "MESH_FILE"):
-        layout.prop(surface, "filepath")
+        file_field(layout, surface, "filepath")
         if project_settings.stored_shape(surface) and not surface.filepath:
             hint(layout, "The data are stored in the .blend.")
     if surface.source not in method_settings.READY_MESHES:

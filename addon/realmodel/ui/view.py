@@ -6,20 +6,17 @@ import bpy
 from .. import props_stage
 from ..bl import library_rows, settings, units
 from ..bl.display import coordinates, cuts, modes, preparing, residuals
-from .panel import TabPanel, hint, wrapped
+from .panel import OfABuiltModel, TabPanel, hint, wrapped
 
 _WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
 
 
-class REALMODEL_PT_view(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_label = "View"
     bl_idname = "REALMODEL_PT_view"
-    bl_order = 4
+    bl_order = 2
 
     def draw_in(self, layout, context, group):
-        if not len(group.results):
-            hint(layout, "Build the model first; then choose here how it is shown.")
-            return
         column = layout.column(align=True)
         column.prop(group, "display", text="Show")
         if group.display in _WITH_SUBJECT:
@@ -76,15 +73,7 @@ def _stage(layout, scene):
         hint(layout, f"just after {rows[group.stage].name} ({group.stage} of {last})")
 
 
-class _OfABuiltModel:
-    """A panel that has nothing to show before a build."""
-
-    @classmethod
-    def poll(cls, context):
-        return len(context.scene.realmodel.results) > 0
-
-
-class REALMODEL_PT_view_properties(_OfABuiltModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view_properties(OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_label = "Blocks by Property"
     bl_idname = "REALMODEL_PT_view_properties"
     bl_parent_id = "REALMODEL_PT_view"
@@ -112,7 +101,7 @@ class REALMODEL_PT_view_properties(_OfABuiltModel, TabPanel, bpy.types.Panel):
             column.operator("realmodel.hide_property", text="Show All").action = "ALL"
 
 
-class REALMODEL_PT_view_section(_OfABuiltModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view_section(OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_label = "Section"
     bl_idname = "REALMODEL_PT_view_section"
     bl_parent_id = "REALMODEL_PT_view"
@@ -159,7 +148,7 @@ class REALMODEL_PT_view_camera(TabPanel, bpy.types.Panel):
         layout.operator("realmodel.render_picture", icon="RENDER_STILL")
 
 
-class REALMODEL_PT_view_coordinates(_OfABuiltModel, TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view_coordinates(OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_label = "Coordinates"
     bl_idname = "REALMODEL_PT_view_coordinates"
     bl_parent_id = "REALMODEL_PT_view"

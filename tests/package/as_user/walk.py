@@ -81,7 +81,6 @@ def main(folder):
     bpy.ops.wm.read_homefile(use_empty=True)
     expected = exact_volumes()
     bpy.ops.realmodel.open_sample(sample=SAMPLE)
-    bpy.ops.realmodel.build()
     check_blocks(expected, "after the first build")
     bpy.ops.realmodel.export(filepath=str(folder / "model.npz"))
     with np.load(folder / "model.npz") as arrays:

@@ -109,7 +109,7 @@ def explode_changed(scene):
 
 def exaggeration_changed(scene):
     """The vertical is stretched more, or less; or there are other objects that are to be."""
-    items = [item for item in scene.objects if TAG in item]
+    items = [item for item in scene.objects if TAG in item or settings.DATA in item]
     exaggeration.apply(scene, [*items, cuts.plane_of(scene)], explosion.bounds(scene)[0][2])
 
 

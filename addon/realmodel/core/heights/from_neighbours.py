@@ -49,7 +49,7 @@ def structure(task: Task) -> Structure:
     )
     neighbours = NEIGHBOURS_OF_FITTED if asked is None else asked
     variogram = Variogram.from_fit(fitted, finds)
-    return Structure(variogram, neighbours, tuple(fit_warnings(variogram, task.points)))
+    return Structure(variogram, neighbours, tuple(fit_warnings(variogram, task.points, "drift" in settings)))
 
 
 def krige(task: Task, known: Structure | None = None) -> Result:

@@ -6,13 +6,18 @@ from .map_input import MAP_ENDINGS, read_region, read_shapes
 from .mesh_file import MESH_ENDINGS, read_mesh
 from .off import read_off
 from .point_input import RASTER_ENDINGS, read_point_file
-from .points import read_points
+from .points import TABLE_ENDINGS, read_points
+from .table_preview import TablePreview, column_values, preview_table
 
 __all__ = [
     "MAP_ENDINGS",
     "MESH_ENDINGS",
     "RASTER_ENDINGS",
+    "TABLE_ENDINGS",
     "Picks",
+    "TablePreview",
+    "column_values",
+    "preview_table",
     "read_boreholes",
     "read_mesh",
     "read_off",

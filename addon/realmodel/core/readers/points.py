@@ -26,6 +26,7 @@ from .table_layout import (
 )
 from .text import Step, no_step, read_bytes, require_text
 
+TABLE_ENDINGS = (".csv", ".xyz", ".txt", ".dat", ".tsv")
 BYTES_AT_ONCE = 1 << 19  # between two steps: a few milliseconds
 _MOST_THREADS = 8
 _AXES = {
@@ -82,7 +83,7 @@ def read_point_rows(
     """
     file = Path(file)
     table = open_table(file, separator, columns or (), where or {}, KNOWN)
-    wanted = _wanted_columns(table, columns)
+    wanted = wanted_columns(table, columns)
     filters = [
         (table.column(name), _values(list_of(value), table.encoding)) for name, value in (where or {}).items()
     ]
@@ -148,7 +149,8 @@ def open_table(
     return Table(file, raw, encoding, layout)
 
 
-def _wanted_columns(table: Table, columns: Sequence[str | int] | None) -> list[int]:
+def wanted_columns(table: Table, columns: Sequence[str | int] | None) -> list[int]:
+    """The numbers from 0 of the columns of x, y and z. Raises InputRefused."""
     if columns is not None:
         return [table.column(column) for column in columns]
     names = [plain_name(name) for name in table.layout.names or ()]
@@ -172,7 +174,7 @@ def _guessed_names(table: Table) -> tuple[str, ...]:
     """The names of the first three columns where the header names the columns of the table, and none of them
     as a coordinate."""
     names = table.layout.names or ()
-    first_row = _head_rows(table, 1)
+    first_row = head_rows(table, 1)
     if len(names) < 3 or not first_row or len(names) != len(first_row[0]):
         return ()
     if KNOWN.intersection(plain_name(name) for name in names) or any(is_number(name) for name in names):
@@ -248,10 +250,11 @@ def _pieces(native, table, columns, filters, decimal, missing, step) -> PointRow
 
 def _head_entries(table: Table, columns: Sequence[int], most: int = 2000) -> list[str]:
     """The entries of some columns in the first rows."""
-    return [row[column] for row in _head_rows(table, most) for column in columns if column < len(row)]
+    return [row[column] for row in head_rows(table, most) for column in columns if column < len(row)]
 
 
-def _head_rows(table: Table, most: int) -> list[list[str]]:
+def head_rows(table: Table, most: int) -> list[list[str]]:
+    """What stands in the first rows of a table."""
     body = table.raw[table.layout.body : table.layout.body + (1 << 18)].decode(table.encoding, "replace")
     return [fields(line, table.layout.separator) for line in body.split("\n")[:most] if line.strip()]
 

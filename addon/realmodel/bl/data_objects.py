@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points and outlines of a scene's model as they were read, as objects to look at before anything is built.
+
+They stand in the collection "<project> Data" beside the model, cannot be selected, are no input of anything
+and not in renders. `update` makes them from the settings, so they follow whatever becomes of these.
+"""
+
+import zlib
+from itertools import pairwise
+
+import bpy
+import numpy as np
+
+from ..core import InputRefused, PointFile, RealModelError
+from ..core.readers import read_point_file, read_region
+from . import display, project_settings, reading_text, settings, stored_arrays
+from .origin import KEY as ORIGIN_KEY
+from .origin import choose_origin
+
+KEY = settings.DATA  # on an object: what it was made from; on the collection: that it is the one
+_ORIGIN = "realmodel_data_origin"  # on an object: the origin that its mesh was made for
+
+
+def update(scene, read=None):
+    """Makes what is missing, and removes what is of no setting any more.
+
+    read: {what `file_key` says of a row: (P, 3) float64}, which the caller has read already. What cannot be
+    read is not shown: the build will say what is wrong.
+    """
+    wanted = {}
+    if scene.realmodel.show_data and scene.library is None:
+        wanted = _wanted(scene, read or {})
+    known = {item[KEY]: item for item in objects(scene)}
+    for stamp in known.keys() - wanted.keys():
+        _remove(known.pop(stamp))
+    for stamp, (name, load) in wanted.items():
+        item = known.get(stamp)
+        if item is None:
+            try:
+                item = _new(scene, stamp, name, *load())
+            except (RealModelError, KeyError):
+                continue
+        elif item.name != name and name not in bpy.data.objects:
+            item.name = name
+    collection = _collection(scene)
+    if collection is not None and not len(collection.objects):
+        bpy.data.collections.remove(collection)
+    place(scene)
+    if len(scene.realmodel.results):
+        display.exaggeration_changed(scene)
+
+
+def objects(scene):
+    """The objects of the data in a scene."""
+    collection = _collection(scene)
+    return [] if collection is None else [item for item in collection.objects if KEY in item]
+
+
+def place(scene):
+    """Puts the objects where the origin of the scene has them."""
+    origin = project_settings.model_origin(scene)
+    for item in objects(scene):
+        item.location = np.array(item[_ORIGIN]) - origin
+
+
+def begin(scene, points):
+    """The origin of a scene is that of the first data (P, 3) that arrive, unless objects of the user say
+    where the model stands."""
+    if ORIGIN_KEY not in scene and not project_settings.user_objects(scene) and len(points):
+        scene[ORIGIN_KEY] = [float(value) for value in choose_origin(points)]
+
+
+def points_of(scene, rock, depsgraph):
+    """(P, 3) float64 of all points of a rock mass's surfaces, in model coordinates; the vertices of ready
+    meshes count where there are no points. Raises InputRefused."""
+    found = [_row_points(scene, row, depsgraph) for row in rock.surfaces]
+    found = [points for points in found if points is not None and len(points)]
+    if not found:
+        raise InputRefused(
+            f"no surface of {rock.name} has points yet", advice="import surfaces or boreholes first"
+        )
+    return np.concatenate(found)
+
+
+def _row_points(scene, row, depsgraph):
+    if row.source in ("POINTS_OBJECT", "MESH_OBJECT") and row.object is not None:
+        return project_settings.shapes.points(row.object, depsgraph) + project_settings.model_origin(scene)
+    if row.source == "POINTS_FILE":
+        return _read_points(scene, row)
+    if row.stored_mesh:
+        return stored_arrays.unpack(row.stored_mesh)["vertices"]
+    return None
+
+
+def _read_points(scene, row):
+    """(P, 3) of a surface's file of points, or what the .blend keeps of it; None where it has neither."""
+    if row.stored:
+        return stored_arrays.unpack(row.stored)["points"]
+    path = project_settings.absolute(row.filepath)
+    if path is None:
+        return None
+    return read_point_file(PointFile(path, **reading_text.options(row)), scene.realmodel.units)[0]
+
+
+def file_key(row):
+    """What tells the file of a surface, and how it is read, from another."""
+    path = project_settings.absolute(row.filepath)
+    if path is None:
+        return ""
+    return f"{path} {reading_text.options(row)} {stored_arrays.file_stamp(path)}"
+
+
+def _wanted(scene, read):
+    """{stamp: (name, load)}: load() gives coordinates (N, 3) in model coordinates and edges (E, 2)."""
+    found = {}
+    for rock in scene.realmodel.rocks:
+        if rock.region is None and (rock.region_stored or rock.region_file):
+            made_of = rock.region_file or _checksum(rock.region_stored)
+            found[f"outline {rock.name} {made_of}"] = (
+                f"{rock.name} outline",
+                lambda rock=rock: _outline(scene, rock),
+            )
+        for row in rock.surfaces:
+            if row.source == "POINTS_FILE" and (row.filepath or row.stored):
+                try:
+                    key = file_key(row)
+                except RealModelError:  # only some of the columns are set yet
+                    continue
+                found[f"points {rock.name} / {row.name} {key or _checksum(row.stored)}"] = (
+                    f"{row.name} points",
+                    lambda row=row, key=key: _cloud(scene, row, read.get(key)),
+                )
+    return found
+
+
+def _checksum(text):
+    return zlib.crc32(text.encode())
+
+
+def _cloud(scene, row, points):
+    points = _read_points(scene, row) if points is None else points
+    return points, np.empty((0, 2), np.int32)
+
+
+def _outline(scene, rock):
+    """The rings of a region that comes from a file, below the lowest point of the model's data."""
+    if rock.region_stored:
+        rings = list(stored_arrays.unpack(rock.region_stored).values())
+    else:
+        rings, _ = read_region(project_settings.absolute(rock.region_file))
+    starts = np.cumsum([0, *map(len, rings)])
+    edges = [np.stack([n := np.arange(a, b), np.roll(n, -1)], 1) for a, b in pairwise(starts)]
+    plan = np.concatenate(rings)
+    begin_z = project_settings.model_origin(scene)[2]
+    return np.column_stack([plan, np.full(len(plan), begin_z)]), np.concatenate(edges).astype(np.int32)
+
+
+def _new(scene, stamp, name, coordinates, edges):
+    if ORIGIN_KEY not in scene:
+        begin(scene, coordinates)
+    origin = project_settings.model_origin(scene)
+    mesh = bpy.data.meshes.new(name)
+    mesh.vertices.add(len(coordinates))
+    mesh.vertices.foreach_set("co", np.ascontiguousarray(coordinates - origin, np.float32).ravel())
+    if len(edges):
+        mesh.edges.add(len(edges))
+        mesh.edges.foreach_set("vertices", np.ascontiguousarray(edges, np.int32).ravel())
+    mesh.update()
+    item = bpy.data.objects.new(name, mesh)
+    item[KEY], item[_ORIGIN] = stamp, [float(value) for value in origin]
+    item.hide_select = item.hide_render = True
+    collection = _collection(scene)
+    if collection is None:
+        collection = bpy.data.collections.new(f"{scene.realmodel.name} Data")
+        collection[KEY] = True
+        collection.hide_render = True
+        scene.collection.children.link(collection)
+    collection.objects.link(item)
+    return item
+
+
+def _collection(scene):
+    return next((c for c in scene.collection.children if KEY in c and c.library is None), None)
+
+
+def _remove(item):
+    mesh = item.data
+    bpy.data.objects.remove(item)
+    if not mesh.users:
+        bpy.data.meshes.remove(mesh)
+
+
+def shown_changed(group, _context):
+    """`show_data` was switched."""
+    if not settings.is_filling():
+        update(group.id_data)
+
+
+def origin_of(group):
+    """The origin of a scene as `scene.realmodel.origin` shows it."""
+    return tuple(project_settings.model_origin(group.id_data))
+
+
+def set_origin(group, given):
+    """Another origin for a model that was not built yet; objects of the user stay where they stand."""
+    scene = group.id_data
+    scene[ORIGIN_KEY] = [float(str(np.float32(value))) for value in given]
+    place(scene)

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points that lie so far from the region that they cannot be meant for it: other coordinates, other units."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .errors import InputRefused
+from .project import Rock, surface_item
+from .units import length_text
+
+_TOWARDS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")
+
+
+def require_points_near(rock: Rock, unit: str) -> None:
+    """Refuses a surface whose points all lie elsewhere than the region of its rock mass.
+
+    That is so where the gap between the box of the points and that of the region, seen from above, is larger
+    than the diagonals of both: points that are farther away than they, or the region, extend say nothing of
+    it. Raises InputRefused with the distance.
+    """
+    if rock.region is None:
+        return
+    low, high = _box(np.concatenate(rock.rings()))
+    for surface in rock.surfaces:
+        if not surface.interpolated or surface.points is None or not len(surface.points):
+            continue
+        first, last = _box(np.asarray(surface.points, float)[:, :2])
+        gap = np.where(first > high, first - high, np.where(last < low, last - low, 0.0))
+        away = float(np.hypot(*gap))
+        if away > max(np.hypot(*(high - low)), np.hypot(*(last - first))):
+            towards = _TOWARDS[round(float(np.degrees(np.arctan2(gap[1], gap[0]))) / 45.0) % 8]
+            raise InputRefused(
+                f"its points lie {length_text(away, unit)} {towards} of the region",
+                item=surface_item(rock, surface),
+                file=surface.shape_file,
+                advice="check the coordinates and units of both; the region must lie where the points are",
+            )
+
+
+def _box(plan: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return plan.min(axis=0), plan.max(axis=0)

@@ -1,0 +1,315 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces from files, of which tables are looked at first, and from objects."""
+
+import contextlib
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, CollectionProperty, StringProperty
+from bpy_extras.io_utils import ImportHelper
+
+from ..bl import (
+    data_objects,
+    library_rows,
+    live,
+    plan_mesh,
+    project_settings,
+    reading_text,
+    settings,
+    shapes,
+    viewports,
+)
+from ..core import InputRefused, MeshFile, PointFile
+from ..core.errors import HeightsMissing
+from ..core.point_file import ReadingRefused
+from ..core.readers import (
+    MAP_ENDINGS,
+    MESH_ENDINGS,
+    RASTER_ENDINGS,
+    TABLE_ENDINGS,
+    column_values,
+    preview_table,
+    read_mesh,
+    read_point_file,
+)
+from .reporting import Reporting
+from .rocks import add_rock
+from .start import invoke
+
+_SHOWN = 8  # columns of a preview
+_PREVIEWED = 3  # files
+
+
+@dataclass
+class _Given:
+    """A surface to add. places: its points or vertices (N, 3), or None where they are not known yet."""
+
+    name: str
+    source: str = ""
+    path: Path | None = None
+    item: object = None
+    reading: dict = field(default_factory=dict)
+    places: np.ndarray | None = None
+
+
+class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
+    """Add surfaces above the youngest one: from one or more files of points or meshes, or a mesh object"""
+
+    bl_idname = "realmodel.surface_add"
+    bl_label = "Import Surfaces"
+
+    name: StringProperty(
+        name="Name",
+        description="Name of the surface; empty: that of its file or object",
+        options={"SKIP_SAVE"},
+    )
+    filepath: StringProperty(
+        name="File",
+        description="File with its points or its mesh",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},  # with a path, as of a dropped file, no file browser opens
+    )
+    directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
+    use_object: BoolProperty(
+        name="Active Object",
+        description="Take the active mesh object as the surface instead of a file",
+        options={"SKIP_SAVE", "HIDDEN"},
+    )
+    empty: BoolProperty(
+        name="Empty", description="Choose the source afterwards", options={"SKIP_SAVE", "HIDDEN"}
+    )
+    columns: StringProperty(
+        name="x, y, z",
+        description="The columns of x, y and z in tables, by name or by number from 1; empty: those named "
+        "so, or the first three",
+        options={"SKIP_SAVE"},
+    )
+    split: BoolProperty(
+        name="One Surface for Each Value",
+        description="Rows of a table that have different values in a column are different surfaces",
+        options={"SKIP_SAVE"},
+    )
+    split_column: StringProperty(
+        name="Column",
+        description="The column whose values name the surfaces; empty: the first one that may",
+        search=lambda self, _context, _text: [name for p in self._previews for name in p.splits],
+        options={"SKIP_SAVE"},
+    )
+    filter_glob: StringProperty(
+        default=";".join(
+            f"*{ending}" for ending in (*MESH_ENDINGS, *TABLE_ENDINGS, *RASTER_ENDINGS, *MAP_ENDINGS)
+        ),
+        options={"HIDDEN"},
+    )
+    filename_ext = ""
+    _browses = False
+    _folder = ""  # of the last files that were chosen
+    _previews = ()
+
+    def act(self, context):
+        if self._browses:
+            type(self)._folder = os.path.dirname(self.filepath)
+            chosen = {"filepath": self.filepath, "directory": self.directory}
+            chosen["files"] = [{"name": file.name} for file in self.files]
+            invoke(bpy.ops.realmodel.surface_add, self, **chosen)
+            return
+        scene = context.scene
+        given, told = self._given(context)
+        rock = settings.active_rock(scene) or add_rock(scene)
+        read = {}
+        with settings.filling():
+            for surface in given:
+                row = rock.surfaces.add()
+                row.name = settings.free_name(rock.surfaces, surface.name, own=row)
+                row.property_id = library_rows.for_surface(scene, row.name)
+                if surface.item is not None:
+                    row.source, row.object = "MESH_OBJECT", surface.item
+                elif surface.path is not None:
+                    row.source, row.filepath = surface.source, str(surface.path)
+                    reading_text.fill(row, surface.reading)
+                    if surface.source == "POINTS_FILE" and surface.places is not None:
+                        read[data_objects.file_key(row)] = surface.places
+            rock.active_surface = len(rock.surfaces) - 1
+        arrived(context, rock, [s.places for s in given if s.item is None and s.places is not None], read)
+        for text in told:
+            self.report({"WARNING"}, text)
+
+    def invoke(self, context, event):
+        if self.use_object or self.empty:
+            return self.execute(context)
+        if not self._paths():
+            self._browses = True
+            folder = self._folder or os.path.dirname(bpy.data.filepath) or os.path.expanduser("~")
+            self.filepath = os.path.join(folder, "")  # no name of a .blend as a proposal
+            return ImportHelper.invoke(self, context, event)
+        self._previews = list(self._looked_at())
+        if not self._previews:
+            return self.execute(context)
+        self.split = self._previews[0].is_plain
+        self.split_column = next(iter(self._previews[0].splits), "")
+        return context.window_manager.invoke_props_dialog(self, width=560)
+
+    def check(self, _context):
+        return True  # a file of any ending; the dialog is drawn anew
+
+    def draw(self, context):
+        layout = self.layout
+        if context.space_data is not None and context.space_data.type == "FILE_BROWSER":
+            layout.label(text="One file, or several")
+            return
+        for preview in self._previews[:_PREVIEWED]:
+            _draw_preview(layout.box(), preview)
+        if len(self._previews) > _PREVIEWED:
+            layout.label(text=f"and {len(self._previews) - _PREVIEWED} more tables")
+        layout.prop(self, "columns")
+        values = next(
+            (p.splits[self.split_column] for p in self._previews if self.split_column in p.splits), []
+        )
+        if any(p.splits for p in self._previews):
+            layout.prop(self, "split", text=f"One Surface for Each Value of {self.split_column or '...'}")
+            column = layout.column()
+            column.enabled = self.split
+            column.prop(self, "split_column")
+            column.label(text=f"{len(values)} values: {', '.join(values)}"[:90])
+
+    def _paths(self):
+        names = [file.name for file in self.files if file.name]
+        if names and self.directory:
+            return [project_settings.absolute(os.path.join(self.directory, name)) for name in names]
+        path = project_settings.absolute(self.filepath)
+        return [] if path is None else [path]
+
+    def _looked_at(self):
+        for path in self._paths():
+            if path.is_file() and path.suffix.lower() in TABLE_ENDINGS:
+                with contextlib.suppress(InputRefused):  # what is no table of text says so when it is read
+                    yield preview_table(path)
+
+    def _given(self, context):
+        """The surfaces to add, the lowest first, and what to tell about them. Raises InputRefused."""
+        if self.use_object:
+            item = context.active_object
+            if item is None or item.type != "MESH":
+                raise InputRefused("the active object is no mesh", advice="make a mesh object active")
+            shapes.require_open(item)
+            return [_Given(self.name.strip() or item.name, item=item)], []
+        paths = [] if self.empty else self._paths()
+        if not paths:
+            return [_Given(self.name.strip() or "surface")], []
+        found, told = [], []
+        for path in paths:
+            for surface in self._of_file(path):
+                texts = _read(surface, context.scene.realmodel.units)
+                told += [text for text in texts if text not in told]
+                found.append(surface)
+        if len(found) == 1:
+            found[0].name = self.name.strip() or found[0].name
+        elif all(surface.places is not None for surface in found):
+            found.sort(key=lambda surface: float(surface.places[:, 2].mean()))
+        return found, told
+
+    def _of_file(self, path):
+        """The surfaces of a file: one, or one for each value of a column."""
+        if not path.is_file():
+            raise InputRefused(f"file not found: {path}", advice="check the path")
+        if path.suffix.lower() in MESH_ENDINGS:
+            return [_Given(path.stem, "MESH_FILE", path)]
+        reading = {}
+        if self.columns.strip() and path.suffix.lower() in TABLE_ENDINGS:
+            reading["columns"] = [reading_text.column(name) for name in self.columns.split(",")]
+        whole = _Given(path.stem, "POINTS_FILE", path, reading=reading)
+        if not (self.split or self.split_column) or path.suffix.lower() not in TABLE_ENDINGS:
+            return [whole]
+        if not self.split and self.options.is_invoke:  # unticked in the dialog
+            return [whole]
+        column = self.split_column or next(iter(preview_table(path).splits), "")
+        if not column or (len(self.files) > 1 and column not in preview_table(path).names):
+            return [whole]
+        values = dict.fromkeys(reading_text.value(text) for text in column_values(path, column))
+        return [
+            _Given(
+                value if isinstance(value, str) else f"{path.stem} {value}",
+                "POINTS_FILE",
+                path,
+                reading={**reading, "where": {column: value}},
+            )
+            for value in values
+        ]
+
+
+def _read(surface, unit):
+    """Reads the points or the mesh of a surface, and returns what there is to tell. Raises InputRefused for a
+    file that cannot be read as what it is, however it is looked at: what holds the heights of shapes may be
+    chosen once the surface is there."""
+    if surface.source == "MESH_FILE":
+        mesh = read_mesh(surface.path)
+        scale = MeshFile(surface.path).scale(unit)
+        surface.places = mesh.vertices * (scale[0], scale[0], scale[1])
+        return []
+    given = PointFile(surface.path, **surface.reading)
+    try:
+        given.check()
+    except ReadingRefused as error:
+        raise InputRefused(error.what, file=surface.path, advice=error.advice) from error
+    with contextlib.suppress(HeightsMissing):
+        surface.places, told = read_point_file(given, unit)
+        return told
+    return []
+
+
+def _draw_preview(box, preview):
+    box.label(text=preview.file.name, icon="FILE")
+    row = box.row(align=True)
+    for number, name in enumerate(preview.names[:_SHOWN]):
+        column = row.column(align=True)
+        axis = "xyz"[preview.xyz.index(name)] if name in preview.xyz else ""
+        column.label(text=f"{axis}: {name}" if axis else name, icon="CHECKMARK" if axis else "BLANK1")
+        for entries in preview.rows:
+            cell = column.row()
+            cell.active = bool(axis)
+            cell.label(text=entries[number] if number < len(entries) else "")
+    if preview.problem:
+        box.label(text=preview.problem[:100], icon="ERROR")
+
+
+def arrived(context, rock, places, read=None):
+    """New data of a rock mass: the origin where there is none, an edge length, and all is shown and framed.
+
+    places: arrays (N, 3) in model coordinates. read: as for data_objects.update.
+    """
+    scene = context.scene
+    if places:
+        points = np.concatenate(places)
+        data_objects.begin(scene, points)
+        plan_mesh.propose_edge_length(rock, points)
+    with settings.filling():
+        scene.realmodel.show_data = scene.realmodel.show_data or bool(places)
+    data_objects.update(scene, read)
+    if places and not len(scene.realmodel.results):
+        context.view_layer.update()
+        viewports.frame_items(data_objects.objects(scene), viewports.spaces(context))
+    live.touch(scene)
+
+
+CLASSES = (REALMODEL_OT_surface_add,)
+
+
+if hasattr(bpy.types, "FileHandler"):  # from Blender 4.1 on
+
+    class REALMODEL_FH_surfaces(bpy.types.FileHandler):
+        """Tables and meshes that are dropped into the viewport become surfaces"""
+
+        bl_idname = "REALMODEL_FH_surfaces"
+        bl_label = "RealModel surfaces"
+        bl_import_operator = "realmodel.surface_add"
+        bl_file_extensions = ";".join((*TABLE_ENDINGS, *MESH_ENDINGS))
+
+        @classmethod
+        def poll_drop(cls, context):
+            return context.area is not None and context.area.type == "VIEW_3D"
+
+    CLASSES = (*CLASSES, REALMODEL_FH_surfaces)

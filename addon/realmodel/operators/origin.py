@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The model to where Blender's numbers are fine."""
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+from ..bl import built_scene, data_objects, exaggeration, project_settings, settings, shapes, viewports
+from ..bl.origin import KEY, choose_origin
+from ..core import InputRefused
+from .reporting import Reporting, any_surface, not_building
+from .start import invoke
+
+
+class REALMODEL_OT_move_to_zero(Reporting, bpy.types.Operator):
+    """Choose another origin so that a model far from the zero of the scene stands near it. Your objects that
+    it is made from move with it; all model coordinates stay. A built model is built again"""
+
+    bl_idname = "realmodel.move_to_zero"
+    bl_label = "Move Model to Scene's Zero"
+    needs = (any_surface, not_building)
+
+    def act(self, context):
+        current = context.scene
+        context.view_layer.update()
+        mine = list(dict.fromkeys(project_settings.user_objects(current)))
+        made = [row.object for row in current.realmodel.results if row.object is not None]
+        rows = [row for _, row in settings.surface_rows(current)]
+        interfaces = [row for row in rows if row.interface is not None and row.interface not in mine]
+        made += [row.interface for row in interfaces]
+        items = [*mine, *made, *data_objects.objects(current)]
+        corners = [item.matrix_world @ Vector(corner) for item in items for corner in item.bound_box]
+        old = project_settings.model_origin(current)
+        if not corners:
+            raise InputRefused("there is nothing to move yet", advice="import surfaces first")
+        moved = old - (new := choose_origin(np.array(corners, float) + old))
+        if not moved.any():
+            raise InputRefused("the model stands near the zero of the scene")
+        current[KEY] = [float(value) for value in new]
+        for item in {_top(item) for item in mine}:
+            item.matrix_basis = Matrix.Translation(moved) @ item.matrix_basis
+        unchanged = [row for row in interfaces if _digest(context, row) == row.interface_digest]
+        for mesh in {item.data for item in made}:
+            mesh.transform(Matrix.Translation(moved))
+            mesh.update()
+        with settings.filling():
+            for row in unchanged:
+                row.interface_digest = _digest(context, row)
+        built_scene.move_helpers(current, moved)
+        context.view_layer.update()
+        viewports.frame_items(items, viewports.spaces(context))
+        self.report({"INFO"}, "Moved by " + ", ".join(f"{value:,.0f}" for value in moved))
+        if len(current.realmodel.results):
+            invoke(bpy.ops.realmodel.build, self)
+
+
+def _digest(context, row):
+    return shapes.digest(*shapes.triangulation(row.interface, context.evaluated_depsgraph_get()))
+
+
+def _top(item):
+    """The object that carries another along, or itself."""
+    while item.parent is not None and exaggeration.KEY not in item.parent:
+        item = item.parent
+    return item
+
+
+CLASSES = (REALMODEL_OT_move_to_zero,)
