@@ -24,6 +24,8 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
         if group.display == "SURFACES":
             column.prop(group.view, "surfaces", text="Part")
         column.prop(group, "color_by")
+        if group.color_by == "UNCERTAINTY" and group.view.shade_limits[1] == 0.0:
+            hint(layout, "No surface has a standard deviation. Kriging computes one.")
         _stage(layout, context.scene)
         if preparing.is_working(context.scene):
             hint(layout, "being made ...")
