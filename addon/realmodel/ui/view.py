@@ -33,7 +33,7 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
         column.prop(group, "explode", slider=True)
         if group.explode > 0.0:
             column.prop(group, "explode_direction", text="Direction")
-        column.prop(group.view, "exaggeration")
+        column.prop(group.view, "exaggeration", text="Exaggeration")
         if context.mode == "EDIT_MESH":
             layout.operator("realmodel.edit_done", icon="CHECKMARK")
         elif group.display == "SURFACES":
@@ -45,10 +45,12 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
             column = layout.column(align=True)
             column.label(text=f"{name}: {count} points")
             values = [units.length_text(context.scene, value) for value in (spread, largest)]
-            column.label(text=f"RMS {values[0]}, largest {values[1]}")
+            column.label(text=f"RMS {values[0]}")
+            column.label(text=f"Largest {values[1]}")
             if outside:
                 column.label(text=f"{outside} outside of the surface")
         grid = layout.grid_flow(row_major=True, columns=2, align=True)
+        grid.use_property_split = False
         for name in ("show_legend", "show_north", "show_scale", "show_axes"):
             grid.prop(group.view, name, toggle=True)
         if group.view.message:
