@@ -29,7 +29,7 @@ def main(names):
     command += ["--enable-event-simulate", "--window-geometry", "0", "0", *map(str, SIZE)]
     command += ["-P", __file__, "--", *names]
     done = subprocess.run(command, cwd=ROOT, check=False)
-    for path in sorted(IMAGES.glob("*.png")):
+    for path in (*sorted(IMAGES.glob("*.png")), IMAGES.parent / "view_modes.png"):
         shrink(path, path)
     sheet = ROOT / "build" / "gui" / "contact_sheet.png"
     if sheet.is_file():
@@ -113,7 +113,7 @@ def tab_panels():
 def open_tab(walk):
     """Opens the tab RealModel of the sidebar; the names of the tabs stand at its right border."""
     drawn = []
-    panel = next(iter(TAB))
+    panel = next(cls for cls in TAB if cls.bl_idname == "REALMODEL_PT_start")
     before = panel.draw
 
     def draw(self, context):
@@ -155,8 +155,9 @@ def without_tabs(picture):
     """The sidebar without the names of its tabs, and without the empty part below its panels."""
     width = picture.shape[1] - int(30 * SCALE)
     picture = picture[:, :width]
-    background = picture[2, width // 2]
+    background = picture[8, width // 2]
     drawn = (abs(picture[:, 10:-10] - background) > 0.02).any(axis=(1, 2))
+    drawn[:12] = False  # the border of the region
     lowest = int(drawn.argmax())
     return picture[max(lowest - 8, 0) :]
 
@@ -224,7 +225,11 @@ def frame(walk):
     for item in bpy.context.selected_objects:
         item.select_set(False)
     with viewport(walk):
-        bpy.ops.realmodel.view_all()
+        if len(bpy.context.scene.realmodel.results):
+            bpy.ops.realmodel.view_all()
+        else:
+            bpy.ops.view3d.view_all()
+    walk.area.spaces.active.region_3d.view_distance *= 0.85
 
 
 def side_by_side(pictures, name, columns, smaller=1):
@@ -308,6 +313,7 @@ def settled(walk):
 def csv(walk):
     """Two tables of points become a model."""
     import bpy
+    from driver import read_picture
 
     for name in ("clay", "ground"):
         bpy.ops.realmodel.surface_add(filepath=str(SAMPLES / "two_layers" / f"{name}.csv"))
@@ -321,6 +327,15 @@ def csv(walk):
     yield from build(walk)
     frame(walk)
     yield from keep(walk, "csv_built", panels=["build", "results"])
+    rock.active_surface = 0
+    bpy.ops.realmodel.check_quality()
+    charts = []
+    for chart in ("VARIOGRAM", "CROSS_VALIDATION"):
+        path = IMAGES / f"{chart}.png"
+        bpy.ops.realmodel.save_chart(filepath=str(path), chart=chart)
+        charts.append(read_picture(path))
+        path.unlink()
+    side_by_side(charts, "quality", 2)
 
 
 def grid(name, height, size, strength, seed):
@@ -365,14 +380,47 @@ def look(walk, items):
         bpy.ops.view3d.view_selected()
 
 
-def section(walk):
-    """A model cut open by a plane."""
+def line(points):
+    """A curve through points (x, y), as one draws it seen from above; it is the active object."""
     import bpy
 
+    curve = bpy.data.curves.new("line", "CURVE")
+    spline = curve.splines.new("POLY")
+    spline.points.add(len(points) - 1)
+    for corner, (x, y) in zip(spline.points, points, strict=True):
+        corner.co = (x, y, 0.0, 1.0)
+    item = bpy.data.objects.new("line", curve)
+    bpy.context.scene.collection.objects.link(item)
+    bpy.context.view_layer.objects.active = item
+    item.select_set(True)
+    return item
+
+
+def section(walk):
+    """A model cut open by a plane, and a fence along a curve."""
+    import bpy
+    import numpy as np
+
     yield from example(walk, "gravel_plain")
+    group = bpy.context.scene.realmodel
+    group.view.exaggeration = 3.0
     bpy.ops.realmodel.section_plane(axis="Y")
     yield from settled(walk)
+    frame(walk)
     yield from keep(walk, "section_plane", panels=["view", "view_section"])
+    bpy.ops.realmodel.section_remove()
+    group.view.exaggeration = 1.0
+    corners = np.concatenate([np.array(row.object.bound_box) for row in group.results if row.object])
+    low, high = corners.min(axis=0)[:2], corners.max(axis=0)[:2]
+    line([low + (high - low) * share for share in ((0.05, 0.2), (0.5, 0.6), (0.95, 0.35))])
+    drawn = IMAGES / "section_drawing.png"
+    bpy.ops.realmodel.save_section(filepath=str(drawn), along="LINE", exaggeration=5.0)
+    bpy.ops.realmodel.fence()
+    for row in group.results:
+        if row.object:
+            row.object.hide_set(True)
+    look(walk, [bpy.context.active_object])
+    yield from keep(walk, "section_fence", "WINDOW")
 
 
 def trim_above(item, ground):

@@ -20,7 +20,7 @@ _LABELS = {
     "extrapolate": "extrapolate",
 }
 _SETTING = re.compile(
-    r"(?:\b(?:say|write|give) )?\b("
+    r"(?:\b(?:say|write|give|set) )?\b("
     + "|".join(_LABELS)
     + r') = (".*?"|\[.*?\]|\{.*?\}|[^\s,;]+)'
     + r'(?: or (".*?"))?'

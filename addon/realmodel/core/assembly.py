@@ -162,7 +162,7 @@ def _warnings(inputs, built: dict, blocks: list[Block]) -> list[BuildWarning]:
         if len(entry.surfaces) == 1 and entry.rock.base_elevation is None:
             text = "a single surface does not bound a block"
         elif not any(block.cells for block in blocks if block.rock == number):
-            text = "no block is left: its surfaces (and region) share no place, or all was cut away"
+            text = "no block remains: surfaces and region do not overlap in plan, or all was eroded"
         else:
             continue
         warnings.append(BuildWarning(text, "no_block", entry.rock.name))

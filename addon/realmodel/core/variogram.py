@@ -150,7 +150,7 @@ class Variogram:
 
 
 def fit_warnings(variogram: Variogram, points: np.ndarray, has_trend: bool = False) -> list[str]:
-    """What to tell where a fitted variogram means little, as sentences. has_trend: heights far from points
+    """Warnings about a fitted variogram that means little, as sentences. has_trend: heights far from points
     follow a trend."""
     warnings = []
     pairs = int(variogram.pairs.sum())
