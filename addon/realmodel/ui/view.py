@@ -33,7 +33,9 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
         column.prop(group, "explode", slider=True)
         if group.explode > 0.0:
             column.prop(group, "explode_direction", text="Direction")
-        column.prop(group.view, "exaggeration", text="Exaggeration")
+        row = layout.row()
+        row.use_property_split = False
+        row.prop(group.view, "exaggeration")
         if context.mode == "EDIT_MESH":
             layout.operator("realmodel.edit_done", icon="CHECKMARK")
         elif group.display == "SURFACES":
