@@ -100,7 +100,10 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         metavar="X,Y,Z,NX,NY,NZ=F",
         action="append",
         default=[],
-        help="write the section by a plane (point, normal) to F.vtu, .obj, .csv or .npz; any number of times",
+        help=(
+            "write the section by a plane (point, normal) to F, a drawing (.svg, .dxf, .png) or polygons "
+            "(.vtu, .obj, .csv, .npz); any number of times"
+        ),
     )
     parser.add_argument(
         "--fence",
@@ -108,6 +111,13 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         action="append",
         default=[],
         help="write vertical sections along a line in plan to F: X,Y,X,Y,... or a text file of x and y",
+    )
+    parser.add_argument(
+        "--exaggeration",
+        metavar="X",
+        type=_factor,
+        default=1.0,
+        help="exaggerate the heights of drawings by --section and --fence X times",
     )
     parser.add_argument(
         "--cut",
@@ -178,6 +188,8 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         ):
             if getattr(options, name):
                 parser.error(f"--surfaces-only goes without --{name.replace('_', '-')}")
+    if options.exaggeration != 1.0 and not options.section and not options.fence:
+        parser.error("--exaggeration is of drawings: it goes with --section or --fence")
     outputs = ("--blend", "--export", "--report", "--render", "--section", "--fence", "--cut")
     if options.estimate and any(getattr(options, name[2:]) for name in outputs):
         parser.error(f"--estimate builds nothing: it goes without {', '.join(outputs)}")
@@ -192,6 +204,18 @@ def _gigabytes(text: str) -> int:
     if not 1.0 <= size < 1e18:
         raise argparse.ArgumentTypeError(f"'{text}' is not a number of gigabytes above 0")
     return int(size)
+
+
+def _factor(text: str) -> float:
+    from realmodel.core.section_drawing import MOST_EXAGGERATION
+
+    try:
+        factor = float(text)
+    except ValueError:
+        factor = 0.0
+    if not 0.0 < factor <= MOST_EXAGGERATION:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a number above 0, at most {MOST_EXAGGERATION:g}")
+    return factor
 
 
 def _whole(text: str) -> int:
@@ -329,8 +353,8 @@ def _requests(options: argparse.Namespace) -> list:
     from realmodel.core.batch_cuts import cut_request, fence_request, section_request
 
     return [
-        *map(section_request, options.section),
-        *map(fence_request, options.fence),
+        *(section_request(text, options.exaggeration) for text in options.section),
+        *(fence_request(text, options.exaggeration) for text in options.fence),
         *map(cut_request, options.cut),
     ]
 

@@ -5,7 +5,7 @@
 #
 #   scripts/benchmark.sh              all sizes; writes the page
 #   scripts/benchmark.sh --quick      small sizes, each once, as a look; the page is left as it is
-#   scripts/benchmark.sh --only stacks|watch|blender|heights|meshing, --memory GB, --write F.md, --help
+#   scripts/benchmark.sh --only stacks|watch|blender|memory|heights|meshing, --memory GB, --write F.md, --help
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 python=/usr/bin/python3
@@ -47,7 +47,7 @@ elif "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/
 else
     echo "benchmark.sh: Triangle, Gmsh and earcut could not be installed; measuring without them" >&2
 fi
-if wanted blender &&
+if wanted blender memory &&
     ! { "$root/scripts/install_dependencies.sh" bpy &&
         "$root/scripts/python_environment.sh" "$root/build/venv-bpy" "$root/scripts/requirements/bpy.txt" "$python"; }; then
     echo "benchmark.sh: the module bpy could not be installed; measuring without it" >&2

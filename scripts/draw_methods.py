@@ -5,22 +5,25 @@
     PYTHONPATH=addon python scripts/draw_methods.py [FOLDER]      (default: docs/images)
 
 Needs the built module and matplotlib with pillow (scripts/requirements/test.txt). Letters and lines come out
-as matplotlib draws them, so the pictures are looked at, not compared.
+as matplotlib draws them, so the pictures of maps are looked at, not compared.
 """
 
 import sys
 from pathlib import Path
 
 import numpy as np
-from realmodel import _native  # noqa: F401  (before matplotlib: see realmodel.core.plots)
+from realmodel import _native  # noqa: F401  (before matplotlib, which may take the room of its libraries)
 from realmodel.core import cross_validate, interpolate, mesh_region, plots
+from realmodel.core.drawing import save_drawing
 
 from matplotlib.figure import Figure  # isort: skip
+from matplotlib.tri import Triangulation  # isort: skip
 from PIL import Image  # isort: skip
 
 _OUTLINE = [[0, 0], [1000, 0], [1000, 700], [0, 700]]
 _LIMITS = (60.0, 145.0)
 _COLOURS = 96  # of a picture's palette
+_MANY = 300  # points, beyond which their dots become smaller
 
 
 def horizon(x, y):
@@ -87,25 +90,65 @@ def draw(folder):
         figure = Figure(figsize=(4.4, 2.9), layout="constrained")
         axes = figure.subplots()
         shape = np.column_stack([vertices, result.z])
-        plots.height_map(shape, triangles, known, axes=axes, limits=_LIMITS)
+        height_map(shape, triangles, known, axes, limits=_LIMITS)
         axes.set_title(method if method != "auto" else f"auto: {result.method}", fontsize="medium")
         save(figure, folder / f"method_{method}.png")
         if method == "kriging":
             figure = Figure(figsize=(4.4, 2.9), layout="constrained")
             axes = figure.subplots()
-            plots.variance_map(shape, triangles, result.variance, known, axes=axes)
+            variance_map(shape, triangles, result.variance, known, axes)
             axes.set_title("kriging: how sure", fontsize="medium")
             save(figure, folder / "method_kriging_deviation.png")
-            figure = Figure(figsize=(4.4, 2.9), layout="constrained")
-            plots.variogram(result.variogram, figure.subplots())
-            save(figure, folder / "method_variogram.png")
+            save_drawing(plots.variogram(result.variogram, "m"), folder / "method_variogram.svg")
     draw_extrapolation(given[-14:], vertices, triangles, folder)
-    figure = Figure(figsize=(4.4, 3.4), layout="constrained")
-    plots.cross_validation(cross_validate(given), figure.subplots())
-    save(figure, folder / "method_cross_validation.png")
-    figure = Figure(figsize=(4.4, 2.9), layout="constrained")
-    plots.mesh_quality(vertices, triangles, figure.subplots())
-    save(figure, folder / "method_mesh_quality.png")
+    save_drawing(plots.cross_validation(cross_validate(given), "m"), folder / "method_cross_validation.svg")
+    save_drawing(
+        plots.mesh_quality(plots.smallest_angles(vertices, triangles)), folder / "method_mesh_quality.svg"
+    )
+
+
+def height_map(vertices, triangles, points, axes, limits=None):
+    """Heights of a triangulated surface (vertices (V, 3), triangles (T, 3)) as colours in plan with contour
+    lines, and the points (P, 2 or 3) that it was made from. limits: (lowest, highest) of the colours."""
+    vertices = np.asarray(vertices, np.float64)
+    _map(vertices[:, :2], triangles, vertices[:, 2], points, axes, limits, "height", "viridis")
+
+
+def variance_map(vertices, triangles, variance, points, axes, limits=None):
+    """The standard deviation of the heights of a surface, the root of variances (V,), as colours in plan, and
+    the points."""
+    deviation = np.sqrt(np.maximum(np.asarray(variance, np.float64), 0.0))
+    plan = np.asarray(vertices, np.float64)[:, :2]
+    _map(plan, triangles, deviation, points, axes, limits, "standard deviation", "cividis")
+
+
+def _share_of_many(points: int) -> float:
+    """1, or less where there are many points, but never so little that dots vanish."""
+    return min(1.0, max(_MANY / max(points, 1), 0.03))
+
+
+def _map(plan, triangles, values, points, axes, limits, label, colours):
+    # matplotlib's own arithmetic has single precision in places: coordinates from the middle
+    middle = np.round(plan.mean(axis=0), -2) if np.abs(plan).max() > 1e5 else np.zeros(2)
+    x, y = (plan - middle).T
+    known = np.isfinite(values)
+    shown = np.asarray(triangles)[known[np.asarray(triangles)].all(axis=1)]
+    low, high = limits or (values[known].min(), values[known].max())
+    mesh = Triangulation(x, y, shown)
+    filled = np.where(known, values, low)
+    drawn = axes.tripcolor(
+        mesh, filled, cmap=colours, vmin=low, vmax=high, shading="gouraud", rasterized=True
+    )
+    if len(shown) and high > low:
+        levels = np.linspace(low, high, 12)[1:-1]
+        axes.tricontour(mesh, filled, levels=levels, colors="white", linewidths=0.4, alpha=0.6)
+    if points is not None:
+        px, py = (np.asarray(points, np.float64)[:, :2] - middle).T
+        axes.scatter(px, py, 6 * _share_of_many(len(px)), c="black", linewidths=0.0)
+    axes.set_aspect("equal")
+    if middle.any():
+        axes.set(xlabel=f"x - {middle[0]:.0f}", ylabel=f"y - {middle[1]:.0f}")
+    axes.figure.colorbar(drawn, ax=axes, label=label, shrink=0.85)
 
 
 def draw_extrapolation(wells, vertices, triangles, folder):
@@ -115,7 +158,7 @@ def draw_extrapolation(wells, vertices, triangles, folder):
         z = interpolate(wells, vertices, "universal_kriging", extrapolate=choice).z
         kept = triangles[np.isfinite(z)[triangles].all(axis=1)]
         shape = np.column_stack([vertices, np.nan_to_num(z, nan=_LIMITS[0])])
-        plots.height_map(shape, kept, wells, axes=axes, limits=_LIMITS)
+        height_map(shape, kept, wells, axes, limits=_LIMITS)
         axes.set_title(f'extrapolate = "{choice}"', fontsize="medium")
     save(figure, folder / "method_extrapolate.png")
 

@@ -22,6 +22,7 @@ DOCUMENTS = [
         "guide/tour.md",
     )
 ]
+_OF_FILE_BROWSER = ("filepath", "filter_glob", "files", "directory", "format")
 TABLE = re.compile(r"(<!-- table of (\w+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 
 
@@ -102,8 +103,12 @@ def _arguments(node):
     """The names of an operator's properties that a script gives."""
     names = [part.target.id for part in node.body if isinstance(part, ast.AnnAssign)]
     bases = [base.attr if isinstance(base, ast.Attribute) else base.id for base in node.bases]
-    file = ["filepath"] if any(base.endswith(("ImportHelper", "ExportHelper")) for base in bases) else []
-    return [*file, *(name for name in names if name not in ("filepath", "filter_glob", "files", "directory"))]
+    file = (
+        ["filepath"]
+        if any(base.endswith(("ImportHelper", "ExportHelper", "Exporting")) for base in bases)
+        else []
+    )
+    return [*file, *(name for name in names if name not in _OF_FILE_BROWSER)]
 
 
 def _operators():

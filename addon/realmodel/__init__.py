@@ -25,13 +25,13 @@ def register():
             "RealModel needs Python 3.11 or newer, and this Blender has "
             f"{sys.version_info.major}.{sys.version_info.minor}: use Blender 4.1 or newer"
         )
-    from . import handlers, operators, props, ui
+    from . import handlers, operators, preferences, props, ui
     from .bl import display
     from .bl.overlay import viewport
 
     done = []
     try:
-        for part in (props, operators, ui, display, viewport, handlers):
+        for part in (preferences, props, operators, ui, display, viewport, handlers):
             part.register()
             done.append(part)
     except BaseException:
@@ -59,11 +59,11 @@ def register_for_batch():
 def unregister():
     """Called by Blender when the add-on is disabled; nothing stays: no class, property, handler, timer."""
     _at_exit(False)
-    from . import handlers, operators, props, ui
+    from . import handlers, operators, preferences, props, ui
     from .bl import display
     from .bl.overlay import viewport
 
-    for part in (handlers, viewport, display, ui, operators, props):
+    for part in (handlers, viewport, display, ui, operators, props, preferences):
         part.unregister()
 
 

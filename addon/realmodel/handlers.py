@@ -10,7 +10,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from . import versioning
-from .bl import caches, display, live, region_size
+from .bl import caches, display, live, quality, region_size, viewports
 from .bl.display import replacing
 from .bl.overlay import rendered
 from .core import RealModelError
@@ -45,7 +45,9 @@ def _patient(handler):
 
 @persistent
 def _loaded(*_arguments):
+    viewports.forget_status()
     display.stop()
+    quality.stop()
     caches.clear()
     migrate_all()
     display.opened()
@@ -56,6 +58,7 @@ def _loaded(*_arguments):
 @persistent
 def _before_loading(*_arguments):
     live.stop_work()
+    quality.stop()
 
 
 def _tell(text):
@@ -143,4 +146,5 @@ def unregister():
             registered.remove(handler)
     live.stop()
     region_size.stop()
+    viewports.forget_status()
     caches.clear()

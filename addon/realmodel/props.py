@@ -17,18 +17,9 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import props_rock, props_stage, props_surface, props_view
-from .bl import changes, data_objects, display, results, units
+from . import preferences, props_rock, props_stage, props_surface, props_view
+from .bl import changes, data_objects, display, quality, results, units
 from .core.units import MODEL_UNIT
-
-DISPLAYS = (
-    ("POINTS", "Points", "Vertices of the interfaces and blocks"),
-    ("LINES", "Lines", "Edges of the interfaces and blocks"),
-    ("AREAS", "Faces", "Faces of the blocks, separate and flat, with their edges"),
-    ("SURFACES", "Surfaces", "The interfaces that the model is built from"),
-    ("POLYHEDRA", "Cells", "The polyhedral cells of the blocks"),
-    ("BLOCKS", "Blocks", "The blocks as solids"),
-)
 
 
 class RealModelProperty(bpy.types.PropertyGroup):
@@ -87,6 +78,9 @@ class RealModelBlock(bpy.types.PropertyGroup):
     components: IntProperty(
         name="Components", description="Number of separate parts of the block", options=set()
     )
+    slivers: IntProperty(
+        name="Slivers", description="How many of the parts have less than 0.1 % of its volume", options=set()
+    )
     object: PointerProperty(type=bpy.types.Object)
 
 
@@ -141,10 +135,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     cells: EnumProperty(
         name="For",
         description="Purpose of the model, which decides how its blocks are divided into cells",
-        items=(
-            ("COLUMNS", "Simulation", "Many small cells, one below each facet of a surface"),
-            ("BLOCKS", "Pictures", "One cell for each connected part of a block: faster, and less memory"),
-        ),
+        items=preferences.CELLS,
         default="COLUMNS",
         update=changes.setting,
         options=set(),
@@ -162,7 +153,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     display: EnumProperty(
         name="Display",
         description="How the model is displayed",
-        items=DISPLAYS,
+        items=preferences.DISPLAYS,
         default="BLOCKS",
         update=lambda self, _context: display.mode_changed(self.id_data),
     )
@@ -236,6 +227,12 @@ class RealModelActivity(bpy.types.PropertyGroup):
         options={"SKIP_SAVE"},
     )
     text: StringProperty(options={"SKIP_SAVE"})
+    chart: EnumProperty(
+        name="Chart",
+        description="What the panel Quality shows of the active surface",
+        items=quality.CHARTS,
+        options={"SKIP_SAVE"},
+    )
     unfolded: BoolProperty(name="Warnings", description="Show all warnings in full", options={"SKIP_SAVE"})
     problem: StringProperty(options={"SKIP_SAVE"})
     problem_object: StringProperty(options={"SKIP_SAVE"})

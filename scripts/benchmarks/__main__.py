@@ -12,6 +12,7 @@ from . import (
     blender_table,
     display_table,
     heights_table,
+    memory_table,
     meshing_table,
     page,
     watching_table,
@@ -20,7 +21,7 @@ from . import (
 from .process import ROOT
 from .stacks_table import Limits, Row, StackRows
 
-PARTS = ("stacks", "watch", "blender", "heights", "meshing")
+PARTS = ("stacks", "watch", "blender", "memory", "heights", "meshing")
 _QUICK_TRIANGLES, _ALL_TRIANGLES = 800_000, 10_000_000
 
 
@@ -54,6 +55,9 @@ def main() -> int:
             page.table(window_table.STILL, still),
             page.table(display_table.FRAMES, frames),
         ]
+    if "memory" in parts:
+        live, points = memory_table.measure(given.quick, memory, _say)
+        tables["memory"] = [page.table(memory_table.LIVE, live), page.table(memory_table.POINTS, points)]
     if "heights" in parts:
         speed, accuracy = heights_table.measure(given.quick, memory, _say)
         tables["heights"] = [

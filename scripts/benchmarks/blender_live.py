@@ -69,4 +69,5 @@ def main():
     print(json.dumps({"blender": bpy.app.version_string, "seconds": told}), flush=True)
 
 
-main()
+if __name__ == "__main__":
+    main()

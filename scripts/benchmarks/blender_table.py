@@ -7,6 +7,7 @@ import json
 import os
 import statistics
 from collections.abc import Callable
+from pathlib import Path
 
 from .process import ROOT, Skipped, run_apart
 
@@ -29,7 +30,7 @@ _MODULE = ROOT / "build" / "venv-bpy" / "bin" / "python"  # scripts/test.sh make
 def measure(quick: bool, memory: float, say: Callable[[str], None]) -> list[list[str]]:
     """Rows for UPLOADS."""
     rows = []
-    for name, command in _blenders():
+    for name, command in blenders(_SCRIPT):
         try:
             rows.append(_row(_upload([*command, "--", 1000, 3 if quick else 9], memory)))
         except Skipped as skipped:
@@ -38,9 +39,10 @@ def measure(quick: bool, memory: float, say: Callable[[str], None]) -> list[list
     return rows
 
 
-def _blenders() -> list[tuple[str, list]]:
-    background = ["blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P", _SCRIPT]
-    return [("installed", background), ("module bpy", [_MODULE, _SCRIPT])]
+def blenders(script: Path) -> list[tuple[str, list]]:
+    """(name, command) of each Blender that is here, to run a script."""
+    background = ["blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P", script]
+    return [("installed", background), ("module bpy", [_MODULE, script])]
 
 
 def _upload(command: list, memory: float) -> dict:

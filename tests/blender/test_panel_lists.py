@@ -421,6 +421,18 @@ class Results(PanelCase):
         self.assertEqual([o.name for o in self.scene.objects if o.select_get()], ["S2 block"])
         self.assertEqual(bpy.context.view_layer.objects.active.name, "S2 block")
 
+    def test_slivers_are_counted_apart(self):
+        """A sheet that looks out of the one below in the east, and at one corner of its mesh."""
+
+        def height(x, y):
+            return 10.0 if x > 50.0 else 0.05 if (x, y) == (10.0, 10.0) else -5.0
+
+        select(sheet("low", 0.0, n=10), sheet("high", height, n=10))
+        ops.from_selected()
+        ops.build()
+        (row,) = self.model.results
+        self.assertEqual((row.components, row.slivers), (2, 1))
+
     def test_export_and_report(self):
         stack(0.0, 10.0)
         self.refused(ops.export, "there is no model yet", filepath=str(self.folder / "m.npz"))
@@ -432,10 +444,12 @@ class Results(PanelCase):
         ops.report(filepath=str(self.folder / "r.json"))
         report = json.loads((self.folder / "r.json").read_text())
         self.assertTrue(report["validation"]["passed"])
+        ops.report(filepath=str(self.folder / "t.csv"))
+        self.assertEqual((self.folder / "t.csv").read_text(), results.as_csv(self.scene))
         for operator, name in ((ops.export, "m.xyz"), (ops.export, "m"), (ops.report, "r.txt")):
             self.refused(operator, "", filepath=str(self.folder / name))
         self.refused(ops.export, "no folder", filepath=str(self.folder / "none" / "m.npz"))
-        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["m.npz", "r.json"])
+        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["m.npz", "r.json", "t.csv"])
 
     def test_export_after_opening_and_of_whole_blocks(self):
         stack(0.0, 10.0)

@@ -6,7 +6,7 @@ from unittest import mock
 import bpy
 from blender_state import volume
 from panel_case import PanelCase, ops, raise_by, select, stack
-from realmodel.bl import live
+from realmodel.bl import built_models, live, viewports
 from realmodel.bl.display import shown_models
 
 
@@ -87,11 +87,13 @@ class Live(PanelCase):
         activity = bpy.context.window_manager.realmodel
         self.assertIn("overlap in plan", activity.problem)
         self.assertEqual(activity.problem_object, "S1")
+        self.assertEqual(list(viewports._status.values()), [activity.problem])
         self.assertAlmostEqual(volume(self.block().data), 1e5, delta=1.0)
         vertices[6].co.x -= 60.0
         raise_by(self.items[1], 1.0)
         self.live_is_done()
         self.assertEqual(activity.problem, "")
+        self.assertEqual(list(viewports._status.values()), [""])
         self.assertAlmostEqual(volume(self.block().data), 9e4, delta=1.0)
 
     def test_the_bad_place_is_selected(self):
@@ -104,6 +106,12 @@ class Live(PanelCase):
         chosen = [p.index for p in self.items[1].data.polygons if p.select]
         self.assertTrue(chosen)
         self.assertLess(len(chosen), 16)
+
+    def test_one_model_is_kept_however_often_it_is_built(self):
+        for _ in range(4):
+            raise_by(self.items[2], 1.0)
+            self.live_is_done()
+        self.assertEqual(len(built_models._models), 1)
 
     def test_switched_off_nothing_follows(self):
         self.model.live = False

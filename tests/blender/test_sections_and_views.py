@@ -61,6 +61,102 @@ class Sections(Case):
         self.assertEqual(blender_state.inventory(), before)
 
 
+def line(name, *points, cyclic=False):
+    """An active curve through points."""
+    curve = bpy.data.curves.new(name, "CURVE")
+    curve.dimensions = "3D"
+    spline = curve.splines.new("POLY")
+    spline.points.add(len(points) - 1)
+    for point, at in zip(spline.points, points, strict=True):
+        point.co = (*at, 0.0, 1.0)
+    spline.use_cyclic_u = cyclic
+    item = bpy.data.objects.new(name, curve)
+    bpy.context.scene.collection.objects.link(item)
+    bpy.context.view_layer.objects.active = item
+    return item
+
+
+class Fences(Case):
+    LINE = ((10.0, 10.0), (60.0, 10.0), (60.0, 70.0))
+
+    def test_along_a_curve(self):
+        line("Line", *self.LINE)
+        bpy.ops.realmodel.fence()
+        item = bpy.context.view_layer.objects.active
+        self.assertEqual((item["realmodel"], item.name), ("section", "Fence"))
+        exact = self.model.fence(self.LINE)
+        found = areas_by_material(item)
+        for key in np.unique(exact.property).tolist():
+            wanted = exact.polygon_areas[exact.property == key].sum()
+            self.assertAlmostEqual(found[key] / wanted, 1.0, places=4)
+        at = blender_state.coordinates(item.data)
+        self.assertTrue(((abs(at[:, 1] - 10) < 1e-4) | (abs(at[:, 0] - 60) < 1e-4)).all())
+
+    def test_flat_beside_the_model(self):
+        line("Line", *self.LINE)
+        heights = []
+        for number, make in enumerate((bpy.ops.realmodel.fence, bpy.ops.realmodel.fence)):
+            bpy.context.view_layer.objects.active = bpy.data.objects["Line"]
+            make(flat=True)
+            at = blender_state.coordinates(bpy.context.view_layer.objects.active.data)
+            self.assertAlmostEqual(np.ptp(at[:, 0]), 110.0, places=3)  # 50 and 60 along the line
+            self.assertLess(at[:, 1].max(), -1.0 - 10 * number)  # to the south
+            self.assertEqual(np.ptp(at[:, 1]), 0.0)
+            heights.append(at[:, 2].max())
+        self.assertAlmostEqual(heights[0], heights[1], places=5)
+        bpy.ops.realmodel.section(location=(50.0, 40.0, 10.0), normal=(0.0, 0.0, 1.0), flat=True)
+        at = blender_state.coordinates(bpy.context.view_layer.objects.active.data)
+        self.assertGreater(at[:, 0].min(), 100.0)  # a map to the east
+        self.assertEqual(np.ptp(at[:, 2]), 0.0)
+
+    def test_what_is_no_line(self):
+        before = blender_state.inventory()
+        bpy.context.view_layer.objects.active = None
+        with self.assertRaisesRegex(RuntimeError, "active object has no lines"):
+            bpy.ops.realmodel.fence()
+        self.assertEqual(blender_state.inventory(), before)
+        item = line("Two", (0.0, 0.0), (10.0, 0.0))
+        item.data.splines.new("POLY").points.add(2)
+        for point, x in zip(item.data.splines[1].points, (20.0, 30.0, 40.0), strict=True):
+            point.co = (x, 5.0, 0.0, 1.0)
+        before = blender_state.inventory()
+        with self.assertRaisesRegex(RuntimeError, "it is not one line"):
+            bpy.ops.realmodel.fence()
+        line("Away", (1000.0, 0.0), (2000.0, 0.0))
+        with self.assertRaisesRegex(RuntimeError, "does not meet the model"):
+            bpy.ops.realmodel.fence()
+
+    def test_a_closed_line_comes_back(self):
+        line("Ring", (20.0, 20.0), (60.0, 20.0), (60.0, 60.0), cyclic=True)
+        bpy.ops.realmodel.fence()
+        found = areas_by_material(bpy.context.view_layer.objects.active)
+        exact = self.model.fence([(20, 20), (60, 20), (60, 60), (20, 20)])
+        self.assertAlmostEqual(sum(found.values()) / exact.area, 1.0, places=4)
+
+    def test_drawings_in_the_colors_of_the_library(self):
+        line("Line", *self.LINE)
+        row = self.settings.library[0]
+        row.color = (1.0, 0.0, 1.0)
+        for number, ending in enumerate(("svg", "png", "dxf", "vtu", "csv")):
+            path = self.folder / f"section.{ending}"
+            bpy.ops.realmodel.save_section(
+                filepath=str(path),
+                along=("LINE", "PLANE")[number % 2],
+                location=(50, 40, 10),
+                exaggeration=2.0,
+            )
+            self.assertGreater(path.stat().st_size, 1000)
+        text = (self.folder / "section.svg").read_text()
+        self.assertIn('fill="#ff00ff"', text)
+        self.assertIn("vertical exaggeration 2", text)
+        before = sorted(self.folder.iterdir())
+        with self.assertRaisesRegex(RuntimeError, "there is no section plane"):
+            bpy.ops.realmodel.save_section(filepath=str(self.folder / "other.svg"))
+        with self.assertRaisesRegex(RuntimeError, "must end in"):
+            bpy.ops.realmodel.save_section(filepath=str(self.folder / "other.bmp"), location=(50, 40, 10))
+        self.assertEqual(sorted(self.folder.iterdir()), before)
+
+
 class Cuts(Case):
     def halves(self):
         return {o["realmodel_block"]: o for o in bpy.data.objects if o.get("realmodel_view") == "cut"}

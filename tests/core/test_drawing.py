@@ -87,6 +87,8 @@ def chart():
     drawing.polygon(axes.at([[0, 100], [50, 100], [50, 135]]), fill=RED, layer="Upper Clay & Sand")
     drawing.dots([(60, 50), (70, 60)], [2, 3], BLUE, layer="Points")
     drawing.line([(10, 20), (30, 40)], BLUE, layer="upper clay + sand")
+    drawing.text(10, 110, "Ж")
+    drawing.polygon([(0, 0), (1, 0), (1, 1)], fill=BLUE, layer="Grès à Voltzia")
     legend(drawing, 150, 100, [("Clay", RED), ("Sand", BLUE)])
     color_bar(drawing, (150, 20, 8, 40), (0.0, 1.0), np.eye(3))
     return drawing
@@ -140,6 +142,7 @@ def test_dxf_is_read_by_ezdxf(tmp_path):
     layers = {layer.dxf.name: layer.dxf.color for layer in document.layers}
     assert layers["UPPER_CLAY___SAND"] == 10  # red
     assert layers["UPPER_CLAY___SAND_2"] == 170  # blue
+    assert "GRES_A_VOLTZIA" in layers
     space = document.modelspace()
     (shape,) = space.query('POLYLINE[layer=="UPPER_CLAY___SAND"]')
     assert shape.is_closed
@@ -147,4 +150,4 @@ def test_dxf_is_read_by_ezdxf(tmp_path):
     assert np.array(corners) == pytest.approx(np.array([[15, 5], [65, 5], [65, 40]]))  # units, not points
     assert sorted(circle.dxf.radius for circle in space.query("CIRCLE")) == [1.0, 1.5]
     texts = {text.dxf.text for text in space.query("TEXT")}
-    assert {"Clay", "Sand", "Gr\\U+00F6\\U+00DFe <m\\U+00B3>"} <= texts
+    assert {"Clay", "Sand", "Größe <m³>", "\\U+0416"} <= texts

@@ -198,7 +198,7 @@ def show_a_bad_place(walk):
     walk.over_viewport()
     walk.key("ESC")  # the report stands open in front of everything until it is read
     yield walk.redrawn(2)
-    yield from walk.command("show the place")
+    yield from walk.command("zoom to error")
     yield lambda: bpy.context.mode == "EDIT_MESH"
     yield walk.redrawn(2)
     walk.shot("bad_place")

@@ -5,6 +5,7 @@ thread again. Nothing of Blender is held in between but the scene's name: undo m
 
 import bpy
 
+from .. import preferences
 from ..core import BuildFailed, InputRefused, RealModelError, build, work
 from ..core.project import surface_item
 from . import built_scene, meshes, project_settings, settings
@@ -31,16 +32,22 @@ class BuildJob:
 
     def run(self, progress=None):
         """Builds in this thread and puts the model into the scene."""
-        model = build(self.composed.project, cells=self.cells, progress=progress)
+        model = build(
+            self.composed.project,
+            cells=self.cells,
+            threads=threads(is_short=True),
+            memory=preferences.build_memory(),
+            progress=progress,
+        )
         return self._put(built_scene.prepare(model, self.composed))
 
     def start(self, is_short=False):
         """Builds in a thread. is_short: it is expected to take less than half a second."""
-        self._threads = threads(is_short)
+        self._threads, self._memory = threads(is_short), preferences.build_memory()
         self._job = work.start(self._work)
 
     def _work(self, _):
-        model = build(self.composed.project, cells=self.cells, threads=self._threads)
+        model = build(self.composed.project, cells=self.cells, threads=self._threads, memory=self._memory)
         return built_scene.prepare(model, self.composed, self._stage, self._threads)
 
     @property

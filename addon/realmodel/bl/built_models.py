@@ -15,10 +15,12 @@ MOST_BYTES = 1 << 30  # that kept models may take; the newest stays, however lar
 _models = caches.new()  # (stamp, cells) -> realmodel.core.Model, the oldest first
 
 
-def remember(model, stamp=None):
+def remember(model, stamp=None, instead_of=None):
     """Keeps a model; returns the stamp by which a scene names it. stamp: of the same model with other
-    cells."""
+    cells. instead_of: the stamp of one that is no longer needed, as of the live build before."""
     stamp = stamp or new_stamp()
+    for key in [key for key in _models if key[0] == instead_of]:
+        del _models[key]
     _models.pop((stamp, model.cell_kind), None)
     _models[stamp, model.cell_kind] = model
     total = sum(map(_bytes_of, _models.values()))

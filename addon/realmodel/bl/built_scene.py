@@ -28,6 +28,7 @@ from . import (
     meshes,
     notices,
     project_settings,
+    results,
     scene,
     settings,
     shapes,
@@ -204,7 +205,8 @@ def put(current, prepared, composed, in_place=False):
             move_helpers(current, moved)
         group.exists = True
         group.version = settings.VERSION
-        group.built_stamp = built_models.remember(model)
+        before = group.built_stamp if in_place else None
+        group.built_stamp = built_models.remember(model, instead_of=before)
         group.warnings = notices.of_model(model)
     display.built(current, prepared.bounds, prepared.stage)
 
@@ -418,14 +420,15 @@ def fill_results(current, model, objects):
     chosen = group.active_result
     group.results.clear()
     total = model.volume
-    for block, item in zip(model.blocks, objects, strict=True):
+    slivers = results.slivers(model)
+    for number, (block, item) in enumerate(zip(model.blocks, objects, strict=True)):
         row = group.results.add()
         row.name, row.rock = block.name, model.project.rocks[block.rock].name
         row.surface = str(model.surface_names[block.surface])
         row.property_id = int(block.property)
         row.volume, row.volume_exact = block.volume, repr(block.volume)
         row.share = 100.0 * block.volume / total if total else 0.0
-        row.cells, row.components = block.cells, block.components
+        row.cells, row.components, row.slivers = block.cells, block.components, slivers[number]
         row.object = item
     group.active_result = min(chosen, max(len(group.results) - 1, 0))
 

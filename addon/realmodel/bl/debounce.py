@@ -6,13 +6,15 @@ import time
 
 import bpy
 
+from .threads import threads
+
 _LOOK_SECONDS = 0.005  # between two looks, which cost nothing beside what Blender does in that time
 
 
 class DebouncedJob:
     """What waits, and what is under way.
 
-    pause: seconds without a change. begin(name, changed_at) returns a job (core.work.Job, or with its done,
+    pause(): seconds without a change. begin(name, changed_at) returns a job (core.work.Job, or with its done,
     cancel and wait) for the scene of that name, or None. finish(name, job, changed_at) takes what it has
     done. may_begin(): whether nothing else is in the way. hand_over(name, job): called once the job is done,
     again and again until it returns True: what can be done in slices before `finish`.
@@ -70,8 +72,9 @@ class DebouncedJob:
                 del self._jobs[name]
                 self._finish(name, job, changed_at)
         for name, changed_at in list(self._changed_at.items()):
-            if name not in self._jobs and time.perf_counter() - changed_at >= self._pause:
+            if name not in self._jobs and time.perf_counter() - changed_at >= self._pause():
                 del self._changed_at[name]
+                threads()  # read here for the job, whose thread may not ask Blender
                 job = self._begin(name, changed_at)
                 if job is not None:
                     self._jobs[name] = (job, changed_at)

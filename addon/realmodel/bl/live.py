@@ -11,11 +11,11 @@ from contextlib import contextmanager
 
 import bpy
 
+from .. import preferences
 from ..core import Cancelled
 from . import build_job, built_scene, caches, plan_mesh, problems, region_size, viewports
 from .debounce import DebouncedJob
 
-REST_SECONDS = 0.03  # without a change, after which it is built
 _SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
 
 _at_work = False  # what Blender tells of now is our own doing
@@ -140,4 +140,9 @@ def _tell(scene, error):
     viewports.redraw()
 
 
-_work = DebouncedJob(REST_SECONDS, _begin, _finish, lambda: not bpy.context.window_manager.realmodel.running)
+_work = DebouncedJob(
+    lambda: preferences.current().live_pause,
+    _begin,
+    _finish,
+    lambda: not bpy.context.window_manager.realmodel.running,
+)

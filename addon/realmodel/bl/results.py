@@ -6,12 +6,21 @@ import io
 
 from . import settings
 
+_SLIVER = 1e-3  # of a block's volume
 CSV_HEADINGS = ("block", "rock", "property", "volume", "share", "components", "cells")
 
 
 def volume(row):
     """The volume of a row in full, model units cubed."""
     return float(row.volume_exact) if row.volume_exact else float(row.volume)
+
+
+def slivers(model):
+    """For each block of a model how many of its connected parts have less than 0.1 % of its volume."""
+    if all(block.components < 2 for block in model.blocks):
+        return [0] * len(model.blocks)
+    blocks = zip(model.blocks, model.component_volumes, strict=True)
+    return [int((volumes < _SLIVER * block.volume).sum()) for block, volumes in blocks]
 
 
 def row_chosen(group, context):

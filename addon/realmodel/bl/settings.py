@@ -7,6 +7,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from .. import preferences
+
 VERSION = 4  # of the settings; versioning.py brings older ones up to it
 
 DATA = "realmodel_data"  # on an object: it shows data of a model, and is no input of one
@@ -27,6 +29,15 @@ def filling():
 
 def is_filling():
     return _quiet > 0
+
+
+def begin(group):
+    """A model is in the scene from now on; the first one is displayed as the preferences say."""
+    with filling():
+        if not group.exists:
+            chosen = preferences.current()
+            group.display, group.cells = chosen.display, chosen.cells
+        group.exists, group.version = True, VERSION
 
 
 def is_mesh_object(_row, item):

@@ -157,6 +157,44 @@ def plan_lines(item, depsgraph):
     return found
 
 
+def polyline(item, depsgraph):
+    """The one line of a curve or mesh object seen from above, (N, 2) float64 offsets from the origin, as it
+    was drawn; a closed one ends where it begins. Raises InputRefused where it is no line."""
+    with evaluated_mesh(item, depsgraph) as mesh:
+        plan = offsets(item, mesh)[:, :2]
+        edges = versions.edge_vertices(mesh)
+    degree = np.bincount(edges.ravel(), minlength=len(plan))
+    ends = np.flatnonzero(degree == 1)
+    what = f"object '{item.name}'"
+    if not len(edges):
+        raise InputRefused(
+            "it has no edges", item=what, advice="draw a line, such as a curve seen from above"
+        )
+    if (degree > 2).any() or len(ends) > 2:
+        raise InputRefused("it is not one line", item=what, advice="leave one line without branches")
+    onward = [[] for _ in plan]
+    for a, b in edges.tolist():
+        onward[a].append(b)
+        onward[b].append(a)
+    at = int(ends[0] if len(ends) else edges.min())
+    chain, before = [at], -1
+    while True:
+        following = next((k for k in onward[at] if k != before), None)
+        if following is None:
+            break
+        before, at = at, following
+        chain.append(at)
+        if at == chain[0]:
+            break
+    if len(set(chain)) < (degree > 0).sum():
+        raise InputRefused("it has several parts", item=what, advice="leave one line without branches")
+    line = plan[chain]
+    line = line[np.concatenate([[True], (np.diff(line, axis=0) != 0).any(axis=1)])]
+    if len(line) < 2:
+        raise InputRefused("it is a point seen from above", item=what, advice="draw a line")
+    return line
+
+
 def _bounding_edges(mesh):
     """(E, 2) the edges that only one face uses; all edges of a mesh that has no faces."""
     edges = versions.edge_vertices(mesh)

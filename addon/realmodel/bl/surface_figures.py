@@ -5,6 +5,8 @@ import json
 
 import numpy as np
 
+from ..core.volume_uncertainty import plan_areas
+
 
 def of_model(model):
     """For each surface of a model a JSON text: points, triangles, low, high, area (in plan, of what survives,
@@ -51,21 +53,8 @@ def read(row):
 
 def _surviving_areas(model):
     """(S,) float64: the area in plan of the faces that lie on each surface."""
-    plan = model.vertices[:, :2] - model.vertices[:1, :2]
-    x, y = (np.ascontiguousarray(plan[:, axis])[model.face_vertices] for axis in range(2))
-    first, last = model.face_offsets[:-1], model.face_offsets[1:] - 1
-    doubled = x * _next(y, first, last) - y * _next(x, first, last)
-    area = np.abs(np.add.reduceat(doubled, first)) / 2 if len(doubled) else np.zeros(0)
     on = model.face_surface >= 0
-    return np.bincount(model.face_surface[on], area[on], len(model.surface_names))
-
-
-def _next(values, first, last):
-    """Of each corner of polygons, what the next corner has."""
-    found = np.empty_like(values)
-    found[:-1] = values[1:]
-    found[last] = values[first]
-    return found
+    return np.bincount(model.face_surface[on], plan_areas(model)[on], len(model.surface_names))
 
 
 def plan_area(vertices, triangles):

@@ -1,10 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many threads native work takes beside a window."""
+"""How many threads native work takes."""
 
 import os
+import threading
+
+from .. import preferences
+
+_chosen = 0  # the preference, as the main thread has read it last: another thread may not
 
 
 def threads(is_short=False):
-    """One processor is left to the window, or it would stand still for half a second. 0: all that there are,
-    for what is over sooner than that."""
-    return 0 if is_short else max(1, (os.cpu_count() or 1) - 1)
+    """As the preferences say; else all (0) for what is over at once. Otherwise one processor is left to the
+    window, or it would stand still for half a second."""
+    global _chosen
+    if threading.current_thread() is threading.main_thread():
+        _chosen = preferences.current().threads
+    return _chosen or (0 if is_short else max(1, (os.cpu_count() or 1) - 1))

@@ -57,8 +57,12 @@ def full_volume_text(scene, row):
     )
 
 
+def volume_amount_text(scene, value):
+    return _text(scene, value, 3)
+
+
 def total_volume_text(scene):
-    return _text(scene, sum(results.volume(row) for row in scene.realmodel.results), 3)
+    return volume_amount_text(scene, sum(results.volume(row) for row in scene.realmodel.results))
 
 
 def number_text(value):

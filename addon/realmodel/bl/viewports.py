@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The 3D viewports on the screens.
 
-What a user asks for in one viewport happens in that one: its `space_data` is the context's. Scripts and
-background mode have none; then it happens in all of them.
+What a user asks for in one viewport happens in that one: its `space_data` is the context's. From another
+editor, a menu of the top bar, or a script it happens in the largest viewport of the window; in background
+mode, where nobody looks, in all of them.
 """
 
 import math
@@ -31,6 +32,9 @@ def view_rotation():
     return Matrix((right, back.cross(right), back)).transposed()
 
 
+_status = {}  # by the pointer of a window: the message that its status bar has
+
+
 def areas():
     """The areas of all 3D viewports that are on a screen."""
     for window in bpy.context.window_manager.windows:
@@ -38,12 +42,14 @@ def areas():
 
 
 def spaces(context):
-    """The viewport that a context belongs to; else those of the windows, or of all screens where there is no
-    window."""
+    """The viewport that a context belongs to, or those that stand for it."""
     space = context.space_data
     if space is not None and space.type == "VIEW_3D":
         return [space]
-    return [area.spaces.active for area in areas()] or all_spaces()
+    if bpy.app.background or context.window is None:
+        return [area.spaces.active for area in areas()] or all_spaces()
+    there = [area for area in context.window.screen.areas if area.type == "VIEW_3D"]
+    return [area.spaces.active for area in sorted(there, key=lambda a: a.width * a.height)[-1:]]
 
 
 def all_spaces():
@@ -90,8 +96,29 @@ def frame_items(items, shown):
         space.region_3d.view_rotation = view_rotation().to_quaternion()
 
 
+def show_status():
+    """The status bar of each window has the message of work that goes on by itself for its scene, which no
+    operator reports."""
+    problem = bpy.context.window_manager.realmodel.problem
+    for window in bpy.context.window_manager.windows:
+        group, key = window.scene.realmodel, window.as_pointer()
+        text = group.view.message or (problem if group.live else "")
+        if text != _status.get(key, ""):
+            window.workspace.status_text_set(f"RealModel: {text}" if text else None)
+            _status[key] = text
+
+
+def forget_status():
+    """The status bars are Blender's again: another file was opened, or the add-on is disabled."""
+    for window in bpy.context.window_manager.windows:
+        if _status.get(window.as_pointer()):
+            window.workspace.status_text_set(None)
+    _status.clear()
+
+
 def redraw():
-    """The viewports and their sidebars show what has changed."""
+    """The viewports, their sidebars, and the status bar show what has changed."""
+    show_status()
     for area in areas():
         area.tag_redraw()
 

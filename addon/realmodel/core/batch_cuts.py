@@ -20,11 +20,13 @@ from .readers.text import read_text
 
 @dataclass
 class SectionRequest:
-    """A section by a plane, or a fence, and its file. what: point and normal (6,), or a polyline (N, 2)."""
+    """A section by a plane, or a fence, and its file. what: point and normal (6,), or a polyline (N, 2).
+    exaggeration: of heights in drawings."""
 
     option: str
     file: Path
     what: np.ndarray | Path
+    exaggeration: float = 1.0
 
     @property
     def outputs(self) -> list[Path]:
@@ -47,7 +49,7 @@ class SectionRequest:
         else:
             found = model.section(self.what[:3], self.what[3:], threads)
         with outputs.file(self.file) as file:
-            section_writer(self.file)(found, file)
+            section_writer(self.file, self.exaggeration)(found, file)
         kind = self.option.removeprefix("--")
         return f"{kind} {self.file.name}: {len(found)} polygons, area {found.area:.2f}"
 
@@ -115,23 +117,24 @@ class CutRequest:
 Request = SectionRequest | CutRequest
 
 
-def section_request(text: str) -> SectionRequest:
+def section_request(text: str, exaggeration: float = 1.0) -> SectionRequest:
     """X,Y,Z,NX,NY,NZ=FILE. Raises UsageError."""
     what, file = _divided("--section", text, "X,Y,Z,NX,NY,NZ=FILE")
     section_writer(file)
-    return SectionRequest("--section", Path(file), _plane("--section", what))
+    return SectionRequest("--section", Path(file), _plane("--section", what), exaggeration)
 
 
-def fence_request(text: str) -> SectionRequest:
+def fence_request(text: str, exaggeration: float = 1.0) -> SectionRequest:
     """X,Y,X,Y,...=FILE or LINE.csv=FILE. Raises UsageError."""
     what, file = _divided("--fence", text, "X,Y,X,Y,...=FILE or LINE.csv=FILE")
     section_writer(file)
     numbers = _numbers(what)
     if numbers is None:
-        return SectionRequest("--fence", Path(file), Path(what))
+        return SectionRequest("--fence", Path(file), Path(what), exaggeration)
     if len(numbers) < 4 or len(numbers) % 2:
         raise UsageError(f"--fence {text}: a line needs at least two points, x and y of each")
-    return SectionRequest("--fence", Path(file), _line(numbers.reshape(-1, 2), f"--fence {text}", UsageError))
+    line = _line(numbers.reshape(-1, 2), f"--fence {text}", UsageError)
+    return SectionRequest("--fence", Path(file), line, exaggeration)
 
 
 def cut_request(text: str) -> CutRequest:

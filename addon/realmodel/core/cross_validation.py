@@ -39,6 +39,33 @@ class CrossValidation:
     variogram: Variogram | None = None
 
     @property
+    def mean_error(self) -> float:
+        """Of the estimated points: above 0 where estimates are too high. NaN where there are none."""
+        return float(self.errors[self.known].mean()) if self.known.any() else float("nan")
+
+    @property
+    def mean_absolute_error(self) -> float:
+        return float(np.abs(self.errors[self.known]).mean()) if self.known.any() else float("nan")
+
+    @property
+    def correlation(self) -> float:
+        """Of measured and estimated heights (Pearson's); NaN where one of them is the same everywhere."""
+        measured, estimated = self.points[self.known, 2], self.z[self.known]
+        if len(measured) < 2 or not np.ptp(measured) or not np.ptp(estimated):
+            return float("nan")
+        return float(np.corrcoef(measured, estimated)[0, 1])
+
+    @property
+    def known(self) -> np.ndarray:
+        """(P,) bool: the points that are estimated."""
+        return np.isfinite(self.errors)
+
+    def worst(self, number: int) -> np.ndarray:
+        """The indices of the points with the largest errors, the largest first."""
+        order = np.argsort(-np.abs(self.errors), kind="stable")  # NaN last
+        return order[: min(number, int(self.known.sum()))]
+
+    @property
     def within_two_deviations(self) -> float | None:
         """The share of errors below twice their deviation: about 0.95 where variances are honest."""
         if self.standardised is None:

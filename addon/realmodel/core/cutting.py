@@ -165,7 +165,7 @@ def section(
             found = work.native(
                 native_module().section_by_plane, _native_arrays(model), point, normal, threads=threads
             )
-        return Section(**_section_arrays(model, found))
+        return Section(**_section_arrays(model, found), plane=(point, normal))
 
     return run(task, progress, cancel)
 
@@ -261,6 +261,9 @@ def _section_arrays(model: Model, found: dict) -> dict:
         "block": block,
         "property": library_ids[block] if len(block) else np.empty(0, np.int32),
         "block_names": [entry.name for entry in model.blocks],
+        "block_colors": model.block_colors,
+        "name": model.project.name,
+        "unit": model.project.units,
     }
 
 

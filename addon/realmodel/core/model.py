@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import colorsys
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -24,6 +25,8 @@ from .section import Fence, Section
 from .surface_set import vertex_attributes
 from .validation import PLACES_OF_CHECK, ValidationReport, validate
 from .work import Cancel, Progress, native_module
+
+_GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
 
 
 @dataclass(eq=False)
@@ -60,6 +63,19 @@ class Model:
     def volume(self) -> float:
         """The volume of all blocks, model units cubed."""
         return float(sum(block.volume for block in self.blocks))
+
+    @property
+    def block_colors(self) -> np.ndarray:
+        """(B, 3) float64: the color of each block's property, sRGB from 0 to 1; where there is none one of a
+        circle of hues."""
+        library = self.project.library
+        entries = [library.get(block.property) if library else None for block in self.blocks]
+        return np.array(
+            [
+                entry.rgb if entry and entry.rgb else colorsys.hsv_to_rgb(number * _GOLDEN % 1.0, 0.35, 0.85)
+                for number, entry in enumerate(entries)
+            ]
+        )
 
     @property
     def interpolations(self) -> list[Interpolation | None]:

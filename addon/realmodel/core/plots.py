@@ -1,16 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of interpolation: variograms, cross-validation, maps, the quality of meshes. Needs matplotlib,
-which RealModel does without: `pip install matplotlib`.
+"""Charts that help to judge a surface: its variogram, cross-validation, and the quality of its mesh.
 
-    from realmodel.core import interpolate, plots
-    figure = plots.variogram(interpolate(points, nodes).variogram)
-    figure.savefig("variogram.svg")
-
-Where a program imports matplotlib itself, it does so after realmodel has done something: some systems say
-"cannot allocate memory in static TLS block" otherwise.
-
-Each function draws into `axes` where they are given, else into a figure of its own, and returns the
-matplotlib Figure. Nothing is shown on a screen, and no state of pyplot is touched.
+from realmodel.core import interpolate, plots
+from realmodel.core.drawing import save_drawing
+save_drawing(plots.variogram(interpolate(points, nodes).variogram), "variogram.svg")
 """
 
 from __future__ import annotations
@@ -18,134 +11,140 @@ from __future__ import annotations
 import numpy as np
 
 from .cross_validation import CrossValidation
-from .errors import UsageError
+from .drawing import Drawing
+from .drawing.charts import LINE, Axes
+from .drawing.drawing import BLACK, GRAY
 from .variogram import Variogram
-from .work import native_module
 
-__all__ = ["cross_validation", "height_map", "mesh_quality", "triangle_quality", "variance_map", "variogram"]
+__all__ = ["cross_validation", "mesh_quality", "smallest_angles", "variogram"]
 
-_SIZE = (5.2, 3.9)  # inches
-_MANY = 300  # points: of more than these the dots are smaller, so that they leave free what they lie on
+BLUE, RED = (0.12, 0.42, 0.70), (0.80, 0.20, 0.15)
+_PAGE = (260.0, 220.0)  # points, without the words above
+_LEFT, _RIGHT, _BELOW = 46.0, 10.0, 32.0
+_SIZE = 8.0
+_MANY = 300  # points, beyond which their dots become smaller
+_MOST_DOTS = 4000
+_BINS = np.arange(0.0, 61.0, 2.0)  # degrees
 
 
-def variogram(fitted: Variogram, axes=None):
-    """The semivariance over distance: the curve, and where it was fitted to points the experimental values,
-    their areas by the number of pairs."""
-    figure, axes = _axes(axes)
+def variogram(fitted: Variogram, unit: str = "", page=_PAGE, words: bool = True) -> Drawing:
+    """The semivariance over distance: the curve, and where it was fitted to points the experimental values as
+    dots, the larger the more pairs of points they have. unit: of lengths. page: width and height in points;
+    words: whether the figures stand above, as in all charts here."""
     longest = 1.5 * fitted.range
+    dots = radii = np.empty(0)
     if fitted.lags is not None and len(fitted.lags):
         longest = float(fitted.lags[-1]) * 1.05
-        areas = 8 + 60 * np.sqrt(fitted.pairs / fitted.pairs.max())
-        axes.scatter(fitted.lags, fitted.gamma, areas, c="tab:blue", label="experimental", zorder=3)
-    distance = np.linspace(longest / 2000, longest, 2000)  # not from 0: there a nugget leaps
-    name = f"{fitted.model}, range {fitted.range:.4g},\nsill {fitted.sill:.4g}, nugget {fitted.nugget:.3g}"
-    axes.plot(distance, fitted.semivariance(distance), c="tab:red", label=name)
-    axes.set(xlabel="distance", ylabel="semivariance", xlim=(0, longest))
-    axes.set_ylim(bottom=0)
-    axes.legend(loc="lower right", fontsize="small")
-    return figure
+        dots = np.column_stack([fitted.lags, fitted.gamma])
+        radii = 1.6 + 2.2 * np.sqrt(fitted.pairs / fitted.pairs.max())
+    distance = np.linspace(longest / 400, longest, 400)  # not from 0, where a nugget makes a step
+    curve = np.column_stack([distance, fitted.semivariance(distance)])
+    highest = max(curve[:, 1].max(), dots[:, 1].max() if len(dots) else 0.0) or 1.0
+    axes = _axes((0.0, longest), (0.0, 1.08 * highest), variogram_lines(fitted, unit), page, words)
+    axes.frame(_with_unit("Distance", unit), _with_unit("Semivariance", unit and f"{unit}²"))
+    if len(dots):
+        axes.drawing.dots(axes.at(dots), radii, BLUE)
+    axes.drawing.line(axes.at(curve), RED, 1.2)
+    return axes.drawing
 
 
-def cross_validation(told: CrossValidation, axes=None):
-    """The heights of points as the others tell them over their own; where the method has a variance, in two
-    colours, for errors within two deviations and beyond."""
-    figure, axes = _axes(axes)
-    known = np.isfinite(told.errors)
-    given, found = told.points[known, 2], told.z[known]
-    beyond = np.zeros(len(given), bool)
-    size = 10 * _share_of_many(len(given)) ** 0.5
-    if told.standardised is not None:
-        beyond = np.abs(told.standardised[known]) > 2
-        axes.scatter(given[beyond], found[beyond], size, c="tab:red", label="beyond two deviations", zorder=3)
-    axes.scatter(given[~beyond], found[~beyond], size, c="tab:blue", label="points left out")
-    low, high = (f(np.concatenate([given, found])) for f in (np.min, np.max)) if len(given) else (0, 1)
-    axes.plot([low, high], [low, high], c="0.6", lw=1, zorder=0)
-    share = told.within_two_deviations
-    honest = "" if share is None else f"\n{100 * share:.1f} % within two deviations"
-    axes.set_title(f"{told.method}: root mean square error {told.rmse:.4g}{honest}", fontsize="medium")
-    axes.set(xlabel="height of the point", ylabel="as the others tell it")
-    axes.locator_params(axis="x", nbins=6)
-    axes.legend(loc="upper left", fontsize="small")
-    return figure
+def variogram_lines(fitted: Variogram, unit: str = "") -> list[str]:
+    """The values of a variogram in words, a line for each of its structures."""
+    length, square = f" {unit}" if unit else "", f" {unit}²" if unit else ""
+    origin = "fitted" if fitted.fitted else "given"
+    if not fitted.structures:
+        texts = (f"range {fitted.range:.4g}{length}", f"sill {fitted.sill:.4g}{square}")
+        lines = [
+            f"{fitted.model.capitalize()}, {origin}:",
+            ", ".join([*texts, f"nugget {fitted.nugget:.3g}{square}"]),
+        ]
+    else:
+        lines = [f"Nested, {origin}: nugget {fitted.nugget:.3g}{square}"]
+        lines += [
+            f"{part.model}: range {part.range:.4g}{length}, sill {part.sill:.4g}{square}"
+            for part in fitted.structures
+        ]
+    if fitted.anisotropy:
+        ratio, azimuth = fitted.anisotropy["ratio"], fitted.anisotropy["azimuth"]
+        lines.append(f"anisotropy {ratio:.3g}, azimuth {azimuth:.0f}°")
+    return lines
 
 
-def height_map(vertices, triangles, points=None, axes=None, limits=None):
-    """Heights of a triangulated surface (vertices (V, 3), triangles (T, 3)) as colours in plan with contour
-    lines, and the points (P, 2 or 3) that it was made from. limits: (lowest, highest) of the colours."""
-    vertices = np.asarray(vertices, np.float64)
-    return _map(vertices[:, :2], triangles, vertices[:, 2], points, axes, limits, "height", "viridis")
+def cross_validation(result: CrossValidation, unit: str = "", page=_PAGE, words: bool = True) -> Drawing:
+    """The estimated over the measured elevations of points; where the method has a variance, in two colors,
+    for errors within two standard deviations and beyond."""
+    known = np.isfinite(result.errors)
+    places = np.column_stack([result.points[known, 2], result.z[known]])
+    low, high = (float(places.min()), float(places.max())) if len(places) else (0.0, 1.0)
+    margin = 0.04 * (high - low) or 0.5
+    limits = (low - margin, high + margin)
+    axes = _axes(limits, limits, cross_validation_lines(result, unit), page, words)
+    axes.frame(_with_unit("Measured", unit), _with_unit("Estimated", unit))
+    axes.drawing.line(axes.at([(limits[0], limits[0]), (limits[1], limits[1])]), GRAY, 0.8)
+    beyond = np.zeros(len(places), bool)
+    if result.standardised is not None:
+        beyond = np.abs(result.standardised[known]) > 2
+    radius = 2.2 * max(min(1.0, _MANY / max(len(places), 1)), 0.1) ** 0.5
+    for chosen, color in ((~beyond, BLUE), (beyond, RED)):
+        some = places[chosen][:: max(1, int(np.ceil(chosen.sum() / _MOST_DOTS)))]
+        axes.drawing.dots(axes.at(some), radius, color)
+    return axes.drawing
 
 
-def variance_map(vertices, triangles, variance, points=None, axes=None, limits=None):
-    """The standard deviation of the heights of a surface, the root of variances (V,), as colours in plan, and
-    the points."""
-    deviation = np.sqrt(np.maximum(np.asarray(variance, np.float64), 0.0))
-    plan = np.asarray(vertices, np.float64)[:, :2]
-    return _map(plan, triangles, deviation, points, axes, limits, "standard deviation", "cividis")
+def cross_validation_lines(result: CrossValidation, unit: str = "") -> list[str]:
+    """The figures of a cross-validation in words."""
+    end = f" {unit}" if unit else ""
+    left = int((~np.isfinite(result.errors)).sum())
+    lines = [
+        f"{len(result.errors) - left:,} points" + (f" ({left:,} more cannot be estimated)" if left else ""),
+        f"RMSE {result.rmse:.4g}{end}, MAE {result.mean_absolute_error:.4g}{end}",
+        f"mean error {result.mean_error:.3g}{end}, correlation {result.correlation:.4f}",
+    ]
+    if result.within_two_deviations is not None:
+        lines.append(f"{100 * result.within_two_deviations:.1f} % within two standard deviations")
+    return lines
 
 
-def triangle_quality(vertices, triangles) -> np.ndarray:
-    """(T,) float64 mean ratio quality in plan of triangles (T, 3) of vertices (V, 2 or 3): 4 sqrt(3) area
-    over the sum of the squared edges, 1 for an equilateral triangle, 0 for one without area (Liu and Joe
-    1994)."""
-    a, b, c = (np.asarray(vertices, np.float64)[:, :2][np.asarray(triangles)[:, k]] for k in range(3))
-    u, v, w = b - a, c - a, c - b
-    area = 0.5 * np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-    squares = (u**2 + v**2 + w**2).sum(axis=1)
-    return 4 * np.sqrt(3) * area / np.where(squares > 0, squares, 1.0)
+def smallest_angles(vertices, triangles) -> np.ndarray:
+    """(T,) float64: the smallest angle in plan of triangles (T, 3) of vertices (V, 2 or 3), degrees; 60 for
+    an equilateral triangle, 0 for one without area."""
+    corners = np.asarray(vertices, np.float64)[:, :2][np.asarray(triangles)]
+    sides = np.roll(corners, -1, axis=1) - corners
+    onward, back = sides, -np.roll(sides, 1, axis=1)
+    cross = np.abs(onward[..., 0] * back[..., 1] - onward[..., 1] * back[..., 0])
+    return np.degrees(np.arctan2(cross, (onward * back).sum(axis=2)).min(axis=1))
 
 
-def mesh_quality(vertices, triangles, axes=None):
-    """How many triangles of a planar mesh have which mean ratio quality."""
-    figure, axes = _axes(axes)
-    quality = triangle_quality(vertices, triangles)
-    axes.hist(quality, np.linspace(0, 1, 51), color="tab:blue")
-    title = f"{len(quality)} triangles, mean {quality.mean():.3f}, least {quality.min():.3f}"
-    axes.set_title(title, fontsize="medium")
-    axes.set(xlabel="mean ratio quality", ylabel="triangles", xlim=(0, 1), yscale="log")
-    return figure
+def mesh_quality(angles: np.ndarray, page=_PAGE, words: bool = True) -> Drawing:
+    """How many triangles have which smallest angle; angles: as smallest_angles gives them."""
+    counts, edges = np.histogram(angles, _BINS)
+    axes = _axes((0.0, 60.0), (0.0, 1.08 * max(counts.max(), 1)), mesh_quality_lines(angles), page, words)
+    axes.frame("Smallest angle (°)", "Triangles")
+    for count, left, right in zip(counts.tolist(), edges[:-1], edges[1:], strict=True):
+        if count:
+            corners = [(left, 0), (right, 0), (right, count), (left, count)]
+            axes.drawing.polygon(axes.at(corners), BLUE, BLACK, 0.3)
+    return axes.drawing
 
 
-def _axes(axes):
-    if axes is not None:
-        return axes.figure, axes
-    native_module()  # before matplotlib, which on some systems takes the room that its libraries need
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise UsageError("realmodel.core.plots needs matplotlib: pip install matplotlib") from error
-    figure = Figure(figsize=_SIZE, layout="constrained")
-    return figure, figure.subplots()
+def mesh_quality_lines(angles: np.ndarray) -> list[str]:
+    """The smallest angles of triangles in words."""
+    return [
+        f"{len(angles):,} triangles",
+        f"smallest angle {angles.min():.1f}°, on average {angles.mean():.1f}°",
+    ]
 
 
-def _share_of_many(points: int) -> float:
-    """1, or less where there are many points, but never so little that dots vanish."""
-    return min(1.0, max(_MANY / max(points, 1), 0.03))
+def _axes(x_range, y_range, lines: list[str], page, words: bool) -> Axes:
+    """Axes on a page of their own, with the lines of text above where words are wanted."""
+    above = LINE * _SIZE * len(lines) if words else 0.0
+    drawing = Drawing(page[0], page[1] + above)
+    if words:
+        for number, text in enumerate(lines, 1):
+            drawing.text(_LEFT, drawing.height - LINE * _SIZE * number, text, _SIZE)
+    box = (_LEFT, _BELOW, page[0] - _LEFT - _RIGHT, page[1] - _BELOW - _SIZE)
+    return Axes(drawing, box, x_range, y_range, _SIZE)
 
 
-def _map(plan, triangles, values, points, axes, limits, label, colours):
-    figure, axes = _axes(axes)
-    # matplotlib's own arithmetic has single precision in places: coordinates from the middle
-    middle = np.round(plan.mean(axis=0), -2) if np.abs(plan).max() > 1e5 else np.zeros(2)
-    x, y = (plan - middle).T
-    known = np.isfinite(values)
-    shown = np.asarray(triangles)[known[np.asarray(triangles)].all(axis=1)]
-    low, high = limits or (values[known].min(), values[known].max())
-    from matplotlib.tri import Triangulation
-
-    mesh = Triangulation(x, y, shown)
-    filled = np.where(known, values, low)
-    drawn = axes.tripcolor(
-        mesh, filled, cmap=colours, vmin=low, vmax=high, shading="gouraud", rasterized=True
-    )
-    if len(shown) and high > low:
-        levels = np.linspace(low, high, 12)[1:-1]
-        axes.tricontour(mesh, filled, levels=levels, colors="white", linewidths=0.4, alpha=0.6)
-    if points is not None:
-        px, py = (np.asarray(points, np.float64)[:, :2] - middle).T
-        axes.scatter(px, py, 6 * _share_of_many(len(px)), c="black", linewidths=0.0)
-    axes.set_aspect("equal")
-    if middle.any():
-        axes.set(xlabel=f"x - {middle[0]:.0f}", ylabel=f"y - {middle[1]:.0f}")
-    figure.colorbar(drawn, ax=axes, label=label, shrink=0.85)
-    return figure
+def _with_unit(name: str, unit: str) -> str:
+    return f"{name} ({unit})" if unit else name

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -21,7 +21,9 @@ class Section:
     offsets (K + 1,) int64, polygon_vertices int32. cells: (K, 2) int32, the model's cells below and above
     (inside and outside): the same where a cell is cut, two where the cutter runs between cells, -1 where
     one side is outside of the model. blocks: (K, 2) int32, their blocks. block, property: (K,) int32, the
-    block below, or above where there is none below, and its library id. block_names: (B,) of the model's.
+    block below, or above where there is none below, and its library id. block_names: (B,) of the model's,
+    from the oldest of each rock mass; block_colors (B, 3), sRGB from 0 to 1. name: of the model; unit: of its
+    lengths. plane: its point and normal, where the cutter is one.
     """
 
     vertices: np.ndarray
@@ -32,6 +34,10 @@ class Section:
     block: np.ndarray
     property: np.ndarray
     block_names: list[str]
+    block_colors: np.ndarray = field(kw_only=True)
+    name: str = field(kw_only=True)
+    unit: str = field(kw_only=True)
+    plane: tuple | None = field(default=None, kw_only=True)
 
     def __len__(self) -> int:
         return len(self.block)
@@ -67,10 +73,11 @@ class Section:
         names = ("vertices", "offsets", "polygon_vertices", "cells", "blocks", "block", "property")
         return {name: getattr(self, name) for name in names} | {"block_names": np.array(self.block_names)}
 
-    def save(self, path: str | Path) -> None:
-        """Writes the polygons, with block and property, to a .vtu, .obj, .csv or .npz, which appears whole or
-        not at all. Raises UsageError, OutputFailed."""
-        writer = section_writer(path)
+    def save(self, path: str | Path, exaggeration: float = 1.0) -> None:
+        """Writes the polygons, with block and property, to a .vtu, .obj, .csv or .npz, or a drawing of them
+        to a .svg, .dxf or .png, heights exaggerated. The file appears whole or not at all. Raises
+        UsageError, OutputFailed."""
+        writer = section_writer(path, exaggeration)
         with Outputs() as outputs, outputs.file(path) as file:
             writer(self, file)
 
@@ -95,8 +102,15 @@ class Fence(Section):
     def corner_distances(self) -> np.ndarray:
         """(len(polygon_vertices),) float64: distance along the polyline of each polygon's corners."""
         steps = np.diff(self.polyline, axis=0)
-        lengths = np.hypot(*steps.T)
-        begins = np.concatenate([[0.0], np.cumsum(lengths)])
         panel = np.repeat(self.panel, np.diff(self.offsets))
         away = self.vertices[self.polygon_vertices, :2] - self.polyline[panel]
-        return begins[panel] + (away * steps[panel]).sum(axis=1) / lengths[panel]
+        return self.bends[panel] + (away * steps[panel]).sum(axis=1) / np.hypot(*steps.T)[panel]
+
+    @property
+    def bends(self) -> np.ndarray:
+        """(N,) float64: distance along the polyline of its points."""
+        return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self.polyline, axis=0).T))])
+
+    @property
+    def length(self) -> float:
+        return float(self.bends[-1])

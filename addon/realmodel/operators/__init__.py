@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything that the panel does, as operators: `bpy.ops.realmodel.*`, for scripts and F3 as well."""
 
-import bpy
-
 from ..registration import register_modules, unregister_modules
 from . import (
     boreholes,
@@ -10,6 +8,7 @@ from . import (
     documentation,
     files,
     imports,
+    judge,
     library,
     origin,
     plan_mesh,
@@ -33,6 +32,7 @@ _MODULES = (
     variograms,
     build,
     files,
+    judge,
     library,
     results,
     view,
@@ -47,13 +47,3 @@ def register():
 
 def unregister():
     unregister_modules(_MODULES)
-
-
-def by_module():
-    """The operators of each module, for menus; those that make sense inside others only are left out."""
-    for module in _MODULES:
-        yield [
-            cls
-            for cls in module.CLASSES
-            if issubclass(cls, bpy.types.Operator) and "INTERNAL" not in getattr(cls, "bl_options", ())
-        ]

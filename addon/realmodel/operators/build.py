@@ -12,8 +12,7 @@ _SLICE = 0.05  # seconds in which Blender is given meshes, before the window is 
 
 
 class REALMODEL_OT_build(Reporting, bpy.types.Operator):
-    """Intersect and cut: build the blocks from all surfaces, oldest first. Esc cancels, and nothing has
-    changed"""
+    """Build the blocks between the surfaces, oldest first. Esc cancels and leaves the scene unchanged"""
 
     bl_idname = "realmodel.build"
     bl_label = "Build"
@@ -133,7 +132,7 @@ running = []  # the jobs of builds that are shown with progress
 
 
 class REALMODEL_OT_cancel(Reporting, bpy.types.Operator):
-    """Stop the build that is running; the scene stays as it was"""
+    """Cancel the running build and leave the scene unchanged"""
 
     bl_idname = "realmodel.cancel"
     bl_label = "Cancel Build"
@@ -146,7 +145,7 @@ class REALMODEL_OT_cancel(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_clear(Reporting, bpy.types.Operator):
-    """Remove the blocks; the interfaces and all settings stay"""
+    """Remove the blocks; keep the interfaces and all settings"""
 
     bl_idname = "realmodel.clear"
     bl_label = "Clear Blocks"
@@ -161,10 +160,10 @@ def _a_bad_place(context):
 
 
 class REALMODEL_OT_show_problem(Reporting, bpy.types.Operator):
-    """Select the bad place of the refused surface in edit mode and frame it"""
+    """Select the triangles of the refused surface in Edit Mode, and frame them"""
 
     bl_idname = "realmodel.show_problem"
-    bl_label = "Show the Place"
+    bl_label = "Zoom to Error"
     needs = (_a_bad_place,)
 
     def act(self, context):

@@ -1,60 +1,117 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The model and its report out to files."""
 
+from pathlib import Path
+
 import bpy
-from bpy.props import StringProperty
+from bpy.props import EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import project_settings
+from ..bl import project_settings, results
 from ..bl.display import shown_models
 from ..core import UsageError
 from ..core.atomic import Outputs
-from ..core.exporters import WRITERS, save_model, writer_for
+from ..core.exporters import save_model
 from ..core.exporters.report import write_report
 from .reporting import Reporting, a_model, needed_path
 
+_MODELS = (
+    ("NPZ", "NumPy (.npz)", "All arrays of the model, for Python"),
+    ("VTU", "VTK Unstructured Grid (.vtu)", "The polyhedral cells, for ParaView and simulation"),
+)
+_REPORTS = (
+    ("JSON", "Report (.json)", "Volumes, settings, warnings, and the proof of the model"),
+    ("CSV", "Table of Blocks (.csv)", "Volumes, shares, and counts of the blocks, for a spreadsheet"),
+)
+DRAWINGS = (
+    ("SVG", "SVG (.svg)", "Scalable drawing, for documents and web pages"),
+    ("PNG", "PNG (.png)", "Picture, 200 dots per inch"),
+    ("DXF", "DXF (.dxf)", "Lines on layers, for CAD programs"),
+)
 
-class REALMODEL_OT_export(Reporting, bpy.types.Operator, ExportHelper):
-    """Export the built model; the ending of the file name says the format"""
+SECTIONS = (
+    *DRAWINGS,
+    ("VTU", "VTK Unstructured Grid (.vtu)", "Polygons that know their block, for ParaView"),
+    ("OBJ", "Wavefront OBJ (.obj)", "Polygons, a group for each block"),
+    ("CSV", "Table of Corners (.csv)", "The corners of the polygons"),
+    ("NPZ", "NumPy (.npz)", "All arrays of the section, for Python"),
+)
+
+
+def format_menu(formats):
+    return EnumProperty(
+        name="Format",
+        description="Format of the file; its ending follows",
+        items=formats,
+        options={"SKIP_SAVE"},
+    )
+
+
+def format_filter(formats):
+    return StringProperty(default=";".join(f"*{e}" for e in _endings(formats)), options={"HIDDEN"})
+
+
+def _endings(formats):
+    return [f".{identifier.lower()}" for identifier, *_ in formats]
+
+
+class Exporting(Reporting, ExportHelper):
+    """Writes a file, by default named after the model. In the file browser the menu of formats gives the
+    ending; in a script the ending of `filepath` gives the format."""
+
+    bl_options = {"REGISTER"}
+
+    @property
+    def filename_ext(self):
+        return f".{self.format.lower()}"
+
+    def invoke(self, context, event):
+        if not self.filepath:
+            name = bpy.path.clean_name(context.scene.realmodel.name or "model") + self.filename_ext
+            self.filepath = str(Path(bpy.data.filepath).parent / name) if bpy.data.filepath else name
+        return super().invoke(context, event)
+
+    def act(self, context):
+        path = project_settings.absolute(needed_path(self.filepath, "the output"))
+        known = self.filter_glob.replace("*", "").split(";")
+        if path.suffix.lower() not in known:
+            raise UsageError(f"{path}: the name must end in {' or '.join(known)}")
+        self.write(context, path)
+        self.report({"INFO"}, f"Wrote {path}")
+
+
+class REALMODEL_OT_export(Exporting, bpy.types.Operator):
+    """Export the built model with its cells"""
 
     bl_idname = "realmodel.export"
     bl_label = "Export Model"
-    bl_options = {"REGISTER"}
     needs = (a_model,)
 
-    filename_ext = ".npz"
-    check_extension = None  # any of the formats
-    filter_glob: StringProperty(default=";".join(f"*{e}" for e in WRITERS), options={"HIDDEN"})
+    format: format_menu(_MODELS)
+    filter_glob: format_filter(_MODELS)
 
-    def act(self, context):
-        path = project_settings.absolute(needed_path(self.filepath, "the model"))
-        writer_for(path)
+    def write(self, context, path):
         save_model(shown_models.whole(context.scene), path)
-        self.report({"INFO"}, f"Wrote {path}")
-
-    def check(self, _context):
-        return False
 
 
-class REALMODEL_OT_report(Reporting, bpy.types.Operator, ExportHelper):
-    """Write a report of the built model (JSON): volumes, settings, warnings, and the proof of the model"""
+class REALMODEL_OT_report(Exporting, bpy.types.Operator):
+    """Write what was built: a full report, or the table of blocks"""
 
     bl_idname = "realmodel.report"
     bl_label = "Write Report"
-    bl_options = {"REGISTER"}
     needs = (a_model,)
 
-    filename_ext = ".json"
-    filter_glob: StringProperty(default="*.json", options={"HIDDEN"})
+    format: format_menu(_REPORTS)
+    filter_glob: format_filter(_REPORTS)
 
-    def act(self, context):
-        path = project_settings.absolute(needed_path(self.filepath, "the report"))
-        if path.suffix.lower() != ".json":
-            raise UsageError(f"{path}: a report ends in .json")
-        model = shown_models.whole(context.scene)
+    def write(self, context, path):
+        is_table = path.suffix.lower() == ".csv"
+        model = None if is_table else shown_models.whole(context.scene)
         with Outputs() as outputs, outputs.file(path) as file:
-            write_report(model, path, file)
-        self.report({"INFO"}, f"Wrote {path}")
+            if is_table:
+                file.write(results.as_csv(context.scene).encode())
+            else:
+                write_report(model, path, file)
 
 
 CLASSES = (REALMODEL_OT_export, REALMODEL_OT_report)

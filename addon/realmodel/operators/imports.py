@@ -301,12 +301,12 @@ CLASSES = (REALMODEL_OT_surface_add,)
 if hasattr(bpy.types, "FileHandler"):  # from Blender 4.1 on
 
     class REALMODEL_FH_surfaces(bpy.types.FileHandler):
-        """Tables and meshes that are dropped into the viewport become surfaces"""
+        """Tables, meshes, grids, and maps that are dropped into the viewport become surfaces"""
 
         bl_idname = "REALMODEL_FH_surfaces"
         bl_label = "RealModel surfaces"
         bl_import_operator = "realmodel.surface_add"
-        bl_file_extensions = ";".join((*TABLE_ENDINGS, *MESH_ENDINGS))
+        bl_file_extensions = ";".join((*MESH_ENDINGS, *TABLE_ENDINGS, *RASTER_ENDINGS, *MAP_ENDINGS))
 
         @classmethod
         def poll_drop(cls, context):

@@ -29,7 +29,7 @@ class REALMODEL_OT_library_add(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_library_remove(Reporting, bpy.types.Operator):
-    """Remove the active property from the library; surfaces that have it are left without one"""
+    """Remove the active property from the library, and from the surfaces that have it"""
 
     bl_idname = "realmodel.library_remove"
     bl_label = "Remove Property"
@@ -51,14 +51,14 @@ class REALMODEL_OT_library_remove(Reporting, bpy.types.Operator):
 
 
 class REALMODEL_OT_library_import(Reporting, bpy.types.Operator, ImportHelper):
-    """Import properties from a library file (TOML); those with an ID that is there already take its place"""
+    """Import properties from a library file (TOML); they replace those with the same ID"""
 
     bl_idname = "realmodel.library_import"
     bl_label = "Import Library"
 
     filename_ext = ".toml"
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
-    replace: BoolProperty(name="Replace", description="Remove the properties that are there first")
+    replace: BoolProperty(name="Replace", description="Remove all properties of the library first")
 
     def act(self, context):
         path = project_settings.absolute(needed_path(self.filepath, "the library"))
@@ -93,7 +93,7 @@ class REALMODEL_OT_library_export(Reporting, bpy.types.Operator, ExportHelper):
 
 
 class REALMODEL_OT_assign_property(Reporting, bpy.types.Operator):
-    """Give the active property of the library to the selected blocks, and to the surfaces above them"""
+    """Assign the active property of the library to the selected blocks and the surfaces above them"""
 
     bl_idname = "realmodel.assign_property"
     bl_label = "Assign to Selected Blocks"

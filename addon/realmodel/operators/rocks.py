@@ -27,7 +27,7 @@ def add_rock(scene):
     group = scene.realmodel
     with settings.filling():
         if not group.exists:
-            group.exists, group.version = True, settings.VERSION
+            settings.begin(group)
             group.name = group.name or "Model"
         row = group.rocks.add()
         row.name = settings.free_name(group.rocks, "rock mass", own=row)

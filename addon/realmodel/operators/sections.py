@@ -2,15 +2,55 @@
 """Sections: the movable plane that shows the model cut open, and exact sections as mesh objects."""
 
 import bpy
-from bpy.props import EnumProperty, FloatVectorProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty
 from mathutils import Quaternion, Vector
 
-from ..bl import display, project_settings, settings
+from ..bl import display, exaggeration, project_settings, settings
 from ..bl.display import cuts, sections
-from ..core import UsageError
-from .reporting import Reporting, a_model, a_section_plane, place_property
+from ..core import InputRefused, UsageError
+from ..core.section_drawing import MOST_EXAGGERATION
+from .files import SECTIONS, Exporting, format_filter, format_menu
+from .reporting import Reporting, a_model, a_section_plane, an_outline_object, place_property
 
 _UPRIGHT = {"X": (1.0, 0.0, 0.0), "Y": (0.0, -1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
+
+
+_FLAT = "Unroll the section beside the model instead of leaving it in its place"
+
+
+def _show(operator, context, made):
+    """Selects a new section alone, and says where it went."""
+    display.exaggeration_changed(context.scene)
+    for item in context.selected_objects:
+        item.select_set(False)
+    made.select_set(True)
+    context.view_layer.objects.active = made
+    hidden = "" if operator.flat or cuts.is_on(context.scene) else "; blocks are in front of it"
+    operator.report({"INFO"}, f"Section made: see {made.name}{hidden}")
+
+
+def _plane_of(operator, context):
+    """Point and normal that an operator was given, else those of the section plane."""
+    scene = context.scene
+    given = any(operator.properties.is_property_set(key) for key in ("location", "normal"))
+    if given:
+        if not any(operator.normal):
+            raise UsageError("the normal is zero: give the direction that the plane is square to")
+        return tuple(operator.location), tuple(operator.normal)
+    if cuts.plane_of(scene) is None:
+        raise InputRefused("there is no section plane", advice="add one first (Section Plane)")
+    context.view_layer.update()
+    point, normal = cuts.plane_in_model(scene)
+    return tuple(point - project_settings.model_origin(scene)), normal
+
+
+_PLACE = place_property("A point of the plane, in the coordinates of the scene")
+_NORMAL = FloatVectorProperty(
+    name="Normal",
+    description="The direction that the plane is square to",
+    subtype="XYZ",
+    default=(0.0, -1.0, 0.0),
+)
 
 
 class REALMODEL_OT_section(Reporting, bpy.types.Operator):
@@ -21,31 +61,73 @@ class REALMODEL_OT_section(Reporting, bpy.types.Operator):
     bl_label = "Make Section"
     needs = (a_model,)
 
-    location: place_property("A point of the plane, in the coordinates of the scene")
-    normal: FloatVectorProperty(
-        name="Normal",
-        description="The direction that the plane is square to",
-        subtype="XYZ",
-        default=(0.0, -1.0, 0.0),
-    )
+    location: _PLACE
+    normal: _NORMAL
+    flat: BoolProperty(name="Flat", description=_FLAT)
 
     def act(self, context):
-        scene = context.scene
-        given = any(self.properties.is_property_set(key) for key in ("location", "normal"))
-        location, normal = tuple(self.location), tuple(self.normal)
-        if not given and cuts.plane_of(scene) is not None:
-            context.view_layer.update()
-            point, normal = cuts.plane_in_model(scene)
-            location = tuple(point - project_settings.model_origin(scene))
-        if not any(normal):
-            raise UsageError("the normal is zero: give the direction that the plane is square to")
-        made = sections.add(scene, location, normal)
-        display.exaggeration_changed(scene)
-        for item in context.selected_objects:
-            item.select_set(False)
-        made.select_set(True)
-        context.view_layer.objects.active = made
-        self.report({"INFO"}, f"Section made: see {made.name}, {len(made.data.polygons)} faces")
+        found = sections.by_plane(context.scene, *_plane_of(self, context))
+        _show(self, context, sections.add(context.scene, found, "Section", self.flat))
+
+
+class REALMODEL_OT_fence(Reporting, bpy.types.Operator):
+    """Make vertical sections of the model along the active curve, or a mesh of edges, as a mesh object"""
+
+    bl_idname = "realmodel.fence"
+    bl_label = "Make Fence"
+    needs = (a_model, an_outline_object)
+
+    flat: BoolProperty(name="Flat", description=_FLAT)
+
+    def act(self, context):
+        item = context.active_object
+        found = sections.along(context.scene, item, context.evaluated_depsgraph_get())
+        _show(self, context, sections.add(context.scene, found, "Fence", self.flat))
+
+
+class REALMODEL_OT_save_section(Exporting, bpy.types.Operator):
+    """Save a section as a drawing with axes, legend, and scale, or as polygons"""
+
+    bl_idname = "realmodel.save_section"
+    bl_label = "Save Section"
+    needs = (a_model,)
+
+    format: format_menu(SECTIONS)
+    filter_glob: format_filter(SECTIONS)
+    location: _PLACE
+    normal: _NORMAL
+    along: EnumProperty(
+        name="Along",
+        description="Where the model is cut",
+        items=(
+            ("PLANE", "Section Plane", "The section plane, or the location and normal that are given"),
+            ("LINE", "Active Curve", "Vertical sections along the active curve or mesh of edges"),
+        ),
+    )
+    exaggeration: FloatProperty(
+        name="Vertical Exaggeration",
+        description="How many times as high as they are heights are drawn",
+        default=1.0,
+        min=0.01,
+        max=MOST_EXAGGERATION,
+        soft_max=20.0,
+    )
+
+    def invoke(self, context, event):
+        if not self.properties.is_property_set("exaggeration"):
+            self.exaggeration = exaggeration.factor(context.scene)
+        return super().invoke(context, event)
+
+    def write(self, context, path):
+        if self.along == "PLANE":
+            found = sections.by_plane(context.scene, *_plane_of(self, context))
+        else:
+            reason = an_outline_object(context)
+            if reason:
+                raise InputRefused(reason)
+            item = context.active_object
+            found = sections.along(context.scene, item, context.evaluated_depsgraph_get())
+        found.save(path, self.exaggeration)
 
 
 class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
@@ -133,6 +215,8 @@ class REALMODEL_OT_section_remove(Reporting, bpy.types.Operator):
 
 CLASSES = (
     REALMODEL_OT_section,
+    REALMODEL_OT_fence,
+    REALMODEL_OT_save_section,
     REALMODEL_OT_section_plane,
     REALMODEL_OT_section_flip,
     REALMODEL_OT_section_update,

@@ -37,7 +37,7 @@ def _begin(current, name):
     scene.remove_objects([item for item in current.objects if item.get(scene.TAG) == "section"])
     group = current.realmodel
     with settings.filling():
-        group.version, group.exists = settings.VERSION, True
+        settings.begin(group)
         group.name, group.project_file, group.library_path = name, "", ""
         group.active_rock = group.stage = group.active_property = group.active_result = 0
         group.explode = 0.0
@@ -261,14 +261,6 @@ def _base_below(heights):
     return math.floor((low - below) / step) * step
 
 
-def _import_menu(self, _context):
-    self.layout.operator(REALMODEL_OT_open_project.bl_idname, text="RealModel Project (.toml)")
-
-
-def _export_menu(self, _context):
-    self.layout.operator(REALMODEL_OT_save_project.bl_idname, text="RealModel Project (.toml)")
-
-
 CLASSES = (
     REALMODEL_OT_new,
     REALMODEL_OT_open_project,
@@ -293,13 +285,3 @@ if hasattr(bpy.types, "FileHandler"):  # from Blender 4.1 on
             return context.area is not None and context.area.type == "VIEW_3D"
 
     CLASSES = (*CLASSES, REALMODEL_FH_project)
-
-
-def register():
-    bpy.types.TOPBAR_MT_file_import.append(_import_menu)
-    bpy.types.TOPBAR_MT_file_export.append(_export_menu)
-
-
-def unregister():
-    bpy.types.TOPBAR_MT_file_export.remove(_export_menu)
-    bpy.types.TOPBAR_MT_file_import.remove(_import_menu)

@@ -1,53 +1,139 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""View > RealModel: every operator in a menu, so that F3 finds it and no mouse is needed, in any mode."""
+"""RealModel in Blender's own menus, where F3 finds it: Add, Object, View, File > Import and Export."""
 
 import bpy
 
-from .. import operators
+from ..bl import samples
+
+# (operator without "realmodel.", text or None for its label, properties); None: a line
+_SURFACE_OF_OBJECT = ("surface_add", "Surface from Active Object", {"use_object": True})
+_EXPORT = (
+    ("save_project", "RealModel Project (.toml)", {}),
+    ("export", "RealModel Model (.npz/.vtu)", {}),
+    ("report", "RealModel Report (.json/.csv)", {}),
+)
+_IMPORT = (
+    ("open_project", "RealModel Project (.toml)", {}),
+    ("surface_add", "RealModel Surfaces (points, meshes, grids, maps)", {}),
+    ("boreholes_read", "RealModel Boreholes (.csv/.txt)", {}),
+)
 
 
-class REALMODEL_MT_all(bpy.types.Menu):
-    """Everything that RealModel does"""
+class _Menu:
+    """A submenu "RealModel" of one of Blender's menus."""
 
     bl_label = "RealModel"
-    bl_idname = "REALMODEL_MT_all"
 
     def draw(self, context):
-        layout = self.layout
-        layout.operator_context = "INVOKE_DEFAULT"
-        for group in operators.by_module():
-            for cls in group:
-                _draw(layout, context, cls)
+        self.layout.operator_context = "INVOKE_DEFAULT"
+        _draw(self.layout, self.entries(context))
+
+
+class REALMODEL_MT_add(_Menu, bpy.types.Menu):
+    """Begin a model, or add to it"""
+
+    bl_idname = "REALMODEL_MT_add"
+
+    def entries(self, context):
+        yield "new", None, {}
+        for sample, name, *_ in samples.enum_items(None, context):
+            yield "open_sample", f"Example: {name}", {"sample": sample}
+        yield None
+        yield "rock_add", "Rock Mass", {}
+        yield "surface_add", "Surfaces from Files...", {}
+        yield _SURFACE_OF_OBJECT
+        yield "boreholes_read", "Boreholes from File...", {}
+        yield "region_around", None, {}
+        yield None
+        for axis, name in (("Y", "South"), ("X", "East"), ("Z", "Above")):
+            yield "section_plane", f"Section Plane: {name}", {"axis": axis}
+        yield "section", "Section", {}
+
+
+class REALMODEL_MT_object(_Menu, bpy.types.Menu):
+    """Build the model; what can be done with the selected objects"""
+
+    bl_idname = "REALMODEL_MT_object"
+
+    def entries(self, _context):
+        yield "build", None, {}
+        yield "show_problem", None, {}
+        yield "clear", None, {}
+        yield None
+        yield "from_selected", None, {}
+        yield _SURFACE_OF_OBJECT
+        yield "constraint_add", "Constraint from Active Object", {}
+        yield "size_add", "Refinement at Active Object", {}
+        yield None
+        yield "edit_surface", "Edit Active Surface", {}
+        yield "assign_property", "Assign Active Property", {}
+
+
+class REALMODEL_MT_view(_Menu, bpy.types.Menu):
+    """How the model is looked at"""
+
+    bl_idname = "REALMODEL_MT_view"
+
+    def entries(self, _context):
+        yield "view_all", None, {}
+        for direction in ("FRONT", "BACK", "LEFT", "RIGHT", "TOP", "BOTTOM"):
+            yield "view", f"Model from {direction.capitalize()}", {"direction": direction}
+        yield "view_previous", None, {}
+        yield "view_next", None, {}
+        yield None
+        yield "section_flip", None, {}
+        yield "section_remove", None, {}
+        yield "surface_hide", "Hide or Show Active Surface", {}
+        yield "hide_property", "Show Blocks of All Properties", {"action": "ALL"}
+        yield None
+        yield "coordinates", None, {}
+        yield "capture", None, {}
+        yield "set_up_picture", None, {}
+        yield "render_picture", None, {}
+
+
+def _draw(layout, entries):
+    for entry in entries:
+        if entry is None:
             layout.separator()
+            continue
+        name, text, properties = entry
+        made = layout.operator(f"realmodel.{name}", **({} if text is None else {"text": text}))
+        for key, value in properties.items():
+            setattr(made, key, value)
 
 
-_CHOICES = ("sample", "direction", "property_id")  # of operators that have to be told which one
+def _submenu(cls):
+    def draw(self, _context):
+        self.layout.separator()
+        self.layout.menu(cls.bl_idname)
+
+    return draw
 
 
-def _draw(layout, context, cls):
-    """An entry for an operator, or one for each choice: F3 looks into no submenus of choices."""
-    given = getattr(cls, "__annotations__", {})
-    choice = next((name for name in _CHOICES if name in given and "items" in given[name].keywords), None)
-    if choice is None:
-        layout.operator(cls.bl_idname)
-        return
-    items = given[choice].keywords["items"]
-    for identifier, name, *_ in items(None, context) if callable(items) else items:
-        entry = layout.operator(cls.bl_idname, text=f"{cls.bl_label}: {name}")
-        setattr(entry, choice, identifier)
+def _flat(entries):
+    def draw(self, _context):
+        _draw(self.layout, entries)
+
+    return draw
 
 
-def _in_view_menu(self, _context):
-    self.layout.separator()
-    self.layout.menu(REALMODEL_MT_all.bl_idname)
-
-
-CLASSES = (REALMODEL_MT_all,)
+CLASSES = (REALMODEL_MT_add, REALMODEL_MT_object, REALMODEL_MT_view)
+_IN_BLENDER = (  # its menu, what is drawn at the end of it
+    ("VIEW3D_MT_add", _submenu(REALMODEL_MT_add)),
+    ("VIEW3D_MT_object", _submenu(REALMODEL_MT_object)),
+    ("VIEW3D_MT_edit_mesh", _submenu(REALMODEL_MT_object)),
+    ("VIEW3D_MT_view", _submenu(REALMODEL_MT_view)),
+    ("TOPBAR_MT_file_import", _flat(_IMPORT)),
+    ("TOPBAR_MT_file_export", _flat(_EXPORT)),
+)
 
 
 def register():
-    bpy.types.VIEW3D_MT_view.append(_in_view_menu)
+    for menu, draw in _IN_BLENDER:
+        getattr(bpy.types, menu).append(draw)
 
 
 def unregister():
-    bpy.types.VIEW3D_MT_view.remove(_in_view_menu)
+    for menu, draw in _IN_BLENDER:
+        getattr(bpy.types, menu).remove(draw)

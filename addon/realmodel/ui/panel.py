@@ -20,6 +20,11 @@ class TabPanel:
         self.draw_in(layout, context, context.scene.realmodel)
 
 
+def ui_scale():
+    """Pixels by Blender's units of the interface, which has none before its first window is drawn."""
+    return bpy.context.preferences.system.ui_scale or 1.0
+
+
 class OfAModel:
     """A panel that has nothing to show before a model is begun."""
 
@@ -66,7 +71,7 @@ def letters():
     region = bpy.context.region
     if region is None:
         return 40
-    return max(16, int((region.width / bpy.context.preferences.system.ui_scale - 60) / 5.9))
+    return max(16, int((region.width / ui_scale() - 60) / 5.9))
 
 
 _UNIT = re.compile(r"(?<=\d) (?=(?:[mck]?m[²³]?|%|ft|mi|yd|in)(?!\w))")  # between a number and its unit

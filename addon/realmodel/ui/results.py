@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import units
+from ..bl import quality, units
 from .lists import result_columns
 from .panel import OfABuiltModel, TabPanel
 
@@ -23,10 +23,12 @@ class REALMODEL_PT_results(OfABuiltModel, TabPanel, bpy.types.Panel):
             for line in _block_lines(context.scene, group.results[group.active_result]):
                 column.label(text=line)
         layout.label(text=f"Total {units.total_volume_text(context.scene)}")
-        layout.operator("realmodel.copy_table", icon="COPYDOWN")
+        line = layout.row(align=True)
+        line.operator("realmodel.copy_table", text="Copy Table", icon="COPYDOWN")
+        line.operator("realmodel.report", text="Save Table...").format = "CSV"
         line = layout.row(align=True)
         line.operator("realmodel.export", text="Export...", icon="EXPORT")
-        line.operator("realmodel.report", text="Report...", icon="TEXT")
+        line.operator("realmodel.report", text="Report...", icon="TEXT").format = "JSON"
 
 
 def _block_lines(scene, row):
@@ -36,9 +38,14 @@ def _block_lines(scene, row):
         yield "Eroded: nothing of it is left"
         return
     yield f"{units.full_volume_text(scene, row)}  ({row.share:.2f} %)"
+    deviation = quality.volume_deviation(scene, row)
+    if deviation is not None:
+        yield f"± {units.volume_amount_text(scene, deviation)} at most (std. dev.)"
     if row.components:
         cells = f"{row.cells:,} cell" + ("s" if row.cells != 1 else "")
-        yield f"{row.components:,} part" + ("s" if row.components != 1 else "") + f", {cells}"
+        parts = row.components - row.slivers
+        small = f" + {row.slivers:,} sliver{'s' * (row.slivers > 1)}" if row.slivers else ""
+        yield f"{parts:,} part{'s' * (parts != 1)}{small}, {cells}"
 
 
 CLASSES = (REALMODEL_PT_results,)

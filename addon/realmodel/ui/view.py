@@ -132,7 +132,19 @@ class REALMODEL_PT_view_section(OfABuiltModel, TabPanel, bpy.types.Panel):
             if cuts.is_working(scene):
                 hint(layout, "cutting ...")
         layout.prop(view, "plane", text="Plane")
-        layout.operator("realmodel.section", icon="MOD_BOOLEAN")
+        if plane is not None:
+            _section_buttons(layout, "section", "PLANE", "Save Section...")
+        hint(layout, "Sections along a line: draw a curve, seen from above, and select it.")
+        _section_buttons(layout, "fence", "LINE", "Save Fence...")
+
+
+def _section_buttons(layout, operator, along, saving):
+    """What is made of a cut: an object in its place, one beside the model, a file."""
+    column = layout.column(align=True)
+    row = column.row(align=True)
+    row.operator(f"realmodel.{operator}", icon="MOD_BOOLEAN").flat = False
+    row.operator(f"realmodel.{operator}", text="Flat").flat = True
+    column.operator("realmodel.save_section", text=saving, icon="FILE_TICK").along = along
 
 
 class REALMODEL_PT_view_camera(TabPanel, bpy.types.Panel):

@@ -82,16 +82,16 @@ def has_shades(item):
 
 
 def shade_viewports(by, before):
-    """Viewports of solid shading show the colors of vertices while these are what is to be seen, and those
-    of materials again afterwards. before: the settings that were shown before."""
+    """The viewport in use shows the colors of vertices in solid shading while these are what is to be seen;
+    all show those of materials again afterwards. before: the settings that were shown before."""
     wanted, was = by in shades.TITLES, before.get("color_by") in shades.TITLES
     if wanted == was:
         return
     old, new = ("MATERIAL", "VERTEX") if wanted else ("VERTEX", "MATERIAL")
-    for area in viewports.areas():
-        shading = area.spaces.active.shading
-        if shading.color_type == old:
-            shading.color_type = new
+    spaces = viewports.spaces(bpy.context) if wanted else [a.spaces.active for a in viewports.areas()]
+    for space in spaces:
+        if space.shading.color_type == old:
+            space.shading.color_type = new
 
 
 def forget(scene):

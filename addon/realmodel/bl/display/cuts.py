@@ -229,4 +229,4 @@ def stop():
 
 
 _show = None
-_work = DebouncedJob(REST_SECONDS, _begin, _finish)
+_work = DebouncedJob(lambda: REST_SECONDS, _begin, _finish)

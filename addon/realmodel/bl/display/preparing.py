@@ -115,4 +115,4 @@ def stop():
 _SLICE = 0.05  # seconds in which Blender is given meshes, before the window is looked after again
 _slices = {}  # by the name of a scene: the meshes that are being made for it
 _show_all = None
-_work = DebouncedJob(0.0, _begin, _finish, hand_over=_hand_over)
+_work = DebouncedJob(lambda: 0.0, _begin, _finish, hand_over=_hand_over)

@@ -6,34 +6,58 @@ import numpy as np
 
 from ...core import InputRefused
 from ...core.polygon_mesh import PolygonMesh
-from .. import library_rows, meshes, project_settings, scene
+from ...core.section_drawing import flattened, is_vertical
+from .. import library_rows, meshes, project_settings, scene, shapes
 from ..origin import offsets_from
-from . import bodies, shown_models
+from . import bodies, explosion, shown_models
 
+FLAT = "realmodel_flat"  # on the object of a section that lies beside the model
 BLOCK_ATTRIBUTE = "realmodel_block"  # of each face: the number of its block, as in the results
 
 
-def add(current, location, normal):
-    """A mesh object with the section of a scene's model, at its stage, by a plane.
+_AWAY = 2e-3  # of the model's size: so far a section stands off the face of the cut that it lies in
+_BESIDE = 0.12  # of the model's size: between the model and sections that lie beside it
 
-    location, normal: three numbers each; location in the coordinates of the scene (to which the model origin
-    is added), the normal of any length. Every face has its block's number in the attribute
-    "realmodel_block" and its property's material. Raises UsageError for a plane that is none, InputRefused
-    for one that does not meet the model, BuildFailed.
-    """
-    origin = project_settings.model_origin(current)
-    model = shown_models.at_stage(current, current.realmodel.stage)
-    point = np.asarray(location, np.float64) + origin
-    found = model.section(point, normal)
+
+def by_plane(current, location, normal):
+    """The core's Section of a scene's model, at its stage. location, normal: three numbers each; location in
+    the coordinates of the scene (to which the model origin is added), the normal of any length. Raises
+    UsageError for a plane that is none, InputRefused for one that does not meet the model, BuildFailed."""
+    point = np.asarray(location, np.float64) + project_settings.model_origin(current)
+    return _colored(current, shown_models.at_stage(current, current.realmodel.stage).section(point, normal))
+
+
+def along(current, item, depsgraph):
+    """The core's Fence of a scene's model, at its stage, along the line of a curve or mesh object. Raises
+    InputRefused, BuildFailed."""
+    line = shapes.polyline(item, depsgraph) + project_settings.model_origin(current)[:2]
+    return _colored(current, shown_models.at_stage(current, current.realmodel.stage).fence(line))
+
+
+def _colored(current, found):
+    """A section in the colors that the library has now."""
     if not len(found):
         raise InputRefused(
-            "the plane does not meet the model", advice="move it to where there are blocks, or turn it"
+            "the section does not meet the model", advice="move it to where there are blocks, or turn it"
         )
+    for block, property_id in set(zip(found.block.tolist(), found.property.tolist(), strict=True)):
+        row = library_rows.find(current, property_id)
+        if row is not None and row.has_color:
+            found.block_colors[block] = tuple(row.color)
+    return found
+
+
+def add(current, found, name, flat=False):
+    """A mesh object of a Section or Fence.
+
+    Every face has its block's number in the attribute "realmodel_block" and its property's material. flat:
+    unrolled beside the model, distances to the right and heights upright, level planes as a map.
+    """
+    origin = project_settings.model_origin(current)
+    places = _beside(current, found, origin) if flat else offsets_from(origin, found.vertices)
     used, corners = np.unique(found.polygon_vertices, return_inverse=True)
-    shape = PolygonMesh(
-        offsets_from(origin, found.vertices[used]), found.offsets.astype(np.int32), corners.astype(np.int32)
-    )
-    mesh = meshes.new_mesh("Section", shape)
+    shape = PolygonMesh(places[used], found.offsets.astype(np.int32), corners.astype(np.int32))
+    mesh = meshes.new_mesh(name, shape)
     ids = np.unique(found.property)
     for property_id in ids.tolist():
         mesh.materials.append(library_rows.material_of(current, property_id))
@@ -42,9 +66,30 @@ def add(current, location, normal):
     attribute = mesh.attributes.new(BLOCK_ATTRIBUTE, "INT", "FACE")
     attribute.data.foreach_set("value", np.ascontiguousarray(found.block, np.int32))
     mesh.update()
-    item = bpy.data.objects.new("Section", mesh)
+    item = bpy.data.objects.new(name, mesh)
     item[scene.TAG] = "section"
-    item["realmodel_location"] = [float(value) for value in location]
-    item["realmodel_normal"] = [float(value) for value in normal]
+    if flat:
+        item[FLAT] = True
+    elif found.plane is not None:
+        normal = np.asarray(found.plane[1], np.float64)
+        item.location = _AWAY * _size(current) * normal / np.linalg.norm(normal)
     bodies.view_collection(current).objects.link(item)
     return item
+
+
+def _size(current):
+    low, high = explosion.bounds(current)
+    return float(np.linalg.norm(np.asarray(high) - low))
+
+
+def _beside(current, found, origin):
+    """(V, 3) float32: the section unrolled to the south of the model, a map to the east of it."""
+    low, high = (np.asarray(corner, np.float64) for corner in explosion.bounds(current))
+    flat, size = flattened(found), _size(current)
+    if not is_vertical(found) and np.ptp(found.vertices[:, 2]) == 0:
+        shift = (high[0] - low[0] + _BESIDE * size, 0.0)
+        return np.column_stack([flat - origin[:2] + shift, np.full(len(flat), low[2])]).astype(np.float32)
+    number = sum(FLAT in item for item in current.objects)
+    upright = flat[:, 1] - origin[2] if is_vertical(found) else low[2] + flat[:, 1]
+    south = np.full(len(flat), low[1] - (number + 1) * _BESIDE * size)
+    return np.column_stack([low[0] + flat[:, 0], south, upright]).astype(np.float32)

@@ -67,14 +67,14 @@ class Axes:
         size, drawing = self.size, self.drawing
         drawing.rectangle(x, y, width, height, stroke=BLACK, line=0.6, layer=layer)
         widest = 0.0
-        values = ticks(*self.y_range, max(3, int(height / (3.2 * size))))
+        values = ticks(*self.y_range, max(3, int(height / (2.6 * size))))
         for value, text in zip(values, tick_texts(values), strict=True):
             ((_, at),) = self.at([(self.x_range[0], value)]).tolist()
             drawing.line([(x - _TICK, at), (x, at)], width=0.6, layer=layer)
             drawing.text(x - _TICK - 2, at - 0.36 * size, text, size, anchor="end", layer=layer)
             widest = max(widest, text_width(text, size))
-        values = ticks(*self.x_range, max(3, int(width / (6.5 * size))))
-        for value, text in zip(values, tick_texts(values), strict=True):
+        values, texts = self._x_ticks()
+        for value, text in zip(values, texts, strict=True):
             ((at, _),) = self.at([(value, self.y_range[0])]).tolist()
             drawing.line([(at, y - _TICK), (at, y)], width=0.6, layer=layer)
             drawing.text(at, y - _TICK - 1.1 * size, text, size, anchor="middle", layer=layer)
@@ -83,6 +83,15 @@ class Axes:
         if y_label:
             left = x - _TICK - 2 - widest - 0.8 * size
             drawing.text(left, y + height / 2, y_label, size, anchor="middle", angle=90, layer=layer)
+
+    def _x_ticks(self) -> tuple[np.ndarray, list[str]]:
+        """As many as there is room for."""
+        for most in range(9, 1, -1):
+            values = ticks(*self.x_range, most)
+            texts = tick_texts(values)
+            if sum(text_width(text, self.size) + self.size for text in texts) < self.box[2]:
+                break
+        return values, texts
 
 
 def legend(

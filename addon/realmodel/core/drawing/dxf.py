@@ -8,6 +8,7 @@ this release has no hatching; layers are those of the drawing, their names as th
 from __future__ import annotations
 
 import re
+import unicodedata
 from typing import BinaryIO
 
 import numpy as np
@@ -16,6 +17,7 @@ from .drawing import ANCHORS, BLACK, Drawing, Line, Polygon, Text
 
 _LONGEST_NAME = 31
 _ZERO_LAYER = "0"
+_CODE_PAGE = "cp1252"
 # AutoCAD's colors with the numbers 10 to 249: hues in steps of 15 degrees, ten of each, from bright to dark.
 _HUES, _VALUES = 15.0 * np.arange(24), (1.0, 0.65, 0.5, 0.3, 0.15)
 
@@ -27,7 +29,9 @@ def write_dxf(drawing: Drawing, file: BinaryIO) -> None:
             layers[item.layer] = _layer_name(item.layer, layers.values())
     pairs = _Pairs(drawing)
     low, high = pairs.places([(0.0, 0.0), (drawing.width, drawing.height)])
-    pairs.add((0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"))
+    pairs.add(
+        (0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1009"), (9, "$DWGCODEPAGE"), (3, "ANSI_1252")
+    )
     pairs.add((9, "$EXTMIN"), *pairs.place(low), (9, "$EXTMAX"), *pairs.place(high), (0, "ENDSEC"))
     pairs.add((0, "SECTION"), (2, "TABLES"), (0, "TABLE"), (2, "LTYPE"), (70, 1), (0, "LTYPE"))
     pairs.add((2, "CONTINUOUS"), (70, 0), (3, "Solid line"), (72, 65), (73, 0), (40, 0.0), (0, "ENDTAB"))
@@ -38,7 +42,7 @@ def write_dxf(drawing: Drawing, file: BinaryIO) -> None:
     for item in drawing.items:
         pairs.item(item, layers[item.layer])
     pairs.add((0, "ENDSEC"), (0, "EOF"))
-    file.write("".join(pairs.lines).encode("ascii"))
+    file.write("".join(pairs.lines).encode(_CODE_PAGE))
 
 
 class _Pairs:
@@ -86,12 +90,16 @@ class _Pairs:
 
 
 def _escaped(text: str) -> str:
-    return "".join(letter if " " <= letter <= "~" else f"\\U+{ord(letter):04X}" for letter in text)
+    """With the codes that AutoCAD has for letters which the file's code page does not have."""
+    known = text.encode(_CODE_PAGE, "ignore").decode(_CODE_PAGE)
+    return "".join(letter if letter in known else f"\\U+{ord(letter):04X}" for letter in text)
 
 
 def _layer_name(layer: str, taken) -> str:
     """A name of capital letters, digits, $, - and _, unlike those that are taken."""
-    name = re.sub(r"[^A-Z0-9$_-]", "_", layer.upper())[:_LONGEST_NAME]
+    plain = unicodedata.normalize("NFKD", layer.upper())  # accents become signs of their own
+    plain = "".join(letter for letter in plain if not unicodedata.combining(letter))
+    name = re.sub(r"[^A-Z0-9$_-]", "_", plain)[:_LONGEST_NAME]
     number = 2
     while name in taken:
         name = f"{name[: _LONGEST_NAME - 4]}_{number}"

@@ -34,7 +34,7 @@ def write_pixels(pixels: np.ndarray, file: BinaryIO, dots_per_inch: float = 72.0
     file.write(b"\x89PNG\r\n\x1a\n")
     _chunk(file, b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2 if channels == 3 else 6, 0, 0, 0))
     _chunk(file, b"pHYs", struct.pack(">IIB", meter, meter, 1))
-    _chunk(file, b"IDAT", zlib.compress(rows.tobytes(), 9))
+    _chunk(file, b"IDAT", zlib.compress(rows.tobytes(), 6))
     _chunk(file, b"IEND", b"")
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from ..erosion import Erosion
 from ..surface_heights import used_vertices
 from ..validation import PLACES_OF_REPORT, ValidationReport
+from ..volume_uncertainty import volume_deviations
 from ..work import native_module
 
 SCHEMA = 1
@@ -52,7 +53,10 @@ def model_report(
         },
         "cell_kind": model.cell_kind,
         "volume": total,
-        "blocks": [_block(model, number, total) for number in range(len(model.blocks))],
+        "blocks": [
+            _block(model, number, total, deviation)
+            for number, deviation in enumerate(volume_deviations(model).tolist())
+        ],
         "surfaces": surface_entries(model),
         "warnings": warning_entries(model),
         "validation": validation.to_json(),
@@ -93,7 +97,7 @@ def _erosion(model, erosion: Erosion) -> dict:
     }
 
 
-def _block(model, number: int, total: float) -> dict:
+def _block(model, number: int, total: float, deviation: float) -> dict:
     block = model.blocks[number]
     entry = model.project.library.get(block.property) if model.project.library else None
     return {
@@ -103,6 +107,7 @@ def _block(model, number: int, total: float) -> dict:
         "property": block.property,
         "property_name": entry.name if entry else None,
         "volume": block.volume,
+        "volume_deviation_at_most": deviation if np.isfinite(deviation) else None,
         "share": block.volume / total if total else 0.0,
         "cells": block.cells,
         "components": block.components,

@@ -3,7 +3,8 @@
 
 .vtu: VTK unstructured grid ("VTK File Formats", XML) of polygon cells, for ParaView, PyVista and meshio.
 .obj: Wavefront OBJ, a group for each block and a material for each property, for any modeller.
-.csv: one row for each corner of each polygon. .npz: the arrays of Section.
+.csv: one row for each corner of each polygon. .npz: the arrays of Section. .svg, .dxf, .png: drawings with
+axes and a legend (section_drawing.py).
 """
 
 from __future__ import annotations
@@ -12,26 +13,39 @@ import csv
 import io
 import re
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
+from .. import drawing
 from ..errors import UsageError
+from ..section_drawing import draw_section
 from .npz import write_arrays
 from .vtk_xml import write_grid
 
 _POLYGON = 7
 
 
-def section_writer(path: str | Path) -> Callable[..., None]:
-    """The function (section, file) that writes files of this ending. Raises UsageError."""
+def section_writer(path: str | Path, exaggeration: float = 1.0) -> Callable[..., None]:
+    """The function (section, file) that writes files of this ending. exaggeration: of heights in drawings.
+    Raises UsageError."""
     ending = Path(path).suffix.lower()
     if ending not in SECTION_WRITERS:
         known = ", ".join(SECTION_WRITERS)
         what = f"sections are not written as '{ending}'" if ending else "the file name has no extension"
         raise UsageError(f"{path}: {what}; use one of {known}")
+    if ending in drawing.WRITERS:
+        return partial(write_section_drawing, write=drawing.WRITERS[ending], exaggeration=exaggeration)
     return SECTION_WRITERS[ending]
+
+
+def write_section_drawing(
+    section, file: BinaryIO, write=drawing.write_svg, exaggeration: float = 1.0
+) -> None:
+    """A drawing with axes and a legend."""
+    write(draw_section(section, exaggeration), file)
 
 
 def write_section_npz(section, file: BinaryIO) -> None:
@@ -99,4 +113,5 @@ SECTION_WRITERS: dict[str, Callable] = {
     ".obj": write_section_obj,
     ".csv": write_section_csv,
     ".npz": write_section_npz,
+    **dict.fromkeys(drawing.WRITERS, write_section_drawing),
 }

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How good the surfaces of the built model are, as far as somebody has asked: found in a thread, kept for
+this session of Blender, and shown as charts."""
+
+import bpy
+import bpy.utils.previews
+import numpy as np
+
+from ..core import Cancelled, InputRefused, RealModelError, plots
+from ..core.drawing.glyphs import text_width
+from ..core.drawing.raster import rasterize
+from ..core.surface_quality import surface_quality
+from ..core.volume_uncertainty import volume_deviations
+from ..core.work import Job
+from . import caches, settings, viewports
+from .display import shown_models
+from .threads import threads
+
+CHARTS = (
+    ("VARIOGRAM", "Variogram", "Semivariance over distance: of pairs of points, and the curve that is used"),
+    ("CROSS_VALIDATION", "Points", "Cross-validation: each point as the others estimate it"),
+    ("MESH", "Mesh", "Smallest angles of the triangles"),
+)
+_LOOK_SECONDS = 0.05
+_MOST = 64  # results and pictures that are kept
+_PAGE = 220.0  # points: of a chart in a wide sidebar
+_PIXELS = 1.2  # for a point, at least: the texts stay legible
+
+_found = caches.new()  # key -> SurfaceQuality
+# Stamp of a model -> {(rock mass, block): what its volume's standard deviation is at most}.
+_deviations = caches.new()
+_working = {}  # the job, its recipe, and its key, while there is one
+_pictures = None  # previews of charts, by their key
+
+
+def _key(current, rock, surface):
+    return current.realmodel.built_stamp, rock.name, surface.name
+
+
+def found(current):
+    """The SurfaceQuality of the active surface, or None."""
+    rock, surface = settings.active_rock(current), settings.active_surface(current)
+    return None if surface is None else _found.get(_key(current, rock, surface))
+
+
+def volume_deviation(current, row):
+    """What the standard deviation of the volume of a row of the results is at most, model units cubed; None
+    where it was not asked for, or is not known."""
+    known = _deviations.get(current.realmodel.built_stamp, {}).get((row.rock, row.name))
+    return known if known is not None and np.isfinite(known) else None
+
+
+def check(current):
+    """Finds the quality of the active surface, in this thread. Raises RealModelError."""
+    key, recipe, task = _asked(current)
+    _keep(key, recipe, Job(task).result())
+
+
+def start(current):
+    """Begins to find it in another thread. Raises InputRefused."""
+    stop()
+    key, recipe, task = _asked(current)
+    _working.update(key=key, recipe=recipe, job=Job(task))
+    bpy.app.timers.register(_look, first_interval=_LOOK_SECONDS)
+
+
+def state():
+    """(fraction done, what is being done) while something is under way, else None."""
+    return _working["job"].state() if _working else None
+
+
+def stop():
+    """Ends what is under way."""
+    if _working:
+        _working["job"].cancel()
+        _working.clear()
+    if bpy.app.timers.is_registered(_look):
+        bpy.app.timers.unregister(_look)
+
+
+def _asked(current):
+    rock, surface = settings.active_rock(current), settings.active_surface(current)
+    recipe = shown_models.Recipe(current, settings.last_stage(current))
+
+    def task(_work):
+        text_width("0", 1.0)  # reads the letters of charts, which the drawing of a panel should not
+        model = recipe.make()
+        names = [(r.name, s.name) for r in model.project.rocks for s in r.surfaces]
+        if wanted not in names:
+            raise InputRefused(f"surface '{wanted[1]}' is not in the built model", advice="press Build first")
+        found = surface_quality(model, names.index(wanted), threads())
+        blocks = [(model.project.rocks[block.rock].name, block.name) for block in model.blocks]
+        return found, dict(zip(blocks, volume_deviations(model).tolist(), strict=True))
+
+    wanted = rock.name, surface.name
+    return _key(current, rock, surface), recipe, task
+
+
+def _keep(key, recipe, made):
+    recipe.keep()
+    quality, deviations = made
+    _deviations.clear()  # of one model at a time
+    _deviations[key[0]] = deviations
+    _found.pop(key, None)
+    _found[key] = quality
+    while len(_found) > _MOST:
+        _found.pop(next(iter(_found)))
+    if _pictures is not None:
+        _pictures.clear()
+
+
+def _look():
+    """The timer: takes what was found."""
+    job = _working["job"]
+    viewports.redraw_sidebars()
+    if not job.done:
+        return _LOOK_SECONDS
+    key, recipe = _working["key"], _working["recipe"]
+    _working.clear()
+    try:
+        _keep(key, recipe, job.result())
+    except Cancelled:
+        pass
+    except RealModelError as error:
+        bpy.context.window_manager.realmodel.problem = str(error)
+    return None
+
+
+def drawing(quality, chart, unit, page=None, words=True):
+    """The Drawing of a chart, or None where the surface has none. page, words: as in core.plots."""
+    options = {} if page is None else {"page": page}
+    if chart == "VARIOGRAM" and quality.variogram is not None:
+        return plots.variogram(quality.variogram, unit, words=words, **options)
+    if chart == "CROSS_VALIDATION" and quality.cross_validation is not None:
+        return plots.cross_validation(quality.cross_validation, unit, words=words, **options)
+    if chart == "MESH":
+        return plots.mesh_quality(quality.angles, words=words, **options)
+    return None
+
+
+def lines(quality, chart, unit):
+    """A chart in words."""
+    if chart == "VARIOGRAM":
+        none = ["This surface has no variogram."]
+        return plots.variogram_lines(quality.variogram, unit) if quality.variogram is not None else none
+    if chart == "CROSS_VALIDATION":
+        if quality.cross_validation is None:
+            return [f"No cross-validation: {quality.missing}."]
+        return plots.cross_validation_lines(quality.cross_validation, unit)
+    return plots.mesh_quality_lines(quality.angles)
+
+
+def icon(current, chart, pixels):
+    """The icon of a chart of the active surface as a picture so many pixels wide and high, or None."""
+    global _pictures
+    quality = found(current)
+    key = f"{_key(current, settings.active_rock(current), settings.active_surface(current))} {chart} {pixels}"
+    if _pictures is None:
+        _pictures = bpy.utils.previews.new()
+    if key not in _pictures:
+        page = min(_PAGE, pixels / _PIXELS)
+        drawn = drawing(quality, chart, current.realmodel.units, (page, page), words=False)
+        if drawn is None:
+            return None
+        if len(_pictures) >= _MOST:
+            _pictures.clear()
+        picture = _pictures.new(key)
+        shown = rasterize(drawn, pixels / page)
+        picture.image_size = shown.shape[1], shown.shape[0]
+        picture.image_pixels_float.foreach_set(np.ascontiguousarray(shown[::-1]).ravel())
+    return _pictures[key].icon_id
+
+
+def forget():
+    """Drops everything: the add-on is disabled, or another file was opened."""
+    global _pictures
+    stop()
+    _found.clear()
+    _deviations.clear()
+    if _pictures is not None:
+        bpy.utils.previews.remove(_pictures)
+        _pictures = None

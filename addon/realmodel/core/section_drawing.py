@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sections and fences as drawings: blocks in their colors at a round scale, with axes, a legend in order of
+age, and the coordinates of both ends."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .drawing.charts import Axes, legend, legend_size, tick_texts
+from .drawing.drawing import BLACK, Drawing
+from .drawing.glyphs import text_width
+from .errors import UsageError
+from .units import METRES
+
+if TYPE_CHECKING:
+    from .section import Section
+
+MOST_EXAGGERATION = 1000.0
+_POINT = 0.0254 / 72  # meters
+_PLOT = (560.0, 360.0)  # the most that the section takes of the page, in points
+_LEFT, _BELOW, _ABOVE, _GAP = 62.0, 44.0, 58.0, 16.0  # around it
+_SIZE = 8.0
+_SKY = 0.05  # of the height, left free above vertical sections
+_SAME = 1e9  # of the extent of a section: places nearer than one part are the same
+_UPRIGHT = 1e-6  # z of a unit normal below which a plane is vertical
+
+
+def draw_section(section: Section, exaggeration: float = 1.0, title: str | None = None) -> Drawing:
+    """The section on a page, in its own coordinates at a scale of 1, 2, 2.5, or 5 times a power of ten.
+
+    exaggeration: of heights, where the section is vertical. The drawing's layers are named after the blocks.
+    Raises UsageError for a section that is empty or not plane, or an exaggeration that is not above 0.
+    """
+    if not 0 < exaggeration <= MOST_EXAGGERATION:
+        raise UsageError(
+            f"exaggeration must be above 0 and at most {MOST_EXAGGERATION:g}, not {exaggeration!r}"
+        )
+    if not len(section):
+        raise UsageError("there is nothing to draw: the section does not meet the model")
+    flat = flattened(section)
+    exaggeration = exaggeration if is_vertical(section) else 1.0
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    if _is_fence(section):
+        low[0], high[0] = 0.0, section.length
+    if is_vertical(section):
+        high[1] += _SKY * (high[1] - low[1])
+    extent = np.maximum(high - low, 1e-9 * max(np.abs(flat).max(), 1.0))
+    ratio, scale = _scale(extent * (1.0, exaggeration), section.unit)
+    width, height = extent * (1.0, exaggeration) * scale
+    present = [int(block) for block in np.unique(section.block)[::-1]]
+    entries = [(section.block_names[block], tuple(section.block_colors[block])) for block in present]
+    legend_width, legend_height = legend_size(entries, _SIZE)
+    subtitle = _subtitle(section, ratio, exaggeration)
+    title = title or section.name
+    page = max(
+        _LEFT + width + _GAP + legend_width, *(20 + text_width(text, _SIZE + 3) for text in (title, subtitle))
+    )
+    plot_height = max(height, legend_height)
+    drawing = Drawing(float(page) + 12, float(_BELOW + plot_height + _ABOVE))
+    base = _BELOW + plot_height - height
+    drawing.scale, drawing.origin = (
+        float(scale),
+        (_LEFT - scale * low[0], base - scale * exaggeration * low[1]),
+    )
+    axes = Axes(drawing, (_LEFT, base, width, height), (low[0], high[0]), (low[1], high[1]), _SIZE)
+    for block in present:
+        rings = [axes.at(ring) for ring in block_outlines(section, flat, block)]
+        color, name = tuple(section.block_colors[block]), section.block_names[block]
+        drawing.polygon(rings, color, BLACK, 0.35, layer=name)
+    axes.frame(*_axis_names(section), layer="Axes")
+    _ends(drawing, axes, section, flat)
+    legend(drawing, _LEFT + width + _GAP, base + height, entries, _SIZE, layer="Legend")
+    top = drawing.height - 20
+    drawing.text(_LEFT, top, title, _SIZE + 3, layer="Text")
+    drawing.text(_LEFT, top - 1.6 * _SIZE, subtitle, _SIZE, layer="Text")
+    return drawing
+
+
+def is_vertical(section: Section) -> bool:
+    """Whether heights are upright in the picture: of fences and vertical planes."""
+    return _is_fence(section) or abs(_unit_normal(section)[2]) < _UPRIGHT
+
+
+def flattened(section: Section) -> np.ndarray:
+    """(V, 2) float64: the vertices in the plane of the picture.
+
+    Of a fence and a vertical plane the distance from its left end and the elevation, of a level plane x and
+    y, of others distances along strike and up dip. Planes are seen from where their normal points.
+    """
+    if _is_fence(section):
+        return section.unrolled()
+    right, up = _directions(section)
+    if right is None:
+        return section.vertices[:, :2]
+    if is_vertical(section):
+        along = section.vertices @ right
+        return np.column_stack([along - along.min(), section.vertices[:, 2]])
+    flat = (section.vertices - section.plane[0]) @ np.column_stack([right, up])
+    return flat - flat.min(axis=0)
+
+
+def block_outlines(section: Section, flat: np.ndarray, block: int) -> list[np.ndarray]:
+    """The rings (N, 2) around all polygons of a block, joined where they share an edge; holes turn the other
+    way.
+
+    flat: (V, 2), where the vertices are drawn.
+    """
+    chosen = np.flatnonzero(section.block == block)
+    counts = np.diff(section.offsets)[chosen]
+    begins = np.cumsum(counts) - counts
+    corner = np.arange(counts.sum()) + np.repeat(section.offsets[chosen] - begins, counts)
+    following = corner + 1
+    following[begins + counts - 1] = section.offsets[chosen]
+    extent = float(np.ptp(flat, axis=0).max()) or 1.0
+    places = np.rint(
+        (flat - flat.min(axis=0)) * (_SAME / extent)
+    )  # the panels of a fence share bends, not vertices
+    _, number = np.unique(places, axis=0, return_inverse=True)
+    at = number.reshape(-1)[section.polygon_vertices]
+    some = np.empty(at.max() + 1, np.int64)
+    some[at] = section.polygon_vertices
+    edges = {(a, b) for a, b in zip(at[corner].tolist(), at[following].tolist(), strict=True) if a != b}
+    onward: dict[int, list[int]] = {}
+    for a, b in edges:
+        if (b, a) not in edges:
+            onward.setdefault(a, []).append(b)
+    rings = []
+    for first in sorted(onward):
+        while onward[first]:
+            ring, at = [], first
+            while onward.get(at):
+                ring.append(at)
+                at = onward[at].pop()
+            rings.append(flat[some[ring]])
+    return rings
+
+
+def _is_fence(section: Section) -> bool:
+    return hasattr(section, "panel")
+
+
+def _unit_normal(section: Section) -> np.ndarray:
+    if section.plane is None:
+        raise UsageError("only sections by a plane and fences are drawn")
+    normal = np.asarray(section.plane[1], np.float64)
+    return normal / np.linalg.norm(normal)
+
+
+def _directions(section: Section) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Unit vectors to the right and up in the picture; None for a level plane, which is drawn as a map."""
+    normal = _unit_normal(section)
+    right = np.array([-normal[1], normal[0], 0.0])
+    length = np.linalg.norm(right)
+    if length < _UPRIGHT:
+        return None, None
+    right /= length
+    return right, np.cross(normal, right)
+
+
+def _scale(extent: np.ndarray, unit: str) -> tuple[float, float]:
+    """The ratio N of a scale 1 : N at which the extent fits the page, and points for a unit."""
+    least = float((extent * float(METRES[unit]) / (np.array(_PLOT) * _POINT)).max())
+    power = 10.0 ** np.floor(np.log10(least))
+    ratio = next(f * power for f in (1.0, 2.0, 2.5, 5.0, 10.0) if f * power >= least * (1 - 1e-9))
+    return ratio, float(METRES[unit]) / ratio / _POINT
+
+
+def _subtitle(section: Section, ratio: float, exaggeration: float) -> str:
+    denominator = f"{ratio:,.0f}" if ratio >= 10 else f"{ratio:g}"
+    text = f"Scale 1 : {denominator}"
+    if is_vertical(section):
+        return f"{text}, vertical exaggeration {exaggeration:g}"
+    normal = _unit_normal(section)
+    if abs(normal[2]) > 1 - _UPRIGHT:
+        return f"{text}, map at elevation {tick_texts(section.vertices[:1, 2])[0]} {section.unit}"
+    dip = np.degrees(np.arccos(abs(normal[2])))
+    azimuth = np.degrees(np.arctan2(*(normal[:2] * np.sign(normal[2])))) % 360
+    return f"{text}, plane that dips {dip:.1f}° to azimuth {azimuth:.0f}°"
+
+
+def _axis_names(section: Section) -> tuple[str, str]:
+    if is_vertical(section):
+        names = ("Distance", "Elevation")
+    elif _directions(section)[0] is None:
+        names = ("East (x)", "North (y)")
+    else:
+        names = ("Distance along strike", "Distance up dip")
+    return tuple(f"{name} ({section.unit})" for name in names)
+
+
+def _ends(drawing: Drawing, axes: Axes, section: Section, flat: np.ndarray) -> None:
+    """Letters and coordinates above the ends of a vertical section, and a line at each bend."""
+    if not is_vertical(section):
+        return
+    x, y, width, height = axes.box
+    if _is_fence(section):
+        ends = section.polyline[[0, -1]]
+        for at in section.bends[1:-1]:
+            ((place, _),) = axes.at([(at, axes.y_range[0])]).tolist()
+            drawing.line([(place, y), (place, y + height)], BLACK, 0.4, 3.0, layer="Axes")
+    else:
+        ends = section.vertices[[np.argmin(flat[:, 0]), np.argmax(flat[:, 0])], :2]
+    texts = [f"x {east:,.1f}  y {north:,.1f}" for east, north in ends.tolist()]
+    fits = width > sum(text_width(text, _SIZE - 1) for text in texts) + 40
+    for letter, text, at, anchor in zip("AB", texts, (x, x + width), ("start", "end"), strict=True):
+        drawing.text(at, y + height + 5, letter, _SIZE + 1, anchor=anchor, layer="Text")
+        away = (12 if anchor == "start" else -12) if fits else 0
+        lift = 5.5 if fits else 5.5 + (_SIZE + 3) * (1 if anchor == "start" else 2)
+        drawing.text(at + away, y + height + lift, text, _SIZE - 1, anchor=anchor, layer="Text")

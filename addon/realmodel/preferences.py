@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Edit > Preferences > Add-ons > RealModel: what holds for all files of a user.
+
+Where the add-on runs without being enabled, as in a script that registers it, the defaults hold.
+"""
+
+from types import SimpleNamespace
+
+import bpy
+from bpy.props import EnumProperty, FloatProperty, IntProperty
+
+CELLS = (
+    ("COLUMNS", "Simulation", "Many small cells, one below each facet of a surface"),
+    ("BLOCKS", "Pictures", "One cell for each connected part of a block: faster, and less memory"),
+)
+DISPLAYS = (
+    ("POINTS", "Points", "Vertices of the interfaces and blocks"),
+    ("LINES", "Lines", "Edges of the interfaces and blocks"),
+    ("AREAS", "Faces", "Faces of the blocks, separate and flat, with their edges"),
+    ("SURFACES", "Surfaces", "The interfaces that the model is built from"),
+    ("POLYHEDRA", "Cells", "The polyhedral cells of the blocks"),
+    ("BLOCKS", "Blocks", "The blocks as solids"),
+)
+_GIGABYTE = 1 << 30
+
+
+class RealModelPreferences(bpy.types.AddonPreferences):
+    """Called as the package is, which an extension's folder gives its name."""
+
+    bl_idname = __package__
+
+    threads: IntProperty(
+        name="Threads",
+        description="Threads of a build. 0: all processors, but one while you keep working in the window",
+        min=0,
+        max=1024,
+    )
+    memory_limit: FloatProperty(
+        name="Memory Limit",
+        description="Gigabytes that a build may use; one that needs more is refused before it begins. "
+        "0: the memory that is free",
+        min=0.0,
+        soft_max=256.0,
+        precision=1,
+    )
+    live_pause: FloatProperty(
+        name="Live Pause",
+        description="Time without a change after which Live builds again",
+        subtype="TIME_ABSOLUTE",
+        unit="TIME_ABSOLUTE",
+        min=0.0,
+        max=60.0,
+        soft_max=5.0,
+        default=0.03,
+        precision=2,
+    )
+    display: EnumProperty(
+        name="Show", description="How a new model is displayed", items=DISPLAYS, default="BLOCKS"
+    )
+    cells: EnumProperty(
+        name="For",
+        description="Purpose of a new model, which decides how its blocks are divided into cells",
+        items=CELLS,
+        default="COLUMNS",
+    )
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.use_property_split = True
+        for heading, names in (
+            ("Build", ("threads", "memory_limit", "live_pause")),
+            ("New Models", ("display", "cells")),
+        ):
+            column = layout.column(heading=heading)
+            for name in names:
+                column.prop(self, name)
+
+
+def current():
+    """The preferences, or their defaults where the add-on is not enabled."""
+    addon = bpy.context.preferences.addons.get(__package__)
+    if addon is not None and addon.preferences is not None:
+        return addon.preferences
+    own = RealModelPreferences.__annotations__
+    return SimpleNamespace(**{name: made.keywords.get("default", 0) for name, made in own.items()})
+
+
+def build_memory():
+    """Bytes that a build may use; None: what is free."""
+    return round(current().memory_limit * _GIGABYTE) or None
+
+
+def register():
+    bpy.utils.register_class(RealModelPreferences)
+
+
+def unregister():
+    bpy.utils.unregister_class(RealModelPreferences)

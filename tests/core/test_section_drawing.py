@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sections and fences as drawings: where things are on the page, and the files of the command line."""
+
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+import pytest
+from conftest import grid_surface
+from realmodel.core import Library, Project, Property, Rock, Surface, UsageError, build
+from realmodel.core.drawing.drawing import Polygon, Text
+from realmodel.core.section_drawing import block_outlines, draw_section, flattened
+from test_batch import names, out, refused, run  # noqa: F401 - out is a fixture
+
+ORIGIN = np.array([431000.0, 5398000.0, 0.0])
+
+
+def at(x, y, z=0.0):
+    return ORIGIN + np.array([x, y, z])
+
+
+@pytest.fixture(scope="module")
+def model():
+    """Two layers on 100 x 100 feet, tops sloping to the east: 10 + x / 10 and 30."""
+    surfaces = []
+    for name, height, entry in (("base", 0.0, 0), ("clay", None, 1), ("sand", 30.0, 2)):
+        vertices, triangles = grid_surface(
+            4, lambda x, y, h=height: 10 + x / 10 if h is None else h + 0 * x, 100.0
+        )
+        surfaces.append(Surface(name, vertices + ORIGIN, triangles, property=entry, block=name))
+    library = Library([Property(1, "Clay", color="#0000ff"), Property(2, "Sand", color="#ffff00")])
+    return build(Project("Slope", [Rock("rock", surfaces)], library=library, units="ft"))
+
+
+def areas(drawing):
+    """{layer: area of its filled polygons in units of the section}, heights as drawn."""
+    found = {}
+    for item in drawing.items:
+        if isinstance(item, Polygon) and item.layer not in ("Axes", "Legend"):
+            for ring in item.rings:
+                x, y = ring.T / drawing.scale
+                area = ((x - x[0]) * (np.roll(y, -1) - y[0]) - (np.roll(x, -1) - x[0]) * (y - y[0])).sum() / 2
+                found[item.layer] = found.get(item.layer, 0.0) + area
+    return found
+
+
+def texts(drawing):
+    return [item.text for item in drawing.items if isinstance(item, Text)]
+
+
+def test_a_section_seen_from_the_south(model):
+    section = model.section(at(0, 50, 0), (0, -2, 0))
+    drawing = draw_section(section, exaggeration=3.0)
+    assert areas(drawing) == pytest.approx({"clay": 3 * 1500, "sand": 3 * 1500})
+    flat = flattened(section)
+    assert flat.min(axis=0).tolist() == [0, 0] and flat.max(axis=0) == pytest.approx([100, 30])
+    east = flat[:, 0] == flat[:, 0].max()
+    assert section.vertices[east, 0] == pytest.approx(ORIGIN[0] + 100)  # to the right
+    # a round scale, in feet: 100 ft on at most 560 points
+    assert "Scale 1 : 250, vertical exaggeration 3" in texts(drawing)
+    assert drawing.scale == pytest.approx(0.3048 / 250 / (0.0254 / 72))
+    assert texts(drawing).index("sand") < texts(drawing).index("clay")  # the youngest on top
+    assert {"A", "B", "x 431,000.0  y 5,398,050.0", "x 431,100.0  y 5,398,050.0", "Elevation (ft)"} <= set(
+        texts(drawing)
+    )
+    fills = {item.layer: item.fill for item in drawing.items if isinstance(item, Polygon)}
+    assert (fills["clay"], fills["sand"]) == ((0, 0, 1), (1, 1, 0))
+
+
+def test_level_and_dipping_planes_are_not_exaggerated(model):
+    level = draw_section(model.section(at(0, 0, 15), (0, 0, 1)), exaggeration=5.0)
+    assert areas(level) == pytest.approx({"clay": 5000, "sand": 5000})
+    assert "Scale 1 : 250, map at elevation 15 ft" in texts(level)
+    assert {"East (x) (ft)", "North (y) (ft)"} <= set(texts(level))
+    slope = model.section(at(50, 50, 15), (0, -1, 1))
+    dipping = draw_section(slope, exaggeration=5.0)
+    assert sum(areas(dipping).values()) == pytest.approx(slope.area)
+    assert any("plane that dips 45.0° to azimuth 180°" in text for text in texts(dipping))
+
+
+def test_a_fence_is_one_picture_without_seams_at_its_bends(model):
+    fence = model.fence([at(10, 10)[:2], at(90, 10)[:2], at(90, 70)[:2]])
+    drawing = draw_section(fence)
+    assert areas(drawing) == pytest.approx({"clay": 80 * 15 + 60 * 19, "sand": 80 * 15 + 60 * 11})
+    flat = flattened(fence)
+    for block in np.unique(fence.block):
+        (ring,) = block_outlines(fence, flat, block)
+        inside = (ring[:, 1] > 0.1) & (ring[:, 1] < 9)
+        assert not (inside & (np.abs(ring[:, 0] - 80) < 1e-6)).any()
+    assert flat[:, 0].max() == pytest.approx(fence.length) == 140
+
+
+def test_what_cannot_be_drawn_is_refused(model):
+    section = model.section(at(0, 50, 0), (0, 1, 0))
+    with pytest.raises(UsageError, match="exaggeration must be above 0"):
+        draw_section(section, 0.0)
+    with pytest.raises(UsageError, match="does not meet the model"):
+        draw_section(model.section(at(0, 500, 0), (0, 1, 0)))
+    vertices, triangles = grid_surface(2, lambda x, y: 12 + 0 * x, 200.0)
+    cut = model.cut_by_surface(vertices + at(-50, -50), triangles)
+    with pytest.raises(UsageError, match="sections by a plane and fences"):
+        draw_section(cut.section)
+
+
+def test_drawings_of_the_command_line(layers, out):  # noqa: F811
+    ezdxf = pytest.importorskip("ezdxf", reason="ezdxf is not installed")
+    project = layers([0, 1, 3])
+    done = run(
+        project,
+        *("--section", f"0.5,0.5,0,1,0,0={out / 's.svg'}", "--section", f"0,0,2,0,0,1={out / 'map.png'}"),
+        *("--fence", f"0.1,0.5,0.9,0.5={out / 'f.dxf'}", "--exaggeration", "2"),
+    )
+    assert done.returncode == 0, done.stderr
+    assert names(out) == ["f.dxf", "map.png", "s.svg"]
+    assert (out / "map.png").read_bytes().startswith(b"\x89PNG")
+    root = ElementTree.parse(out / "s.svg").getroot()
+    assert "layers" in {text.text for text in root.iter("{http://www.w3.org/2000/svg}text")}
+    document = ezdxf.readfile(out / "f.dxf")
+    layer = next(name for name in (entry.dxf.name for entry in document.layers) if name.startswith("S"))
+    corners = [
+        tuple(vertex.dxf.location)[:2]
+        for line in document.modelspace().query(f'POLYLINE[layer=="{layer}"]')
+        for vertex in line.vertices
+    ]
+    x, y = np.array(corners).T
+    assert (x.min(), x.max()) == pytest.approx((0.0, 0.8), abs=1e-9)
+    assert y.max() == pytest.approx(2 * round(y.max() / 2)) and y.max() > 0  # heights times two
+    wrong = run(project, "--exaggeration", "2")
+    assert "goes with --section or --fence" in wrong.stderr and wrong.returncode == 2
+    assert "not a number above 0" in run(project, "--exaggeration", "0").stderr
+    assert "use one of .vtu, .obj, .csv, .npz, .svg, .dxf, .png" in refused(
+        run(project, "--section", "0,0,0,1,0,0=a.x"), 2
+    )
