@@ -75,12 +75,6 @@ def key(scene):
     return ColorKey(titles[by], list(entries.items())) if entries else None
 
 
-def has_shades(item):
-    """Whether an object's colors are those of its vertices."""
-    material = item.material_slots[0].material if len(item.material_slots) else None
-    return material is not None and shades.ATTRIBUTE in material
-
-
 def shade_viewports(by, before):
     """The viewport in use shows the colors of vertices in solid shading while these are what is to be seen;
     all show those of materials again afterwards. before: the settings that were shown before."""
