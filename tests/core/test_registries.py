@@ -62,5 +62,5 @@ def test_the_content_says_the_format_of_a_mesh(tmp_path):
 def test_a_mesh_of_no_known_format_is_refused(tmp_path):
     file = tmp_path / "mesh.dat"
     file.write_text("xyz\n")
-    with pytest.raises(InputRefused, match="beginning nor its ending is that of a mesh"):
+    with pytest.raises(InputRefused, match="nor its extension is that of a mesh"):
         read_mesh(file)

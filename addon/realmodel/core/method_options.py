@@ -24,6 +24,11 @@ def _is_whole(value) -> bool:
     return hasattr(value, "__index__") and not isinstance(value, (bool, np.bool_))
 
 
+def is_name(value) -> bool:
+    """Whether a value may name something."""
+    return isinstance(value, str) and bool(value.strip()) and not any(ord(c) < 32 for c in value)
+
+
 def checked(option: str, setting: Setting, value):
     """The value of a setting as it is used. Raises OptionRefused."""
     if setting.check is not None:
@@ -37,12 +42,15 @@ def checked(option: str, setting: Setting, value):
     if setting.parts:
         return table(option, setting.parts, value)
     if setting.kind == "whole":
-        least = int(setting.low)
+        bound = "" if setting.low is None else f" from {setting.low:g}"
+        least = -(2**31) if setting.low is None else int(setting.low)
         if not _is_whole(value) or not least <= int(value) < 2**31:
-            raise OptionRefused(
-                f"'{option}' must be a whole number from {least}, not {value!r}", option=option
-            )
+            raise OptionRefused(f"'{option}' must be a whole number{bound}, not {value!r}", option=option)
         return int(value)
+    if setting.kind == "text":
+        if not is_name(value):
+            raise OptionRefused(f"'{option}' must be a name, not {value!r}", option=option)
+        return value
     return number(option, setting, value)
 
 

@@ -12,16 +12,15 @@ import numpy as np
 
 from .boreholes import Boreholes
 from .errors import InputRefused
-from .finite import is_number
 from .library import Library
 from .map_layer import MapLayer
-from .mesh_sizes import AUTO, edge_length_fault, local_lengths, triangles_fault
-from .meshers import DEFAULT_MESHER, MESHERS
+from .mesh_sizes import AUTO, local_lengths
+from .meshers import DEFAULT_MESHER
+from .method_options import OptionRefused, checked, is_name
 from .methods import (
     DEFAULT_METHOD,
     METHODS,
     SURFACE_OPTIONS,
-    OptionRefused,
     check_method,
     checked_options,
 )
@@ -29,7 +28,8 @@ from .plan_input import check_layer, files_of_sizes, is_place_elsewhere, layer_f
 from .point_file import MeshFile, PointFile, ReadingRefused
 from .readers.point_input import companions
 from .region_rings import is_several
-from .rules import DEFAULT_RULE, RULES
+from .rules import DEFAULT_RULE
+from .schema import ROCK, SURFACE
 from .toml_table import TomlDocument
 from .units import METRES, MODEL_UNIT
 
@@ -245,7 +245,7 @@ def is_file(path: Path) -> bool:
 
 def check_project(project: Project) -> None:
     """Refuses a project that cannot be built, before anything is read. Raises InputRefused."""
-    if not _is_name(project.name):
+    if not is_name(project.name):
         raise InputRefused("a project needs a name", file=project.path)
     if project.units not in METRES:
         what = f"unknown unit {project.units!r}"
@@ -254,17 +254,13 @@ def check_project(project: Project) -> None:
         raise InputRefused("there is no rock mass", file=project.path, item=f"project '{project.name}'")
     seen: set[str] = set()
     for rock in project.rocks:
-        if not _is_name(rock.name):
+        if not is_name(rock.name):
             raise _refuse(rock.source, "a rock mass", "it has no name", "name")
         if rock.name in seen:
             advice = "give each rock mass a unique name"
             raise _refuse(rock.source, rock_item(rock), "another rock mass has this name", "name", advice)
         seen.add(rock.name)
         _check_rock(project, rock)
-
-
-def _is_name(name) -> bool:
-    return isinstance(name, str) and bool(name.strip()) and not any(ord(c) < 32 for c in name)
 
 
 def _refuse(
@@ -274,15 +270,23 @@ def _refuse(
     return InputRefused(what, file=file, line=source.line(key) if source else None, item=item, advice=advice)
 
 
+def _check_values(entry, settings, keys, refuse) -> None:
+    """Refuses what the declarations of settings do not allow."""
+    for key in keys:
+        try:
+            checked(key, settings[key], getattr(entry, key))
+        except OptionRefused as error:
+            raise refuse(error.what, key, error.advice) from error
+
+
 def _check_rock(project: Project, rock: Rock) -> None:
     def refuse(what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
         return _refuse(rock.source, rock_item(rock), what, key, advice)
 
     if not rock.surfaces:
         raise refuse("it has no surface", advice="a block needs two surfaces, or one and a base_elevation")
+    _check_values(rock, ROCK, ("edge_length", "triangles", "mesher", "base_elevation"), refuse)
     _check_mesh(rock, refuse)
-    if rock.base_elevation is not None and not is_number(rock.base_elevation):
-        raise refuse(f"base_elevation must be a finite number, not {rock.base_elevation!r}", "base_elevation")
     if rock.region is None and len(rock.holes):
         raise refuse("it has holes but no region", "holes", "add the outline as region")
     if isinstance(rock.region, (str, Path, MapLayer)) and len(rock.holes):
@@ -327,12 +331,6 @@ def _check_boreholes(rock: Rock, refuse) -> None:
 
 def _check_mesh(rock: Rock, refuse) -> None:
     """Refuses what a planar mesh cannot be made by."""
-    if rock.mesher not in MESHERS:
-        raise refuse(f"unknown mesher {rock.mesher!r}", "mesher", f"use one of {', '.join(MESHERS)}")
-    if rock.edge_length is not None and (fault := edge_length_fault(rock.edge_length)):
-        raise refuse(fault, "edge_length")
-    if rock.triangles is not None and (fault := triangles_fault(rock.triangles)):
-        raise refuse(fault, "triangles")
     if rock.triangles is not None and rock.edge_length not in (None, AUTO):
         raise refuse("edge_length and triangles cannot both be given", "triangles", "give one of them")
     try:
@@ -352,7 +350,7 @@ def _at_a_place(entry, refuse):
 
 
 def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
-    if not _is_name(surface.name):
+    if not is_name(surface.name):
         raise _refuse(surface.source, rock_item(rock), "a surface has no name", "name")
     item = surface_item(rock, surface)
 
@@ -360,10 +358,7 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
         return _refuse(surface.source, item, what, key, advice)
 
     _check_shape(rock, surface, refuse)
-    if surface.rule not in RULES:
-        raise refuse(f"unknown rule {surface.rule!r}", "rule", f"use one of {', '.join(RULES)}")
-    if surface.block is not None and not _is_name(surface.block):
-        raise refuse("'block' must be a name", "block")
+    _check_values(surface, SURFACE, ("minimum_thickness", "rule", "property", "block"), refuse)
     _check_property(project.library, surface, refuse)
 
 
@@ -439,9 +434,6 @@ def _check_references(rock: Rock) -> None:
                 raise _refuse(surface.source, item, what, option, f"it has {', '.join(numbers)}")
             needed.append((option, numbers[name]))
         if surface.minimum_thickness is not None:
-            if not (is_number(surface.minimum_thickness) and surface.minimum_thickness >= 0):
-                what = f"minimum_thickness must be a number from 0, not {surface.minimum_thickness!r}"
-                raise _refuse(surface.source, item, what, "minimum_thickness")
             if number == 0:
                 what = "the oldest surface cannot have a minimum_thickness, as there is no surface beneath it"
                 raise _refuse(surface.source, item, what, "minimum_thickness")
@@ -466,12 +458,6 @@ def _check_references(rock: Rock) -> None:
 
 def _check_property(library: Library | None, surface: Surface, refuse) -> None:
     number = surface.property
-    if (
-        isinstance(number, bool)
-        or not isinstance(number, (int, np.integer))
-        or not -(2**31) <= number < 2**31
-    ):
-        raise refuse(f"'property' must be a whole number, not {number!r}", "property")
     if number and library is not None and number not in library:
         known = ", ".join(str(entry.id) for entry in library.properties)
         raise refuse(f"the library has no property {number}", "property", f"it has {known}")

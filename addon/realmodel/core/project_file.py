@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,13 +12,13 @@ from .boreholes import Boreholes
 from .finite import is_number
 from .library import load_library
 from .map_layer import MapLayer, is_wkt
-from .meshers import DEFAULT_MESHER
+from .method_options import OptionRefused, checked
 from .methods import OPTIONS
 from .plan_input import is_place_elsewhere
 from .point_file import MeshFile, PointFile
 from .project import Project, Rock, Source, Surface, check_project, is_file
-from .rules import DEFAULT_RULE
 from .schema import PROJECT, READING, ROCK, SURFACE
+from .setting import Settings
 from .toml_table import Table, TomlDocument
 from .units import METRES, MODEL_UNIT
 
@@ -63,21 +64,24 @@ def _read_rock(table: Table, folder: Path) -> Rock:
         surfaces=[_read_surface(entry, folder) for entry in table.tables("surface", "surface")],
         region=region,
         holes=holes,
-        edge_length=table.text("edge_length")
-        if _is_text(table, "edge_length")
-        else table.number("edge_length"),
-        triangles=table.integer("triangles"),
         size=_read_size(table, folder),
-        mesher=table.text("mesher") or DEFAULT_MESHER,
-        base_elevation=table.number("base_elevation"),
         constraints=_read_constraints(table, folder),
         boreholes=_read_boreholes(table, folder),
         source=Source(table.document, table.path),
+        **_values(table, ROCK, ("edge_length", "triangles", "mesher", "base_elevation")),
     )
 
 
-def _is_text(table: Table, key: str) -> bool:
-    return isinstance(table.content.get(key), str)
+def _values(table: Table, settings: Settings, keys: Sequence[str]) -> dict:
+    """The values of keys that are there, as the declarations of settings allow."""
+    found = {}
+    for key in keys:
+        if key in table:
+            try:
+                found[key] = checked(key, settings[key], table.content[key])
+            except OptionRefused as error:
+                raise table.refuse(error.what, key, error.advice) from error
+    return found
 
 
 def _read_size(table: Table, folder: Path) -> list:
@@ -209,16 +213,12 @@ def _read_surface(table: Table, folder: Path) -> Surface:
         raise table.refuse(f"'{key}' needs a file of points", key)
     if reading:
         files["points"] = PointFile(files["points"], **reading)
-    property_id = table.integer("property")
     options = {key: table.content[key] for key in OPTIONS if key in table}
     return Surface(
         name=name,
         method=table.text("method"),
         options=options,
-        rule=table.text("rule") or DEFAULT_RULE,
-        property=0 if property_id is None else property_id,
-        block=table.text("block"),
-        minimum_thickness=table.number("minimum_thickness"),
         source=Source(table.document, table.path),
+        **_values(table, SURFACE, ("rule", "property", "block", "minimum_thickness")),
         **files,
     )

@@ -2,7 +2,9 @@
 """The settings of a project, a rock mass, a surface and the reading of files (setting.py says what follows).
 Those of kind "other" are read, checked and shown by code of their own; so are parts of some more."""
 
+from .mesh_sizes import edge_length_fault, triangles_fault
 from .meshers import DEFAULT_MESHER, MESHERS
+from .method_options import OptionRefused
 from .methods import DEFAULT_METHOD, METHODS, OPTIONS
 from .rules import DEFAULT_RULE, RULES
 from .setting import Setting
@@ -13,6 +15,17 @@ _OTHER = Setting(kind="other")  # with its row in the document alone
 
 def _labels(registry):
     return {name: (entry.label, entry.tip) for name, entry in registry.items()}
+
+
+def _without(fault):
+    """The check of a value that `fault` finds nothing wrong with."""
+
+    def check(key, value):
+        if value is not None and (what := fault(value)):
+            raise OptionRefused(what, option=key)
+        return value
+
+    return check
 
 
 _UNITS = {"": ("Model Unit", "The unit of the model")} | {unit: (unit, UNIT_NAMES[unit]) for unit in METRES}
@@ -29,6 +42,7 @@ ROCK = {
         tip="Edge length of the triangles on which surfaces are interpolated. Half the length gives four "
         "times as many triangles",
         low=0.0,
+        check=_without(edge_length_fault),
         zero_is_none=True,
         needed="if a surface has `points`, unless `triangles` is given",
         more='`"auto"`: half the spacing of the points of the surfaces, where they lie',
@@ -39,6 +53,7 @@ ROCK = {
         tip="Number of triangles of the planar mesh, within 5 %",
         start=10_000,
         low=1,
+        check=_without(triangles_fault),
         more='Instead of `edge_length`; with `edge_length = "auto"` it scales the point spacing',
         switch=("Scale to Triangles", "Scale the point spacing so that the mesh has a number of triangles"),
     ),

@@ -24,7 +24,7 @@ class REALMODEL_PT_build(OfAModel, TabPanel, bpy.types.Panel):
             row.use_property_split = False
             row.scale_y = 1.4
             row.operator("realmodel.build", icon="MOD_BUILD")
-            row.prop(group, "live", text="Live", toggle=True, icon="RECOVER_LAST")
+            row.prop(group, "live", toggle=True, icon="RECOVER_LAST")
             _draw_missing(layout, group)
         else:
             hint(layout, "Add surfaces first; then the blocks between them are built here.")
