@@ -12,6 +12,17 @@ def _panels():
     return sorted(found, key=lambda cls: hasattr(cls, "bl_parent_id"))
 
 
+def _wanted():
+    """Names of the panels that are to be drawn now: none without its parent."""
+    found = set()
+    for cls in _panels():
+        if getattr(cls, "bl_parent_id", None) in (None, *found) and (
+            not hasattr(cls, "poll") or cls.poll(bpy.context)
+        ):
+            found.add(cls.__name__)
+    return found
+
+
 def _unfold():
     """No panel is folded when it is drawn for the first time."""
     panels = _panels()
@@ -52,7 +63,7 @@ def every_panel_unfolded(walk):
         yield walk.redrawn(2)
         walk.shot(f"panels_{state}")
         assert not errors, errors
-        shown = {cls.__name__ for cls in _panels() if not hasattr(cls, "poll") or cls.poll(bpy.context)}
+        shown = _wanted()
         assert drawn == shown, (state, drawn ^ shown)
     TabPanel.draw = draw
 

@@ -19,6 +19,10 @@ def _a_result(context):
     )
 
 
+def _checking(_context):
+    return None if quality.state() is not None else "no surface is being checked"
+
+
 class REALMODEL_OT_check_quality(Reporting, bpy.types.Operator):
     """Find out how well the active surface fits its points: estimate each point from the others, and measure
     the triangles"""
@@ -44,6 +48,7 @@ class REALMODEL_OT_stop_check(Reporting, bpy.types.Operator):
     bl_idname = "realmodel.stop_check"
     bl_label = "Cancel"
     bl_options = {"REGISTER", "INTERNAL"}
+    needs = (_checking,)
 
     def act(self, _context):
         quality.stop()

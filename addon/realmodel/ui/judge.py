@@ -58,7 +58,7 @@ class REALMODEL_PT_quality(TabPanel, bpy.types.Panel):
 
 def _draw_picture(layout, context, chart):
     """The chart as wide as the sidebar: Blender leaves a margin of 4 pixels around a picture."""
-    unit = 20.0 * context.preferences.system.ui_scale
+    unit = 20.0 * (context.preferences.system.ui_scale or 1.0)  # 0 without a window
     width = context.region.width if context.region is not None else 300.0
     size = max(6.0, width / unit - 3.0)
     icon = quality.icon(context.scene, chart, int(size * unit) - 8)
