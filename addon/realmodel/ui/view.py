@@ -147,7 +147,7 @@ def _section_buttons(layout, operator, along, saving):
     column.operator("realmodel.save_section", text=saving, icon="FILE_TICK").along = along
 
 
-class REALMODEL_PT_view_camera(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view_camera(OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_label = "Viewpoint"
     bl_idname = "REALMODEL_PT_view_camera"
     bl_parent_id = "REALMODEL_PT_view"
