@@ -255,7 +255,7 @@ def _run(options: argparse.Namespace) -> None:
             )
             validation = _validation(options, model, progress)
             erosion = _erosion(options, model, progress)
-            _write(options, model, outputs, progress, validation, erosion)
+            _write(options, project, model, outputs, progress, validation, erosion)
             told = [request.run(model, outputs, options.threads, progress) for request in requests]
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, signal.SIG_IGN)  # in a moment all is there: too late to stop
@@ -386,7 +386,7 @@ def _refuse_overwriting(files: list[Path], targets: list[Path]) -> None:
             raise UsageError(f"{target}: this is a file that the project reads; choose another name")
 
 
-def _write(options: argparse.Namespace, model, outputs, progress, validation, erosion) -> None:
+def _write(options: argparse.Namespace, project, model, outputs, progress, validation, erosion) -> None:
     from realmodel.core.exporters import write_model
     from realmodel.core.exporters.report import write_report
 
@@ -394,19 +394,21 @@ def _write(options: argparse.Namespace, model, outputs, progress, validation, er
         with outputs.file(path) as file:
             write_model(model, path, file, lambda share, path=path: progress(1.0, f"writing {path.name}"))
     if options.blend is not None or options.render is not None:
-        _write_with_blender(options, model, outputs, progress)
+        _write_with_blender(options, project, model, outputs, progress)
     if options.report is not None:
         with outputs.file(options.report) as file:
             write_report(model, options.report, file, options.stage, validation, erosion)
 
 
-def _write_with_blender(options: argparse.Namespace, model, outputs, progress) -> None:
+def _write_with_blender(options: argparse.Namespace, project, model, outputs, progress) -> None:
     import realmodel
     from realmodel.bl import batch
+    from realmodel.core.rock_input import with_arrays
 
     realmodel.register_for_batch()
     progress(1.0, "making the scene")
-    batch.write_scene(model)
+    # of a stage the project is another one, as the model has it
+    batch.write_scene(model, with_arrays(project) if options.stage is None else None)
     if options.blend is not None:
         with outputs.path(options.blend) as path, _named(path, options.blend):
             progress(1.0, f"writing {options.blend.name}")

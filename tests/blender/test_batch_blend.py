@@ -10,12 +10,13 @@ from unittest import mock
 
 import bpy
 import realmodel
-from blender_state import empty_file
+from blender_state import coordinates, empty_file
 from made_projects import interpolated, one_rock, two_rocks
 from panel_case import SAMPLES, PanelCase, ops
 from realmodel.bl import batch
 from realmodel.bl.display import shown_models
 from realmodel.core import build, load_project
+from test_build_model import build_model
 
 ARRAYS = (
     *("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block"),
@@ -48,6 +49,21 @@ class BatchBlend(PanelCase):
             with self.subTest(model.project.name):
                 self.opened(model)
                 self.assert_same_model(model, shown_models.whole(bpy.context.scene))
+
+    def test_files_are_named_and_read_again_where_they_have_changed(self):
+        copy = Path(shutil.copytree(SAMPLES / "two_layers", self.folder / "sample"))
+        done = build_model(copy / "project.toml", "--blend", self.folder / "m.blend")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        bpy.ops.wm.open_mainfile(filepath=str(self.folder / "m.blend"))
+        ground = self.model.rocks[0].surfaces[1]
+        self.assertEqual(Path(ground.filepath), copy / "ground.csv")
+        before = self.volumes()
+        ops.build()
+        self.assertEqual(self.volumes(), before)
+        ground.method = "constant"
+        (copy / "ground.csv").write_text("x,y,z\n50,30,900\n")
+        ops.build()
+        self.assertEqual(set(coordinates(ground.interface.data)[:, 2]), {900.0})
 
     def test_results_are_exact(self):
         model = build(two_rocks())

@@ -219,6 +219,16 @@ class Rebuild(PanelCase):
         np.testing.assert_allclose(bpy.data.materials["Grès"].diffuse_color, (0, 1, 0, 1), atol=1e-6)
         self.assertNotIn("Sandstone", bpy.data.materials)
 
+    def test_a_material_takes_the_name_of_one_that_goes(self):
+        built_scene.write_model(self.scene, build(one_rock()))
+        one = main_rock()
+        for surface in one.surfaces:
+            surface.property = 1
+        library = Library([Property(1, "Sandstone", color="#102030")])
+        built_scene.write_model(self.scene, build(Project("Hill", [one], library)))
+        self.assertEqual([m.name for m in bpy.data.materials], ["Sandstone"])
+        self.assertEqual(bpy.data.materials[0]["realmodel_property"], 1)
+
     def test_in_an_opened_file_other_objects_stay(self):
         with tempfile.TemporaryDirectory() as folder:
             path = str(Path(folder) / "mine.blend")

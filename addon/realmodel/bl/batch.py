@@ -12,15 +12,16 @@ from ..core import OutputFailed
 from . import built_scene, picture, viewports
 
 
-def write_scene(model):
+def write_scene(model, project=None):
     """Put a model into the current scene, in place of an earlier one there.
 
-    model: realmodel.core.Model. The add-on must be registered. Where no .blend file was opened, what
-    Blender's startup file brings along (its cube, light and camera) is taken out first; in an opened file
-    other objects are left alone. The 3D viewports are turned to show the model.
+    model: realmodel.core.Model. project: as for `built_scene.write_model`. The add-on must be registered.
+    Where no .blend file was opened, what Blender's startup file brings along (its cube, light and camera)
+    is taken out first; in an opened file other objects are left alone. The 3D viewports are turned to
+    show the model.
     """
     current = bpy.context.scene
-    built_scene.write_model(current, model)
+    built_scene.write_model(current, model, project)
     if not bpy.data.filepath:
         _remove_startup_objects(current, current.realmodel.collection)
     viewports.frame(current, viewports.all_spaces())

@@ -34,6 +34,7 @@ from . import (
     shapes,
     surface_figures,
     uncertainty,
+    viewports,
 )
 from .display import visible
 from .origin import KEY as ORIGIN_KEY
@@ -159,12 +160,16 @@ def _mode_name(item):
     return item.bl_rna.properties["mode"].enum_items[item.mode].name.lower()
 
 
-def write_model(current, model):
+def write_model(current, model, project=None):
     """Puts a model that was built elsewhere into a scene with its settings, in place of the model there. What
-    is the user's stays; materials of earlier properties are used again."""
+    is the user's stays; materials of earlier properties are used again.
+
+    project: what the model was built from, if its files are to be named in the settings beside what was read
+    of them.
+    """
     _remove_model(current)
-    project_settings.fill(current, model.project)
-    composed = project_settings.Composed(model.project, np.zeros(3), origin_is_free=True)
+    project_settings.fill(current, project or model.project)
+    composed = project_settings.compose(current, viewports.updated_layer(current).depsgraph)
     put(current, prepare(model, composed, threads=model.threads), composed)
 
 
@@ -194,6 +199,7 @@ def put(current, prepared, composed, in_place=False):
         tree = _tree(current, model.project)
         _place_interfaces(current, tree, interfaces)
         _place_blocks(current, prepared, tree, blocks, palette)
+        scene.remove_unused_materials(besides=palette.values())  # their names are free then
         for name, colour, material in updates:
             scene.give_name(bpy.data.materials, material, name)
             materials.set_colour(material, colour)

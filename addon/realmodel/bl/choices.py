@@ -4,9 +4,9 @@ Blender asks when such a field is edited, never while a panel is drawn."""
 
 from ..core import RealModelError
 from ..core.readers import contents
-from . import project_settings, reading_text, settings, stored_arrays
+from . import caches, project_settings, reading_text, settings, stored_arrays
 
-_found = {}  # by the stamp of a file and what was asked: the names found lately
+_found = caches.new()  # by the stamp of a file and what was asked: the names found lately
 _MOST = 64
 
 

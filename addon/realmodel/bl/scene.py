@@ -65,10 +65,11 @@ def remove_objects(objects):
                 bpy.data.meshes.remove(mesh)
 
 
-def remove_unused_materials():
-    """Remove the materials of properties that nothing uses any more."""
+def remove_unused_materials(besides=()):
+    """Remove the materials of properties that nothing uses any more, but for some."""
+    kept = set(besides)
     for material in list(bpy.data.materials):
-        if materials.KEY in material and not material.users and material.library is None:
+        if materials.KEY in material and not (material.users or material.library or material in kept):
             bpy.data.materials.remove(material)
 
 

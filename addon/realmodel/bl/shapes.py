@@ -232,13 +232,3 @@ def _closed_chains(edges, count, where, plan):
         left.difference_update(chain)
         found.append(chain)
     return found
-
-
-def enclosed_volume(mesh):
-    """The volume inside a closed mesh, by the divergence theorem, in the object's own coordinates."""
-    triangles = mesh_triangles(mesh)
-    if not len(triangles):
-        return 0.0
-    at = meshes.mesh_coordinates(mesh).astype(np.float64)
-    a, b, c = (at - at.mean(axis=0))[triangles].transpose(1, 0, 2)
-    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0)

@@ -16,21 +16,13 @@ as many digits as it takes, arrays are float64 and int32 in model units. Rock r'
 `r/s/vertices` (V, 3) with `r/s/triangles` (T, 3).
 """
 
-import base64
-import io
 import json
-import zipfile
-import zlib
-
-import numpy as np
 
 from ..core import InputRefused, Library, Project, Property, Rock, Surface
 from ..core.units import MODEL_UNIT
+from . import stored_arrays
 
 KEY = "realmodel_project"
-
-# What reading a damaged archive may raise (binascii.Error and UnicodeDecodeError are ValueErrors)
-_BROKEN = (KeyError, TypeError, ValueError, AttributeError, OSError, EOFError, zipfile.BadZipFile, zlib.error)
 
 _ROCK_KEYS = ("name", "edge_length", "triangles", "mesher", "size", "base_elevation")
 _SURFACE_KEYS = ("name", "method", "options", "rule", "property", "block", "minimum_thickness")
@@ -39,22 +31,21 @@ _SURFACE_KEYS = ("name", "method", "options", "rule", "property", "block", "mini
 def unpack(text):
     """The realmodel.core.Project, with arrays, that a text holds. Raises InputRefused for other texts."""
     try:
-        file = io.BytesIO(base64.b64decode(text, validate=True))
-        with np.load(file, allow_pickle=False) as archive:
-            settings = json.loads(archive["settings"].tobytes())
-            rocks = [_rock(archive, r, entry) for r, entry in enumerate(settings["rocks"])]
-            library = settings["library"]
-            if library is not None:
-                library = Library([Property(**entry) for entry in library])
-            return Project(settings["name"], rocks, library, units=settings.get("units", MODEL_UNIT))
-    except _BROKEN as error:
+        archive = stored_arrays.unpack(text)
+        settings = json.loads(archive["settings"].tobytes())
+        rocks = [_rock(archive, r, entry) for r, entry in enumerate(settings["rocks"])]
+        library = settings["library"]
+        if library is not None:
+            library = Library([Property(**entry) for entry in library])
+        return Project(settings["name"], rocks, library, units=settings.get("units", MODEL_UNIT))
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
         advice = "open an older copy of the file, or build from the project file again"
         raise InputRefused(f"the stored project cannot be read: {error}", advice=advice) from error
 
 
 def _rock(archive, r, entry):
     holes = [archive[f"{r}/hole/{h}"] for h in range(entry["holes"])]
-    region = archive[f"{r}/region"] if f"{r}/region" in archive else None
+    region = archive.get(f"{r}/region")
     constraints = [archive[f"{r}/constraint/{c}"] for c in range(entry.get("constraints", 0))]
     if entry.get("several"):
         region, holes = [region, *holes], []

@@ -10,8 +10,6 @@ import numpy as np
 
 from . import mesh_memory
 
-OLDEST = (3, 4, 0)
-
 
 def fill_mesh(mesh, shape):
     """Give an empty mesh its vertices and polygons.
@@ -110,16 +108,6 @@ def polygon_starts(mesh):
     found = np.empty(len(mesh.polygons), np.int32)
     mesh.polygons.foreach_get("loop_start", found)
     return found
-
-
-def layer_collections(view_layer):
-    """The topmost bpy.types.LayerCollection of a view layer.
-
-    In 5.2 a scene that was never on screen has none before its first update.
-    """
-    if view_layer.layer_collection is None:
-        view_layer.update()
-    return view_layer.layer_collection
 
 
 def make_matt(principled):

@@ -114,9 +114,6 @@ class CutRequest:
         return f"cut {text}: volume {cut.below.volume:.2f} {low}, {cut.above.volume:.2f} {high}"
 
 
-Request = SectionRequest | CutRequest
-
-
 def section_request(text: str, exaggeration: float = 1.0) -> SectionRequest:
     """X,Y,Z,NX,NY,NZ=FILE. Raises UsageError."""
     what, file = _divided("--section", text, "X,Y,Z,NX,NY,NZ=FILE")

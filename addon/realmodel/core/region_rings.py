@@ -24,12 +24,6 @@ class NamedRing:
     hole: bool
 
 
-def checked_ring(ring, item: str) -> np.ndarray:
-    """One ring as (N, 2) float64, neither closed by repeating its first corner nor with repeated corners
-    in a row. Raises InputRefused where it bounds nothing."""
-    return _without_repetition(numbered_ring(ring, item))
-
-
 def numbered_ring(ring, item: str) -> np.ndarray:
     """One ring as (N, 2) float64, its corners all there, so that they keep their numbers. Raises InputRefused
     where it bounds nothing."""

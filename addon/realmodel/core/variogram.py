@@ -28,7 +28,6 @@ VARIOGRAMS = {  # label and tooltip in the panel
     "matern32": ("Matern 3/2", "Between exponential and Gaussian, rougher than Matern 5/2"),
     "matern52": ("Matern 5/2", "Between exponential and Gaussian, smoother than Matern 3/2"),
 }
-VARIOGRAM_MODELS = tuple(_SHAPES)
 NO_ANISOTROPY = {"ratio": 1.0, "azimuth": 0.0}
 
 # A fit means nothing where neighbouring points differ as much as any, or the range is beyond what they show.

@@ -8,12 +8,12 @@ import pickle
 import numpy as np
 
 from ...core.drawing.overlay import Eye, Shown, draw_overlay, legend_extent
-from .. import exaggeration, project_settings
+from .. import caches, exaggeration, project_settings
 from ..display import colours, explosion, residuals
 
 WIDTH = 900.0  # points across the longer side of a picture
 _MOST_KEPT = 8
-_drawings = {}  # by what they are made of: a viewport is drawn again and again
+_drawings = caches.new()  # by what they are made of: a viewport is drawn again and again
 
 
 def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0), stretched=None):

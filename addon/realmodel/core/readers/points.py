@@ -109,9 +109,6 @@ class Table:
     def column(self, name: str | int) -> int:
         return column_number(self.file, self.layout, name)
 
-    def line_of(self, byte: int) -> int:
-        return self.layout.body_line + self.raw.count(b"\n", self.layout.body, byte)
-
 
 def open_table(
     file: Path,
