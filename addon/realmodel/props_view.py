@@ -69,6 +69,12 @@ class RealModelView(bpy.types.PropertyGroup):
     surviving_of: StringProperty(
         options={"HIDDEN"}
     )  # JSON of what the bodies of kind "surviving" are made of
+    show_boreholes: BoolProperty(
+        name="Boreholes",
+        description="Show the boreholes as tubes, in the color of the layer below each pick",
+        options=set(),
+        update=changes.boreholes,
+    )
     show_residuals: BoolProperty(
         name="Residuals",
         description="Show the points of the surfaces, colored by point minus surface",

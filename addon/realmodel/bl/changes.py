@@ -137,6 +137,11 @@ def overlay(_row, _context):
     viewports.redraw()
 
 
+def boreholes(row, _context):
+    if not settings.is_filling():
+        display.boreholes_changed(row.id_data)
+
+
 def residuals(row, _context):
     if not settings.is_filling():
         display.residuals_changed(row.id_data)

@@ -16,6 +16,7 @@ from ..core.rock_input import read_rocks
 from ..core.schema import READING, ROCK, SURFACE
 from ..core.work import run
 from . import (
+    borehole_picks,
     built_models,
     library_rows,
     method_settings,
@@ -313,6 +314,7 @@ def add_rock(group, rock):
         for surface in rock.surfaces:
             fill_surface(row.surfaces.add(), surface)
         row.active_surface = max(len(rock.surfaces) - 1, 0)
+        borehole_picks.keep(row, rock.hole_picks)
     return row
 
 

@@ -10,9 +10,9 @@ from ..core import InputRefused
 # Beside the add-on where it was installed, above it where it runs from its repository.
 _PLACES = (Path(__file__).resolve().parents[1], Path(__file__).resolve().parents[3])
 _LABELS = {
-    "two_layers": ("Two layers", "The smallest project: two surfaces from points, one erosion"),
+    "two_layers": ("Two Layers", "The smallest project: two surfaces from points, one erosion"),
     "haut_barr": ("Haut-Barr", "A castle hill of eleven surfaces, cut by erosion into separate bodies"),
-    "gravel_plain": ("Gravel plain", "A valley filled with gravel, from boreholes"),
+    "gravel_plain": ("Gravel Plain", "A valley filled with gravel, from boreholes"),
 }
 _items = []  # Blender does not keep the texts of dynamic enums itself
 

@@ -131,7 +131,8 @@ class Rock:
 
     `region` is an outline (N, 2), a list of several, well-known text, or a file (GeoJSON, WKT, shapefile,
     GeoPackage) or a MapLayer of one; `holes` lie inside an outline of coordinates; the rings count even-odd.
-    `boreholes` give points to every surface that is not a ready mesh, beside its own.
+    `boreholes` give points to every surface that is not a ready mesh, beside its own; `hole_picks` is what
+    each of them met once they are read (Picks.holes): for display, no input.
     `edge_length` (model units) is that of the planar mesh on which points are interpolated, or
     "auto": half as long as the points of the surfaces are apart; `triangles` is how many there should be
     instead. `mesher` and `size` (where edges are shorter) are as mesh_region takes them.
@@ -152,6 +153,7 @@ class Rock:
     base_elevation: float | None = None
     constraints: Sequence = ()
     boreholes: Boreholes | None = None
+    hole_picks: Mapping = field(default_factory=dict, repr=False, compare=False)
     shape_file: Path | None = field(default=None, repr=False, compare=False)
     source: Source | None = field(default=None, repr=False, compare=False)
 

@@ -114,7 +114,7 @@ def read_rocks(work: Work, project: Project) -> list[RockInput]:
                 f"boreholes have picks of {number_list(picks.points)}, which no surface from points is named"
             )
             warnings.append(BuildWarning(what, "points", rock.name))
-        rock = replace(rock, surfaces=surfaces, boreholes=None)
+        rock = replace(rock, surfaces=surfaces, boreholes=None, hole_picks=picks.holes)
         require_points_near(rock, project.units)
         inputs.append(RockInput(rock, shapes, None, [None] * len(shapes), faces, warnings))
     return inputs
@@ -140,7 +140,7 @@ def with_arrays(project: Project) -> Project:
                 if met is not None:
                     surface = _read_surface(rock, surface, met, project.units, no_step)[0]
                 surfaces.append(surface)
-            rocks.append(replace(rock, surfaces=surfaces, boreholes=None))
+            rocks.append(replace(rock, surfaces=surfaces, boreholes=None, hole_picks=picks.holes))
         return rocks
 
     return replace(project, rocks=run(task))

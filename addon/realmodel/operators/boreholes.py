@@ -5,7 +5,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import borehole_points, project_settings, reading_text, settings
+from ..bl import borehole_picks, borehole_points, project_settings, reading_text, settings
 from ..core import InputRefused
 from ..core.boreholes import COLUMNS, Boreholes
 from ..core.point_file import ReadingRefused
@@ -83,6 +83,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
         found = read_boreholes(given, context.scene.realmodel.units)
         rock = settings.active_rock(context.scene) or add_rock(context.scene)
         told = borehole_points.give(context.scene, rock, found.points, self.add_surfaces)
+        borehole_picks.keep(rock, found.holes)
         arrived(context, rock, list(found.points.values()))
         for text in [*found.warnings, *told]:
             self.report({"WARNING"}, text)

@@ -34,7 +34,7 @@ class REALMODEL_PT_build(OfAModel, TabPanel, bpy.types.Panel):
             _draw_warnings(layout.box(), group, activity)
 
 
-class REALMODEL_PT_build_options(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_build_options(OfAModel, TabPanel, bpy.types.Panel):
     bl_label = "Options"
     bl_idname = "REALMODEL_PT_build_options"
     bl_parent_id = "REALMODEL_PT_build"

@@ -24,6 +24,8 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
         if group.display == "SURFACES":
             column.prop(group.view, "surfaces", text="Part")
         column.prop(group, "color_by")
+        if group.color_by == "UNCERTAINTY" and group.view.shade_limits[1] == 0.0:
+            hint(layout, "No surface has a standard deviation. Kriging computes one.")
         _stage(layout, context.scene)
         if preparing.is_working(context.scene):
             hint(layout, "being made ...")
@@ -31,20 +33,26 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
         column.prop(group, "explode", slider=True)
         if group.explode > 0.0:
             column.prop(group, "explode_direction", text="Direction")
-        column.prop(group.view, "exaggeration")
+        row = layout.row()
+        row.use_property_split = False
+        row.prop(group.view, "exaggeration")
         if context.mode == "EDIT_MESH":
             layout.operator("realmodel.edit_done", icon="CHECKMARK")
         elif group.display == "SURFACES":
             layout.operator("realmodel.edit_surface", icon="EDITMODE_HLT")
+        if any(rock.hole_picks for rock in group.rocks):
+            layout.prop(group.view, "show_boreholes")
         layout.prop(group.view, "show_residuals")
         for _, name, count, _, spread, largest, outside in residuals.rows(context.scene):
             column = layout.column(align=True)
             column.label(text=f"{name}: {count} points")
             values = [units.length_text(context.scene, value) for value in (spread, largest)]
-            column.label(text=f"RMS {values[0]}, largest {values[1]}")
+            column.label(text=f"RMS {values[0]}")
+            column.label(text=f"Largest {values[1]}")
             if outside:
                 column.label(text=f"{outside} outside of the surface")
         grid = layout.grid_flow(row_major=True, columns=2, align=True)
+        grid.use_property_split = False
         for name in ("show_legend", "show_north", "show_scale", "show_axes"):
             grid.prop(group.view, name, toggle=True)
         if group.view.message:
@@ -139,7 +147,7 @@ def _section_buttons(layout, operator, along, saving):
     column.operator("realmodel.save_section", text=saving, icon="FILE_TICK").along = along
 
 
-class REALMODEL_PT_view_camera(TabPanel, bpy.types.Panel):
+class REALMODEL_PT_view_camera(OfABuiltModel, TabPanel, bpy.types.Panel):
     bl_label = "Viewpoint"
     bl_idname = "REALMODEL_PT_view_camera"
     bl_parent_id = "REALMODEL_PT_view"

@@ -28,6 +28,7 @@ from .. import exaggeration, settings
 from ..scene import TAG
 from . import (
     bodies,
+    boreholes,
     colours,
     coordinates,
     cuts,
@@ -124,6 +125,15 @@ def residuals_changed(scene):
     exaggeration_changed(scene)
 
 
+def boreholes_changed(scene):
+    """The boreholes are wanted, or not; or there is another model."""
+    if scene.realmodel.view.show_boreholes and len(scene.realmodel.results):
+        boreholes.show(scene)
+    else:
+        bodies.remove_kind(scene, bodies.BOREHOLES)
+    exaggeration_changed(scene)
+
+
 def colours_changed(scene):
     """Another rule of colouring, or another colour in the library."""
     _show(scene, color_by=scene.realmodel.color_by)
@@ -160,6 +170,8 @@ def built(scene, bounds, stage=None):
     group.view.cells_of = group.view.surviving_of = ""
     if group.view.show_residuals:
         residuals_changed(scene)
+    if group.view.show_boreholes:
+        boreholes_changed(scene)
     whole = group.stage >= settings.last_stage(scene)
     _show(scene, whole, **{key: getattr(group, key) for key in _ANIMATED})
 
@@ -176,6 +188,7 @@ def cleared(scene):
         bodies.remove(scene, kind)
     scene.realmodel.view.surviving_of = ""
     residuals.hide(scene)
+    bodies.remove_kind(scene, bodies.BOREHOLES)
     cuts.take_off(scene)
     colours.forget(scene)
     modes.without_blocks(scene)

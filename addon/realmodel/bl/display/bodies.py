@@ -12,7 +12,7 @@ from . import replacing
 
 KIND = "realmodel_view"  # on an object: what it is for
 CUT, CELLS, MARKS, PLANE, SECTION = "cut", "cells", "marks", "plane", "section"
-SURVIVING, RESIDUALS = "surviving", "residuals"
+SURVIVING, RESIDUALS, BOREHOLES = "surviving", "residuals", "boreholes"
 
 
 def of_kind(current, kind):
@@ -82,6 +82,13 @@ def remove(current, kind, items=None):
     for item in _listed(current, kind) if items is None else items:
         replacing.remove(item)
     remove_collection_if_empty(current)
+
+
+def remove_kind(current, kind):
+    """Removes what is of a kind and stands for no block."""
+    collection = current.realmodel.view.collection
+    if collection is not None:
+        remove(current, kind, [item for item in collection.objects if item.get(KIND) == kind])
 
 
 def remove_collection_if_empty(current):

@@ -41,7 +41,7 @@ def apply(scene):
         if common is not None:
             material = common
         elif by == "PROPERTY" or row is None:
-            material = _of_property(scene, surface.property_id)
+            material = of_property(scene, surface.property_id)
         else:
             material = plain_material(*_entry(scene, by, row, places))
         if not len(item.data.materials):
@@ -73,12 +73,6 @@ def key(scene):
             entries.setdefault(name, tuple(int(colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5)))
     titles = {"PROPERTY": "Property", "ROCK": "Rock Mass", "BLOCK": "Block", "AGE": "Age"}
     return ColorKey(titles[by], list(entries.items())) if entries else None
-
-
-def has_shades(item):
-    """Whether an object's colors are those of its vertices."""
-    material = item.material_slots[0].material if len(item.material_slots) else None
-    return material is not None and shades.ATTRIBUTE in material
 
 
 def shade_viewports(by, before):
@@ -178,7 +172,8 @@ def dark():
     return plain_material("Edges", "#050505")
 
 
-def _of_property(scene, property_id):
+def of_property(scene, property_id):
+    """The material of a property, whether a block has it or not."""
     known = library_rows.scene_materials(scene, property_id)
     if known:
         return known[0]

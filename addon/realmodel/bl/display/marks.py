@@ -7,7 +7,6 @@ from ...core.polygon_mesh import PolygonMesh
 
 _OCTAHEDRON = np.array([[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], np.float32)
 _FACES = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [1, 0, 5], [2, 1, 5], [3, 2, 5], [0, 3, 5]])
-_SIDES = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [2, 0, 3, 5]])
 
 
 def points(places, radius):
@@ -16,8 +15,8 @@ def points(places, radius):
     return PolygonMesh(coordinates, *_repeated(_FACES, len(places), 6))
 
 
-def lines(places, pairs, radius):
-    """A three-sided bar along each pair (E, 2) of places (V, 3), as `points`. Pairs at one
+def lines(places, pairs, radius, sides=3):
+    """A bar of so many sides along each pair (E, 2) of places (V, 3), as `points`. Pairs at one
     place have none."""
     begin, end = places[pairs[:, 0]].astype(np.float64), places[pairs[:, 1]].astype(np.float64)
     along = end - begin
@@ -27,13 +26,20 @@ def lines(places, pairs, radius):
     side = np.cross(along, helper)
     side /= np.linalg.norm(side, axis=1)[:, None]
     other = np.cross(along, side)
-    angles = 2 * np.pi * np.arange(3) / 3
+    angles = 2 * np.pi * np.arange(sides) / sides
     ring = radius * (
         np.cos(angles)[None, :, None] * side[:, None] + np.sin(angles)[None, :, None] * other[:, None]
     )
     coordinates = np.concatenate([begin[:, None] + ring, end[:, None] + ring], axis=1)
     coordinates = coordinates.reshape(-1, 3).astype(np.float32)
-    return PolygonMesh(coordinates, *_repeated(_SIDES, len(begin), 6))
+    return PolygonMesh(coordinates, *_repeated(_around(sides), len(begin), 2 * sides))
+
+
+def _around(sides):
+    """(sides, 4): the faces of a bar."""
+    first = np.arange(sides)
+    following = (first + 1) % sides
+    return np.column_stack([first, following, following + sides, first + sides])
 
 
 def _repeated(faces, count, vertices):

@@ -56,10 +56,7 @@ def show(current):
 
 def hide(current):
     """Takes the residuals out of a scene."""
-    collection = current.realmodel.view.collection
-    for item in list(collection.objects) if collection is not None else ():
-        if item.get(bodies.KIND) == bodies.RESIDUALS:
-            bodies.remove(current, bodies.RESIDUALS, [item])
+    bodies.remove_kind(current, bodies.RESIDUALS)
     current.realmodel.view.residuals = ""
 
 

@@ -20,9 +20,11 @@ from .text import Step, no_step
 
 @dataclass
 class Picks:
-    """points by surface name, (P, 3) float64; warnings, sentences."""
+    """points by surface name, (P, 3) float64; holes: of each hole by name its collar (3,), where it is known,
+    and (surface, place (3,)) of its picks, the highest first; warnings, sentences."""
 
     points: dict[str, np.ndarray] = field(default_factory=dict)
+    holes: dict[str, tuple[np.ndarray | None, list[tuple[str, np.ndarray]]]] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
 
 
@@ -38,6 +40,7 @@ def read_boreholes(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = 
     scale = np.array([factor(unit.get(axis), model_unit) for axis in ("xy", "xy", "z")])
     holes = _Holes(given)
     found: dict[str, list] = {}
+    met: dict[str, tuple] = {}
     missing = 0
     for row in rows(given, Path(given.picks), COLLARS, ("hole", "surface"), step):
         begin = holes.begin_of(row)
@@ -47,16 +50,22 @@ def read_boreholes(given: Boreholes, model_unit: str = MODEL_UNIT, step: Step = 
         column = _depth_column(row)
         if row.text(column).lower() in NO_VALUE:
             missing += 1
-        elif column == "depth":
+            continue
+        if column == "depth":
             # Depths, and what a hole has gone sideways, are in the unit of z.
             way = holes.way_to(row) * (1.0, 1.0, -1.0) * (scale[2] / scale)
-            found.setdefault(name, []).append((begin + way) * scale)
+            place = (begin + way) * scale
         else:
             holes.refuse_deviated(row)
-            found.setdefault(name, []).append((begin[0], begin[1], row.number(column)) * scale)
+            place = (begin[0], begin[1], row.number(column)) * scale
+        found.setdefault(name, []).append(place)
+        collar = begin * scale if np.isfinite(begin).all() else None
+        met.setdefault(row.text("hole"), (collar, []))[1].append((name, place))
     if not found:
         raise InputRefused("there are no picks in it", file=given.picks)
-    picks = Picks({name: np.array(places) for name, places in found.items()})
+    picks = Picks({name: np.array(places) for name, places in found.items()}, met)
+    for _, places in met.values():
+        places.sort(key=lambda pick: -pick[1][2])
     if missing:
         picks.warnings.append(f"{given.picks}: {missing} picks have no depth and are left out")
     picks.warnings += holes.warnings()
