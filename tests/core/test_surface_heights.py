@@ -158,7 +158,7 @@ def test_in_a_project_file(written):
         ('method = "constant"\n', 13, "needs points; add points = ..., or value = ..."),
         ('method = "kriging"\n', 13, "needs points; add points = ..."),
         ('method = "parallel"\nthickness = 1\n', 11, "'to' is missing"),
-        ('method = "constant"\nvalue = 3\nminimum_thickness = -1\n', 15, "must be a number from 0"),
+        ('method = "constant"\nvalue = 3\nminimum_thickness = -1\n', 15, "must be at least 0"),
         (
             'method = "parallel"\nto = "third"\nthickness = 1\n[[rock.surface]]\nname = "third"\n'
             'method = "parallel"\nto = "high"\nthickness = 1\n',
