@@ -33,22 +33,21 @@ def main(names):
         shrink(path, path)
     sheet = ROOT / "build" / "gui" / "contact_sheet.png"
     if sheet.is_file():
-        shrink(sheet, ROOT / "docs" / "images" / "walk.png")
+        shrink(sheet, ROOT / "docs" / "images" / "walk.png", 1600, 0)
     return done.returncode
 
 
-def shrink(source, target):
-    """Writes a picture with a palette; one that has a palette already stays as it is."""
+def shrink(source, target, widest=WIDEST, method=1):
+    """Writes a picture with a palette; one that has a palette already stays as it is. method: of Pillow; 1
+    keeps the colors of small areas, 0 those of gradients."""
     from PIL import Image
 
     with Image.open(source) as picture:
         if picture.mode == "P":
             return
         small = picture.convert("RGB")
-        small.thumbnail((WIDEST, 10 * WIDEST), Image.Resampling.LANCZOS)
-        small.quantize(COLORS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
-            target, optimize=True
-        )
+        small.thumbnail((widest, 10 * widest), Image.Resampling.LANCZOS)
+        small.quantize(COLORS, method=method, dither=Image.Dither.NONE).save(target, optimize=True)
 
 
 # -- in Blender

@@ -41,7 +41,7 @@ def main():
 
 def at_end(walk, count):
     if walk.pictures:
-        contact_sheet(walk.pictures, walk.folder / "contact_sheet.png")
+        contact_sheet(walk.pictures, walk.folder / "contact_sheet.png", columns=6, smaller=4)
     if walk.failure:
         print(walk.failure, flush=True)
     failed = count - len(walk.passed)
