@@ -53,8 +53,8 @@ def add(scene, entry):
 # Colors of rocks for what has none: any two differ, and most of all neighbors, also for people who confuse
 # red and green or blue and yellow (CIE76 of 21 or more in the simulations of Machado et al., 2009).
 PALETTE = (
-    *("#acb960", "#432f7e", "#b6dae3", "#1f515c", "#e6a396", "#e45d20"),
-    *("#f4f7d7", "#6d7365", "#efd951", "#ac5132", "#6aa7c7", "#663428"),
+    *("#efd951", "#ac5132", "#b6dae3", "#663428", "#acb960", "#1f515c"),
+    *("#e6a396", "#e45d20", "#6d7365", "#f4f7d7", "#6aa7c7", "#432f7e"),
 )
 
 

@@ -126,7 +126,7 @@ class REALMODEL_PT_view_section(OfABuiltModel, TabPanel, bpy.types.Panel):
             layout.prop(plane, "location")
             layout.prop(plane, "rotation_euler", text="Rotation")
             row = layout.row(align=True)
-            row.operator_menu_enum("realmodel.section_plane", "axis", text="Face")
+            row.operator_menu_enum("realmodel.section_plane", "axis", text="Turn To")
             row.operator("realmodel.section_flip", text="Flip", icon="ARROW_LEFTRIGHT")
             row.operator("realmodel.section_remove", text="", icon="X")
             if cuts.is_working(scene):
@@ -141,7 +141,7 @@ class REALMODEL_PT_view_section(OfABuiltModel, TabPanel, bpy.types.Panel):
 def _section_buttons(layout, operator, along, saving):
     """What is made of a cut: an object in its place, one beside the model, a file."""
     column = layout.column(align=True)
-    row = column.row(align=True)
+    row = column.split(factor=0.7, align=True)
     row.operator(f"realmodel.{operator}", icon="MOD_BOOLEAN").flat = False
     row.operator(f"realmodel.{operator}", text="Flat").flat = True
     column.operator("realmodel.save_section", text=saving, icon="FILE_TICK").along = along
