@@ -68,6 +68,11 @@ def _tell(text):
 
 
 @persistent
+def _undoing(*_arguments):
+    display.undoing()
+
+
+@persistent
 def _undone(*_arguments):
     display.undone()
     live.undone()
@@ -115,6 +120,8 @@ def _render_ends(scene, *_arguments):
 _HANDLERS = (
     ("load_post", _loaded),
     ("load_pre", _before_loading),
+    ("undo_pre", _undoing),
+    ("redo_pre", _undoing),
     ("undo_post", _undone),
     ("redo_post", _undone),
     ("depsgraph_update_post", _changed),

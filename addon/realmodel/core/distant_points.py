@@ -9,15 +9,16 @@ from .errors import InputRefused
 from .project import Rock, surface_item
 from .units import length_text
 
+_FARTHEST = 3.0  # times the extent of points and region
 _TOWARDS = ("east", "northeast", "north", "northwest", "west", "southwest", "south", "southeast")
 
 
 def require_points_near(rock: Rock, unit: str) -> None:
     """Refuses a surface whose points all lie elsewhere than the region of its rock mass.
 
-    That is so where the gap between the box of the points and that of the region, seen from above, is larger
-    than the diagonals of both: points that are farther away than they, or the region, extend say nothing of
-    it. Raises InputRefused with the distance.
+    That is so where the gap between the box of the points and that of the region, seen from above, is more
+    than three times the diagonals of both: such points say nothing of the region. Raises InputRefused with
+    the distance.
     """
     if rock.region is None:
         return
@@ -28,7 +29,7 @@ def require_points_near(rock: Rock, unit: str) -> None:
         first, last = _box(np.asarray(surface.points, float)[:, :2])
         gap = np.where(first > high, first - high, np.where(last < low, last - low, 0.0))
         away = float(np.hypot(*gap))
-        if away > max(np.hypot(*(high - low)), np.hypot(*(last - first))):
+        if away > _FARTHEST * max(np.hypot(*(high - low)), np.hypot(*(last - first))):
             towards = _TOWARDS[round(float(np.degrees(np.arctan2(gap[1], gap[0]))) / 45.0) % 8]
             raise InputRefused(
                 f"its points lie {length_text(away, unit)} {towards} of the region",

@@ -231,10 +231,19 @@ def render_ends(scene):
     replacing.end_render()
 
 
+def undoing():
+    """Blender is about to undo or redo. It keeps objects that did not change between two of its steps, and
+    does not know what a live build has changed since: they must not point to materials that it takes away."""
+    for scene in bpy.data.scenes:
+        colours.take_off(scene)
+
+
 def undone():
     """Blender has undone or redone something: what was read from meshes may be of others now."""
     forget_meshes()
     for scene in bpy.data.scenes:
+        if len(scene.realmodel.results):
+            colours.apply(scene)
         if cuts.is_on(scene):
             cuts.touch(scene)
 

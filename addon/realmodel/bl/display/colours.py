@@ -51,6 +51,13 @@ def apply(scene):
     _remove_unused()
 
 
+def take_off(scene):
+    """Takes the colors off the interfaces. `apply` puts them on again."""
+    for _, surface in settings.surface_rows(scene):
+        if _can_take(surface.interface):
+            _put_into_slot(surface.interface, None)
+
+
 def key(scene):
     """The core's ColorKey of what is in sight, or None where nothing is."""
     by, group = scene.realmodel.color_by, scene.realmodel
