@@ -116,7 +116,7 @@ def test_what_cannot_be_read_is_refused_as_the_build_refuses_it():
 
 def test_estimating_can_be_cancelled():
     project = of_points()
-    project.rocks[0].edge_length = 0.002  # its mesh takes longer than a look at cancel()
+    project.rocks[0].edge_length = 0.0005  # its mesh takes far longer than a look at cancel()
     with pytest.raises(Cancelled):
         estimate(project, cancel=lambda: True)
 
