@@ -16,7 +16,7 @@ class REALMODEL_PT_library(TabPanel, bpy.types.Panel):
         if not len(group.library):
             hint(
                 layout,
-                "The library tells what blocks are made of: name, age, colour. Add an entry or import one.",
+                "The library says what blocks are made of: name, age, color. Add an entry or import one.",
             )
         row = layout.row()
         row.template_list("REALMODEL_UL_library", "", group, "library", group, "active_property", rows=4)
