@@ -17,7 +17,7 @@ _models = caches.new()  # (stamp, cells) -> realmodel.core.Model, the oldest fir
 
 def remember(model, stamp=None, instead_of=None):
     """Keeps a model; returns the stamp by which a scene names it. stamp: of the same model with other
-    cells. instead_of: the stamp of one that is no longer needed, as of the live build before."""
+    cells. instead_of: the stamp of a model that it replaces, such as that of the previous live build."""
     stamp = stamp or new_stamp()
     for key in [key for key in _models if key[0] == instead_of]:
         del _models[key]

@@ -159,7 +159,8 @@ def section(row, _context):
 
 
 def property_id(row, _context):
-    """What has a property keeps it under its new ID. One that is no ID, or another entry's, is not taken."""
+    """Surfaces, blocks and materials follow the new ID of a property. An ID that is invalid or in use is not
+    taken."""
     if settings.is_filling() or row.id == row.known_id:
         return
     if library_rows.take_id(row):

@@ -61,7 +61,7 @@ def give(item, material):
     slots = item.data.materials
     if not len(slots):
         slots.append(material)
-    elif slots[0] != material and (slots[0] is None or KEY in slots[0]):
+    elif slots[0] is None or KEY in slots[0]:
         slots[0] = material
 
 

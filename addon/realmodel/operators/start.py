@@ -54,15 +54,12 @@ def invoke(call, operator, **arguments):
 
 
 class Replacing(Reporting):
-    """An operator that puts a model in the place of the scene's, and asks first where it is invoked."""
+    """An operator that replaces the model of the scene, and asks first where it is invoked. `comes(context)`
+    says by what, such as "open Haut-Barr"."""
 
     _asked = False
 
     needs = (not_building,)
-
-    def comes(self, context):
-        """What comes in the place of the model: "open Haut-Barr"."""
-        raise NotImplementedError
 
     def ask(self, context):
         """Carries on, or opens the question first."""

@@ -89,7 +89,7 @@ def at_stage(scene, stage, cells=None):
 
 
 def whole(scene, cells="columns"):
-    """The whole realmodel.core.Model of a scene, made in this thread where it is not at hand. Raises as
+    """The whole realmodel.core.Model of a scene, built in this thread if it is not cached. Raises as
     `at_stage`."""
     return at_stage(scene, settings.last_stage(scene), cells)
 

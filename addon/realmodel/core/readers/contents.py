@@ -13,9 +13,8 @@ from ..map_layer import MapLayer
 from .geopackage import connect, is_geopackage
 from .map_input import is_map_layer, read_shapes
 from .point_input import RASTER_FORMATS, head_of
-from .points import KNOWN, Table, open_table
+from .points import KNOWN, body_rows, open_table
 from .shapes import NothingSelected
-from .table_layout import fields
 
 _MOST = 50  # values
 _NOTHING = "\0"  # no attribute is called so, and none has it
@@ -30,7 +29,7 @@ def column_names(file: Path, layer: str | None = None) -> list[str]:
     if is_map_layer(file, head):
         return list(_nothing_selected(file, layer, _NOTHING).names)
     table = open_table(file, None, (), {}, KNOWN)
-    row = next(_rows(table), [])
+    row = next(body_rows(table), [])
     names = table.layout.names or ()
     return [name or str(n) for n, name in enumerate(names, 1)] or [str(n + 1) for n in range(len(row))]
 
@@ -42,7 +41,7 @@ def column_values(file: Path, column: str, layer: str | None = None) -> list[str
         return list(_nothing_selected(file, layer, column).values)[:_MOST]
     table = open_table(file, None, (column,), {}, KNOWN)
     at = table.column(column)
-    different = dict.fromkeys(row[at] for row in _rows(table) if at < len(row))
+    different = dict.fromkeys(row[at] for row in body_rows(table) if at < len(row))
     return list(islice(different, _MOST))
 
 
@@ -55,11 +54,6 @@ def layer_names(file: Path) -> list[str]:
             return [name for (name,) in base.execute("SELECT table_name FROM gpkg_geometry_columns")]
     except sqlite3.Error as error:
         raise InputRefused(f"not a GeoPackage that can be read: {error}", file=file) from error
-
-
-def _rows(table: Table):
-    text = table.raw[table.layout.body :].decode(table.encoding, "replace")
-    return (fields(line, table.layout.separator) for line in text.splitlines() if line.strip())
 
 
 def _nothing_selected(file: Path, layer: str | None, attribute: str) -> NothingSelected:

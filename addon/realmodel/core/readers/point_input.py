@@ -126,7 +126,7 @@ def companions(file: Path) -> list[Path]:
 
 
 def head_of(file: Path) -> bytes:
-    """The first bytes of a file, by which its format is told. Raises InputRefused."""
+    """The first bytes of a file, which identify its format. Raises InputRefused."""
     try:
         with file.open("rb") as opened:
             return opened.read(_HEAD)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -254,6 +254,12 @@ def head_rows(table: Table, most: int) -> list[list[str]]:
     """What stands in the first rows of a table."""
     body = table.raw[table.layout.body : table.layout.body + (1 << 18)].decode(table.encoding, "replace")
     return [fields(line, table.layout.separator) for line in body.split("\n")[:most] if line.strip()]
+
+
+def body_rows(table: Table) -> Iterator[list[str]]:
+    """What stands in each row of a table that is not blank."""
+    body = table.raw[table.layout.body :].decode(table.encoding, "replace")
+    return (table.layout.fields(line) for line in body.splitlines() if line.strip())
 
 
 def _has_decimal_commas(table: Table, columns: Sequence[int], error) -> bool:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputRefused
-from .points import KNOWN, Table, head_rows, open_table, wanted_columns
+from .points import KNOWN, Table, body_rows, head_rows, open_table, wanted_columns
 from .table_layout import is_any_number, plain_name
 
 _ROWS = 3
@@ -38,7 +38,7 @@ class TablePreview:
 
 
 def preview_table(file: str | Path, columns: Sequence[str | int] | None = None) -> TablePreview:
-    """A preview of a table of text. columns: as of a PointFile. Raises InputRefused for what is no table."""
+    """A preview of a table of text. columns: as in PointFile. Raises InputRefused if it is not a table."""
     file = Path(file)
     table = open_table(file, None, columns or (), {}, KNOWN)
     rows = _sampled_rows(table)
@@ -71,9 +71,7 @@ def column_values(file: str | Path, column: str) -> list[str]:
     """The values of a column of a table, in the order of the file. Raises InputRefused."""
     table = open_table(Path(file), None, (column,), {}, KNOWN)
     at = table.column(column)
-    text = table.raw[table.layout.body :].decode(table.encoding, "replace")
-    rows = (table.layout.fields(line) for line in text.splitlines() if line.strip())
-    return list(dict.fromkeys(row[at] for row in rows if at < len(row) and row[at]))
+    return list(dict.fromkeys(row[at] for row in body_rows(table) if at < len(row) and row[at]))
 
 
 def _sampled_rows(table: Table) -> list[list[str]]:
