@@ -55,15 +55,16 @@ python=/usr/bin/python3
 venv=$root/build/venv
 venv_bpy=$root/build/venv-bpy
 
-passed=0 failed=0 skipped=0 not_run=()
+passed=0 failed=0 skipped=0 not_run=() failures=()
 
-count() { # REPORT: adds its tests to the sums
-    local counts p f s
-    if ! counts=$("$python" scripts/count_tests.py "$1"); then
+count() { # NAME REPORT: adds its tests to the sums, and what failed to the list
+    local counts p f s test
+    if ! counts=$("$python" scripts/count_tests.py "$2"); then
         return 1
     fi
     read -r p f s <<<"$counts"
     ((passed += p, failed += f, skipped += s))
+    while read -r test; do failures+=("$1: $test"); done < <(tail -n +2 <<<"$counts")
     echo "     $p passed, $f failed, $s skipped"
 }
 
@@ -76,10 +77,11 @@ step() { # NAME COMMAND...: runs it, shows how long it took, counts it as failed
     "$@" </dev/null > >(tee "$log") 2>&1 || status=$?
     wait "$!" # until tee has written all of it
     if [[ -n ${counted[$name]-} ]]; then
-        count "${counted[$name]}" || status=1
+        count "$name" "${counted[$name]}" || status=1
     fi
     if ((status != 0 && failed == failed_before)); then
         ((failed += 1))
+        failures+=("$name: exit status $status; its output is in $log")
     fi
     if ((status == 0)); then
         echo "---- $name: $((SECONDS - start)) s"
@@ -102,6 +104,7 @@ finish() {
     echo
     ((${#not_run[@]} == 0)) || echo "Not run: ${not_run[*]}"
     echo "All steps: $SECONDS s"
+    ((${#failures[@]} == 0)) || printf 'FAILED %s\n' "${failures[@]}"
     local summary="$passed passed, $failed failed"
     ((skipped == 0)) || summary+=", $skipped skipped"
     echo "$summary"

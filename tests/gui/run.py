@@ -43,7 +43,7 @@ def at_end(walk, count):
     if walk.pictures:
         contact_sheet(walk.pictures, walk.folder / "contact_sheet.png", columns=6, smaller=4)
     if walk.failure:
-        print(walk.failure, flush=True)
+        print(f"FAILED: {walk.failure}", flush=True)
     failed = count - len(walk.passed)
     counts = f"{len(walk.passed)} passed, {failed} failed, 0 skipped"
     print(f"Blender {bpy.app.version_string} in a window: {counts}", flush=True)
