@@ -59,8 +59,8 @@ void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCel
         if (own < 0) {
             own = static_cast<std::int32_t>(result.sub_surfaces.size());
             const auto& [below, above] = cells.of_facet[index(facet)];
-            const bool is_between = below != above && below != SpaceCells::kOutside &&
-                                    above != SpaceCells::kOutside;
+            const bool is_between =
+                below != above && below != SpaceCells::kOutside && above != SpaceCells::kOutside;
             result.sub_surfaces.push_back({source, {}, {}, is_between});
         }
         SubSurface& part = result.sub_surfaces[index(own)];
@@ -108,8 +108,7 @@ void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mes
             sum += volume_below(vertices, t, vertices[index(block.triangles[0][0])]);
         block.volume = static_cast<double>(sum / 6);
         for (std::size_t source = 0; source < 2; ++source)
-            block.is_in[source] =
-                result.is_closed[source] && cells.winding[i + 1][source] != 0;
+            block.is_in[source] = result.is_closed[source] && cells.winding[i + 1][source] != 0;
     }
 }
 

@@ -107,8 +107,8 @@ private:
     std::vector<Box> boxes_;
     std::vector<std::int32_t> active_;  ///< parts that are fresh or may meet one that is
     std::vector<std::uint8_t> is_active_;
-    std::vector<std::size_t> begins_;            ///< of the regions of each active part, and their end
-    std::vector<std::uint8_t> is_restless_;      ///< of vertices: they move to a multiple of the step
+    std::vector<std::size_t> begins_;        ///< of the regions of each active part, and their end
+    std::vector<std::uint8_t> is_restless_;  ///< of vertices: they move to a multiple of the step
     std::vector<std::int32_t> vertex_of_point_;  ///< of exact points that are vertices
 };
 
@@ -169,8 +169,7 @@ void Refiner::intersect() {
             });
             std::sort(near.begin(), near.end());
             for (const std::int32_t other : near) {
-                if (const auto met =
-                        arrangement_.intersection(static_cast<std::int32_t>(i), other))
+                if (const auto met = arrangement_.intersection(static_cast<std::int32_t>(i), other))
                     found[begin / kChunk].push_back(*met);
             }
         }
@@ -294,8 +293,8 @@ bool Refiner::run(Round& out) {
         const auto& first = regions[found->second];
         const auto view = arrangement_.view_of(regions[r].triangle);
         const auto& corners = arrangement_.corners(first.triangle);
-        is_reversed[r] = exact::orient2d(points_, view.first, corners[0], corners[1], corners[2]) !=
-                         view.second;
+        is_reversed[r] =
+            exact::orient2d(points_, view.first, corners[0], corners[1], corners[2]) != view.second;
     }
     std::vector<std::vector<Triangle>> triangles(regions.size());
     parallel_ranges(regions.size(), kChunk, threads_, progress_,
@@ -307,8 +306,8 @@ bool Refiner::run(Round& out) {
                     });
     bool moved = false;
     const auto add = [&](const Part& of, const std::array<Place, 3>& places) {
-        const Part part{{places[0].number, places[1].number, places[2].number}, of.origin,
-                        of.source};
+        const Part part{
+            {places[0].number, places[1].number, places[2].number}, of.origin, of.source};
         const bool fresh = places[0].is_moved || places[1].is_moved || places[2].is_moved;
         moved = moved || fresh;
         const auto& [a, b, c] = part.corners;
@@ -402,9 +401,10 @@ Parts refine(const std::array<TriangleMesh, 2>& surfaces, int threads, Progress*
         round = std::move(next);
         if (!moved) return {std::move(round.vertices), std::move(round.parts)};
     }
-    throw InputError("too_close",
-                     "the surfaces come so close to each other, again and again, that rounding does "
-                     "not keep them apart; move one of them a little");
+    throw InputError(
+        "too_close",
+        "the surfaces come so close to each other, again and again, that rounding does "
+        "not keep them apart; move one of them a little");
 }
 
 }  // namespace realmodel::booleans

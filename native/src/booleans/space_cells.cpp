@@ -181,12 +181,8 @@ bool CellFinder::cast(std::int32_t facet, int attempt, const spatial::BoxTree& t
     for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
         if (exact::compare(points, axis, crossings[i].at, crossings[i + 1].at) == 0) return false;
     }
-    const auto beyond = [](const Crossing& c) {
-        return side_number(c.facet, c.side > 0 ? 1 : 0);
-    };
-    const auto before = [](const Crossing& c) {
-        return side_number(c.facet, c.side > 0 ? 0 : 1);
-    };
+    const auto beyond = [](const Crossing& c) { return side_number(c.facet, c.side > 0 ? 1 : 0); };
+    const auto before = [](const Crossing& c) { return side_number(c.facet, c.side > 0 ? 0 : 1); };
     for (std::size_t i = 0; i + 1 < crossings.size(); ++i)
         sides_.join(beyond(crossings[i]), before(crossings[i + 1]));
     sides_.join(beyond(crossings.back()), outside_);

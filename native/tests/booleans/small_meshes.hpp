@@ -40,9 +40,9 @@ struct Mesh {
 inline Mesh cube(const std::array<double, 3>& low, double size) {
     Mesh mesh;
     for (int i = 0; i < 8; ++i)
-        mesh.vertices.insert(mesh.vertices.end(),
-                             {low[0] + size * (i & 1), low[1] + size * (i >> 1 & 1),
-                              low[2] + size * (i >> 2)});
+        mesh.vertices.insert(
+            mesh.vertices.end(),
+            {low[0] + size * (i & 1), low[1] + size * (i >> 1 & 1), low[2] + size * (i >> 2)});
     mesh.triangles = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                       2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
     return mesh;
@@ -83,7 +83,8 @@ inline Mesh sphere(const std::array<double, 3>& middle, double radius, int rings
     };
     for (int i = 0; i < rings; ++i) {
         for (int j = 0; j < around; ++j) {
-            if (i > 0) mesh.triangles.insert(mesh.triangles.end(), {at(i, j), at(i, j + 1), at(i + 1, j)});
+            if (i > 0)
+                mesh.triangles.insert(mesh.triangles.end(), {at(i, j), at(i, j + 1), at(i + 1, j)});
             if (i + 1 < rings)
                 mesh.triangles.insert(mesh.triangles.end(),
                                       {at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});

@@ -77,7 +77,8 @@ struct Refinement {
 /// and vertices only. The same for any number of threads.
 ///
 /// @throws InputError kinds not_finite, bad_index (surface: which; items: the vertex or triangle),
-///         no_triangles (surface: which), too_large, too_close (rounding does not settle); Cancelled
+///         no_triangles (surface: which), too_large, too_close (rounding does not settle);
+///         Cancelled
 Refinement intersect(const TriangleMesh& first, const TriangleMesh& second, int threads = 0,
                      Progress* progress = nullptr);
 
