@@ -5,9 +5,7 @@ import numpy as np
 import pytest
 from realmodel.core import Fault, Project, Rock, Surface
 from realmodel.core.structures.closed_form import heights_at, nearest_side
-from structure_cases import closed_form_of, plane_fault, prepared, sides  # noqa: F401
-
-pytestmark = pytest.mark.usefixtures("sides")
+from structure_cases import closed_form_of, plane_fault, prepared
 
 
 def strip(x, height, n=10, y=(0.0, 10.0)):

@@ -25,10 +25,11 @@ Within = Callable[[np.ndarray], np.ndarray]
 
 @dataclass(frozen=True)
 class Trace:
-    """Where a sheet meets a fault. points: (M, 2) in plan; is_end: (M,) bool, those where it dies out.
-    beyond: (N,) bool, the nodes of triangles through which the fault would go on beyond its ends."""
+    """Where a sheet meets a fault. points: (M, 2) in plan, heights: (M,); is_end: (M,) bool, where it dies
+    out. beyond: (N,) bool, the nodes of triangles through which the fault would go on beyond its ends."""
 
     points: np.ndarray
+    heights: np.ndarray
     is_end: np.ndarray
     beyond: np.ndarray
 
@@ -63,9 +64,8 @@ def trace_of(
     beyond[triangles[goes_on]] = True
     at_end = np.zeros(len(edges), bool)
     at_end[of_triangle[goes_on]] = True
-    crossed = begin[hits, :2] + share[hits, None] * (end - begin)[hits, :2]
-    points = np.concatenate([crossed, vertices[on, :2]])
-    return Trace(points, np.concatenate([at_end[changing[hits]], beyond[on]]), beyond)
+    places = np.concatenate([begin[hits] + share[hits, None] * (end - begin)[hits], vertices[on]])
+    return Trace(places[:, :2], places[:, 2], np.concatenate([at_end[changing[hits]], beyond[on]]), beyond)
 
 
 def _where_sides_change(
