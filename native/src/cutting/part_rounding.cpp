@@ -39,7 +39,8 @@ const Position& PartRounding::at(NodeId node) const {
 
 /// Whether a part is less than the model's cell, which was sound.
 bool PartRounding::is_changed(std::int32_t part) const {
-    return parts_of_[index(half_cells_[index(part)].cell)] > 1;
+    const HalfCell& own = half_cells_[index(part)];
+    return own.is_changed || parts_of_[index(own.cell)] > 1;
 }
 
 bool PartRounding::is_wall(std::size_t piece) const {
