@@ -15,12 +15,13 @@ using spatial::Box;
 
 PartRounding::PartRounding(const ComplexView& model, std::vector<Position>& new_positions,
                            Pieces& pieces, std::vector<HalfCell>& half_cells,
-                           const std::array<bool, 2>& touches)
+                           const std::array<bool, 2>& touches, bool joins_near)
     : model_(model),
       new_positions_(new_positions),
       pieces_(pieces),
       half_cells_(half_cells),
-      touches_(touches) {
+      touches_(touches),
+      joins_near_(joins_near) {
     checked_number(model.vertex_count() + new_positions.size(), "vertices and new nodes");
     vertices_.reserve(model.vertex_count());
     for (std::size_t v = 0; v < model.vertex_count(); ++v)
@@ -114,45 +115,42 @@ std::vector<NodeId> PartRounding::contracted(std::size_t piece) const {
     return loop;
 }
 
-/// Whether a part would still be closed, with polygons that pass no node twice, none of them twice
-/// there, and an extent.
-bool PartRounding::stays_sound(std::int32_t part) const {
-    struct Use {
-        NodeId low, high;
-        int direction;
-        auto operator<=>(const Use&) const = default;
-    };
-    std::vector<Use> uses;
+/// The polygons around a part as contractions leave them, and how often it uses an edge beyond
+/// twice. None where a polygon passes a node twice, two are the same, or it has no extent.
+std::optional<std::size_t> PartRounding::touches_of(std::int32_t part) const {
+    std::vector<std::array<NodeId, 2>> uses;
     std::vector<std::vector<NodeId>> faces;
     Box box;
     for (const std::int32_t own : pieces_of_[index(part)]) {
-        const auto piece = index(own);
-        std::vector<NodeId> loop = contracted(piece);
+        std::vector<NodeId> loop = contracted(index(own));
         if (loop.empty()) continue;
-        const int facing = pieces_[piece].parts[0] == part ? 1 : -1;
         for (std::size_t k = 0; k < loop.size(); ++k) {
-            const NodeId a = loop[k], b = loop[(k + 1) % loop.size()];
-            uses.push_back({std::min(a, b), std::max(a, b), a < b ? facing : -facing});
-            box.include(at(a));
+            uses.push_back(unordered(loop[k], loop[(k + 1) % loop.size()]));
+            box.include(at(loop[k]));
         }
         std::sort(loop.begin(), loop.end());
-        if (std::adjacent_find(loop.begin(), loop.end()) != loop.end()) return false;
+        if (std::adjacent_find(loop.begin(), loop.end()) != loop.end()) return std::nullopt;
         faces.push_back(std::move(loop));
     }
-    if (faces.size() < 4) return false;
+    if (faces.size() < 4) return std::nullopt;
     for (std::size_t k = 0; k < 3; ++k) {
-        if (box.low[k] == box.high[k]) return false;
+        if (box.low[k] == box.high[k]) return std::nullopt;
     }
     std::sort(faces.begin(), faces.end());
-    if (std::adjacent_find(faces.begin(), faces.end()) != faces.end()) return false;
-    if (model_.cell_kind == CellKind::kBlocks ||
-        touches_[half_cells_[index(part)].side == kAbove ? 1 : 0])
-        return true;
+    if (std::adjacent_find(faces.begin(), faces.end()) != faces.end()) return std::nullopt;
     std::sort(uses.begin(), uses.end());
-    for (std::size_t i = 2; i < uses.size(); ++i) {
-        if (uses[i].low == uses[i - 2].low && uses[i].high == uses[i - 2].high) return false;
-    }
-    return true;
+    std::size_t touches = 0;
+    for (std::size_t i = 2; i < uses.size(); ++i)
+        touches += uses[i] == uses[i - 2];
+    return touches;
+}
+
+/// Whether a part would still be closed, with polygons that pass no node twice, none of them twice
+/// there, and an extent.
+bool PartRounding::stays_sound(std::int32_t part) const {
+    const auto touches = touches_of(part);
+    return touches && (*touches == 0 || model_.cell_kind == CellKind::kBlocks ||
+                       touches_[half_cells_[index(part)].side == kAbove ? 1 : 0]);
 }
 
 /// Notes of new nodes that came to lie where a vertex of the model or an earlier new node is that
@@ -168,7 +166,6 @@ std::vector<NodeId> PartRounding::find_contractions() {
     }
     becomes_.resize(vertices_.size() + new_positions_.size());
     std::iota(becomes_.begin(), becomes_.end(), 0);
-    std::vector<NodeId> contracted;
     for (std::size_t i = 0; i < new_positions_.size(); ++i) {
         const auto node = static_cast<NodeId>(vertices_.size() + i);
         NodeId& first = first_at.find(new_positions_[i])->second;
@@ -176,8 +173,11 @@ std::vector<NodeId> PartRounding::find_contractions() {
             first = node;
         } else {
             becomes_[index(node)] = first;
-            contracted.push_back(node);
         }
+    }
+    std::vector<NodeId> contracted;
+    for (std::size_t node = vertices_.size(); node < becomes_.size(); ++node) {
+        if (index(becomes_[node]) != node) contracted.push_back(static_cast<NodeId>(node));
     }
     return contracted;
 }
@@ -219,10 +219,77 @@ void PartRounding::keep_sound(const std::vector<NodeId>& contracted) {
     }
 }
 
+/// Contracts edges of new nodes that are as short as rounding, one after another, where no part
+/// comes to touch itself for it: what two models have in common was rounded in each by itself.
+bool PartRounding::join_short_edges() {
+    const double allowed = rounding_of(vertices_);
+    std::set<std::array<NodeId, 2>> edges;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        const std::vector<NodeId> loop = contracted(p);
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const auto edge = unordered(loop[i], loop[(i + 1) % loop.size()]);
+            const Position away = minus(at(edge[0]), at(edge[1]));
+            if (is_new(edge[1]) && std::ranges::all_of(away, [allowed](double x) {
+                    return std::abs(x) <= allowed;
+                }))
+                edges.insert(edge);
+        }
+    }
+    if (edges.empty()) return false;
+    std::map<NodeId, std::set<NodeId>> group;  // by the node that they became
+    std::map<NodeId, std::set<std::int32_t>> parts_at;
+    for (const auto& edge : edges) {
+        for (const NodeId node : edge)
+            group[node], parts_at[node];
+    }
+    for (NodeId node = 0; index(node) < becomes_.size(); ++node) {
+        const auto found = group.find(becomes_[index(node)]);
+        if (found != group.end()) found->second.insert(node);
+    }
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        for (const NodeId node : pieces_.polygons[p]) {
+            const auto found = parts_at.find(becomes_[index(node)]);
+            if (found == parts_at.end()) continue;
+            for (const std::int32_t part : pieces_[p].parts) {
+                if (part >= 0) found->second.insert(part);
+            }
+        }
+    }
+    bool any = false;
+    for (const auto& edge : edges) {
+        const NodeId a = becomes_[index(edge[0])], b = becomes_[index(edge[1])];
+        const NodeId from = std::max(a, b), to = std::min(a, b);
+        if (from == to || !is_new(from)) continue;
+        std::map<std::int32_t, std::size_t> before;
+        bool is_known = true;
+        for (const std::int32_t part : parts_at[from]) {
+            const auto touches = touches_of(part);
+            is_known = is_known && touches;
+            before[part] = touches.value_or(0);
+        }
+        for (const NodeId node : group[from])
+            becomes_[index(node)] = to;
+        const bool sound = is_known && std::ranges::all_of(before, [this](const auto& was) {
+                               const auto touches = touches_of(was.first);
+                               return touches && *touches <= was.second;
+                           });
+        if (!sound) {
+            for (const NodeId node : group[from])
+                becomes_[index(node)] = from;
+            continue;
+        }
+        group[to].merge(group[from]);
+        parts_at[to].merge(parts_at[from]);
+        any = true;
+    }
+    return any;
+}
+
 void PartRounding::contract() {
     const std::vector<NodeId> nodes = find_contractions();
-    if (nodes.empty()) return;
-    keep_sound(nodes);
+    if (!nodes.empty()) keep_sound(nodes);
+    const bool any_near = joins_near_ && join_short_edges();
+    if (nodes.empty() && !any_near) return;
     Pieces kept;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const std::vector<NodeId> loop = contracted(p);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <set>
 #include <span>
 #include <vector>
@@ -21,8 +22,10 @@ class PartRounding {
 public:
     /// @param new_positions  of nodes after the model's vertices; they may move
     /// @param touches        whether parts below, above may use an edge more than twice
+    /// @param joins_near     whether nodes become one, too, whose edge is as short as rounding
     PartRounding(const ComplexView& model, std::vector<Position>& new_positions, Pieces& pieces,
-                 std::vector<HalfCell>& half_cells, const std::array<bool, 2>& touches);
+                 std::vector<HalfCell>& half_cells, const std::array<bool, 2>& touches,
+                 bool joins_near = false);
     void run();
 
 private:
@@ -36,7 +39,9 @@ private:
     void level_base();
     void contract();
     std::vector<NodeId> find_contractions();
+    bool join_short_edges();
     void keep_sound(const std::vector<NodeId>& contracted);
+    std::optional<std::size_t> touches_of(std::int32_t part) const;
     bool stays_sound(std::int32_t part) const;
     std::vector<NodeId> contracted(std::size_t piece) const;
     void set_apart();
@@ -57,6 +62,7 @@ private:
     Pieces& pieces_;
     std::vector<HalfCell>& half_cells_;
     std::array<bool, 2> touches_;
+    bool joins_near_;
 
     std::vector<Position> vertices_;      ///< of the model, as `at` gives them
     std::vector<std::uint8_t> parts_of_;  ///< of the model's cells: how many, 2 for more

@@ -101,6 +101,7 @@ void SurfaceParts::write(const Polygons& polygons, std::size_t first, std::size_
         origin.sides[k] = slot.half;
         origin.parts[k] = part_[index(slots[k])];
     }
+    if (origin.parts[0] >= 0 && origin.parts[0] == origin.parts[1]) return;  // within one
     for (std::size_t p = first; p < end; ++p) {
         if (reversed) {
             pieces.add_reversed(polygons[p], origin);

@@ -220,7 +220,8 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     begin(progress, 0.5, 0.68, "finding the parts of cells");
     cutting::SurfaceParts made(overlay, winding, wanted, progress);
     begin(progress, 0.85, 0.92, "rounding what was cut");
-    cutting::PartRounding(all, overlay.new_positions(), made.pieces, made.half_cells, made.touches)
+    cutting::PartRounding(all, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
+                          true)
         .run();
     begin(progress, 0.95, 1.0, "putting the parts together");
     Joined joined;

@@ -110,20 +110,26 @@ void StructureSides::name_structures() {
     }
 }
 
-/// Whether a fault ends at an edge.
-bool StructureSides::ends_at(std::span<const EdgeUse> uses) const {
+/// Whether sides around an edge are known in rock alone: a fault ends there, or no rock is near, so
+/// that structures may cross unnoticed.
+bool StructureSides::is_known_in_rock_alone(std::span<const EdgeUse> uses) const {
     std::map<std::int32_t, std::size_t> count;
+    bool has_faces = false;
     for (const EdgeUse& use : uses) {
         const auto item = index(use.item);
-        if (item >= overlay_.size() || !overlay_.of_cutter(item)) continue;
+        if (item >= overlay_.size() || !overlay_.of_cutter(item)) {
+            has_faces = true;
+            continue;
+        }
         for (const RegionOf& of : of_[item])
             count[of.structure] += static_cast<std::size_t>(std::abs(of.change));
     }
-    return std::ranges::any_of(count, [](const auto& one) { return one.second % 2 == 1; });
+    return !has_faces ||
+           std::ranges::any_of(count, [](const auto& one) { return one.second % 2 == 1; });
 }
 
-/// What bounds one sector around an edge is in one part. Where a fault ends this is said of sectors
-/// in rock alone; elsewhere of all, for the sake of cells that rounding flattened away.
+/// What bounds one sector around an edge is in one part. This is said of sectors beside the rock,
+/// too, for the sake of cells that rounding flattened away.
 void StructureSides::join_sectors(const Progress* progress) {
     const NoParts near(near_);
     cutting::join_beside_surface(
@@ -139,7 +145,7 @@ void StructureSides::join_sectors(const Progress* progress) {
         const auto uses = winding_.edge(e);
         const auto& fan = winding_.sectors(e).fan;
         const auto& windings = winding_.sectors(e).windings;
-        const bool in_rock_alone = ends_at(uses);
+        const bool in_rock_alone = is_known_in_rock_alone(uses);
         for (std::size_t b = 0; b < fan.blades(); ++b) {
             if (in_rock_alone && windings[b] == 0) continue;
             std::int32_t first = -1;

@@ -52,7 +52,7 @@ public:
 
 private:
     void name_structures();
-    bool ends_at(std::span<const EdgeUse> uses) const;
+    bool is_known_in_rock_alone(std::span<const EdgeUse> uses) const;
     void join_sectors(const Progress* progress);
     void number_parts();
     void find_neighbors();

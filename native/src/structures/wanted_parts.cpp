@@ -9,6 +9,13 @@ namespace realmodel::structures {
 using cutting::kAbove;
 using cutting::kOn;
 
+namespace {
+
+/// How many times rounding a region may be wide that rounding alone left.
+constexpr double kSliver = 64;
+
+}  // namespace
+
 WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
                          const StructureSides& sides, std::span<const std::int32_t> model_of_cell,
                          std::span<const Sides> model_sides, std::span<const std::uint8_t> acts)
@@ -30,7 +37,7 @@ WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
             found == model_sides.end() ? -1 : static_cast<std::int32_t>(found - model_sides.begin()));
     }
     for (std::size_t r = 0; r < overlay.size(); ++r) {
-        if (overlay.of_cutter(r) && winding.counts(r) && winding.touches_model(r)) refuse_ends(r);
+        if (overlay.of_cutter(r) && winding.counts(r) && winding.touches_model(r)) find_same(r);
     }
 }
 
@@ -72,16 +79,17 @@ std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int3
     return found;
 }
 
-bool WantedParts::separates(std::size_t region, std::int32_t low, std::int32_t high) const {
-    return overlay_.model().block(low) != overlay_.model().block(high) ||
-           acting(region, low, high) >= 0;
+bool WantedParts::separates(std::size_t /*region*/, std::int32_t low, std::int32_t high) const {
+    return !same_.contains({low, high});
 }
 
-/// Where nothing acts but the blocks differ, by rounding, a surface between them does.
+/// Where nothing acts, in slivers that rounding left, there is a wall between cells of one block,
+/// and between blocks the surface that they meet at.
 std::int32_t WantedParts::cap_face(std::size_t region, std::int32_t low, std::int32_t high) const {
     const std::int32_t structure = acting(region, low, high);
     const ComplexView& model = overlay_.model();
     if (structure >= 0) return -2 - (model.surfaces + structure);
+    if (model.block(low) == model.block(high)) return -2 - kWall;
     std::int32_t surface = std::max(model.block(low), model.block(high));
     if (low >= 0 && high >= 0) surface = std::min(model.block(low), model.block(high));
     return -2 - surface;
@@ -95,36 +103,44 @@ std::int32_t WantedParts::wanted_at(std::size_t region, std::size_t side) const 
     return -1;
 }
 
-/// Beyond the end of a fault the rock is the same on both sides, but for slivers that rounding
-/// leaves.
-void WantedParts::refuse_ends(std::size_t region) const {
-    const auto& structures = sides_.structures_at(region);
-    const auto continued = std::ranges::find_if(structures, [&](const RegionOf& of) {
-        const auto s = index(of.structure);
-        return !of.is_own && sides_.sides(sides_.part_at(region, 0))[s] !=
-                                 sides_.sides(sides_.part_at(region, 1))[s];
-    });
-    if (continued == structures.end()) return;
+/// Whether a region of the surface is narrower than rounding may have made it.
+bool WantedParts::is_sliver(std::size_t region) const {
+    double length = 0, area = 0, rounding = 0;
+    for (const auto& loop : overlay_.loops(region)) {
+        std::vector<Position> corners;
+        for (const NodeId node : loop)
+            corners.push_back(overlay_.position(node));
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const Position step = cutting::minus(corners[(i + 1) % corners.size()], corners[i]);
+            length += std::sqrt(cutting::dot(step, step));
+        }
+        const Position normal = cutting::polygon_normal(corners);
+        const double size = std::sqrt(cutting::dot(normal, normal));
+        area += &loop == overlay_.loops(region).data() ? size : -size;
+        rounding = std::max(rounding, cutting::rounding_of(corners));
+    }
+    return area <= kSliver * rounding * length;
+}
+
+/// Cells of one block that meet where nothing acts are one. Where nothing acts but the rock differs
+/// by more than slivers, a fault ends in it.
+void WantedParts::find_same(std::size_t region) {
     const std::int32_t low = wanted_at(region, 0), high = wanted_at(region, 1);
-    if (overlay_.model().block(low) == overlay_.model().block(high)) {
-        if (low < 0 || !does_act(continued->structure, low) ) return;
+    if ((low < 0 && high < 0) || acting(region, low, high) >= 0 || is_sliver(region)) return;
+    const ComplexView& model = overlay_.model();
+    if (model.block(low) == model.block(high)) {
+        same_.insert({low, high});
+        return;
     }
-    if (acting(region, low, high) >= 0) return;
-    std::vector<Position> corners;
-    double round = 0;
-    const auto& outline = overlay_.loops(region)[0];
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-        corners.push_back(overlay_.position(outline[i]));
-        const Position step = cutting::minus(
-            overlay_.position(outline[(i + 1) % outline.size()]), corners.back());
-        round += std::sqrt(cutting::dot(step, step));
-    }
-    const Position normal = cutting::polygon_normal(corners);
-    const double area = std::sqrt(cutting::dot(normal, normal));
-    if (overlay_.model().block(low) != overlay_.model().block(high) &&
-        area > 1e3 * cutting::rounding_of(corners) * round)
-        sides_.refuse("ends_inside", "the fault ends in rock that differs on its sides",
-                      continued->structure, region);
+    const auto& structures = sides_.structures_at(region);
+    const auto fault = std::ranges::find_if(structures, [&](const RegionOf& of) {
+        const auto s = index(of.structure);
+        return sides_.sides(sides_.part_at(region, 0))[s] !=
+               sides_.sides(sides_.part_at(region, 1))[s];
+    });
+    sides_.refuse("ends_inside",
+                  "the fault ends in the rock: what is beyond differs on its two sides",
+                  fault == structures.end() ? -1 : fault->structure, region);
 }
 
 }  // namespace realmodel::structures

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <set>
 #include <span>
 #include <vector>
 
@@ -32,7 +33,8 @@ private:
     std::int8_t of_item(std::size_t item, std::size_t face) const;
     std::int32_t acting(std::size_t region, std::int32_t low, std::int32_t high) const;
     bool does_act(std::int32_t structure, std::int32_t cell) const;
-    void refuse_ends(std::size_t region) const;
+    bool is_sliver(std::size_t region) const;
+    void find_same(std::size_t region);
     std::int32_t wanted_at(std::size_t region, std::size_t side) const;
 
     SurfaceOverlay& overlay_;
@@ -41,6 +43,8 @@ private:
     std::span<const std::int32_t> model_of_cell_;
     std::span<const std::uint8_t> acts_;
     std::vector<std::int32_t> model_of_part_;  ///< -1 none
+    /// Cells below and above that are parts of one.
+    std::set<std::array<std::int32_t, 2>> same_;
 };
 
 }  // namespace realmodel::structures
