@@ -15,13 +15,13 @@ using spatial::Box;
 
 PartRounding::PartRounding(const ComplexView& model, std::vector<Position>& new_positions,
                            Pieces& pieces, std::vector<HalfCell>& half_cells,
-                           const std::array<bool, 2>& touches, bool joins_near)
+                           const std::array<bool, 2>& touches, bool joins_models)
     : model_(model),
       new_positions_(new_positions),
       pieces_(pieces),
       half_cells_(half_cells),
       touches_(touches),
-      joins_near_(joins_near) {
+      joins_models_(joins_models) {
     checked_number(model.vertex_count() + new_positions.size(), "vertices and new nodes");
     vertices_.reserve(model.vertex_count());
     for (std::size_t v = 0; v < model.vertex_count(); ++v)
@@ -54,6 +54,7 @@ void PartRounding::run() {
     drop_hollow();  // of a cell that lies flat on the cutter
     level_base();
     contract();
+    if (joins_models_) cancel_doubled();
     set_apart();
     give_extents();
     glue_doubled();
@@ -115,29 +116,52 @@ std::vector<NodeId> PartRounding::contracted(std::size_t piece) const {
     return loop;
 }
 
-/// The polygons around a part as contractions leave them, and how often it uses an edge beyond
-/// twice. None where a polygon passes a node twice, two are the same, or it has no extent.
+namespace {
+
+/// Which way round a loop goes from its least node to its second least.
+int winding_of(std::span<const NodeId> nodes) {
+    const auto least =
+        static_cast<std::size_t>(std::min_element(nodes.begin(), nodes.end()) - nodes.begin());
+    const std::size_t n = nodes.size();
+    return nodes[(least + 1) % n] < nodes[(least + n - 1) % n] ? 1 : -1;
+}
+
+}  // namespace
+
+/// How often a part uses an edge beyond twice, as contractions leave the polygons around it. None
+/// where a polygon passes a node twice, two are the same, or it has no extent. Where models are
+/// joined, two that are the same and face each other make up for each other.
 std::optional<std::size_t> PartRounding::touches_of(std::int32_t part) const {
-    std::vector<std::array<NodeId, 2>> uses;
-    std::vector<std::vector<NodeId>> faces;
-    Box box;
+    std::map<std::vector<NodeId>, std::pair<int, std::vector<NodeId>>> faces;  // by sorted nodes
     for (const std::int32_t own : pieces_of_[index(part)]) {
         std::vector<NodeId> loop = contracted(index(own));
         if (loop.empty()) continue;
+        std::vector<NodeId> sorted = loop;
+        std::sort(sorted.begin(), sorted.end());
+        if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) return std::nullopt;
+        const int facing = pieces_[index(own)].parts[0] == part ? 1 : -1;
+        const int winding = facing * winding_of(loop);
+        const auto [known, is_new] = faces.try_emplace(std::move(sorted));
+        if (!is_new && (!joins_models_ || known->second.first + winding != 0)) return std::nullopt;
+        known->second.first += winding;
+        known->second.second = std::move(loop);
+    }
+    std::vector<std::array<NodeId, 2>> uses;
+    std::size_t count = 0;
+    Box box;
+    for (const auto& [sorted, face] : faces) {
+        if (face.first == 0) continue;
+        ++count;
+        const std::vector<NodeId>& loop = face.second;
         for (std::size_t k = 0; k < loop.size(); ++k) {
             uses.push_back(unordered(loop[k], loop[(k + 1) % loop.size()]));
             box.include(at(loop[k]));
         }
-        std::sort(loop.begin(), loop.end());
-        if (std::adjacent_find(loop.begin(), loop.end()) != loop.end()) return std::nullopt;
-        faces.push_back(std::move(loop));
     }
-    if (faces.size() < 4) return std::nullopt;
+    if (count < 4) return std::nullopt;
     for (std::size_t k = 0; k < 3; ++k) {
         if (box.low[k] == box.high[k]) return std::nullopt;
     }
-    std::sort(faces.begin(), faces.end());
-    if (std::adjacent_find(faces.begin(), faces.end()) != faces.end()) return std::nullopt;
     std::sort(uses.begin(), uses.end());
     std::size_t touches = 0;
     for (std::size_t i = 2; i < uses.size(); ++i)
@@ -288,7 +312,7 @@ bool PartRounding::join_short_edges() {
 void PartRounding::contract() {
     const std::vector<NodeId> nodes = find_contractions();
     if (!nodes.empty()) keep_sound(nodes);
-    const bool any_near = joins_near_ && join_short_edges();
+    const bool any_near = joins_models_ && join_short_edges();
     if (nodes.empty() && !any_near) return;
     Pieces kept;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
@@ -297,6 +321,61 @@ void PartRounding::contract() {
     }
     pieces_ = std::move(kept);
     find_pieces_of_parts();
+}
+
+/// Of polygons that are the same, those that face each other within one part make up for each
+/// other: what is left is between the others.
+void PartRounding::cancel_doubled() {
+    std::map<std::vector<NodeId>, std::vector<std::size_t>> equal;  // pieces by sorted nodes
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        const auto nodes = pieces_.polygons[p];
+        if (!std::ranges::all_of(nodes, [this](NodeId node) { return is_near_[index(node)] != 0; }))
+            continue;
+        std::vector<NodeId> sorted(nodes.begin(), nodes.end());
+        std::sort(sorted.begin(), sorted.end());
+        equal[std::move(sorted)].push_back(p);
+    }
+    std::vector<std::uint8_t> is_gone(pieces_.size(), 0);
+    Pieces fresh;
+    for (const auto& [sorted, same] : equal) {
+        if (same.size() < 2) continue;
+        std::map<std::int32_t, int> facing;  // of parts: how often a polygon faces away from each
+        std::size_t before = 0;
+        for (const std::size_t p : same) {
+            const int winding = winding_of(pieces_.polygons[p]);
+            for (std::size_t k = 0; k < 2; ++k) {
+                if (pieces_[p].parts[k] < 0) continue;
+                facing[pieces_[p].parts[k]] += k == 0 ? winding : -winding;
+                ++before;
+            }
+        }
+        std::array<std::vector<std::int32_t>, 2> left;  // parts that it faces away from, and faces
+        for (const auto& [part, times] : facing)
+            left[times > 0 ? 0 : 1].insert(left[times > 0 ? 0 : 1].end(), std::abs(times), part);
+        if (left[0].size() + left[1].size() == before) continue;
+        const Piece first = pieces_[same[0]];
+        std::vector<NodeId> nodes(pieces_.polygons[same[0]].begin(),
+                                  pieces_.polygons[same[0]].end());
+        if (winding_of(nodes) < 0) std::reverse(nodes.begin(), nodes.end());
+        for (std::size_t i = 0; i < std::max(left[0].size(), left[1].size()); ++i) {
+            Piece piece = first;
+            for (std::size_t k = 0; k < 2; ++k) {
+                const bool has_part = i < left[k].size();
+                piece.parts[k] = has_part ? left[k][i] : -1;
+                piece.cells[k] = has_part ? half_cells_[index(left[k][i])].cell : -1;
+                piece.sides[k] = has_part ? half_cells_[index(left[k][i])].side : kOn;
+            }
+            fresh.add(nodes, piece);
+        }
+        for (const std::size_t p : same)
+            is_gone[p] = 1;
+    }
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        if (is_gone[p] == 0) fresh.add(pieces_.polygons[p], pieces_[p]);
+    }
+    pieces_ = std::move(fresh);
+    find_pieces_of_parts();
+    drop_hollow();
 }
 
 /// Moves a node to the nearest free position beside it that its faces allow.

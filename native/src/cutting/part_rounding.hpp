@@ -22,10 +22,11 @@ class PartRounding {
 public:
     /// @param new_positions  of nodes after the model's vertices; they may move
     /// @param touches        whether parts below, above may use an edge more than twice
-    /// @param joins_near     whether nodes become one, too, whose edge is as short as rounding
+    /// @param joins_models   whether several models are joined, of which each was rounded by itself:
+    ///                       then nodes, too, become one whose edge is as short as rounding
     PartRounding(const ComplexView& model, std::vector<Position>& new_positions, Pieces& pieces,
                  std::vector<HalfCell>& half_cells, const std::array<bool, 2>& touches,
-                 bool joins_near = false);
+                 bool joins_models = false);
     void run();
 
 private:
@@ -44,6 +45,7 @@ private:
     std::optional<std::size_t> touches_of(std::int32_t part) const;
     bool stays_sound(std::int32_t part) const;
     std::vector<NodeId> contracted(std::size_t piece) const;
+    void cancel_doubled();
     void set_apart();
     void move_aside(NodeId node);
     void give_extents();
@@ -62,7 +64,7 @@ private:
     Pieces& pieces_;
     std::vector<HalfCell>& half_cells_;
     std::array<bool, 2> touches_;
-    bool joins_near_;
+    bool joins_models_;
 
     std::vector<Position> vertices_;      ///< of the model, as `at` gives them
     std::vector<std::uint8_t> parts_of_;  ///< of the model's cells: how many, 2 for more
