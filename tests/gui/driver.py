@@ -204,8 +204,8 @@ class Walk:
                 return place
         raise AssertionError(f"{name} cannot be seen")
 
-    def colour_at(self, picture, place, size=3):
-        """Mean colour of a screenshot around where a place of the scene is drawn."""
+    def color_at(self, picture, place, size=3):
+        """Mean color of a screenshot around where a place of the scene is drawn."""
         x, y = self.pixel_of(place)
         return picture[y - size : y + size + 1, x - size : x + size + 1].reshape(-1, 3).mean(axis=0)
 
@@ -251,6 +251,6 @@ def contact_sheet(pictures, path, columns=3, smaller=3):
 
 
 def hue_differs(first, second):
-    """How far apart two colours are, whatever the light: 0 the same hue, 1 as far as can be."""
+    """How far apart two colors are, whatever the light: 0 the same hue, 1 as far as can be."""
     first, second = (np.asarray(c, float) - min(c) + 1e-6 for c in (first, second))
     return float(1.0 - first @ second / np.linalg.norm(first) / np.linalg.norm(second))
