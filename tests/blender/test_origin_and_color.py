@@ -44,7 +44,7 @@ class LibraryColors(unittest.TestCase):
         self.assertEqual(kind, "COLOR", "COLOR_GAMMA would want sRGB values")
 
     def test_without_a_library(self):
-        self.assertEqual(materials.name_and_color(None, 0), ("no property", materials.NEUTRAL_GREY))
+        self.assertEqual(materials.name_and_color(None, 0), ("no property", materials.NEUTRAL_GRAY))
         self.assertEqual(materials.name_and_color(None, 7)[0], "property 7")
 
     def test_a_color_that_a_texture_gives_is_left_alone(self):

@@ -389,6 +389,17 @@ class Coordinates(Case):
             bpy.ops.realmodel.coordinates(location=(50.0, 40.0, 400.0))
         self.assertIsNone(coordinates.last(self.scene))
 
+    def test_on_a_wall(self):
+        """Rounding puts a place on a wall inside or outside of the block."""
+        from realmodel.bl.display import coordinates
+
+        random = np.random.default_rng(3)
+        for aim in np.column_stack([random.uniform(5, 95, 40), np.zeros(40), random.uniform(12, 16, 40)]):
+            start = aim + random.uniform((-90, -300, -20), (90, -50, 20))
+            place = coordinates.under_ray(self.scene, start, aim - start)
+            self.assertEqual(place.block, "Sand")
+            self.assertGreater(place.thickness, 4.0)
+
     def test_along_a_ray_also_where_blocks_were_moved(self):
         from realmodel.bl.display import coordinates
 

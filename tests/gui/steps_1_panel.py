@@ -98,7 +98,7 @@ def cancel_a_build(walk):
     yield lambda: bpy.context.window_manager.realmodel.progress > 0.5 or idle()
     yield walk.redrawn()
     assert not idle(), "the build was over before it could be cancelled"
-    yield from walk.shot_while_working("building")
+    walk.shot("building")
     walk.key("ESC")
     yield idle
     assert volumes() == before
