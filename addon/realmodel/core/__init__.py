@@ -29,6 +29,7 @@ from .point_file import MeshFile, PointFile
 from .project import Project, Rock, Surface
 from .project_file import load_project
 from .section import Fence, Section
+from .structures.entries import Body, Fault
 from .surface_set import SurfaceSet, build_surfaces
 from .validation import ValidationReport
 from .variogram import Structure, Variogram
@@ -36,6 +37,7 @@ from .variogram import Structure, Variogram
 __all__ = [
     "Block",
     "BlockBoundary",
+    "Body",
     "Boreholes",
     "BuildFailed",
     "BuildWarning",
@@ -44,6 +46,7 @@ __all__ = [
     "Cut",
     "Erosion",
     "Estimate",
+    "Fault",
     "Fence",
     "InputRefused",
     "Interpolation",
