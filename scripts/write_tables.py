@@ -146,7 +146,7 @@ def _keys(settings, text):
 
 def written(text):
     """The text of a document with its tables as the add-on has them. Raises KeyError for a key not there."""
-    from realmodel.core.schema import PROJECT, READING, ROCK, SURFACE
+    from realmodel.core.schema import BODY, FAULT, PROJECT, READING, ROCK, SURFACE
 
     tables = {
         "rules": _rules,
@@ -155,7 +155,14 @@ def written(text):
         "rule_labels": _rule_labels,
         "operators": _operators,
     }
-    keys = {"project": PROJECT, "rock": ROCK, "surface": SURFACE, "reading": READING}
+    keys = {
+        "project": PROJECT,
+        "rock": ROCK,
+        "surface": SURFACE,
+        "fault": FAULT,
+        "body": BODY,
+        "reading": READING,
+    }
 
     def table(found):
         _, name, rows, _ = found.groups()

@@ -94,6 +94,7 @@ below = 90
 [[rock.surface]]
 name = "plane"
 points = "plain.csv"
+z_axis = "down"
 method = "plane"
 dip = 11.1
 dip_direction = 200

@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from realmodel.core import InputRefused, PointFile, load_library, load_project
 from realmodel.core.readers import read_mesh, read_point_file, read_points, read_region
+from realmodel.core.readers.fault_sticks import read_fault_points
 
 PROJECT = b"""format = 1
 name = "x"
@@ -57,11 +58,13 @@ BINARY_STL = bytes(80) + struct.pack("<I", 2) + 2 * struct.pack("<12fH", *range(
 GRID = b"ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1.5\nNODATA_value -9\n1 2 3\n4 -9 6e0\n"
 
 
+STICKS = b"1 2 3\n1 2 5.5\n999.000 999.000 999.000\n\n4 5 6\n4 5 7\n999 999 999\n"
 READERS = {
     "p.toml": (PROJECT, load_project),
     "library.toml": (LIBRARY, load_library),
     "p.csv": (POINTS, read_points),
     "g.asc": (GRID, lambda file: read_point_file(PointFile(file))),
+    "f.pol": (STICKS, lambda file: read_fault_points(PointFile(file))),
     "m.off": (OFF, read_mesh),
     "m.obj": (OBJ, read_mesh),
     "m.ts": (TSURF, read_mesh),

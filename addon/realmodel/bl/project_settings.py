@@ -13,7 +13,7 @@ import numpy as np
 from ..core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
 from ..core.project import rock_item, surface_item
 from ..core.rock_input import read_rocks
-from ..core.schema import READING, ROCK, SURFACE
+from ..core.schema import MESH_READING, READING, ROCK, SURFACE
 from ..core.work import run
 from . import (
     borehole_picks,
@@ -171,7 +171,7 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
         if row.source == "POINTS_FILE":
             surface.points = PointFile(path, **reading_text.options(row))
         else:
-            surface.mesh = MeshFile(path, method_settings.value(row, "units", READING))
+            surface.mesh = MeshFile(path, *(method_settings.value(row, key, READING) for key in MESH_READING))
         composed.read[place] = stored_arrays.file_stamp(path)
     elif stored:
         _take_stored(surface, stored)

@@ -13,7 +13,9 @@ _ENTRY = re.compile(r'\s*("[^"]*"|[^,"]+?)\s*(?:,|$)')  # of a list with commas
 
 def options(row):
     """The keyword arguments of PointFile, or MeshFile, that a surface's row asks for. Raises InputRefused."""
-    given = {key: method_settings.value(row, key, READING) for key in ("decimal", "height", "layer", "units")}
+    said = ("decimal", "height", "layer", "units", "z_axis")
+    given = {key: method_settings.value(row, key, READING) for key in said}
+    given["z_axis"] = None if given["z_axis"] == READING["z_axis"].default else given["z_axis"]
     columns = [column(getattr(row, f"column_{axis}")) for axis in "xyz"]
     if any(columns) and not all(columns):
         raise InputRefused("only some of its columns x, y and z are set", advice="set all three, or none")
@@ -43,7 +45,9 @@ def fill(row, given):
     row.nodata = ", ".join(map(value_text, nodata if isinstance(nodata, (list, tuple)) else [nodata]))
     units = given.get("units")
     units = units if isinstance(units, dict) else {"xy": units, "z": units}
-    for key, part in (("decimal", given.get("decimal")), ("units", {"xy": None, "z": None} | units)):
+    given = {**given, "units": {"xy": None, "z": None} | units}
+    for key in ("decimal", "units", "z_axis"):
+        part = given.get(key)
         method_settings.set_value(row, key, READING, part)
     row.height_attribute, row.layer = given.get("height") or "", given.get("layer") or ""
 

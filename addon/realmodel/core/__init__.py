@@ -2,6 +2,7 @@
 """RealModel without Blender: from a project to a model of polyhedral cells, and out of it to files."""
 
 from .blocks import Block, BlockBoundary
+from .booleans import Intersection, intersect
 from .boreholes import Boreholes
 from .build import build
 from .build_warning import BuildWarning
@@ -28,6 +29,7 @@ from .point_file import MeshFile, PointFile
 from .project import Project, Rock, Surface
 from .project_file import load_project
 from .section import Fence, Section
+from .structures.entries import Body, Fault
 from .surface_set import SurfaceSet, build_surfaces
 from .validation import ValidationReport
 from .variogram import Structure, Variogram
@@ -35,6 +37,7 @@ from .variogram import Structure, Variogram
 __all__ = [
     "Block",
     "BlockBoundary",
+    "Body",
     "Boreholes",
     "BuildFailed",
     "BuildWarning",
@@ -43,9 +46,11 @@ __all__ = [
     "Cut",
     "Erosion",
     "Estimate",
+    "Fault",
     "Fence",
     "InputRefused",
     "Interpolation",
+    "Intersection",
     "Library",
     "MapLayer",
     "MeshEstimate",
@@ -71,6 +76,7 @@ __all__ = [
     "estimate",
     "estimate_mesh",
     "interpolate",
+    "intersect",
     "load_library",
     "load_project",
     "mesh_region",

@@ -47,6 +47,10 @@ def checked(option: str, setting: Setting, value):
         if not _is_whole(value) or not least <= int(value) < 2**31:
             raise OptionRefused(f"'{option}' must be a whole number{bound}, not {value!r}", option=option)
         return int(value)
+    if setting.kind == "truth":
+        if not isinstance(value, (bool, np.bool_)):
+            raise OptionRefused(f"'{option}' must be true or false, not {value!r}", option=option)
+        return bool(value)
     if setting.kind == "text":
         if not is_name(value):
             raise OptionRefused(f"'{option}' must be a name, not {value!r}", option=option)

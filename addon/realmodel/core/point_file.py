@@ -31,6 +31,7 @@ class PointFile:
     decimal: "." or ","; None: told from the file.
     nodata: no-data values: a number, a text or a list of them; such points are left out.
     units: of the file, "ft" for all three coordinates, or {"xy": "m", "z": "ft"}; None: those of the model.
+    z_axis: "up", or "down" where z is a depth.
     height: the attribute of features that holds their height; None: the z of their positions.
     layer: of a GeoPackage, needed where it has several.
     columns, separator and decimal are for tables only, height and layer for shapes.
@@ -45,6 +46,7 @@ class PointFile:
     units: str | Mapping | None = None
     height: str | None = None
     layer: str | None = None
+    z_axis: str = "up"
 
     @builtins.property
     def nodata_values(self) -> list:
@@ -92,23 +94,28 @@ class PointFile:
             if name is not None and not (isinstance(name, str) and name.strip()):
                 raise ReadingRefused(key, f"'{key}' must be a name, not {name!r}")
         check_units(self.units)
+        check_z_axis(self.z_axis)
 
 
 @dataclass(frozen=True)
 class MeshFile:
-    """A ready mesh (OFF) in units of its own, as those of a PointFile; None: those of the model."""
+    """A ready mesh in units of its own and with its own z axis, as those of a PointFile; None: units of the
+    model."""
 
     file: str | Path
     units: str | Mapping | None = None
+    z_axis: str = "up"
 
     def check(self) -> None:
-        """Raises ReadingRefused for a unit that is not known."""
+        """Raises ReadingRefused for a unit or an axis that is not known."""
         check_units(self.units)
+        check_z_axis(self.z_axis)
 
     def scale(self, model_unit: str) -> tuple[float, float]:
         """What its plan and its heights are multiplied by."""
         units = self.units if isinstance(self.units, Mapping) else {"xy": self.units, "z": self.units}
-        return factor(units.get("xy"), model_unit), factor(units.get("z"), model_unit)
+        upward = -1.0 if self.z_axis == "down" else 1.0
+        return factor(units.get("xy"), model_unit), upward * factor(units.get("z"), model_unit)
 
 
 def list_of(value) -> list:
@@ -146,6 +153,11 @@ def check_units(units) -> None:
             raise ReadingRefused("units", what, 'its parts are xy and z: units = { z = "ft" }')
         if unit is not None and unit not in METRES:
             raise ReadingRefused("units", f"unknown unit {unit!r}", f"there are {', '.join(METRES)}")
+
+
+def check_z_axis(axis) -> None:
+    if axis not in ("up", "down"):
+        raise ReadingRefused("z_axis", f'\'z_axis\' must be "up" or "down", not {axis!r}')
 
 
 def _is_value(value) -> bool:

@@ -30,6 +30,8 @@ from .readers.point_input import companions
 from .region_rings import is_several
 from .rules import DEFAULT_RULE
 from .schema import ROCK, SURFACE
+from .structures.check import check_structures
+from .structures.entries import Body, Fault
 from .toml_table import TomlDocument
 from .units import METRES, MODEL_UNIT
 
@@ -197,9 +199,10 @@ class Rock:
 
 @dataclass
 class Project:
-    """Rock masses that make one model, and the library of their properties.
+    """Rock masses that make one model, the faults and bodies in them, and the library of their properties.
 
-    units: of the model's lengths, which files in other units are brought to.
+    units: of the model's lengths, which files in other units are brought to. Of bodies that overlap the later
+    one counts.
     """
 
     name: str
@@ -207,6 +210,8 @@ class Project:
     library: Library | None = None
     path: Path | None = None
     units: str = MODEL_UNIT
+    faults: list[Fault] = field(default_factory=list)
+    bodies: list[Body] = field(default_factory=list)
 
     def input_files(self) -> list[Path]:
         """Every file that this project reads, itself included."""
@@ -219,6 +224,7 @@ class Project:
             for surface in rock.surfaces:
                 if surface.point_file is not None:
                     files += companions(Path(surface.point_file.file))
+        files += [entry.input_file for entry in (*self.faults, *self.bodies)]
         return [Path(file) for file in files if file is not None]
 
     def stage(self, m: int) -> Project:
@@ -261,6 +267,7 @@ def check_project(project: Project) -> None:
             raise _refuse(rock.source, rock_item(rock), "another rock mass has this name", "name", advice)
         seen.add(rock.name)
         _check_rock(project, rock)
+    check_structures(project)
 
 
 def _refuse(
@@ -357,12 +364,13 @@ def _check_surface(project: Project, rock: Rock, surface: Surface) -> None:
     def refuse(what: str, key: str | None = None, advice: str | None = None) -> InputRefused:
         return _refuse(surface.source, item, what, key, advice)
 
-    _check_shape(rock, surface, refuse)
+    _check_shape(rock, surface, refuse, bool(project.faults))
     _check_values(surface, SURFACE, ("minimum_thickness", "rule", "property", "block"), refuse)
     _check_property(project.library, surface, refuse)
 
 
-def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
+def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
+    """continues: a ready mesh may have a method too, by which it is continued to faults."""
     arrays = surface.vertices is not None or surface.triangles is not None
     shapes = [
         name
@@ -390,15 +398,30 @@ def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
         except ReadingRefused as error:
             raise refuse(error.what, error.key, error.advice) from error
         given = [*(["method"] if surface.method is not None else []), *surface.options]
+        given = [] if continues else given
         given += ["minimum_thickness"] if surface.minimum_thickness is not None else []
         if given:
             raise refuse(f"'{given[0]}' has no effect, as a mesh is not interpolated", given[0])
+        if continues:
+            _check_method(surface, refuse)
         return
     try:
         if surface.point_file is not None:
             surface.point_file.check()
     except ReadingRefused as error:
         raise refuse(error.what, error.key, error.advice) from error
+    _check_method(surface, refuse, no_points)
+    length = rock.edge_length if rock.triangles is None else rock.triangles
+    for key, value in (("region", rock.region), ("edge_length", length)):
+        if value is None:
+            raise refuse(
+                f"its points cannot be interpolated: {rock_item(rock)} has no {key}",
+                "points",
+                f"give the rock mass {'an' if key == 'edge_length' else 'a'} {key}",
+            )
+
+
+def _check_method(surface: Surface, refuse, no_points: bool = False) -> None:
     try:
         check_method(surface.method or DEFAULT_METHOD)
         if no_points and surface.needs_points:
@@ -408,14 +431,6 @@ def _check_shape(rock: Rock, surface: Surface, refuse) -> None:
         surface.method_options()
     except OptionRefused as error:
         raise refuse(error.what, error.option, error.advice) from error
-    length = rock.edge_length if rock.triangles is None else rock.triangles
-    for key, value in (("region", rock.region), ("edge_length", length)):
-        if value is None:
-            raise refuse(
-                f"its points cannot be interpolated: {rock_item(rock)} has no {key}",
-                "points",
-                f"give the rock mass {'an' if key == 'edge_length' else 'a'} {key}",
-            )
 
 
 def _check_references(rock: Rock) -> None:

@@ -17,8 +17,9 @@ from .methods import OPTIONS
 from .plan_input import is_place_elsewhere
 from .point_file import MeshFile, PointFile
 from .project import Project, Rock, Source, Surface, check_project, is_file
-from .schema import PROJECT, READING, ROCK, SURFACE
+from .schema import BODY, FAULT, MESH_READING, PROJECT, READING, ROCK, SURFACE
 from .setting import Settings
+from .structures.entries import Body, Fault
 from .toml_table import Table, TomlDocument
 from .units import METRES, MODEL_UNIT
 
@@ -46,10 +47,12 @@ def load_project(path: str | Path) -> Project:
             raise top.refuse(f"file not found: {library_path}", "library", "check the path")
         library = load_library(library_path)
     rocks = [_read_rock(table, path.parent) for table in top.tables("rock", "rock")]
+    faults = [_read_fault(table, path.parent) for table in _optional(top, "fault")]
+    bodies = [_read_body(table, path.parent) for table in _optional(top, "body")]
     units = top.text("units") or MODEL_UNIT
     if units not in METRES:
         raise top.refuse(f"unknown unit '{units}'", "units", f"there are {', '.join(METRES)}")
-    project = Project(name, rocks, library, path, units)
+    project = Project(name, rocks, library, path, units, faults, bodies)
     check_project(project)
     return project
 
@@ -204,15 +207,6 @@ def _read_surface(table: Table, folder: Path) -> Surface:
     name = table.text("name", required=True)
     table.item = f"{table.item.rpartition(', ')[0]}, surface '{name}'"
     table.allow_only(SURFACE)
-    files = {key: folder / table.text(key) for key in ("points", "mesh") if key in table}
-    reading = {key: table.content[key] for key in READING if key in table}
-    if "mesh" in files and "units" in reading and "points" not in files:
-        files["mesh"] = MeshFile(files["mesh"], reading.pop("units"))
-    if reading and "points" not in files:
-        key = next(iter(reading))
-        raise table.refuse(f"'{key}' needs a file of points", key)
-    if reading:
-        files["points"] = PointFile(files["points"], **reading)
     options = {key: table.content[key] for key in OPTIONS if key in table}
     return Surface(
         name=name,
@@ -220,5 +214,62 @@ def _read_surface(table: Table, folder: Path) -> Surface:
         options=options,
         source=Source(table.document, table.path),
         **_values(table, SURFACE, ("rule", "property", "block", "minimum_thickness")),
-        **files,
+        **_shape_files(table, folder),
     )
+
+
+def _shape_files(table: Table, folder: Path) -> dict:
+    """The files of points and of a mesh that a table names, with how they are read."""
+    files = {key: folder / table.text(key) for key in ("points", "mesh") if key in table}
+    reading = {key: table.content[key] for key in READING if key in table}
+    if "mesh" in files and "points" not in files:
+        said = {key: reading.pop(key) for key in MESH_READING if key in reading}
+        if said:
+            files["mesh"] = MeshFile(files["mesh"], **said)
+    if reading and "points" not in files:
+        key = next(iter(reading))
+        raise table.refuse(f"'{key}' needs a file of points", key)
+    if reading:
+        files["points"] = PointFile(files["points"], **reading)
+    return files
+
+
+def _optional(top: Table, key: str) -> list[Table]:
+    return top.tables(key, key) if key in top else []
+
+
+def _read_fault(table: Table, folder: Path) -> Fault:
+    name = table.text("name", required=True)
+    table.item = f"fault '{name}'"
+    table.allow_only(FAULT)
+    stick = table.content.get("stick")
+    if stick is not None and (isinstance(stick, bool) or not isinstance(stick, (str, int))):
+        raise table.refuse(f"'stick' must be a column, by name or by number from 1, not {stick!r}", "stick")
+    return Fault(
+        name,
+        stick=stick,
+        ends_at=_names(table, "ends_at"),
+        rocks=_names(table, "rocks"),
+        source=Source(table.document, table.path),
+        **_values(table, FAULT, ("youngest", "dies_out", "extend")),
+        **_shape_files(table, folder),
+    )
+
+
+def _read_body(table: Table, folder: Path) -> Body:
+    name = table.text("name", required=True)
+    table.item = f"body '{name}'"
+    table.allow_only(BODY)
+    return Body(
+        name,
+        source=Source(table.document, table.path),
+        **_values(table, BODY, ("after", "property", "void", "rock")),
+        **_shape_files(table, folder),
+    )
+
+
+def _names(table: Table, key: str) -> tuple[str, ...]:
+    names = table.content.get(key, [])
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise table.refuse(f"'{key}' must be a list of names", key, f'write {key} = ["..."]')
+    return tuple(names)

@@ -22,6 +22,7 @@ from .project import Project, Rock, Surface, check_project
 from .region_rings import is_several
 from .rock_input import checked_triangulation
 from .rules import DEFAULT_RULE
+from .structures.entries import Body, Fault
 from .units import MODEL_UNIT
 
 _NOT_IN_FILE_NAMES = re.compile(r"[^\w.-]+")
@@ -31,7 +32,8 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
     """Writes a project whose shapes are arrays to a project file; returns all files written.
 
     Its library goes to NAME_library.toml beside it, each mesh to an OFF and the points of each surface to a
-    CSV file, named after the project file, the rock mass and the surface. All appear whole or none does.
+    CSV file, named after the project file, the rock mass and the surface; faults and bodies to OFF files. All
+    appear whole or none does.
     Raises UsageError for another ending than .toml, InputRefused for a project that could not be built,
     OutputFailed.
     """
@@ -70,6 +72,9 @@ def save_project(project: Project, path: str | Path) -> list[Path]:
             for surface in rock.surfaces:
                 shape = _shape_file(rock, surface, beside, write)
                 lines += ["", "[[rock.surface]]", *_surface_lines(surface, shape)]
+        for kind, entries in (("fault", project.faults), ("body", project.bodies)):
+            for entry in entries:
+                lines += ["", f"[[{kind}]]", *_structure_lines(kind, entry, beside, write)]
         with outputs.file(path) as file:
             file.write(("\n".join(lines) + "\n").encode())
     return written
@@ -151,6 +156,15 @@ def _surface_lines(surface: Surface, shape: tuple[str, str] | None) -> list[str]
         "block": given.block,
     }
     return _lines(values)
+
+
+def _structure_lines(kind: str, entry: Fault | Body, beside, write) -> list[str]:
+    if entry.vertices is None:
+        raise UsageError(f"{kind} '{entry.name}': its file has not been read; build the model first")
+    mesh = write(beside(kind, entry.name, ending=".off"), off_text(entry.vertices, entry.triangles))
+    keys = ("youngest", "ends_at", "dies_out", "rocks")
+    keys = keys if kind == "fault" else ("after", "property", "void", "rock")
+    return _lines({"name": entry.name, "mesh": mesh} | {key: getattr(entry, key) or None for key in keys})
 
 
 def _lines(values: Mapping) -> list[str]:

@@ -19,6 +19,7 @@ from .planar_mesh import mesh_rings, triangulate_rings
 from .project import Project, Rock, Surface, rock_item, surface_item
 from .readers import Picks, read_boreholes, read_mesh, read_point_file
 from .readers.text import no_step
+from .structures.rock_structure import RockStructure
 from .surface_heights import Triangulation, give_heights, interpolation_order, named_surfaces
 from .work import Work, run
 from .wrong_sides import points_too_low
@@ -42,6 +43,7 @@ class RockInput:
     surface None, or the face of its file that each triangle is of. told: of each interpolated surface what is
     known of its vertices (surface_heights.told_of). warnings: what reading and interpolating
     had to tell. whole: of a stage, what it is a part of: its surfaces may be made from younger ones.
+    structure: the compartments of a rock mass with faults, and their sheets; a surface is all its sheets.
     """
 
     rock: Rock
@@ -52,6 +54,7 @@ class RockInput:
     warnings: list[BuildWarning] = field(default_factory=list)
     whole: RockInput | None = None
     told: dict[int, dict[str, np.ndarray]] = field(default_factory=dict)
+    structure: RockStructure | None = None
 
     def stage(self, m: int) -> RockInput:
         """The same with the surfaces up to m only; the region stays what it was. A surface made from one that
@@ -79,12 +82,15 @@ class RockInput:
             [warning for warning in self.warnings if warning.surface not in gone],
             self,
             {number: told for number, told in self.told.items() if number <= m},
+            None if self.structure is None else self.structure.stage(m),
         )
 
 
 def read_rocks(work: Work, project: Project) -> list[RockInput]:
     """Reads every file of a project. The surfaces that have points are not interpolated yet: their entry
     in `surfaces` is None."""
+    if project.faults or project.bodies:
+        raise InputRefused("faults and bodies cannot be built yet", file=project.path)
     total = sum(1 + len(rock.surfaces) for rock in project.rocks)
     done = 0
     inputs = []

@@ -30,7 +30,7 @@ def _without(fault):
 
 _UNITS = {"": ("Model Unit", "The unit of the model")} | {unit: (unit, UNIT_NAMES[unit]) for unit in METRES}
 
-PROJECT = dict.fromkeys(("format", "name", "units", "library", "rock"), _OTHER)
+PROJECT = dict.fromkeys(("format", "name", "units", "library", "rock", "fault", "body"), _OTHER)
 
 ROCK = {
     "name": Setting(kind="text", label="Name", tip="Name of the rock mass"),
@@ -142,6 +142,16 @@ READING = {
             ),
         },
     ),
+    "z_axis": Setting(
+        "up",
+        kind="word",
+        label="Z Axis",
+        tip="Direction in which z of the file increases",
+        words={
+            "up": ("Up", "Z is an elevation"),
+            "down": ("Down", "Z is a depth: it changes its sign"),
+        },
+    ),
     "height": Setting(
         kind="column",
         label="Elevation Field",
@@ -150,6 +160,8 @@ READING = {
     ),
     "layer": Setting(kind="layer", label="Layer", tip="Layer of a GeoPackage with several layers"),
 }
+
+MESH_READING = ("units", "z_axis")  # of READING, for meshes too
 
 SURFACE = {
     "name": Setting(kind="text", label="Name", tip="Name of the surface"),
@@ -193,5 +205,74 @@ SURFACE = {
         label="Block",
         tip='Name of the block beneath this surface; empty: the name of the surface and "block"',
         more='The block on the base is "base block"',
+    ),
+}
+
+FAULT = {
+    "name": Setting(kind="text", label="Name", tip="Name of the fault"),
+    "mesh": _OTHER,
+    "points": _OTHER,
+    **READING,
+    "stick": Setting(
+        kind="column",
+        label="Stick Column",
+        tip="Column of a table that numbers or names the fault sticks",
+        more="Without it, and without a column named `stick`, the points are scattered",
+    ),
+    "extend": Setting(
+        0.0,
+        kind="length",
+        label="Extend",
+        tip="Distance by which the fitted surface continues beyond its points",
+        low=0.0,
+        more="Default 0",
+    ),
+    "youngest": Setting(
+        kind="text",
+        label="Youngest",
+        tip="Youngest surface that the fault displaces; empty: all surfaces",
+        more="Younger surfaces ignore the fault",
+    ),
+    "ends_at": _OTHER,
+    "dies_out": Setting(
+        False,
+        kind="truth",
+        label="Dies Out",
+        tip="The fault ends inside the rock; its displacement vanishes there",
+        more="Default `false`: its border must lie outside the rock that it displaces",
+    ),
+    "rocks": _OTHER,
+}
+
+BODY = {
+    "name": Setting(kind="text", label="Name", tip="Name of the body, and of its block"),
+    "mesh": _OTHER,
+    **{key: READING[key] for key in MESH_READING},
+    "after": Setting(
+        kind="text",
+        label="After",
+        tip="Surface after which the body came; empty: the youngest",
+        more="Younger surfaces erode and bury the body",
+    ),
+    "property": Setting(
+        0,
+        kind="whole",
+        label="Property",
+        tip="Library ID of the rock of the body; 0: none",
+        name="property_id",
+        more="See [Library](#library)",
+    ),
+    "void": Setting(
+        False,
+        kind="truth",
+        label="Void",
+        tip="The body takes rock away and leaves nothing, as a tunnel does",
+        more="Default `false`",
+    ),
+    "rock": Setting(
+        kind="text",
+        label="Rock Mass",
+        tip="Rock mass that the body is in; empty: all",
+        more="Default: all that have the surface `after`",
     ),
 }

@@ -29,7 +29,7 @@ def named_surfaces(rock: Rock, number: int) -> dict[str, int]:
     return {name: numbers[name] for name in names}
 
 
-def _needs(rock: Rock, number: int) -> list[int]:
+def needed_surfaces(rock: Rock, number: int) -> list[int]:
     """The surfaces that have to have heights before one of them."""
     needs = list(named_surfaces(rock, number).values())
     if rock.surfaces[number].minimum_thickness is not None:
@@ -45,7 +45,7 @@ def interpolation_order(rock: Rock, last: int | None = None) -> list[int]:
     def visit(number: int) -> None:
         if number in order:
             return
-        for needed in _needs(rock, number):
+        for needed in needed_surfaces(rock, number):
             visit(needed)
         order.append(number)
 

@@ -5,7 +5,7 @@ import bpy
 
 from ..bl import library_rows, method_settings, project_settings, settings, surface_figures, units
 from ..core.methods import METHODS, OPTIONS, STRUCTURE
-from ..core.schema import READING, SURFACE
+from ..core.schema import MESH_READING, READING, SURFACE
 from ..core.variogram import VARIOGRAMS
 from . import setting_rows
 from .panel import OfAModel, TabPanel, file_field, hint, wrapped
@@ -195,7 +195,7 @@ class REALMODEL_PT_surface_reading(_OfASurface, TabPanel, bpy.types.Panel):
     def draw_in(self, layout, context, _group):
         surface = settings.active_surface(context.scene)
         hint(layout, "Most files need no options.")
-        for key in READING if surface.source == "POINTS_FILE" else ("units",):
+        for key in READING if surface.source == "POINTS_FILE" else MESH_READING:
             if key == "where":
                 _draw_filters(layout, surface)
             else:

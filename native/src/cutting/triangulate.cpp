@@ -201,7 +201,7 @@ bool Ring::blocks(std::int32_t other, std::int32_t a, std::int32_t tip, std::int
     if (is_beyond(c, a, ca)) return false;
     if (care == Care::kStrict && (ab == 0 || bc == 0 || ca == 0)) return false;
     // where a corner that turns left lies inside, one that does not lies inside as well
-    return turn(link(other).previous, other, link(other).next) <= 0;
+    return care == Care::kFat || turn(link(other).previous, other, link(other).next) <= 0;
 }
 
 bool Ring::is_ear(std::int32_t tip, Care care) {

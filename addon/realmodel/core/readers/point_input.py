@@ -85,10 +85,18 @@ def read_point_file(
         if rows.missing:
             warnings.append(f"{file}: {rows.missing} points have no value and are left out")
     warnings += [f"{file}: {text}" for text in _like_no_value(points[:, 2])]
+    return in_model(points, given, model_unit), warnings
+
+
+def in_model(points: np.ndarray, given: PointFile, model_unit: str) -> np.ndarray:
+    """Points (P, 3) of a file in the model's unit, z upward."""
+    points = np.array(points, np.float64, order="C")
     for columns, unit in ((slice(0, 2), given.plan_unit), (slice(2, 3), given.height_unit)):
         if (scale := factor(unit, model_unit)) != 1.0:
             points[:, columns] *= scale
-    return np.ascontiguousarray(points), warnings
+    if given.z_axis == "down":
+        points[:, 2] *= -1.0
+    return points
 
 
 def _like_no_value(z: np.ndarray) -> list[str]:

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fault sticks and scattered points of a fault: files of polylines, tables with a column of sticks, and all
+files that points are read from."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputRefused
+from ..point_file import PointFile
+from ..units import MODEL_UNIT
+from .map_input import is_map_layer
+from .point_input import RASTER_FORMATS, head_of, in_model, read_point_file
+from .points import KNOWN, body_rows, open_table
+from .table_layout import plain_name
+from .text import LINES_AT_ONCE, Step, no_step, read_bytes, read_text
+
+_END_OF_STICK = 999.0  # in all three columns
+_END_LINE = re.compile(rb"^\s*(?:999(?:\.0*)?\s+){2}999(?:\.0*)?\s*$", re.MULTILINE)
+_COLUMN = "stick"  # that tells sticks apart where nothing else is said
+
+
+def read_fault_points(
+    given: PointFile, stick: str | int | None = None, model_unit: str = MODEL_UNIT, step: Step = no_step
+) -> tuple[list[np.ndarray] | np.ndarray, list[str]]:
+    """Sticks, a list of (N, 3) float64 each, or scattered points (P, 3), in the model's unit, and what to
+    tell about them.
+
+    A file of polylines has x y z in each line, and 999 999 999 ends a stick. stick: the column of a table, by
+    name or by number from 1, in which the rows of one stick say the same; without it a column named "stick"
+    is taken, and where there is none the points are scattered. Raises InputRefused naming the file, and the
+    line where it has some.
+    """
+    file = Path(given.file)
+    head = head_of(file)
+    if any(known.begins(head) for known in RASTER_FORMATS) or is_map_layer(file, head):
+        if stick is not None:
+            raise InputRefused("it is no table, so 'stick' has no effect", file=file, advice="take it out")
+        return read_point_file(given, model_unit, step)
+    if file.suffix.lower() == ".pol" or _END_LINE.search(read_bytes(file)):
+        sticks = [in_model(points, given, model_unit) for points in _pol_sticks(file, step)]
+        return sticks, []
+    column = _stick_column(given, file, stick)
+    if column is None:
+        return read_point_file(given, model_unit, step)
+    return _table_sticks(given, file, column, model_unit)
+
+
+def _pol_sticks(file: Path, step: Step) -> list[np.ndarray]:
+    sticks, points = [], []
+    lines = read_text(file).split("\n")
+    for number, line in enumerate(lines, 1):
+        if number % LINES_AT_ONCE == 0:
+            step(number / len(lines))
+        words = line.partition("#")[0].split()
+        if not words:
+            continue
+        try:
+            point = [float(word) for word in words[:3]]
+        except ValueError:
+            raise InputRefused(f"'{line.strip():.40}' cannot be read", file=file, line=number) from None
+        if len(point) < 3:
+            raise InputRefused(f"3 values are needed, there are {len(point)}", file=file, line=number)
+        if not np.isfinite(point).all():
+            raise InputRefused("a coordinate is not finite", file=file, line=number)
+        if all(value == _END_OF_STICK for value in point):
+            sticks.append(points)
+            points = []
+        else:
+            points.append(point)
+    sticks = [np.array(stick) for stick in (*sticks, points) if stick]
+    if not sticks:
+        raise InputRefused("there are no points in it", file=file)
+    return sticks
+
+
+def _stick_column(given: PointFile, file: Path, stick: str | int | None) -> str | None:
+    """The column of sticks as `where` of a PointFile names it; None where there is none."""
+    wanted = () if stick is None else (stick,)
+    table = open_table(file, given.separator, (*(given.columns or ()), *wanted), given.where, KNOWN)
+    if stick is not None:
+        return str(table.column(stick) + 1)
+    names = [plain_name(name) for name in table.layout.names or ()]
+    return str(names.index(_COLUMN) + 1) if _COLUMN in names else None
+
+
+def _table_sticks(
+    given: PointFile, file: Path, column: str, model_unit: str
+) -> tuple[list[np.ndarray], list[str]]:
+    table = open_table(file, given.separator, given.columns or (), given.where, KNOWN)
+    at = int(column) - 1
+    names = dict.fromkeys(row[at] for row in body_rows(table) if at < len(row))
+    sticks, warnings = [], []
+    for name in names:
+        points, told = read_point_file(replace(given, where={**given.where, column: name}), model_unit)
+        sticks.append(points)
+        warnings += told
+    return sticks, list(dict.fromkeys(warnings))

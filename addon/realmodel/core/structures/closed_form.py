@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is at a point of a rock mass with faults and bodies, from its sheets alone: nothing is built.
+
+An evaluation of its own, for tests and for the proof of a model: it shares nothing with the builder.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..rules import RULES
+from .exact import orient2d, orient3d
+from .sides import RockFaults
+
+Triangulation = tuple[np.ndarray, np.ndarray]
+
+AIR = -1
+_BASEMENT = -2  # below the first surface: no block, but there to be cut
+_AT_ONCE = 1 << 20  # pairs of a point and a triangle
+_EQUAL = 1e-12  # of a distance: as far as another
+
+
+@dataclass(frozen=True)
+class BodyOfRock:
+    """A closed body with triangles facing outward. after: the surface of the rock mass after which it came.
+    block: its number; AIR for a void."""
+
+    shape: Triangulation
+    after: int
+    block: int
+
+
+@dataclass(frozen=True)
+class ClosedForm:
+    """One rock mass. rules: of its surfaces, oldest first. compartments: (C, F) int8 rows of sides; sheets:
+    of each compartment one triangulation for each surface. blocks: the number of the block beneath each
+    surface (AIR: none). region: triangles in plan that bound it, or None."""
+
+    rules: Sequence[str]
+    faults: RockFaults
+    compartments: np.ndarray
+    sheets: Sequence[Sequence[Triangulation]]
+    blocks: Sequence[int]
+    base_elevation: float | None = None
+    bodies: Sequence[BodyOfRock] = ()
+    region: Triangulation | None = None
+
+    def compartments_of(self, points: np.ndarray) -> np.ndarray:
+        """(N,) the compartment that each point lies in; -1 for none."""
+        points = np.asarray(points, np.float64).reshape(-1, 3)
+        columns = [nearest_side(points, *shape) for shape in self.faults.shapes]
+        sides = np.column_stack(columns) if columns else np.zeros((len(points), 0), np.int8)
+        sides = self.faults.without_dropped(sides)
+        found = np.full(len(points), -1, np.int64)
+        for number, row in enumerate(self.compartments):
+            found[(sides == row).all(axis=1)] = number
+        return found
+
+    def blocks_at(self, points: np.ndarray) -> np.ndarray:
+        """(N,) the block at each point (N, 3); AIR for none. Points of no compartment are in none."""
+        points = np.asarray(points, np.float64).reshape(-1, 3)
+        where = self.compartments_of(points)
+        blocks = np.full(len(points), AIR, np.int64)
+        insides = [winding_numbers(points, *body.shape) != 0 for body in self.bodies]
+        for number, sheets in enumerate(self.sheets):
+            here = np.flatnonzero(where == number)
+            if len(here):
+                blocks[here] = self._history(points[here], sheets, [inside[here] for inside in insides])
+        if self.base_elevation is not None:
+            blocks[points[:, 2] < self.base_elevation] = AIR
+        if self.region is not None:
+            blocks[np.isnan(heights_at(points[:, :2], *_flat(self.region)))] = AIR
+        return blocks
+
+    def _history(self, points: np.ndarray, sheets, insides) -> np.ndarray:
+        """The events oldest first, at points of one compartment."""
+        state = np.full(len(points), AIR, np.int64)
+        covered = np.zeros(len(points), bool)
+        protected = np.zeros(len(points), bool)
+        for k, (rule, sheet) in enumerate(zip(self.rules, sheets, strict=True)):
+            heights = heights_at(points[:, :2], *sheet)
+            exists = ~np.isnan(heights)
+            below, above = exists & (points[:, 2] < heights), exists & (points[:, 2] > heights)
+            if RULES[rule].cuts:
+                state[above & ~protected] = AIR
+            oldest = self.blocks[0] if k == 0 and self.base_elevation is not None else _BASEMENT
+            filled = below & (state == AIR)
+            state[filled] = np.where(covered, self.blocks[k], oldest)[filled]
+            covered |= exists
+            if RULES[rule].protects:
+                protected |= below | (exists & (state != AIR))
+            for body, inside in zip(self.bodies, insides, strict=True):
+                if body.after == k:
+                    state[inside & (state != _BASEMENT)] = body.block
+        state[state == _BASEMENT] = AIR
+        return state
+
+
+def _flat(region: Triangulation) -> Triangulation:
+    vertices, triangles = region
+    return np.column_stack([vertices[:, :2], np.zeros(len(vertices))]), triangles
+
+
+def heights_at(plan: np.ndarray, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(N,) heights of a surface at plan points (N, 2); NaN where it has no triangle there (exact)."""
+    heights = np.full(len(plan), np.nan)
+    for points, rows in plan_candidates(plan, vertices[triangles]):
+        a, b, c = vertices[triangles[rows]].transpose(1, 0, 2)
+        p = plan[points]
+        turns = [orient2d(u[:, :2], v[:, :2], p) for u, v in ((a, b), (b, c), (c, a))]
+        within = np.all([turn >= 0 for turn in turns], axis=0) | np.all([turn <= 0 for turn in turns], axis=0)
+        within &= np.any(turns, axis=0)
+        heights[points[within]] = heights_in_plane(a[within], b[within], c[within], p[within])
+    return heights
+
+
+def heights_in_plane(a, b, c, plan) -> np.ndarray:
+    """(N,) heights of the planes through three points each, at plan points."""
+    (ux, uy, uz), (vx, vy, vz) = (b - a).T, (c - a).T
+    x, y = (plan - a[:, :2]).T
+    area = ux * vy - uy * vx
+    return a[:, 2] + ((x * vy - y * vx) * uz + (ux * y - uy * x) * vz) / area
+
+
+def plan_candidates(plan: np.ndarray, corners: np.ndarray):
+    """Pairs of plan points (N, 2) and polygons (T, K, 3) whose boxes they are in, some at a time: rows of the
+    points and of the polygons."""
+    if not len(plan) or not len(corners):
+        return
+    low, high = corners[:, :, :2].min(axis=1), corners[:, :, :2].max(axis=1)
+    origin, size = low.min(axis=0), np.ptp(np.concatenate([low, high]), axis=0)
+    count = np.clip(int(np.sqrt(len(corners))), 1, 512)
+    step = np.where(size > 0, size / count, 1.0)
+    first, last = ((np.clip((at - origin) / step, 0, count - 1)).astype(int) for at in (low, high))
+    spans = last - first + 1
+    each = spans[:, 0] * spans[:, 1]
+    owner = np.repeat(np.arange(len(corners)), each)
+    at = np.arange(each.sum()) - np.repeat(np.cumsum(each) - each, each)
+    cell = (first[owner, 0] + at // spans[owner, 1]) * count + first[owner, 1] + at % spans[owner, 1]
+    order = np.argsort(cell, kind="stable")
+    owner, begin = owner[order], np.searchsorted(cell[order], np.arange(count * count + 1))
+    inside = ((plan >= origin) & (plan <= origin + size)).all(axis=1)
+    places = np.clip((plan - origin) / step, 0, count - 1).astype(int)
+    places = places[:, 0] * count + places[:, 1]
+    number = np.where(inside, begin[places + 1] - begin[places], 0)
+    ends = np.cumsum(number)
+    start = 0
+    while start < len(plan):
+        stop = max(start + 1, int(np.searchsorted(ends, ends[start] - number[start] + _AT_ONCE, "right")))
+        some = np.arange(start, stop)
+        points = np.repeat(some, number[some])
+        at = np.arange(len(points)) - np.repeat(np.cumsum(number[some]) - number[some], number[some])
+        rows = owner[begin[places[points]] + at]
+        near = ((plan[points] >= low[rows]) & (plan[points] <= high[rows])).all(axis=1)
+        if near.any():
+            yield points[near], rows[near]
+        start = stop
+
+
+def winding_numbers(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(N,) how often a closed surface goes around each point: the signed count of its triangles above (exact;
+    of points on an edge in plan as if they were moved by less than any distance)."""
+    found = np.zeros(len(points), np.int64)
+    for rows, above in plan_candidates(points[:, :2], vertices[triangles]):
+        a, b, c = vertices[triangles[above]].transpose(1, 0, 2)
+        p = points[rows]
+        turns = [_moved_side(u[:, :2], v[:, :2], p[:, :2]) for u, v in ((a, b), (b, c), (c, a))]
+        turn = np.where((turns[0] == turns[1]) & (turns[1] == turns[2]), turns[0], 0)
+        hit = np.flatnonzero(turn)
+        under = orient3d(a[hit], b[hit], c[hit], p[hit]) * turn[hit] < 0
+        np.add.at(found, rows[hit[under]], turn[hit[under]])
+    return found
+
+
+def _moved_side(a: np.ndarray, b: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """orient2d of points moved by (e, e * e), e smaller than any number: never 0 where a and b differ."""
+    side = orient2d(a, b, p)
+    x, y = np.sign(b - a).T.astype(np.int8)
+    return np.where(side != 0, side, np.where(y != 0, -y, x))
+
+
+def nearest_side(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(N,) int8: the side of its nearest triangle on which each point lies, +1 where its corners are seen
+    counter-clockwise. Of triangles equally near, at an edge or a corner, that which the point is farthest off
+    the plane of counts. 0 on the plane."""
+    corners = vertices[triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    chosen = np.empty(len(points), np.int64)
+    some = max(1, _AT_ONCE // 8 // len(corners))
+    for start in range(0, len(points), some):
+        part = points[start : start + some, None]
+        away = _squared_distances(part, corners, normals)
+        off = np.abs(((part - corners[:, 0]) * normals).sum(axis=2))
+        least = away.min(axis=1)
+        scale = np.abs(part[:, 0]).max(axis=1) ** 2 * np.finfo(np.float64).eps
+        near = away <= (least * (1 + _EQUAL) + 64 * scale)[:, None]
+        chosen[start : start + some] = np.where(near, off, -1.0).argmax(axis=1)
+    return orient3d(*corners[chosen].transpose(1, 0, 2), points)
+
+
+def _squared_distances(points: np.ndarray, corners: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """(N, T) of points (N, 1, 3) from triangles (T, 3, 3) with unit normals (T, 3)."""
+    height = ((points - corners[:, 0]) * normals).sum(axis=2)
+    inside = np.ones(height.shape, bool)
+    found = np.full(height.shape, np.inf)
+    for first, second in ((0, 1), (1, 2), (2, 0)):
+        a, along = corners[:, first], corners[:, second] - corners[:, first]
+        from_a = points - a
+        inside &= (np.cross(along, from_a) * normals).sum(axis=2) >= 0
+        share = (from_a * along).sum(axis=2) / (along * along).sum(axis=1)
+        apart = from_a - np.clip(share, 0.0, 1.0)[..., None] * along
+        found = np.minimum(found, (apart * apart).sum(axis=2))
+    return np.where(inside, height * height, found)

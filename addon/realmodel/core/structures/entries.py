@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faults and bodies as a project gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ..point_file import MeshFile, PointFile
+
+
+class _Shape:
+    """What faults and bodies have in common: a mesh from arrays or from a file."""
+
+    @property
+    def mesh_file(self) -> MeshFile | None:
+        """The file of its mesh; None where it has none."""
+        return MeshFile(self.mesh) if isinstance(self.mesh, (str, Path)) else self.mesh
+
+    @property
+    def input_file(self) -> Path | None:
+        """The file that gives its shape; None where arrays do."""
+        given = self.mesh_file or getattr(self, "point_file", None)
+        return None if given is None else Path(given.file)
+
+    def shape_source(self) -> tuple[Path | None, int | None]:
+        """Where the shape comes from, for messages: its file, or its line in the project file."""
+        if self.shape_file is not None:
+            return self.shape_file, None
+        if self.source is not None:
+            return self.source.document.file, self.source.line()
+        return None, None
+
+
+@dataclass
+class Fault(_Shape):
+    """A fault: an open triangulated surface in any position, that displaces surfaces.
+
+    Its shape is a mesh - `vertices` (V, 3) float64 in model units with `triangles` (T, 3), or a file `mesh` -
+    or `points` through which a surface is fitted: scattered (P, 3), sticks as a list of arrays (N, 3), or a
+    file of either (.pol, or a table; `stick` names the column that tells sticks apart). `extend`: how far
+    such a surface is continued beyond the points, model units.
+
+    youngest: name of the youngest surface that it displaces; None: all of them. ends_at: names of faults at
+    which it ends; the smaller part of it beyond is dropped. dies_out: it ends inside the rock, where its
+    displacement vanishes. rocks: names of the rock masses that it displaces; none: all that have `youngest`.
+    """
+
+    name: str
+    vertices: np.ndarray | None = None
+    triangles: np.ndarray | None = None
+    youngest: str | None = None
+    ends_at: Sequence[str] = ()
+    dies_out: bool = False
+    rocks: Sequence[str] = ()
+    points: np.ndarray | Sequence[np.ndarray] | str | Path | PointFile | None = None
+    stick: str | int | None = None
+    extend: float = 0.0
+    mesh: str | Path | MeshFile | None = None
+    shape_file: Path | None = field(default=None, repr=False, compare=False)
+    source: object | None = field(default=None, repr=False, compare=False)
+
+    @property
+    def point_file(self) -> PointFile | None:
+        """The file of its points; None where they are an array, or there are none."""
+        if isinstance(self.points, (str, Path)):
+            return PointFile(self.points)
+        return self.points if isinstance(self.points, PointFile) else None
+
+
+@dataclass
+class Body(_Shape):
+    """A body: a closed triangulated surface of any shape, within which there is another rock, or none.
+
+    Its shape is `vertices` (V, 3) float64 in model units with `triangles` (T, 3), or a file `mesh`.
+    after: name of the surface that was the youngest when the body came; None: the youngest. property: library
+    id of its rock (0: none). void: it takes rock away and leaves nothing. rock: name of the rock mass that it
+    is in; None: all that have `after`.
+    """
+
+    name: str
+    vertices: np.ndarray | None = None
+    triangles: np.ndarray | None = None
+    after: str | None = None
+    property: int = 0
+    void: bool = False
+    rock: str | None = None
+    mesh: str | Path | MeshFile | None = None
+    shape_file: Path | None = field(default=None, repr=False, compare=False)
+    source: object | None = field(default=None, repr=False, compare=False)
+
+
+def fault_item(fault: Fault) -> str:
+    return f"fault '{fault.name}'"
+
+
+def body_item(body: Body) -> str:
+    return f"body '{body.name}'"

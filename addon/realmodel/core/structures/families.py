@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Compartments that share the data of a surface: only faults that die out, or that do not displace it, part
+them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .rock_structure import RockStructure
+
+_DIES_OUT = 2  # in a key: a fault that dies out is there, on either side
+
+
+@dataclass(frozen=True)
+class Family:
+    """key: of each fault -1 or +1, the side; 0, it is not there or does not displace the surface; 2, it dies
+    out here. members: the sides of the latter, -1 or +1 each, by compartment."""
+
+    key: tuple[int, ...]
+    members: dict[int, tuple[int, ...]]
+
+    @property
+    def dying(self) -> list[int]:
+        """The faults that die out here."""
+        return [fault for fault, side in enumerate(self.key) if side == _DIES_OUT]
+
+
+def keys_of(structure: RockStructure, number: int, sides: np.ndarray) -> np.ndarray:
+    """(N, F) of rows of sides: the key of the family that each belongs to, for surface `number`."""
+    faults = structure.faults
+    rows = np.where(faults.active(number), sides, 0)
+    return np.where(np.array(faults.dies_out, bool) & (rows != 0), _DIES_OUT, rows)
+
+
+def families(structure: RockStructure, number: int) -> list[Family]:
+    """Of all compartments of a rock mass, for surface `number`."""
+    found: dict[tuple[int, ...], Family] = {}
+    rows = structure.compartments
+    for compartment, key in enumerate(map(tuple, keys_of(structure, number, rows).tolist())):
+        family = found.setdefault(key, Family(key, {}))
+        family.members[compartment] = tuple(rows[compartment, family.dying].tolist())
+    return list(found.values())

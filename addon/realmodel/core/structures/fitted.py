@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces of faults through sticks or scattered points: not functions of x and y."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from ..errors import InputRefused
+from ..heights import heights
+from ..mesh_sizes import AUTO
+from ..meshers import DEFAULT_MESHER
+from ..methods import checked_options
+from ..planar_mesh import mesh_rings
+from ..work import Work
+
+Triangulation = tuple[np.ndarray, np.ndarray]
+
+_METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
+_IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area
+_TRIED = 100  # sticks of which each is tried as the first one
+_ROUND = 16  # directions of an outline that is extended
+
+
+def fit_sticks(sticks, extend: float = 0.0, extend_sideways: bool = True) -> Triangulation:
+    """The surface through fault sticks: their points, and triangles between neighbors.
+
+    sticks: arrays (N, 3), each from one end to the other, in any order and either direction. extend: how far
+    each stick goes on straight at both ends, and the surface beyond the first and the last stick unless
+    extend_sideways is False. Returns vertices (V, 3) float64 and triangles (T, 3) int32. Neighbors are joined
+    at equal shares of their lengths, so sticks keep their shape. Raises InputRefused.
+    """
+    sticks = [_without_repeats(np.asarray(stick, np.float64).reshape(-1, 3)) for stick in sticks]
+    sticks = [stick for stick in sticks if len(stick) > 1]
+    if len(sticks) < 2:
+        raise InputRefused(
+            f"a surface needs two sticks of two points or more, there {'is' if len(sticks) == 1 else 'are'} "
+            f"{len(sticks)}",
+            advice="give more sticks, or a mesh",
+        )
+    sticks = _one_way(_in_order(sticks))
+    if extend > 0:
+        sticks = [_longer(stick, extend) for stick in sticks]
+        if extend_sideways:
+            first = sticks[0] + extend * _unit(sticks[0].mean(axis=0) - sticks[1].mean(axis=0))
+            last = sticks[-1] + extend * _unit(sticks[-1].mean(axis=0) - sticks[-2].mean(axis=0))
+            sticks = [first, *sticks, last]
+    begin = np.cumsum([0, *map(len, sticks)])
+    triangles = [
+        triangle
+        for number, (left, right) in enumerate(itertools.pairwise(sticks))
+        for triangle in _between(left, right, int(begin[number]), int(begin[number + 1]))
+    ]
+    vertices = np.concatenate(sticks)
+    triangles = np.array(triangles, np.int32).reshape(-1, 3)
+    first, second, third = vertices[triangles].transpose(1, 0, 2)
+    has_area = (np.cross(second - first, third - first) != 0).any(axis=1)
+    return vertices, np.ascontiguousarray(triangles[has_area])
+
+
+def _without_repeats(stick: np.ndarray) -> np.ndarray:
+    return stick[np.concatenate([[True], (np.diff(stick, axis=0) != 0).any(axis=1)])]
+
+
+def _in_order(sticks: list[np.ndarray]) -> list[np.ndarray]:
+    """Along the fault: of a few orders that with the shortest way over the middles of the sticks."""
+    middles = np.array([(stick.min(axis=0) + stick.max(axis=0)) / 2 for stick in sticks])
+    _, _, axes = np.linalg.svd(middles - middles.mean(axis=0), full_matrices=False)
+    along = middles @ axes[0]
+    orders = [list(range(len(sticks))), np.argsort(along, kind="stable").tolist()]
+    starts = range(len(sticks)) if len(sticks) <= _TRIED else (int(along.argmin()), int(along.argmax()))
+    orders += [_nearest_first(middles, start) for start in starts]
+    lengths = [np.linalg.norm(np.diff(middles[order], axis=0), axis=1).sum() for order in orders]
+    return [sticks[number] for number in orders[int(np.argmin(lengths))]]
+
+
+def _nearest_first(middles: np.ndarray, start: int) -> list[int]:
+    order, free = [start], np.ones(len(middles), bool)
+    free[start] = False
+    while free.any():
+        away = np.where(free, np.linalg.norm(middles - middles[order[-1]], axis=1), np.inf)
+        order.append(int(away.argmin()))
+        free[order[-1]] = False
+    return order
+
+
+def _one_way(sticks: list[np.ndarray]) -> list[np.ndarray]:
+    """All from their upper end down, or in the direction of the stick before where that cannot be told."""
+    found, before = [], np.array([0.0, 0.0, -1.0])
+    for stick in sticks:
+        direction = stick[-1] - stick[0]
+        if direction @ before < 0 or (direction @ before == 0 and direction[2] > 0):
+            stick, direction = stick[::-1], -direction
+        found.append(stick)
+        before = _unit(direction)
+    return found
+
+
+def _unit(direction: np.ndarray) -> np.ndarray:
+    length = np.linalg.norm(direction)
+    return direction / length if length > 0 else direction
+
+
+def _longer(stick: np.ndarray, by: float) -> np.ndarray:
+    begin = stick[0] + by * _unit(stick[0] - stick[1])
+    end = stick[-1] + by * _unit(stick[-1] - stick[-2])
+    return np.concatenate([begin[None], stick, end[None]])
+
+
+def _between(left: np.ndarray, right: np.ndarray, first_left: int, first_right: int):
+    """The triangles of the strip between two sticks, as vertex numbers."""
+    at_left, at_right = _shares(left), _shares(right)
+    i = j = 0
+    while i + 1 < len(left) or j + 1 < len(right):
+        goes_left = j + 1 == len(right) or (i + 1 < len(left) and at_left[i + 1] <= at_right[j + 1])
+        apex = (first_left + i, first_right + j)
+        if goes_left:
+            i += 1
+            yield (*apex, first_left + i)
+        else:
+            j += 1
+            yield (*apex, first_right + j)
+
+
+def _shares(stick: np.ndarray) -> np.ndarray:
+    """Where each point lies on the way along a stick, from 0 to 1."""
+    way = np.concatenate([[0.0], np.linalg.norm(np.diff(stick, axis=0), axis=1).cumsum()])
+    return way / way[-1]
+
+
+def fit_points(work: Work, points, extend: float = 0.0, extend_sideways: bool = True, threads: int = 0):
+    """The smooth surface through scattered points, over the plane that fits them best.
+
+    points: (P, 3). The plane is that of the least squares of distances; on it the points' convex outline is
+    meshed, and their distances from the plane are interpolated (discrete smooth interpolation). extend: how
+    far the outline goes on beyond the points; with extend_sideways False up and down the dip only. Returns
+    vertices (V, 3) float64, triangles (T, 3) int32. Raises InputRefused.
+    """
+    points = np.asarray(points, np.float64).reshape(-1, 3)
+    middle = points.mean(axis=0)
+    _, spread, axes = np.linalg.svd(points - middle, full_matrices=False)
+    if len(points) < 3 or spread[1] <= _IN_LINE * spread[0]:
+        what = "its points lie in one line: they show no surface"
+        raise InputRefused(what, advice="give points on the whole fault, or sticks")
+    along, down, normal = plane_axes(axes[2])
+    local = (points - middle) @ np.column_stack([along, down, normal])
+    outline = _outline(local[:, :2], extend, extend_sideways)
+    nodes, triangles = mesh_rings(work, [outline], AUTO, DEFAULT_MESHER, points=local[:, :2])
+    options = checked_options(_METHOD, {})
+    found = heights(work, np.ascontiguousarray(local), nodes, _METHOD, options, threads, triangles)
+    vertices = middle + np.column_stack([nodes, found.z]) @ np.array([along, down, normal])
+    return vertices, triangles
+
+
+def plane_axes(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of a plane: its strike, its dip (downward), and its normal, each of length 1 and at right angles."""
+    along = np.array([-normal[1], normal[0], 0.0])
+    along = _unit(along) if np.linalg.norm(along) > _IN_LINE else np.array([1.0, 0.0, 0.0])
+    down = np.cross(normal, along)
+    if down[2] > 0:
+        along, down = -along, -down
+    return along, down, np.cross(along, down)
+
+
+def _outline(plan: np.ndarray, extend: float, sideways: bool) -> np.ndarray:
+    if extend > 0 and sideways:
+        angles = np.arange(_ROUND) * (2 * np.pi / _ROUND)
+        moves = extend * np.column_stack([np.cos(angles), np.sin(angles)])
+    else:
+        moves = np.array([[0.0, extend], [0.0, -extend]]) if extend > 0 else np.zeros((1, 2))
+    return convex_hull((convex_hull(plan)[:, None] + moves).reshape(-1, 2))
+
+
+def convex_hull(plan: np.ndarray) -> np.ndarray:
+    """(N, 2) corners of the convex hull of points, counter-clockwise (Andrew's monotone chain)."""
+    points = np.unique(plan, axis=0).tolist()
+
+    def half(given):
+        chain = []
+        for x, y in given:
+            while len(chain) > 1:
+                (ax, ay), (bx, by) = chain[-2:]
+                if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0:
+                    break
+                chain.pop()
+            chain.append([x, y])
+        return chain[:-1]
+
+    return np.array(half(points) + half(points[::-1]))

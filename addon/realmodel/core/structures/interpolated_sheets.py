@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sheets of a surface that is interpolated from points, on the planar mesh of its rock mass."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+
+from ..surface_heights import give_heights, needed_surfaces, where_known
+from ..work import Work
+from ..wrong_sides import heights_at
+from .families import Family, keys_of
+from .rock_structure import Triangulation
+from .sides import sides_of
+from .tips import trace_of, with_equal_ends
+from .triangles import edges_of
+
+_RAMP = 4.0  # edges of the mesh: so far around its ends a fault that dies out is drawn together
+
+
+class InterpolatedSurface:
+    """One surface of a RockInput whose points lie in compartments. `data`: what its sheets are made of."""
+
+    data = "points"
+
+    def __init__(self, work: Work, entry, number: int, threads: int):
+        self.work, self.entry, self.number, self.threads = work, entry, number, threads
+        self.surface = entry.rock.surfaces[number]
+        self.points = np.asarray(self.surface.points, np.float64).reshape(-1, 3)
+        self.sides = sides_of(work, self.points, entry.structure.faults, threads)
+        self.keys = keys_of(entry.structure, number, self.sides)
+        self.made: dict[
+            int, tuple
+        ] = {}  # interpolation and what is told of its vertices, by the id of a sheet
+        self.most = (-1, None)
+
+    def own(self, family: Family) -> np.ndarray:
+        """(P,) bool: the points in its compartments."""
+        return (self.keys == family.key).all(axis=1)
+
+    def count(self, family: Family) -> int:
+        return int(self.own(family).sum())
+
+    def has_data(self, family: Family) -> bool:
+        return not self.surface.needs_points or bool(self.own(family).any())
+
+    def sheets(self, family: Family) -> dict[tuple[int, ...], Triangulation]:
+        """The sheet on each side of the faults that die out here, by sides."""
+        own = self.own(family)
+        first = next(iter(family.members.values()))
+        common = self._interpolated(family, first, own)
+        faults = [self.entry.structure.faults.shapes[fault] for fault in family.dying]
+        nodes, triangles = self.entry.region
+        z = self._on_nodes(common)
+        within = self._within(family, z) if faults else None
+        known = np.isfinite(z)
+        meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
+        flat = np.column_stack([nodes, np.where(known, z, 0.0)])
+        traces = [trace_of(self.work, (flat, meshed), fault, within, self.threads) for fault in faults]
+        met = [number for number, trace in enumerate(traces) if len(trace.points)]
+        if not met:
+            return dict.fromkeys(family.members.values(), common)
+        hidden = {
+            (number, side): own
+            & (self.sides[:, family.dying[number]] == -side)
+            & traces[number].beside(self.points[:, :2])
+            for number in met
+            for side in (-1, 1)
+        }
+        seen, told = {}, {}
+        for sides in itertools.product((-1, 1), repeat=len(met)):
+            away = np.any([hidden[number, side] for number, side in zip(met, sides, strict=True)], axis=0)
+            whole = list(first)
+            for number, side in zip(met, sides, strict=True):
+                whole[number] = side
+            visible = own & ~away
+            sheet = self._interpolated(family, tuple(whole), visible if visible.any() else own)
+            seen[sides], told[sides] = self._on_nodes(sheet), self.made[id(sheet)]
+        ramp = _RAMP * float(np.median(_lengths(nodes, triangles)))
+        equal = with_equal_ends(
+            self.work,
+            nodes,
+            meshed,
+            seen,
+            [faults[number] for number in met],
+            [traces[number] for number in met],
+            within,
+            ramp,
+            self.threads,
+        )
+        found = {}
+        for sides, heights in equal.items():
+            sheet = where_known(nodes, triangles, heights)
+            found[sides] = sheet
+            self.made[id(sheet)] = (*told[sides], sheet)
+        return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
+
+    def _interpolated(self, family: Family, sides: tuple[int, ...], own: np.ndarray) -> Triangulation:
+        """The sheet from some points; surfaces that it needs are those on these sides."""
+        entry = self.entry
+        surfaces = list(entry.rock.surfaces)
+        surfaces[self.number] = replace(self.surface, points=self.points[own])
+        if self.surface.minimum_thickness is not None:
+            surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
+        shapes: list[Triangulation | None] = [None] * len(surfaces)
+        for other in needed_surfaces(entry.rock, self.number):
+            shapes[other] = self._as_seen(family, sides, other)
+        one = replace(
+            entry,
+            rock=replace(entry.rock, surfaces=surfaces),
+            surfaces=shapes,
+            interpolations=[None] * len(surfaces),
+            warnings=[],
+            told={},
+            structure=None,
+        )
+        give_heights(self.work, one, self.number, self.threads)
+        sheet = one.surfaces[self.number]
+        result = one.interpolations[self.number]
+        # the sheet itself is kept, too: so no other gets its id
+        self.made[id(sheet)] = (result, one.told[self.number], sheet)
+        if own.sum() > self.most[0]:
+            self.most = (int(own.sum()), result)
+        for warning in one.warnings:
+            entry.structure.tell(list(family.members), warning)
+        return sheet
+
+    def _with_own_points(self, family: Family, surface):
+        """Another surface with its points in the family's compartments alone."""
+        if surface.points is None:
+            return surface
+        points = np.asarray(surface.points, np.float64).reshape(-1, 3)
+        rows = sides_of(self.work, points, self.entry.structure.faults, self.threads)
+        own = (keys_of(self.entry.structure, self.number, rows) == family.key).all(axis=1)
+        return replace(surface, points=points[own])
+
+    def _as_seen(self, family: Family, sides: tuple[int, ...], other: int) -> Triangulation:
+        """Another surface in some compartments. Where faults displace it that this one ignores, each node of
+        the planar mesh gets the height of the compartment in which the other surface lies there."""
+        structure = self.entry.structure
+        members = [each for each, its in family.members.items() if its == sides] or list(family.members)
+        different = {id(structure.sheets[each][other]): structure.sheets[each][other] for each in members}
+        if len(different) == 1:
+            return next(iter(different.values()))
+        nodes, triangles = self.entry.region
+        chosen = np.full(len(nodes), np.nan)
+        total, known = np.zeros(len(nodes)), np.zeros(len(nodes))
+        for number, sheet in different.items():
+            z = self._on_nodes(sheet)
+            there = np.isfinite(z)
+            total[there] += z[there]
+            known += there
+            at = np.column_stack([nodes, np.where(there, z, 0.0)])
+            rows = sides_of(self.work, at, structure.faults, self.threads)
+            its = [each for each in members if id(structure.sheets[each][other]) == number]
+            inside = (rows[:, None] == structure.compartments[its]).all(axis=2).any(axis=1)
+            chosen = np.where(there & inside & np.isnan(chosen), z, chosen)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            heights = np.where(np.isnan(chosen), total / known, chosen)
+        return where_known(nodes, triangles, heights)
+
+    def _on_nodes(self, sheet: Triangulation) -> np.ndarray:
+        """(N,) heights of a sheet at the nodes of the planar mesh; NaN where it has none."""
+        nodes, _ = self.entry.region
+        if len(sheet[0]) == len(nodes) and np.array_equal(sheet[0][:, :2], nodes):
+            return sheet[0][:, 2]
+        return heights_at(self.work, sheet, nodes, self.threads)
+
+    def _within(self, family: Family, z: np.ndarray) -> np.ndarray:
+        """(N,) bool: the nodes that lie in the family's compartments at these heights."""
+        at = np.column_stack([self.entry.region[0], np.where(np.isfinite(z), z, 0.0)])
+        rows = sides_of(self.work, at, self.entry.structure.faults, self.threads)
+        return (keys_of(self.entry.structure, self.number, rows) == family.key).all(axis=1)
+
+    def finish(self, sheets: list[Triangulation]) -> None:
+        """Puts what interpolating gave into the RockInput: of the compartment with most points, and of the
+        vertices of all sheets."""
+        told = [self.made[id(sheet)][1] for sheet in sheets]
+        self.entry.interpolations[self.number] = self.most[1]
+        self.entry.told[self.number] = {
+            name: np.concatenate([each[name] for each in told]) for name in ("variance", "distance")
+        }
+
+
+def _lengths(nodes: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    edges = edges_of(triangles)
+    return np.linalg.norm(nodes[edges[:, 0]] - nodes[edges[:, 1]], axis=1)

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sheets of a surface that is a ready mesh: its triangles in the compartments, continued to the faults."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from ..heights import heights
+from ..methods import checked_options
+from ..work import Work
+from .families import Family
+from .mesh_parts import PlanTiling, plan_tiling
+from .rock_structure import Triangulation
+from .sides import fault_sides
+from .tips import on_fault, trace_of, with_equal_ends
+from .triangles import meet, welded
+
+_METHOD, _OPTIONS = "natural_neighbour", {"extrapolate": "nearest"}
+_LEFT, _RIGHT = 1, 2
+
+
+class ReadyMesh:
+    """One surface of a RockInput that is a ready mesh, divided along the faults by its triangles."""
+
+    data = "triangles"
+
+    def __init__(self, work: Work, entry, number: int, threads: int):
+        self.work, self.entry, self.number, self.threads = work, entry, number, threads
+        surface = entry.rock.surfaces[number]
+        self.vertices, self.triangles = surface.vertices, surface.triangles
+        self.method = surface.method or _METHOD
+        options = surface.options if surface.method else {**_OPTIONS, **surface.options}
+        self.settings = checked_options(self.method, options)
+        faults = entry.structure.faults
+        self.active = faults.active(number)
+        count = len(self.vertices)
+        # 0 where a vertex lies on the fault, or the fault does not displace the surface
+        self.sides = np.zeros((count, len(faults)), np.int8)
+        self.masks = np.full((len(self.triangles), len(faults)), _LEFT | _RIGHT, np.uint8)
+        for fault in np.flatnonzero(self.active):
+            self._divide(int(fault), faults.shapes[fault])
+        self.tiling: PlanTiling | None = None
+
+    def _divide(self, fault: int, shape: Triangulation) -> None:
+        """On which sides of a fault each triangle has a part."""
+        side = fault_sides(self.work, self.vertices, shape, self.threads)
+        on = on_fault(self.vertices, shape)
+        self.sides[:, fault] = np.where(on, 0, side)
+        corners = self.sides[self.triangles, fault]
+        mask = np.where((corners < 0).any(axis=1), _LEFT, 0) | np.where((corners > 0).any(axis=1), _RIGHT, 0)
+        middles = self.vertices[self.triangles].mean(axis=1)
+        along = mask == 0  # all its corners lie on the fault
+        mask[along] = np.where(fault_sides(self.work, middles[along], shape, self.threads) > 0, _RIGHT, _LEFT)
+        clear = np.flatnonzero((corners != 0).all(axis=1) & (mask != (_LEFT | _RIGHT)))
+        crossed = meet(self.vertices[self.triangles[clear]], shape[0][shape[1]])
+        mask[clear[crossed]] = _LEFT | _RIGHT
+        self.masks[:, fault] = mask
+
+    def own(self, family: Family) -> np.ndarray:
+        """(T,) bool: the triangles with a part in its compartments."""
+        found = np.ones(len(self.triangles), bool)
+        for fault, side in enumerate(family.key):
+            if side in (-1, 1):
+                found &= (self.masks[:, fault] & (_RIGHT if side > 0 else _LEFT)) > 0
+        return found
+
+    def count(self, family: Family) -> int:
+        return int(self.own(family).sum())
+
+    def has_data(self, family: Family) -> bool:
+        return bool(self.own(family).any())
+
+    def sheets(self, family: Family) -> dict[tuple[int, ...], Triangulation]:
+        """The sheet on each side of the faults that die out here, by sides."""
+        own = self.own(family)
+        if not self.active.any():
+            whole = self.vertices, self.triangles
+            return dict.fromkeys(family.members.values(), whole)
+        if self.tiling is None:
+            self.tiling = plan_tiling(self.work, self.vertices, self.triangles, self.sides, self.active)
+        plan, triangles, known = self.tiling.around(own)
+        shapes = self.entry.structure.faults.shapes
+        common = self._continued(plan, known, triangles)
+        faults = [shapes[fault] for fault in family.dying]
+        within = np.ones(len(plan), bool)
+        traces = [
+            trace_of(self.work, (np.column_stack([plan, common]), triangles), fault, within, self.threads)
+            for fault in faults
+        ]
+        met = [number for number, trace in enumerate(traces) if len(trace.points)]
+        if not met:
+            sheet = np.column_stack([plan, common]), triangles
+            return dict.fromkeys(family.members.values(), sheet)
+        seen = {}
+        sides = np.column_stack(
+            [fault_sides(self.work, self._at(plan, known), each, self.threads) for each in faults]
+        )
+        for given in itertools.product((-1, 1), repeat=len(met)):
+            visible = known.copy()
+            for number, side in zip(met, given, strict=True):
+                behind = (sides[:, number] == -side) & ~on_fault(self._at(plan, known), faults[number])
+                visible[behind & traces[number].beside(plan)] = np.nan
+            seen[given] = self._continued(plan, visible, triangles)
+        equal = with_equal_ends(
+            self.work,
+            plan,
+            triangles,
+            seen,
+            [faults[number] for number in met],
+            [traces[number] for number in met],
+            within,
+            0.0,
+            self.threads,
+        )
+        found = {given: (np.column_stack([plan, z]), triangles) for given, z in equal.items()}
+        return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
+
+    @staticmethod
+    def _at(plan: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """(N, 3) points, those without a height at the mean of all."""
+        return np.column_stack([plan, np.where(np.isnan(z), np.nanmean(z), z)])
+
+    def _continued(self, plan: np.ndarray, known: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+        """(N,) heights: those that are known, and where they are NaN what the method makes of them."""
+        same = welded(plan)
+        order = np.flatnonzero(~np.isnan(known))[::-1]
+        of_place = np.full(len(plan), np.nan)
+        of_place[same[order]] = known[order]  # the first of several at one position
+        z = np.where(np.isnan(known), of_place[same], known)
+        missing = np.flatnonzero(np.isnan(z) & (same == np.arange(len(plan))))
+        if len(missing):
+            given = np.flatnonzero(~np.isnan(of_place))
+            points = np.column_stack([plan[given], of_place[given]])
+            found = heights(
+                self.work,
+                points,
+                np.ascontiguousarray(plan),
+                self.method,
+                self.settings,
+                self.threads,
+                triangles,
+            )
+            of_place[missing] = found.z[missing]
+            z = np.where(np.isnan(z), of_place[same], z)
+        return z
+
+    def finish(self, sheets: list[Triangulation]) -> None:
+        """The triangles of the sheets are no longer those of the file."""
+        if len(sheets) > 1 or sheets[0][1] is not self.triangles:
+            self.entry.file_faces[self.number] = None

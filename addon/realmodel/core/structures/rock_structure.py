@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A rock mass with faults: its compartments, and of each the sheets of the surfaces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..build_warning import BuildWarning
+from .sides import RockFaults
+
+Triangulation = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass
+class RockStructure:
+    """compartments: (C, F) int8, the side of each fault, 0 where a branch is not there. seen: (C,) bool,
+    whether a point is known to lie in it; others may hold no rock. names: of the compartments. sheets: of
+    each compartment one triangulation for each surface, the same object where compartments share it; None
+    until it is made. bodies: (number of the project's body, the surface after which it came), in their order.
+    warnings: what there is to tell of some compartments, if they hold rock."""
+
+    faults: RockFaults
+    compartments: np.ndarray
+    seen: np.ndarray
+    names: list[str]
+    sheets: list[list[Triangulation | None]]
+    bodies: list[tuple[int, int]] = field(default_factory=list)
+    warnings: list[tuple[list[int], BuildWarning]] = field(default_factory=list)
+
+    def groups(self, surface: int) -> dict[tuple[int, ...], list[int]]:
+        """The compartments that share a sheet of a surface, by their sides of the faults that displace it (0
+        for the others)."""
+        rows = np.where(self.faults.active(surface), self.compartments, 0)
+        found: dict[tuple[int, ...], list[int]] = {}
+        for number, row in enumerate(rows.tolist()):
+            found.setdefault(tuple(row), []).append(number)
+        return found
+
+    def distinct(self, surface: int) -> list[Triangulation]:
+        """The different sheets of a surface, in the order of the compartments that they first serve."""
+        return list({id(sheets[surface]): sheets[surface] for sheets in self.sheets}.values())
+
+    def tell(self, compartments: list[int], warning: BuildWarning) -> None:
+        """Keeps a warning about some compartments, once."""
+        name = self.names[compartments[0]]
+        text = f"in compartment '{name}': {warning.text}" if name else warning.text
+        warning = replace(warning, text=text)
+        if all(warning != told for _, told in self.warnings):
+            self.warnings.append((compartments, warning))
+
+    def stage(self, m: int) -> RockStructure:
+        """The same with the surfaces up to m, and the bodies that were there then."""
+        return replace(
+            self,
+            sheets=[sheets[: m + 1] for sheets in self.sheets],
+            faults=replace(self.faults, youngest=[min(each, m) for each in self.faults.youngest]),
+            bodies=[(number, after) for number, after in self.bodies if after <= m],
+        )
+
+
+def joined(sheets: list[Triangulation]) -> Triangulation:
+    """Sheets as one triangulation: their vertices one after another, and their triangles."""
+    if len(sheets) == 1:
+        return sheets[0]
+    begin = np.cumsum([0, *(len(vertices) for vertices, _ in sheets)])
+    return (
+        np.concatenate([vertices for vertices, _ in sheets]),
+        np.concatenate(
+            [triangles + first for (_, triangles), first in zip(sheets, begin, strict=False)]
+        ).astype(np.int32),
+    )

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sheets of a rock mass's surfaces: each surface once for each combination of sides of the faults that
+displace it, from what lies in these compartments."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..build_warning import BuildWarning
+from ..errors import InputRefused
+from ..project import surface_item
+from ..surface_heights import interpolation_order
+from ..work import Work
+from ..wrong_sides import points_too_low
+from .families import Family, families
+from .interpolated_sheets import InterpolatedSurface
+from .ready_sheets import ReadyMesh
+from .rock_structure import joined
+from .sides import sides_of
+
+
+def make_sheets(work: Work, entry, start: float, end: float, threads: int, stage: int | None = None) -> None:
+    """Gives each surface of a RockInput with faults its sheets, in `entry.structure`, those up to `stage`;
+    `entry.surfaces` gets all sheets of a surface one after another. Progress goes from `start` to `end`.
+
+    Raises InputRefused for a surface that has data in no compartment.
+    """
+    rock = entry.rock
+    count = len(rock.surfaces) if stage is None else min(stage + 1, len(rock.surfaces))
+    interpolated = interpolation_order(rock, stage)
+    order = [*(number for number in range(count) if number not in interpolated), *interpolated]
+    for at, number in enumerate(order):
+        begin, finish = (start + (end - start) * part / len(order) for part in (at, at + 1))
+        with work.phase(begin, finish, f"interpolating {rock.surfaces[number].name}"):
+            kind = InterpolatedSurface if number in interpolated else ReadyMesh
+            try:
+                _make(entry, number, kind(work, entry, number, threads))
+            except InputRefused as error:
+                if error.item is not None and error.item.startswith("rock '"):
+                    raise
+                surface = rock.surfaces[number]
+                file, line = surface.shape_source()
+                raise error.within(surface_item(rock, surface), file=file, line=line) from error
+    for number in sorted(interpolated):
+        _tell_of_points_too_low(work, entry, number, threads)
+
+
+def _tell_of_points_too_low(work: Work, entry, number: int, threads: int) -> None:
+    """Warnings as without faults, compartment by compartment."""
+    structure, surfaces = entry.structure, entry.rock.surfaces
+    points = np.asarray(surfaces[number].points, np.float64).reshape(-1, 3)
+    sides = sides_of(work, points, structure.faults, threads)
+    for compartment, row in enumerate(structure.compartments):
+        own = (sides == row).all(axis=1)
+        if not own.any():
+            continue
+        its = [*surfaces[:number], replace(surfaces[number], points=points[own]), *surfaces[number + 1 :]]
+        one = replace(
+            entry,
+            rock=replace(entry.rock, surfaces=its),
+            surfaces=structure.sheets[compartment],
+            warnings=[],
+            structure=None,
+        )
+        for warning in points_too_low(work, one, number, threads):
+            structure.tell([compartment], warning)
+
+
+def _make(entry, number: int, surface) -> None:
+    structure = entry.structure
+    every = families(structure, number)
+    with_data = [family for family in every if surface.has_data(family)]
+    if not with_data:
+        raise InputRefused(
+            f"its {surface.data} lie in no compartment of the rock mass",
+            advice="check the coordinates of the surface and of the faults",
+        )
+    made = {family.key: surface.sheets(family) for family in with_data}
+    counts = {family.key: surface.count(family) for family in every}
+    lacking = [family for family in every if family.key not in made]
+    while lacking:
+        sources = {family.key: _neighbor(family.key, made, counts) for family in lacking}
+        if not any(sources.values()):  # none of them is across one fault only
+            sources = dict.fromkeys(sources, max(made, key=lambda key: (counts[key], key)))
+        for family in lacking:
+            if (source := sources[family.key]) is not None:
+                made[family.key] = _taken_over(family, made[source])
+                _tell(entry, number, surface, family, next(each for each in every if each.key == source))
+        lacking = [family for family in lacking if family.key not in made]
+    for family in every:
+        for compartment, sides in family.members.items():
+            structure.sheets[compartment][number] = made[family.key][sides]
+    sheets = structure.distinct(number)
+    entry.surfaces[number] = joined(sheets)
+    surface.finish(sheets)
+
+
+def _neighbor(key, made, counts):
+    """Of the families with sheets across one fault that with the most data; None where there is none."""
+    near = [other for other in made if sum(a != b for a, b in zip(key, other, strict=True)) == 1]
+    return max(near, key=lambda other: (counts[other], other), default=None)
+
+
+def _taken_over(family: Family, sheets: dict) -> dict:
+    """Sheets of another family by the sides of this one: the faults that die out may be others."""
+    first = next(iter(sheets.values()))
+    return {sides: sheets.get(sides, first) for sides in family.members.values()}
+
+
+def _tell(entry, number: int, surface, family: Family, source: Family) -> None:
+    names = entry.structure.names
+    here, there = (names[next(iter(each.members))] for each in (family, source))
+    text = f"it has no {surface.data} in compartment '{here}': there it goes on as in compartment '{there}'"
+    warning = BuildWarning(text, "compartment", entry.rock.name, entry.rock.surfaces[number].name)
+    entry.structure.warnings.append((list(family.members), warning))

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""On which sides of the faults of a rock mass points lie, and which faults are there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..work import Work, native_module
+
+Triangulation = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class RockFaults:
+    """The faults of one rock mass, each with its triangles.
+
+    numbers: of the project's faults. youngest: of each the youngest surface that it displaces. ends: of each
+    the faults at which it ends, (number in this list, the side of it that remains). dies_out: (F,) of bool.
+    """
+
+    names: list[str]
+    shapes: list[Triangulation]
+    youngest: list[int]
+    dies_out: list[bool] = field(default_factory=list)
+    numbers: list[int] = field(default_factory=list)
+    ends: list[list[tuple[int, int]]] = field(default_factory=list)
+
+    def __len__(self) -> int:
+        return len(self.shapes)
+
+    def order(self) -> list[int]:
+        """Each fault after those at which it ends."""
+        order: list[int] = []
+
+        def visit(number: int) -> None:
+            if number not in order:
+                for other, _ in self.ends[number]:
+                    visit(other)
+                order.append(number)
+
+        for number in range(len(self)):
+            visit(number)
+        return order
+
+    def without_dropped(self, sides: np.ndarray) -> np.ndarray:
+        """Rows (N, F) of sides with 0 where a branch is not there: beyond a fault at which it ends."""
+        sides = sides.copy()
+        for number in self.order():
+            for other, kept in self.ends[number]:
+                sides[sides[:, other] == -kept, number] = 0
+        return sides
+
+    def active(self, surface: int) -> np.ndarray:
+        """(F,) bool: the faults that displace a surface."""
+        return np.array([youngest >= surface for youngest in self.youngest], bool)
+
+
+def fault_sides(work: Work, points: np.ndarray, shape: Triangulation, threads: int = 0) -> np.ndarray:
+    """(N,) int8: +1 or -1, the side of its nearest triangle on which each point lies; beyond its border a
+    fault goes on along the nearest triangle."""
+    points = np.ascontiguousarray(points, np.float64)
+    if not len(points):
+        return np.zeros(0, np.int8)
+    return work.native(native_module().fault_sides, points, *shape, threads=threads)
+
+
+def sides_of(work: Work, points: np.ndarray, faults: RockFaults, threads: int = 0) -> np.ndarray:
+    """(N, F) int8 sides of all faults; 0 where a branch is not there."""
+    sides = [fault_sides(work, points, shape, threads) for shape in faults.shapes]
+    given = np.column_stack(sides) if sides else np.zeros((len(points), 0), np.int8)
+    return faults.without_dropped(given.astype(np.int8))

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faults that die out: where a sheet meets them, what counts on their two sides, and one sheet beyond.
+
+A fault that dies out is a barrier: on each side only what is not hidden behind it counts. That gives two
+sheets which differ beside the fault; beyond its ends they are made equal, so that nothing is displaced there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..work import Work
+from .sides import Triangulation, fault_sides
+from .triangles import crossing_pairs, distances_of_pairs, edges_of, segments_hit
+
+_ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
+_AT_ONCE = 1 << 21
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Where a sheet meets a fault. points: (M, 2) in plan; is_end: (M,) bool, those where it dies out.
+    beyond: (N,) bool, the nodes of triangles through which the fault would go on beyond its ends."""
+
+    points: np.ndarray
+    is_end: np.ndarray
+    beyond: np.ndarray
+
+    def beside(self, plan: np.ndarray) -> np.ndarray:
+        """(P,) bool: the plan points that are nearer to the trace than to its ends."""
+        if not len(self.points):
+            return np.zeros(len(plan), bool)
+        return ~self.is_end[nearest(plan, self.points)[0]]
+
+
+def trace_of(
+    work: Work, sheet: Triangulation, fault: Triangulation, within: np.ndarray, threads: int = 0
+) -> Trace:
+    """Where a sheet meets a fault, edge by edge. within: (N,) bool, the nodes in the compartment: a fault
+    that ends elsewhere does not die out."""
+    vertices, triangles = sheet
+    side = fault_sides(work, vertices, fault, threads)
+    on = on_fault(vertices, fault)
+    side = np.where(on, 0, side)
+    edges = np.sort(edges_of(triangles), axis=1)
+    edges, number = np.unique(edges, axis=0, return_inverse=True)
+    of_triangle = number.reshape(3, -1).T
+    changing = np.flatnonzero(side[edges[:, 0]] * side[edges[:, 1]] < 0)
+    begin, end = vertices[edges[changing, 0]], vertices[edges[changing, 1]]
+    share = _hit_shares(begin, end, fault)
+    hits = np.isfinite(share)
+    changes, missed = np.zeros(len(edges), bool), np.zeros(len(edges), bool)
+    changes[changing] = True
+    missed[changing[~hits]] = True
+    goes_on = missed[of_triangle].any(axis=1) & within[triangles].any(axis=1)
+    beyond = np.zeros(len(vertices), bool)
+    beyond[triangles[goes_on]] = True
+    at_end = np.zeros(len(edges), bool)
+    at_end[of_triangle[goes_on]] = True
+    crossed = begin[hits, :2] + share[hits, None] * (end - begin)[hits, :2]
+    points = np.concatenate([crossed, vertices[on, :2]])
+    return Trace(points, np.concatenate([at_end[changing[hits]], beyond[on]]), beyond)
+
+
+def on_fault(points: np.ndarray, fault: Triangulation) -> np.ndarray:
+    """(N,) bool: the points on a fault up to the precision of files (a millionth of its extent)."""
+    vertices, triangles = fault
+    near = _ON * float(np.linalg.norm(np.ptp(vertices[np.unique(triangles)], axis=0)))
+    boxes = np.stack([points - near, points + near, points], axis=1)
+    found = np.zeros(len(points), bool)
+    low, high = vertices[triangles].min(axis=(0, 1)) - near, vertices[triangles].max(axis=(0, 1)) + near
+    some = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
+    pairs = crossing_pairs(boxes[some], vertices[triangles])
+    away = distances_of_pairs(points[some[pairs[:, 0]]], vertices[triangles[pairs[:, 1]]])
+    found[some[pairs[away <= near, 0]]] = True
+    return found
+
+
+def _hit_shares(begin: np.ndarray, end: np.ndarray, fault: Triangulation) -> np.ndarray:
+    """(K,) where each segment meets the fault, from 0 to 1 of its length; NaN where it does not."""
+    vertices, triangles = fault
+    corners = vertices[triangles]
+    found = np.full(len(begin), np.nan)
+    pairs = crossing_pairs(np.stack([begin, end, end], axis=1), corners)
+    for start in range(0, len(pairs), 1 << 16):
+        segment, triangle = pairs[start : start + (1 << 16)].T
+        hit = segments_hit(begin[segment], end[segment], corners[triangle])
+        a, b, c = corners[triangle[hit]].transpose(1, 0, 2)
+        normal = np.cross(b - a, c - a)
+        low = ((begin[segment[hit]] - a) * normal).sum(axis=1)
+        high = ((end[segment[hit]] - a) * normal).sum(axis=1)
+        found[segment[hit]] = low / (low - high)
+    return found
+
+
+def nearest(plan: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(P,) the number of the nearest of points (M, 2), the first of equally near ones; and how far it is."""
+    number, away = np.empty(len(plan), np.int64), np.empty(len(plan))
+    some = max(1, _AT_ONCE // max(1, len(points)))
+    for start in range(0, len(plan), some):
+        part = slice(start, start + some)
+        squared = ((plan[part, None] - points) ** 2).sum(axis=2)
+        number[part] = squared.argmin(axis=1)
+        away[part] = np.sqrt(squared.min(axis=1))
+    return number, away
+
+
+def blended(heights: dict[tuple[int, ...], np.ndarray], weights: list[np.ndarray]) -> dict:
+    """(N,) heights by the sides (+1 or -1 of each fault that dies out), different only as the weights say.
+
+    heights: what is seen from each combination of sides. weights: of each fault (N,), 1 where its sides have
+    sheets of their own, 0 where they have the same.
+    """
+    result = {}
+    for sides in heights:
+        total = None
+        for other, z in heights.items():
+            share = 1.0
+            for side, its, weight in zip(sides, other, weights, strict=True):
+                share = share * np.where(side == its, 0.5 + 0.5 * weight, 0.5 - 0.5 * weight)
+            part = np.where(share == 0.0, 0.0, share * z)
+            total = part if total is None else total + part
+        result[sides] = total
+    return result
+
+
+def with_equal_ends(
+    work: Work,
+    plan: np.ndarray,
+    triangles: np.ndarray,
+    heights: dict[tuple[int, ...], np.ndarray],
+    faults: list[Triangulation],
+    traces: list[Trace],
+    within: np.ndarray,
+    ramp: float,
+    threads: int = 0,
+) -> dict[tuple[int, ...], np.ndarray]:
+    """The heights (N,) of the sheets on each combination of sides, equal to the bit at all nodes of
+    triangles through which a fault would go on beyond its ends. Within the distance `ramp` of these they are
+    drawn together."""
+    weights = [_weight(plan, trace.beyond, ramp) for trace in traces]
+    while True:
+        found = blended(heights, weights)
+        settled = True
+        for number, fault in enumerate(faults):
+            for z in found.values():
+                trace = trace_of(work, (np.column_stack([plan, z]), triangles), fault, within, threads)
+                late = trace.beyond & (weights[number] > 0)
+                if late.any():
+                    weights[number] = np.where(late, 0.0, weights[number])
+                    settled = False
+        if settled:
+            return found
+
+
+def _weight(plan: np.ndarray, beyond: np.ndarray, ramp: float) -> np.ndarray:
+    if not beyond.any():
+        return np.ones(len(plan))
+    if ramp <= 0:
+        return np.where(beyond, 0.0, 1.0)
+    share = np.minimum(1.0, nearest(plan, plan[beyond])[1] / ramp)
+    return share * share * (3 - 2 * share)

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Triangles in space: which edges are open, which lie on one another, where they are."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+_EDGES = ((0, 1), (1, 2), (2, 0))
+
+
+def welded(vertices: np.ndarray) -> np.ndarray:
+    """(V,) the least vertex at the same position as each."""
+    _, first, same = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
+    return first[same.ravel()]
+
+
+def without_flat(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """The triangles (K, 3) int32 whose corners differ and do not lie in one line."""
+    first, second, third = vertices[triangles].transpose(1, 0, 2)
+    flat = (np.cross(second - first, third - first) == 0).all(axis=1)
+    return np.ascontiguousarray(triangles[~flat])
+
+
+def edges_of(triangles: np.ndarray) -> np.ndarray:
+    """(3 T, 2) the directed edges: those from corner 0 to 1 of all triangles, then 1 to 2, then 2 to 0."""
+    return np.concatenate([triangles[:, pair] for pair in _EDGES])
+
+
+def open_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(E, 2) edges that an odd number of triangles have; vertices at one position count as one."""
+    edges = np.sort(edges_of(welded(vertices)[triangles]), axis=1)
+    edges, count = np.unique(edges, axis=0, return_counts=True)
+    return edges[count % 2 == 1]
+
+
+def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
+    """The rings of vertices along edges that one triangle alone has, with the triangles on their left."""
+    edges = edges_of(triangles)
+    twin = {(int(a), int(b)) for a, b in edges}
+    following: dict[int, list[int]] = {}
+    for a, b in edges.tolist():
+        if (b, a) not in twin:
+            following.setdefault(a, []).append(b)
+    loops = []
+    for start in sorted(following):
+        while following[start]:
+            loop = [start]
+            while following.get(loop[-1]):
+                loop.append(following[loop[-1]].pop(0))
+                if loop[-1] == start:
+                    break
+            loops.append(np.array(loop[:-1] if loop[-1] == start else loop))
+    return [loop for loop in loops if len(loop) > 2]
+
+
+def divided(vertices: np.ndarray, triangles: np.ndarray, longest: float, low=None, high=None) -> np.ndarray:
+    """(K, 3, 3) triangles that cover the same, no edge longer than `longest`; those that lie outside of the
+    box from low to high are left out."""
+    pieces = vertices[triangles]
+    done = []
+    while len(pieces):
+        if low is not None:
+            away = (pieces.max(axis=1) < low).any(axis=1) | (pieces.min(axis=1) > high).any(axis=1)
+            pieces = pieces[~away]
+        sides = np.linalg.norm(pieces[:, [1, 2, 0]] - pieces, axis=2)
+        side = sides.argmax(axis=1)
+        short = sides[np.arange(len(side)), side] <= longest
+        done.append(pieces[short])
+        rows = np.arange(3)
+        order = (side[~short, None] + rows) % 3
+        a, b, c = np.take_along_axis(pieces[~short], order[:, :, None], axis=1).transpose(1, 0, 2)
+        middle = (a + b) / 2
+        pieces = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    return np.concatenate(done) if done else np.empty((0, 3, 3))
+
+
+def distances(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(P,) how far the nearest triangle is from each point, up to rounding."""
+    corners = vertices[triangles]
+    found = np.full(len(points), np.inf)
+    for number, point in enumerate(points):
+        found[number] = distances_of_pairs(np.broadcast_to(point, (len(corners), 3)), corners).min()
+    return found
+
+
+def distances_of_pairs(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(K,) how far each point (K, 3) is from the triangle of its row (K, 3, 3), up to rounding."""
+    a, b, c = corners.transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    normal = normal / np.linalg.norm(normal, axis=1)[:, None]
+    height = ((points - a) * normal).sum(axis=1)
+    inside = np.ones(len(points), bool)
+    found = np.full(len(points), np.inf)
+    for first, second in _EDGES:
+        begin, along = corners[:, first], corners[:, second] - corners[:, first]
+        inside &= (np.cross(along, points - begin) * normal).sum(axis=1) >= 0
+        share = ((points - begin) * along).sum(axis=1) / (along * along).sum(axis=1)
+        nearest = begin + np.clip(share, 0.0, 1.0)[:, None] * along
+        found = np.minimum(found, np.linalg.norm(points - nearest, axis=1))
+    return np.where(inside, np.abs(height), found)
+
+
+def crossing_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(K, 2) rows of triangles (N, 3, 3) and (M, 3, 3) whose boxes touch."""
+    low, high = second.min(axis=1), second.max(axis=1)
+    order = np.argsort(low[:, 0], kind="stable")
+    low, high = low[order], high[order]
+    widest = (high[:, 0] - low[:, 0]).max(initial=0.0)
+    found = []
+    begin = np.searchsorted(low[:, 0], first.min(axis=1)[:, 0] - widest, "left")
+    end = np.searchsorted(low[:, 0], first.max(axis=1)[:, 0], "right")
+    for number, (lowest, highest) in enumerate(zip(first.min(axis=1), first.max(axis=1), strict=True)):
+        some = slice(begin[number], end[number])
+        near = ((high[some] >= lowest) & (low[some] <= highest)).all(axis=1)
+        rows = order[some][near]
+        found.append(np.column_stack([np.full(len(rows), number), rows]))
+    return np.concatenate(found) if found else np.empty((0, 2), np.int64)
+
+
+def meet(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(N,) bool: the triangles of `first` (N, 3, 3) that an edge of one of `second` (M, 3, 3) passes, or
+    whose own edge passes one of these; touching counts, up to rounding."""
+    pairs = crossing_pairs(first, second)
+    found = np.zeros(len(first), bool)
+    for start in range(0, len(pairs), 1 << 16):
+        some = pairs[start : start + (1 << 16)]
+        one, other = first[some[:, 0]], second[some[:, 1]]
+        hit = np.zeros(len(some), bool)
+        for (triangle, edges), (i, j) in itertools.product(((one, other), (other, one)), _EDGES):
+            hit |= segments_hit(edges[:, i], edges[:, j], triangle)
+        found[some[hit, 0]] = True
+    return found
+
+
+def segments_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(K,) bool: whether the segment from begin to end (K, 3) meets the triangle of its row (K, 3, 3); one in
+    its plane does not."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    low, high = ((begin - a) * normal).sum(axis=1), ((end - a) * normal).sum(axis=1)
+    crosses = ((low <= 0) & (high >= 0) | (low >= 0) & (high <= 0)) & (low != high)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(crosses, low / (low - high), 0.0)
+    at = begin + share[:, None] * (end - begin)
+    for p, q in ((a, b), (b, c), (c, a)):
+        crosses &= (np.cross(q - p, at - p) * normal).sum(axis=1) >= 0
+    return crosses
+
+
+class NoTwoSides(Exception):
+    """A surface that returns to itself the other way round; edge: its ends (2, 3)."""
+
+    def __init__(self, edge: np.ndarray):
+        super().__init__("one-sided")
+        self.edge = edge
+
+
+def oriented(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """The triangles (T, 3) int32, each turned so that it goes on from its neighbors.
+
+    The first triangle of each connected part stays as it is, unless most of the part then faces the other way
+    than the first part. Edges that more than two triangles have connect none. Raises NoTwoSides.
+    """
+    same = welded(vertices)[triangles]
+    edges = edges_of(same)
+    owner = np.tile(np.arange(len(triangles)), 3)
+    ends = np.sort(edges, axis=1)
+    order = np.lexsort((ends[:, 1], ends[:, 0]))
+    _, first, count = np.unique(ends[order], axis=0, return_index=True, return_counts=True)
+    two = first[count == 2]
+    left, right = order[two], order[two + 1]
+    reversed_ = (edges[left] == edges[right]).all(axis=1)  # both go the same way along their edge
+    neighbors: list[list[tuple[int, bool, int]]] = [[] for _ in triangles]
+    pairs = zip(owner[left].tolist(), owner[right].tolist(), reversed_.tolist(), left.tolist(), strict=True)
+    for one, other, turns, edge in pairs:
+        neighbors[one].append((other, turns, edge))
+        neighbors[other].append((one, turns, edge))
+    turned = np.full(len(triangles), -1, np.int8)
+    part = np.zeros(len(triangles), np.int64)
+    parts = 0
+    for start in range(len(triangles)):
+        if turned[start] >= 0:
+            continue
+        turned[start], part[start] = 0, parts
+        waiting = [start]
+        while waiting:
+            at = waiting.pop()
+            for other, turns, edge in neighbors[at]:
+                wanted = turned[at] ^ turns
+                if turned[other] < 0:
+                    turned[other], part[other] = wanted, parts
+                    waiting.append(other)
+                elif turned[other] != wanted:
+                    raise NoTwoSides(vertices[edges[edge]])
+        parts += 1
+    result = np.where(turned[:, None] == 1, triangles[:, ::-1], triangles)
+    if parts > 1:
+        corners = vertices[result]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        facing = np.array([normals[part == number].sum(axis=0) for number in range(parts)])
+        away = (facing @ facing[0] < 0)[part]
+        result = np.where(away[:, None], result[:, ::-1], result)
+    return np.ascontiguousarray(result, np.int32)

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/booleans/intersect.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/disjoint_sets.hpp"
+#include "booleans/facets.hpp"
+#include "booleans/loops.hpp"
+#include "booleans/refinement.hpp"
+#include "booleans/space_cells.hpp"
+
+namespace realmodel::booleans {
+
+namespace {
+
+/// Whether a surface has no border: it passes each edge as often one way as the other.
+std::array<bool, 2> closed_surfaces(const FacetMesh& mesh) {
+    std::array<bool, 2> is_closed{true, true};
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+        std::array<int, 2> net{0, 0};
+        for (const FacetUse& use : mesh.uses_of(e)) {
+            const Facet& facet = mesh.facets[index(use.facet)];
+            for (std::size_t source = 0; source < 2; ++source)
+                net[source] += use.direction * facet.times[source];
+        }
+        for (std::size_t source = 0; source < 2; ++source)
+            is_closed[source] = is_closed[source] && net[source] == 0;
+    }
+    return is_closed;
+}
+
+/// The parts of each surface that hang together across edges that are in no loop.
+void find_sub_surfaces(const FacetMesh& mesh, const Loops& loops, const SpaceCells& cells,
+                       Refinement& result) {
+    const std::size_t count = mesh.facets.size();
+    // a facet of both surfaces is in a part of either
+    DisjointSets joined(2 * count);
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+        if (loops.of_edge[e] >= 0) continue;
+        std::array<std::int32_t, 2> first{-1, -1};
+        for (const FacetUse& use : mesh.uses_of(e)) {
+            for (std::int32_t source = 0; source < 2; ++source) {
+                if (!mesh.facets[index(use.facet)].is_of[index(source)]) continue;
+                std::int32_t& other = first[index(source)];
+                if (other < 0) {
+                    other = 2 * use.facet + source;
+                } else {
+                    joined.join(other, 2 * use.facet + source);
+                }
+            }
+        }
+    }
+    std::vector<std::int32_t> number(2 * count, -1);
+    for (std::size_t t = 0; t < result.triangles.size(); ++t) {
+        const auto source = static_cast<std::int32_t>(result.source[t]);
+        const std::int32_t facet = mesh.of_part[t];
+        std::int32_t& own = number[index(joined.find(2 * facet + source))];
+        if (own < 0) {
+            own = static_cast<std::int32_t>(result.sub_surfaces.size());
+            const auto& [below, above] = cells.of_facet[index(facet)];
+            const bool is_between =
+                below != above && below != SpaceCells::kOutside && above != SpaceCells::kOutside;
+            result.sub_surfaces.push_back({source, {}, {}, is_between});
+        }
+        SubSurface& part = result.sub_surfaces[index(own)];
+        part.triangles.push_back(static_cast<std::int32_t>(t));
+        for (const std::int32_t edge : mesh.edges_of[index(facet)]) {
+            if (const std::int32_t loop = loops.of_edge[index(edge)]; loop >= 0)
+                part.loops.push_back(loop);
+        }
+    }
+    for (SubSurface& part : result.sub_surfaces) {
+        std::sort(part.loops.begin(), part.loops.end());
+        part.loops.erase(std::unique(part.loops.begin(), part.loops.end()), part.loops.end());
+    }
+}
+
+/// Six times the volume between a triangle and an origin.
+long double volume_below(const std::vector<Position>& vertices,
+                         const std::array<std::int32_t, 3>& t, const Position& origin) {
+    std::array<std::array<long double, 3>, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k)
+            p[i][k] = static_cast<long double>(vertices[index(t[i])][k]) - origin[k];
+    }
+    return p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) -
+           p[0][1] * (p[1][0] * p[2][2] - p[1][2] * p[2][0]) +
+           p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+}
+
+void find_sub_blocks(const std::vector<Position>& vertices, const FacetMesh& mesh,
+                     const SpaceCells& cells, Refinement& result) {
+    result.sub_blocks.resize(cells.size() - 1);
+    for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+        const auto& [below, above] = cells.of_facet[f];
+        if (below == above) continue;
+        const auto& [a, b, c] = mesh.facets[f].corners;
+        if (below != SpaceCells::kOutside)
+            result.sub_blocks[index(below) - 1].triangles.push_back({a, b, c});
+        if (above != SpaceCells::kOutside)
+            result.sub_blocks[index(above) - 1].triangles.push_back({a, c, b});
+    }
+    for (std::size_t i = 0; i < result.sub_blocks.size(); ++i) {
+        SubBlock& block = result.sub_blocks[i];
+        long double sum = 0;
+        for (const auto& t : block.triangles)
+            sum += volume_below(vertices, t, vertices[index(block.triangles[0][0])]);
+        block.volume = static_cast<double>(sum / 6);
+        for (std::size_t source = 0; source < 2; ++source)
+            block.is_in[source] = result.is_closed[source] && cells.winding[i + 1][source] != 0;
+    }
+}
+
+bool is_kept(Operation operation, bool in_first, bool in_second) {
+    switch (operation) {
+        case Operation::kUnion:
+            return in_first || in_second;
+        case Operation::kIntersection:
+            return in_first && in_second;
+        case Operation::kDifference:
+            return in_first && !in_second;
+        default:
+            return in_second && !in_first;
+    }
+}
+
+}  // namespace
+
+Refinement intersect(const TriangleMesh& first, const TriangleMesh& second, int threads,
+                     Progress* progress) {
+    const Parts parts = refine({first, second}, threads, progress);
+    if (progress != nullptr) progress->begin(0.8, 0.9, "finding facets");
+    const FacetMesh mesh = facets_of(parts, threads, progress);
+    if (progress != nullptr) progress->begin(0.9, 0.99, "finding what is inside");
+    const SpaceCells cells = cells_of(parts.vertices, mesh, threads, progress);
+    Loops loops = find_loops(mesh);
+    Refinement result;
+    result.vertices.reserve(3 * parts.vertices.size());
+    for (const Position& p : parts.vertices)
+        result.vertices.insert(result.vertices.end(), p.begin(), p.end());
+    std::vector<std::int32_t> first_part(mesh.facets.size(), -1);
+    result.is_closed = closed_surfaces(mesh);
+    for (std::size_t t = 0; t < parts.triangles.size(); ++t) {
+        const Part& part = parts.triangles[t];
+        result.triangles.push_back(part.corners);
+        result.source.push_back(part.source);
+        result.source_triangle.push_back(part.origin);
+        std::int32_t& coinciding = first_part[index(mesh.of_part[t])];
+        if (coinciding < 0) coinciding = static_cast<std::int32_t>(t);
+        result.coinciding.push_back(coinciding);
+    }
+    result.is_in.resize(parts.triangles.size());
+    for (std::size_t t = 0; t < parts.triangles.size(); ++t) {
+        // the first part of a facet is turned as that is, the others are not asked
+        const auto& sides = cells.of_facet[index(mesh.of_part[t])];
+        for (std::size_t side = 0; side < 2; ++side) {
+            for (std::size_t source = 0; source < 2; ++source)
+                result.is_in[t][source][side] =
+                    result.is_closed[source] && cells.winding[index(sides[side])][source] != 0;
+        }
+    }
+    find_sub_surfaces(mesh, loops, cells, result);
+    find_sub_blocks(parts.vertices, mesh, cells, result);
+    result.loops = std::move(loops.loops);
+    if (progress != nullptr) progress->report(1.0, nullptr);
+    return result;
+}
+
+std::vector<std::array<std::int32_t, 3>> Refinement::boundary(Operation operation) const {
+    for (int surface = 0; surface < 2; ++surface) {
+        if (!is_closed[static_cast<std::size_t>(surface)])
+            throw InputError("not_closed",
+                             "the surface is open, and only solids can be joined or cut out; "
+                             "divide it, or close its border",
+                             surface);
+    }
+    std::vector<std::array<std::int32_t, 3>> result;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        if (coinciding[t] != static_cast<std::int32_t>(t)) continue;
+        const auto& [in_first, in_second] = is_in[t];
+        const bool below = is_kept(operation, in_first[0], in_second[0]);
+        const bool above = is_kept(operation, in_first[1], in_second[1]);
+        if (below == above) continue;
+        const auto& [a, b, c] = triangles[t];
+        result.push_back(below ? std::array{a, b, c} : std::array{a, c, b});
+    }
+    return result;
+}
+
+}  // namespace realmodel::booleans

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "booleans/facets.hpp"
+
+namespace realmodel::booleans {
+
+/// The edges along which both surfaces meet, and the loops that these make.
+struct Loops {
+    std::vector<IntersectionLoop> loops;
+    std::vector<std::int32_t> of_edge;  ///< the loop of each edge of the mesh, -1 none
+};
+
+/// An edge of facets of both surfaces is an intersection edge, but within a part that they share:
+/// there all of its facets are of both.
+Loops find_loops(const FacetMesh& mesh);
+
+}  // namespace realmodel::booleans

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "realmodel/booleans/intersect.hpp"
+
+namespace realmodel::booleans {
+
+using Position = std::array<double, 3>;
+
+/// A triangle of one of the surfaces, or a part of it.
+struct Part {
+    std::array<std::int32_t, 3> corners;
+    std::int32_t origin;  ///< the triangle of the input that it is part of
+    std::uint8_t source;  ///< which surface
+
+    bool operator==(const Part&) const = default;
+};
+
+/// Triangles that meet in common edges and vertices only, or coincide.
+struct Parts {
+    std::vector<Position> vertices;  ///< all different, each a corner of a triangle
+    std::vector<Part> triangles;     ///< by source, then by origin
+};
+
+/// Divides the triangles of both surfaces along one another and themselves.
+///
+/// In rounds: triangles are divided exactly, new vertices are rounded, and those triangles that
+/// this moved are divided again, until none has moved. Where that takes many rounds, vertices are
+/// rounded to coarser and coarser steps, which merges them.
+Parts refine(const std::array<TriangleMesh, 2>& surfaces, int threads, Progress* progress);
+
+}  // namespace realmodel::booleans

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "booleans/facets.hpp"
+
+namespace realmodel::booleans {
+
+/// The parts of space that facets divide it into.
+struct SpaceCells {
+    /// Of each facet the cells below it (where it is seen clockwise from) and above it.
+    std::vector<std::array<std::int32_t, 2>> of_facet;
+    /// Of each cell how often either surface goes round it. It says nothing where that is open.
+    std::vector<std::array<std::int32_t, 2>> winding;
+    static constexpr std::int32_t kOutside = 0;  ///< the cell without a bound
+
+    std::size_t size() const { return winding.size(); }
+};
+
+SpaceCells cells_of(const std::vector<Position>& vertices, const FacetMesh& mesh, int threads,
+                    Progress* progress);
+
+}  // namespace realmodel::booleans
