@@ -59,6 +59,11 @@ void PartRounding::run() {
     give_extents();
     glue_doubled();
     divide_bent();
+    if (joins_models_) {
+        find_pieces_of_parts();
+        cancel_doubled();
+        set_touching_apart();
+    }
     drop_empty();
 }
 
@@ -253,9 +258,8 @@ bool PartRounding::join_short_edges() {
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const auto edge = unordered(loop[i], loop[(i + 1) % loop.size()]);
             const Position away = minus(at(edge[0]), at(edge[1]));
-            if (is_new(edge[1]) && std::ranges::all_of(away, [allowed](double x) {
-                    return std::abs(x) <= allowed;
-                }))
+            if (is_new(edge[1]) &&
+                std::ranges::all_of(away, [allowed](double x) { return std::abs(x) <= allowed; }))
                 edges.insert(edge);
         }
     }

@@ -22,7 +22,8 @@ class PartRounding {
 public:
     /// @param new_positions  of nodes after the model's vertices; they may move
     /// @param touches        whether parts below, above may use an edge more than twice
-    /// @param joins_models   whether several models are joined, of which each was rounded by itself:
+    /// @param joins_models   whether several models are joined, of which each was rounded by
+    /// itself:
     ///                       then nodes, too, become one whose edge is as short as rounding
     PartRounding(const ComplexView& model, std::vector<Position>& new_positions, Pieces& pieces,
                  std::vector<HalfCell>& half_cells, const std::array<bool, 2>& touches,
@@ -46,6 +47,7 @@ private:
     bool stays_sound(std::int32_t part) const;
     std::vector<NodeId> contracted(std::size_t piece) const;
     void cancel_doubled();
+    void set_touching_apart();
     void set_apart();
     void move_aside(NodeId node);
     void give_extents();
@@ -56,6 +58,7 @@ private:
     void drop_hollow();
     bool is_bent(std::size_t piece) const;
     NodeId add_middle(std::size_t piece);
+    NodeId add_between(const std::array<NodeId, 2>& edge);
     void divide_bent();
     void drop_empty();
 
