@@ -55,7 +55,7 @@ class Files(Imported):
         self.assertEqual([e.name for e in self.model.library], ["low", "middle", "high"])
         self.assertEqual([s.property_id for s in rock.surfaces], [1, 2, 3])
         self.assertEqual(
-            [library_rows.hex_colour(e.color) for e in self.model.library], list(library_rows.PALETTE[:3])
+            [library_rows.hex_color(e.color) for e in self.model.library], list(library_rows.PALETTE[:3])
         )
         self.assertEqual(set(self.clouds()), {"low points", "middle points", "high points"})
 

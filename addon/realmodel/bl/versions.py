@@ -167,8 +167,8 @@ def denoise(scene):
     return True
 
 
-def plain_colours(scene):
-    """Show colours as they are: the film-like transforms would shift the library's colours."""
+def plain_colors(scene):
+    """Show colors as they are: the film-like transforms would shift the library's colors."""
     scene.display_settings.display_device = "sRGB"
     scene.view_settings.view_transform = "Standard"
     scene.view_settings.look = "None"
@@ -209,7 +209,7 @@ def colored_shader():
 
 
 def plain_shader(points):
-    """The built-in shader of one colour, for points or for lines; its names changed in 4.0 and 4.5."""
+    """The built-in shader of one color, for points or for lines; its names changed in 4.0 and 4.5."""
     import gpu
 
     names = ["UNIFORM_COLOR"] if bpy.app.version >= (4, 0, 0) else ["3D_UNIFORM_COLOR"]

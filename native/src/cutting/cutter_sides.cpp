@@ -212,7 +212,7 @@ void CutterSides::settle() {
         if (overlay_.surface().is_closed || side == kBelow) continue;
         const auto& outline = overlay_.loops(r)[0];
         refuse("two_sides",
-               "a place in the model is above one part of the surface and below another",
+               "a point of the model is above one part of the surface and below another",
                {outline[0], outline[1]});
     }
     for (std::size_t i = 0; i < count; ++i) {
