@@ -287,9 +287,7 @@ def test_scanned_solids_in_random_positions(first, second):
 @pytest.mark.parametrize("operation", OPERATIONS)
 def test_an_open_surface_is_refused_where_a_solid_is_needed(operation):
     found = intersect(solids.torus(), solids.sheet())
-    with pytest.raises(
-        InputRefused, match=r"the second surface: it is open at 4 of its edges, one near \("
-    ) as told:
+    with pytest.raises(InputRefused, match=r"the second surface: it is open, for example near \(") as told:
         getattr(found, operation)()
     assert max(abs(value) for value in told.value.place[:2]) == 5.0
     with pytest.raises(InputRefused, match="the first surface: it is open"):

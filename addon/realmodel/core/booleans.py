@@ -14,7 +14,7 @@ from .method_options import check_threads
 from .rock_input import checked_triangulation
 from .work import Cancel, Progress, Work, native_module, run
 
-_SURFACES = ("the first surface", "the second surface")
+SURFACES = ("the first surface", "the second surface")  # as refusals name them
 _KEPT = {
     "union": lambda a, b: a | b,
     "intersection": lambda a, b: a & b,
@@ -130,6 +130,31 @@ class Intersection:
         rows = np.flatnonzero(is_first & (below != above))
         return rows, above[rows]
 
+    def sides(self, part: SubSurface, number: int) -> tuple[bool, bool]:
+        """Whether a sub-surface is inside of the first (0) or second (1) surface, below it and above it.
+        These differ where it lies on that surface."""
+        below, above = self._native.is_in[part.triangles[0], number].tolist()
+        return below, above
+
+    def rows_of(self, block: int) -> tuple[np.ndarray, np.ndarray]:
+        """The rows (N,) of `triangles` that the triangles of a sub-block are, and (N,) bool, whether each is
+        turned around."""
+        return self._block_rows[block]
+
+    @cached_property
+    def _block_rows(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        first = np.flatnonzero(self._native.coinciding == np.arange(len(self.triangles)))
+        of_blocks = np.concatenate([block.triangles for block in self.sub_blocks])
+        corners = np.sort(np.concatenate([self.triangles[first], of_blocks]), axis=1)
+        _, same = np.unique(corners, axis=0, return_inverse=True)
+        same = same.ravel()
+        row = np.empty(len(corners), np.int64)
+        row[same[: len(first)]] = first
+        rows = row[same[len(first) :]]
+        is_turned = _from_least(of_blocks)[:, 1] != _from_least(self.triangles[rows])[:, 1]
+        ends = np.cumsum([len(block.triangles) for block in self.sub_blocks])[:-1]
+        return list(zip(np.split(rows, ends), np.split(is_turned, ends), strict=True))
+
     def _solid(self, operation):
         rows, is_turned = self.boundary(operation)
         triangles = self.triangles[rows]
@@ -140,14 +165,13 @@ class Intersection:
     def _open(self, number: int) -> InputRefused:
         edges, uses = self._border(number)
         place = tuple(self.vertices[edges[0]].mean(axis=0).tolist())
-        count = "1 of its edges" if len(edges) == 1 else f"{len(edges)} of its edges"
         if (uses % 2 == 0).all():
-            what = f"its triangles face both ways, at {count}, one near {place_text(place)}"
+            what = f"its triangles face both ways, for example near {place_text(place)}"
             advice = "turn them so that all face outward"
         else:
-            what = f"it is open at {count}, one near {place_text(place)}"
+            what = f"it is open, for example near {place_text(place)}"
             advice = "close it, or divide the surfaces: only solids can be joined and taken from one another"
-        return InputRefused(what, item=_SURFACES[number], advice=advice, place=place)
+        return InputRefused(what, item=SURFACES[number], advice=advice, place=place)
 
     def _border(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """(E, 2) edges that the triangles of a surface pass more often one way than the other, and how often
@@ -158,6 +182,12 @@ class Intersection:
         edges, same, uses = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
         net = np.bincount(same.ravel(), np.where(forward, 1, -1), len(edges))
         return edges[net != 0], uses[net != 0]
+
+
+def _from_least(triangles: np.ndarray) -> np.ndarray:
+    """The same triangles, each from its least vertex on."""
+    order = (triangles.argmin(axis=1)[:, None] + np.arange(3)) % 3
+    return np.take_along_axis(triangles, order, axis=1)
 
 
 def intersect(
@@ -179,29 +209,30 @@ def intersect(
 
     Raises InputRefused (with the numbers of the triangles and a place), UsageError, Cancelled, BuildFailed.
     """
-    given = [*_checked(a, 0), *_checked(b, 1)]
     threads = check_threads(threads)
+    return run(lambda work: intersect_within(work, a, b, threads), progress, cancel)
+
+
+def intersect_within(work: Work, a, b, threads: int, share: float = 1.0) -> Intersection:
+    """`intersect` as the first part of a job, which takes that share of its progress."""
+    given = [*_checked(a, 0), *_checked(b, 1)]
     native = native_module()
-
-    def task(work: Work) -> Intersection:
-        with work.phase(0.0, 1.0, "intersecting"):
-            try:
-                return Intersection(work.native(native.intersect, *given, threads=threads))
-            except native.InputError as error:
-                raise _refused(error) from error
-
-    return run(task, progress, cancel)
+    with work.phase(0.0, share, "intersecting"):
+        try:
+            return Intersection(work.native(native.intersect, *given, threads=threads))
+        except native.InputError as error:
+            raise _refused(error) from error
 
 
 def _checked(surface, number: int):
     try:
         vertices, triangles = surface
     except (TypeError, ValueError) as error:
-        raise UsageError(f"{_SURFACES[number]} must be (vertices, triangles)") from error
+        raise UsageError(f"{SURFACES[number]} must be (vertices, triangles)") from error
     try:
         return checked_triangulation(vertices, triangles)
     except InputRefused as error:
-        raise error.within(_SURFACES[number]) from error
+        raise error.within(SURFACES[number]) from error
 
 
 def _refused(error) -> InputRefused:
@@ -209,7 +240,7 @@ def _refused(error) -> InputRefused:
     near = f" near {place_text(place)}" if place else ""
     return InputRefused(
         f"{error}{near}",
-        item=_SURFACES[error.surface] if error.surface in (0, 1) else "the intersection",
+        item=SURFACES[error.surface] if error.surface in (0, 1) else "the intersection",
         advice=_ADVICE.get(error.kind),
         place=place,
     )
