@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // structure_parts, join_structured, structure_sides.
+#include "realmodel/structures/structures.hpp"
+
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -9,7 +11,6 @@
 #include "arrays.hpp"
 #include "complex_arrays.hpp"
 #include "realmodel/base/progress.hpp"
-#include "realmodel/structures/structures.hpp"
 
 namespace py = pybind11;
 
@@ -116,10 +117,9 @@ Array<std::int8_t> structure_sides(const StructureArrays& structure, const Array
 }  // namespace
 
 void bind_structures(py::module_& module) {
-    module.def(
-        "structure_parts", &structure_parts, py::arg("rock"), py::arg("structures"),
-        py::arg("threads") = 0, py::arg("control") = nullptr,
-        R"(The parts that faults and bodies divide rock into.
+    module.def("structure_parts", &structure_parts, py::arg("rock"), py::arg("structures"),
+               py::arg("threads") = 0, py::arg("control") = nullptr,
+               R"(The parts that faults and bodies divide rock into.
 
 rock: dict of the arrays of docs/dev/geometry.md, "blocks" and "surfaces" (their numbers) and
 "cell_kind". structures: list of (vertices (V, 3) float64, triangles (T, 3) int32, is_body, ends_at:
@@ -127,18 +127,18 @@ numbers of the faults that a fault ends at, dies_out). Returns (sides (P, S) int
 outside of a body, -1 below or inside, 0 where there is none beyond a fault that it ends at; low
 (P, 3), high (P, 3) float64: a box around each part), each combination of sides once. Raises
 InputError (surface: the number of the structure) and Cancelled.)");
-    module.def(
-        "join_structured", &join_structured, py::arg("models"), py::arg("structures"),
-        py::arg("acts"), py::arg("threads") = 0, py::arg("control") = nullptr,
-        R"(Models of the parts that faults and bodies leave, cut by them and joined.
+    module.def("join_structured", &join_structured, py::arg("models"), py::arg("structures"),
+               py::arg("acts"), py::arg("threads") = 0, py::arg("control") = nullptr,
+               R"(Models of the parts that faults and bodies leave, cut by them and joined.
 
 models: list of (dict as of structure_parts, sides: one a structure; 0: either). structures: as of
 structure_parts. acts: (S, B) uint8, whether a structure divides a block. Returns the arrays of a
 complex, face_surface counting structures after the surfaces; volumes (B,); cell_part (C,) int32, the
 model of each cell (where cells of several became one, the first). Raises InputError and Cancelled.)");
-    module.def("structure_sides", &structure_sides, py::arg("structure"), py::arg("points"),
-               py::arg("threads") = 0, py::arg("control") = nullptr,
-               R"(The side of a structure that points (N, 3) are on: (N,) int8, 1 above or outside, -1
+    module.def(
+        "structure_sides", &structure_sides, py::arg("structure"), py::arg("points"),
+        py::arg("threads") = 0, py::arg("control") = nullptr,
+        R"(The side of a structure that points (N, 3) are on: (N,) int8, 1 above or outside, -1
 below or inside; of a fault by its nearest triangle. Raises InputError and Cancelled.)");
 }
 

@@ -30,8 +30,8 @@ public:
                            std::int32_t /*high*/) const {
         return true;
     }
-    /// What stands for a model's face in pieces of a region of the surface, less than 0. Either cell
-    /// may be -1.
+    /// What stands for a model's face in pieces of a region of the surface, less than 0. Either
+    /// cell may be -1.
     virtual std::int32_t cap_face(std::size_t /*region*/, std::int32_t /*low*/,
                                   std::int32_t /*high*/) const {
         return -1;
@@ -75,6 +75,7 @@ public:
     }
     /// Of what is at side 0 of a region of the surface; at side 1 it is the other.
     std::int8_t below(std::size_t region) const { return side_[region]; }
+
 private:
     /// Notes that two items are on the same side or on opposite ones; false where they are known to
     /// be otherwise.

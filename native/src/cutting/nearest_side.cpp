@@ -89,10 +89,10 @@ std::int8_t NearestSide::operator()(const Position& p) const {
             const double distance = dot(away, away);
             if (distance > least * (1 + kAlike)) return;
             const Position normal = polygon_normal(own);
-            near.push_back({distance,
-                            std::abs(dot(normal, away)) /
-                                std::sqrt(std::max(dot(normal, normal), 1e-300)),
-                            t});
+            near.push_back(
+                {distance,
+                 std::abs(dot(normal, away)) / std::sqrt(std::max(dot(normal, normal), 1e-300)),
+                 t});
             least = std::min(least, distance);
         });
     const Near* best = nullptr;

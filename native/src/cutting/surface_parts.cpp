@@ -186,7 +186,8 @@ void SurfaceParts::join_across() {
     for (Caps& caps : caps_) {
         std::erase_if(caps.across, [&](const std::array<std::int32_t, 2>& pair) {
             if (pair[1] < 0) return false;
-            const std::int32_t low = slots_[index(pair[0])].cell, high = slots_[index(pair[1])].cell;
+            const std::int32_t low = slots_[index(pair[0])].cell,
+                               high = slots_[index(pair[1])].cell;
             if (sides_.separates(index(caps.region), low, high)) return false;
             joined_->join(pair[0], pair[1]);
             loses_[index(low)] = loses_[index(high)] = 1;
@@ -202,7 +203,9 @@ void SurfaceParts::join_parts(Progress* progress) {
     const auto bit = [](std::int8_t half) { return static_cast<std::uint8_t>(half > 0 ? 2 : 1); };
     for (const Slot& slot : slots_)
         halves[index(slot.cell)] |= bit(slot.half);
-    const auto is_divided = [&](std::size_t cell) { return halves[cell] == 3 || loses_[cell] != 0; };
+    const auto is_divided = [&](std::size_t cell) {
+        return halves[cell] == 3 || loses_[cell] != 0;
+    };
     std::vector<std::int32_t> first(cells, -1);
     for (std::size_t s = 0; s < slots_.size(); ++s) {
         const auto cell = index(slots_[s].cell);

@@ -41,7 +41,8 @@ struct Together {
     std::int32_t surfaces = 0;
     CellKind cell_kind = CellKind::kColumns;
 
-    void add(const ComplexView& model, std::int32_t number, std::span<const std::uint8_t> is_wanted);
+    void add(const ComplexView& model, std::int32_t number,
+             std::span<const std::uint8_t> is_wanted);
     void share_vertices(int threads, const Progress* progress);
     ComplexView view() const {
         return {.vertices = {reinterpret_cast<const double*>(vertices.data()), 3 * vertices.size()},
@@ -146,9 +147,8 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
         }
         complex.face_offsets.push_back(static_cast<std::int64_t>(complex.face_vertices.size()));
         complex.face_cells.push_back(reversed ? std::array{piece.parts[1], -1} : piece.parts);
-        complex.face_surface.push_back(piece.face < 0
-                                           ? WantedParts::surface_of_cap(piece.face)
-                                           : together.face_surface[index(piece.face)]);
+        complex.face_surface.push_back(piece.face < 0 ? WantedParts::surface_of_cap(piece.face)
+                                                      : together.face_surface[index(piece.face)]);
     }
     return complex;
 }

@@ -132,9 +132,8 @@ bool StructureSides::is_known_in_rock_alone(std::span<const EdgeUse> uses) const
 /// too, for the sake of cells that rounding flattened away.
 void StructureSides::join_sectors(const Progress* progress) {
     const NoParts near(near_);
-    cutting::join_beside_surface(
-        overlay_, winding_, near, progress,
-        [this](std::int32_t a, std::int32_t b) { joined_.join(a, b); });
+    cutting::join_beside_surface(overlay_, winding_, near, progress,
+                                 [this](std::int32_t a, std::int32_t b) { joined_.join(a, b); });
     const auto item_at = [this](const EdgeUse& use, std::size_t side) {
         const auto item = index(use.item);
         if (item >= overlay_.size() || !overlay_.of_cutter(item)) return use.item;
@@ -244,9 +243,8 @@ void StructureSides::find_kept_sides(std::int32_t s) {
                 const double size = std::sqrt(cutting::dot(normal, normal));
                 area += area == 0 ? size : -size;
             }
-            const std::int8_t side =
-                part_[r] >= 0 ? sides_[part_at(r, 0)][index(other)]
-                              : nearest_[index(other)](middle_of(r));
+            const std::int8_t side = part_[r] >= 0 ? sides_[part_at(r, 0)][index(other)]
+                                                   : nearest_[index(other)](middle_of(r));
             (side == kBelow ? below : above) += area;
         }
         kept_[index(s)].push_back(below > above ? kBelow : kAbove);
@@ -291,7 +289,8 @@ bool StructureSides::is_inside(std::int32_t s, std::size_t part) {
     const auto p = is_region ? overlay_.inner_point(own)
                              : overlay_.exact(overlay_.model().face(item - overlay_.size())[0]);
     // the ray goes down: a part on the upper side of a region crosses that region too
-    const bool is_below = is_region && overlay_.of_cutter(own) && (item < items_) == (seen.second > 0);
+    const bool is_below =
+        is_region && overlay_.of_cutter(own) && (item < items_) == (seen.second > 0);
     bool inside = false;
     const auto& body = surface_.single[index(s)];
     for (const auto& t : body.triangles) {

@@ -189,8 +189,7 @@ StructureSurface structure_surface(std::span<const Structure> structures, const 
             std::array<NodeId, 3> corners{};
             for (std::size_t i = 0; i < 3; ++i) {
                 corners[i] = static_cast<NodeId>(single.vertices.size());
-                single.vertices.push_back(
-                    all.surface.vertices[index(all.surface.triangles[t][i])]);
+                single.vertices.push_back(all.surface.vertices[index(all.surface.triangles[t][i])]);
             }
             single.triangles.push_back(corners);
         }

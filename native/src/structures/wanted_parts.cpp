@@ -33,8 +33,9 @@ WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
             });
         };
         const auto found = std::ranges::find_if(model_sides, allows);
-        model_of_part_.push_back(
-            found == model_sides.end() ? -1 : static_cast<std::int32_t>(found - model_sides.begin()));
+        model_of_part_.push_back(found == model_sides.end()
+                                     ? -1
+                                     : static_cast<std::int32_t>(found - model_sides.begin()));
     }
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         if (overlay.of_cutter(r) && winding.counts(r) && winding.touches_model(r)) find_same(r);
@@ -61,8 +62,7 @@ std::int8_t WantedParts::of_cap(std::size_t region, std::size_t side, std::int32
 
 bool WantedParts::does_act(std::int32_t structure, std::int32_t cell) const {
     const std::size_t blocks = overlay_.model().blocks;
-    return cell >= 0 &&
-           acts_[index(structure) * blocks + index(overlay_.model().block(cell))] != 0;
+    return cell >= 0 && acts_[index(structure) * blocks + index(overlay_.model().block(cell))] != 0;
 }
 
 /// The last structure that acts between two cells, -1 none. It must part their sides.
