@@ -30,10 +30,10 @@ def model_unit(group, _context):
         live.touch(group.id_data)
 
 
-def colouring(row, _context):
-    """A setting that only the colours depend on."""
+def coloring(row, _context):
+    """A setting that only the colors depend on."""
     if not settings.is_filling():
-        display.colours_changed(row.id_data)
+        display.colors_changed(row.id_data)
 
 
 def edge_length(rock, _context):
@@ -173,8 +173,8 @@ def property_name(row, _context):
         live.touch(row.id_data)
 
 
-def property_colour(row, _context):
+def property_color(row, _context):
     if not settings.is_filling():
         row.has_color = True
         library_rows.update_material(row)
-        display.colours_changed(row.id_data)
+        display.colors_changed(row.id_data)

@@ -23,7 +23,7 @@ class REALMODEL_OT_library_add(Reporting, bpy.types.Operator):
         group = context.scene.realmodel
         number = library_rows.free_id(context.scene)
         name = settings.free_name(group.library, self.name.strip() or "New property")
-        library_rows.add(context.scene, Property(number, name, color=library_rows.next_colour(context.scene)))
+        library_rows.add(context.scene, Property(number, name, color=library_rows.next_color(context.scene)))
         with settings.filling():
             group.active_property = len(group.library) - 1
 
@@ -69,7 +69,7 @@ class REALMODEL_OT_library_import(Reporting, bpy.types.Operator, ImportHelper):
         )
         library_rows.fill(scene, [*kept, *library])
         library_rows.update_materials(scene)
-        display.colours_changed(scene)
+        display.colors_changed(scene)
         live.touch(scene)
         self.report({"INFO"}, f"Read {len(library)} properties")
 

@@ -109,7 +109,7 @@ def building(context):
 
 
 def not_building(context):
-    told = "a model is being built; wait, or cancel the build with Esc"
+    told = "RealModel is at work; wait, or cancel with Esc"
     return told if context.window_manager.realmodel.running else None
 
 

@@ -176,6 +176,18 @@ TEST(Intersect, NothingIsFoundInTheResultAgain) {
     EXPECT_EQ(again.triangles.size(), result.triangles.size() / 3 + 12);
 }
 
+TEST(Intersect, ASphereMovedByOneUnitInTheLastPlace) {
+    const Mesh a = sphere({0, 0, 0}, 1, 16);
+    Mesh b = a;
+    for (double& x : b.vertices)
+        x = std::nextafter(x, 10.0);
+    const Refinement r = intersect(a.view(), b.view());
+    const Volumes v = volumes(r);
+    EXPECT_NEAR(v.both, a.volume(), 1e-12);
+    EXPECT_NEAR(v.common, a.volume(), 1e-12);
+    EXPECT_NEAR(v.first_only, 0, 1e-12);
+}
+
 TEST(Intersect, RefusesWhatIsNoSurface) {
     const Mesh a = cube({0, 0, 0}, 1);
     Mesh b = a;

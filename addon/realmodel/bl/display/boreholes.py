@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from .. import borehole_picks, meshes, project_settings, scene
-from . import bodies, colours, explosion, marks
+from . import bodies, colors, explosion, marks
 
 _RADIUS = 0.005  # of the model's size
 _SIDES = 8
@@ -37,7 +37,7 @@ def show(current):
     mesh = meshes.new_mesh("Boreholes", shape)
     slots = sorted(set(properties), key=lambda number: -1 if number is None else number)
     for number in slots:
-        mesh.materials.append(colours.of_property(current, number or 0))
+        mesh.materials.append(colors.of_property(current, number or 0))
     given = np.array([slots.index(number) for number in properties], np.int32)
     mesh.polygons.foreach_set("material_index", np.repeat(given, _SIDES))
     mesh.update()

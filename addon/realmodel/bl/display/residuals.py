@@ -10,7 +10,7 @@ from ...core import layer_values
 from ...core.drawing.overlay import ColorKey
 from ...core.residuals import residuals
 from .. import library_rows, meshes, project_settings, scene
-from . import bodies, colours, explosion, marks, shown_models
+from . import bodies, colors, explosion, marks, shown_models
 
 _MOST = 20_000  # points that are shown: of more those that are farthest from their surfaces
 _STEPS = 15  # of the color scale: each is a material, which all ways of shading show
@@ -48,8 +48,8 @@ def show(current):
     low, high = limits(current)
     steps = (values[order] - low) / ((high - low) or 1.0) * (_STEPS - 1)
     for color in _colors(_STEPS)[:, :3].tolist():
-        code = library_rows.hex_colour(color)
-        item.data.materials.append(colours.plain_material(f"Residual {code}", code))
+        code = library_rows.hex_color(color)
+        item.data.materials.append(colors.plain_material(f"Residual {code}", code))
     item.data.polygons.foreach_set("material_index", np.repeat(np.rint(steps).astype(np.int32), 8))
     bodies.view_collection(current).objects.link(item)
 

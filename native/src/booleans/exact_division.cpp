@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "booleans/exact_division.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "base/key_table.hpp"
+#include "base/parallel.hpp"
+#include "cutting/triangulate.hpp"
+#include "exact/sign_filters.hpp"
+#include "exact/space_predicates.hpp"
+
+namespace realmodel::booleans {
+
+using arrangement::Region;
+using arrangement::View;
+using spatial::Box;
+using spatial::BoxTree;
+
+namespace {
+
+constexpr std::size_t kChunk = 1 << 8;
+
+std::size_t shared_corners(const Corners& a, const Corners& b) {
+    return static_cast<std::size_t>(std::count_if(
+        a.begin(), a.end(), [&](SpacePointId p) { return p == b[0] || p == b[1] || p == b[2]; }));
+}
+
+/// Turns of exact points, which loop corners number as nodes.
+class PointTurns : public cutting::CornerTurns {
+public:
+    PointTurns(const SpacePoints& points, const View& view) : points_(points), view_(view) {}
+    int operator()(const cutting::LoopCorner& a, const cutting::LoopCorner& b,
+                   const cutting::LoopCorner& c) const override {
+        return view_.sign() * exact::orient2d(points_, view_.axis(), SpacePointId(a.node),
+                                              SpacePointId(b.node), SpacePointId(c.node));
+    }
+
+private:
+    const SpacePoints& points_;
+    const View& view_;
+};
+
+/// A loop from its least node on, in the direction of the lesser of that node's neighbors.
+std::vector<SpacePointId> canonical(const std::vector<SpacePointId>& loop) {
+    std::vector<SpacePointId> best;
+    for (const bool backward : {false, true}) {
+        std::vector<SpacePointId> turned(loop);
+        if (backward) std::reverse(turned.begin(), turned.end());
+        const SpacePointId least = *std::min_element(turned.begin(), turned.end());
+        for (std::size_t i = 0; i < turned.size(); ++i) {
+            if (turned[i] != least) continue;
+            std::vector<SpacePointId> rotated(turned);
+            std::rotate(rotated.begin(), rotated.begin() + static_cast<std::ptrdiff_t>(i),
+                        rotated.end());
+            if (best.empty() || rotated < best) best = std::move(rotated);
+        }
+    }
+    return best;
+}
+
+bool is_triangle(const Region& region) {
+    return region.loops.size() == 1 && region.loops[0].size() == 3;
+}
+
+}  // namespace
+
+ExactDivision::ExactDivision(Pieces& pieces, std::vector<PieceId>&& chosen, int threads,
+                             Progress* progress)
+    : pieces_(pieces),
+      chosen_(std::move(chosen)),
+      threads_(threads),
+      progress_(progress),
+      arrangement_(pieces.points) {
+    find_candidates();
+    find_meetings();
+}
+
+/// False where filters in doubles can tell that two pieces meet in what they share only.
+bool ExactDivision::may_meet(const Corners& a, const Corners& b) const {
+    const std::size_t shared = shared_corners(a, b);
+    if (shared == 3) return false;
+    // whether all corners that are not shared are known to be on one side, of one plane or the
+    // other
+    const auto is_aside = [&](const Corners& own, const Corners& plane) {
+        int side = 0;
+        for (const SpacePointId p : own) {
+            if (p == plane[0] || p == plane[1] || p == plane[2]) continue;
+            const auto found = exact::orient3d_filter(
+                pieces_.points.rounded(plane[0]), pieces_.points.rounded(plane[1]),
+                pieces_.points.rounded(plane[2]), pieces_.points.rounded(p));
+            if (!found || (side != 0 && *found != side)) return false;
+            side = *found;
+        }
+        return true;
+    };
+    return !is_aside(a, b) && !is_aside(b, a);
+}
+
+void ExactDivision::find_candidates() {
+    const std::size_t count = chosen_.size();
+    std::vector<Box> boxes(count);
+    parallel_ranges(count, kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            boxes[i] = pieces_.box(pieces_[chosen_[i]].corners);
+    });
+    // the tree of the inputs is that of their pieces, as long as none is divided
+    const bool all = count == pieces_.input_count();
+    const std::optional<BoxTree> own =
+        all ? std::nullopt : std::optional<BoxTree>(std::in_place, boxes);
+    const BoxTree& tree = own ? *own : pieces_.tree();
+    std::vector<std::vector<std::array<std::int32_t, 2>>> found((count + kChunk - 1) / kChunk);
+    parallel_ranges(count, kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+        auto& pairs = found[begin / kChunk];
+        for (std::size_t i = begin; i < end; ++i) {
+            const Piece& piece = pieces_[chosen_[i]];
+            if (!piece.is_fresh || has_equal_corners(piece.corners)) continue;
+            const std::size_t first = pairs.size();
+            tree.find(boxes[i], [&](std::int32_t j) {
+                const Piece& other = pieces_[chosen_[index(j)]];
+                if (other.is_fresh && j <= static_cast<std::int32_t>(i)) return;
+                if (!has_equal_corners(other.corners) && may_meet(piece.corners, other.corners))
+                    pairs.push_back({static_cast<std::int32_t>(i), j});
+            });
+            std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end());
+        }
+    });
+    for (const auto& pairs : found)
+        candidates_.insert(candidates_.end(), pairs.begin(), pairs.end());
+}
+
+void ExactDivision::find_meetings() {
+    std::vector<std::int32_t> triangle_of(chosen_.size(), -1);
+    for (const auto& pair : candidates_) {
+        for (const std::int32_t i : pair)
+            triangle_of[index(i)] = 0;
+    }
+    for (std::size_t i = 0; i < chosen_.size(); ++i) {
+        if (triangle_of[i] < 0) continue;
+        triangle_of[i] = arrangement_.add(pieces_[chosen_[i]].corners);
+        piece_of_.push_back(static_cast<std::int32_t>(i));
+    }
+    for (auto& pair : candidates_) {
+        for (std::int32_t& i : pair)
+            i = triangle_of[index(i)];
+    }
+    const std::size_t count = candidates_.size();
+    std::vector<std::vector<Meeting>> found((count + kChunk - 1) / kChunk);
+    parallel_ranges(count, kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto met = arrangement_.intersection(candidates_[i][0], candidates_[i][1]);
+            if (met && is_contact(*met)) found[begin / kChunk].push_back(*met);
+        }
+    });
+    for (const auto& meetings : found)
+        meetings_.insert(meetings_.end(), meetings.begin(), meetings.end());
+}
+
+/// Whether two triangles that intersect do so elsewhere than in what they share.
+bool ExactDivision::is_contact(const Meeting& met) const {
+    if (met.in_one_plane) return meet_in_plane(met.one, met.other);
+    const auto &first = met.ends[0], &last = met.ends[1];
+    if (first.to != kNone || last.to != kNone || first.from != last.from) return true;
+    const auto is_corner = [&](std::int32_t triangle) {
+        const auto& corners = arrangement_.corners(triangle);
+        return std::find(corners.begin(), corners.end(), first.from) != corners.end();
+    };
+    return !is_corner(met.one) || !is_corner(met.other);
+}
+
+/// The same of triangles in one plane: they do not where a line along an edge parts them, on which
+/// they have nothing but corners in common.
+bool ExactDivision::meet_in_plane(std::int32_t one, std::int32_t other) const {
+    const auto axis = arrangement_.view_of(one).first;
+    const SpacePoints& points = pieces_.points;
+    const auto is_within = [&](SpacePointId p, SpacePointId a, SpacePointId b) {
+        return p != a && p != b && exact::compare(points, a, p) * exact::compare(points, p, b) > 0;
+    };
+    for (const auto& [own, of] : {std::pair(one, other), std::pair(other, one)}) {
+        const Corners &a = arrangement_.corners(own), &b = arrangement_.corners(of);
+        const int facing = exact::orient2d(points, axis, a[0], a[1], a[2]);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const SpacePointId from = a[k], to = a[(k + 1) % 3];
+            std::vector<SpacePointId> on;
+            bool parts = true;
+            for (const SpacePointId p : b) {
+                const int side = facing * exact::orient2d(points, axis, from, to, p);
+                parts = parts && side <= 0;
+                if (side == 0) on.push_back(p);
+            }
+            if (!parts) continue;
+            for (const SpacePointId p : on) {
+                if (is_within(p, from, to)) return true;
+            }
+            return on.size() == 2 && (is_within(from, on[0], on[1]) || is_within(to, on[0], on[1]));
+        }
+    }
+    return true;
+}
+
+/// A region in triangles of its nodes.
+std::vector<Corners> ExactDivision::divided(const Region& region) const {
+    std::vector<cutting::Loop> loops;
+    std::vector<arrangement::Position> positions;
+    const auto [axis, facing] = arrangement_.view_of(region.triangle);
+    arrangement::Position normal{0, 0, 0};
+    normal[axis] = facing;
+    const View view(normal);
+    for (const auto& nodes : region.loops) {
+        cutting::Loop& loop = loops.emplace_back();
+        for (const SpacePointId p : nodes) {
+            positions.push_back(pieces_.points.rounded(p));
+            loop.push_back({p.number(), view(positions.back())});
+        }
+    }
+    std::vector<std::array<cutting::LoopCorner, 3>> found;
+    cutting::triangulate(loops, view.rounding(positions), found, PointTurns(pieces_.points, view));
+    std::vector<Corners> triangles;
+    for (const auto& t : found)
+        triangles.push_back(
+            {SpacePointId(t[0].node), SpacePointId(t[1].node), SpacePointId(t[2].node)});
+    return triangles;
+}
+
+void ExactDivision::divide(const std::vector<Meeting>& at) {
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        poll(progress_, i);
+        arrangement_.insert(at[i]);
+    }
+    arrangement_.divide(threads_, progress_);
+    divide_regions();
+}
+
+void ExactDivision::divide_regions() {
+    const auto& regions = arrangement_.regions();
+    // the first of regions that coincide is divided, the others as that one
+    std::vector<std::int32_t> as(regions.size(), -1);
+    std::vector<std::uint8_t> is_reversed(regions.size(), 0);
+    std::vector<std::vector<SpacePointId>> outlines(regions.size());
+    parallel_ranges(regions.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t r = begin; r < end; ++r) {
+                            if (!is_triangle(regions[r]))
+                                outlines[r] = canonical(regions[r].loops[0]);
+                        }
+                    });
+    KeyTable table;
+    std::vector<std::uint64_t> words;
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+        if (outlines[r].empty()) continue;
+        words.clear();
+        for (const SpacePointId p : outlines[r])
+            words.push_back(static_cast<std::uint64_t>(p.number()));
+        const auto found = table.find_or_add(
+            KeyTable::hash(words), static_cast<std::int32_t>(r),
+            [&](std::int32_t other) { return outlines[index(other)] == outlines[r]; });
+        as[r] = found.number;
+        if (found.is_new) continue;
+        const auto view = arrangement_.view_of(regions[r].triangle);
+        const auto& corners = arrangement_.corners(regions[index(as[r])].triangle);
+        is_reversed[r] = exact::orient2d(pieces_.points, view.first, corners[0], corners[1],
+                                         corners[2]) != view.second;
+    }
+    std::vector<std::vector<Corners>> triangles(regions.size());
+    parallel_ranges(regions.size(), kChunk, threads_, progress_,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t r = begin; r < end; ++r) {
+                            if (as[r] == static_cast<std::int32_t>(r))
+                                triangles[r] = divided(regions[r]);
+                        }
+                    });
+    // new points become the nearest doubles
+    SpacePoints& points = pieces_.points;
+    std::vector<SpacePointId> vertex(points.size(), kNone);
+    const auto make = [&](const Corners& nodes) {
+        Piece piece;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const SpacePointId p = nodes[k];
+            if (points.is_double(p)) {
+                piece.corners[k] = p;
+                continue;
+            }
+            piece.is_fresh = true;
+            if (!vertex[index(p)].has_value()) vertex[index(p)] = points.add(points.rounded(p));
+            piece.corners[k] = vertex[index(p)];
+        }
+        return piece;
+    };
+    std::vector<std::pair<PieceId, std::vector<Piece>>> changed;
+    std::size_t r = 0;
+    for (std::size_t t = 0; t < piece_of_.size(); ++t) {
+        const PieceId id = piece(static_cast<std::int32_t>(t));
+        std::vector<Piece> made;
+        for (; r < regions.size() && index(regions[r].triangle) == t; ++r) {
+            if (as[r] < 0) {
+                const auto& own = regions[r].loops[0];
+                made.push_back(make({own[0], own[1], own[2]}));
+                continue;
+            }
+            for (Corners nodes : triangles[index(as[r])]) {
+                if (is_reversed[r] != 0) std::swap(nodes[1], nodes[2]);
+                made.push_back(make(nodes));
+            }
+        }
+        const auto& before = pieces_[id];
+        if (made.size() == 1 && in_order(made[0].corners).first == in_order(before.corners).first)
+            continue;
+        std::erase_if(made, [](const Piece& piece) { return has_equal_corners(piece.corners); });
+        for (Piece& piece : made)
+            piece.is_fresh = piece.is_fresh || before.is_fresh;
+        changed.push_back({id, std::move(made)});
+    }
+    std::sort(changed.begin(), changed.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t i = 0; i < changed.size();) {
+        const std::int32_t input = changed[i].first.input;
+        std::vector<Piece> all;
+        const auto old = pieces_.of(input);
+        for (std::size_t k = 0; k < old.size(); ++k) {
+            if (i < changed.size() &&
+                changed[i].first == PieceId{input, static_cast<std::int32_t>(k)}) {
+                all.insert(all.end(), changed[i].second.begin(), changed[i].second.end());
+                ++i;
+            } else {
+                all.push_back(old[k]);
+            }
+        }
+        pieces_.replace(input, std::move(all));
+    }
+}
+
+}  // namespace realmodel::booleans

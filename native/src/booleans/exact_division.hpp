@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "arrangement/triangle_arrangement.hpp"
+#include "booleans/pieces.hpp"
+
+namespace realmodel::booleans {
+
+/// Pieces that meet elsewhere than in corners and edges that they share, and their exact division
+/// along one another.
+class ExactDivision {
+public:
+    /// @param chosen  pieces, among them all that may meet fresh ones
+    ExactDivision(Pieces& pieces, std::vector<PieceId>&& chosen, int threads, Progress* progress);
+
+    using Meeting = arrangement::TriangleArrangement::Intersection;
+    /// Where fresh pieces meet others out of order. Finds them; pieces without area are dropped.
+    const std::vector<Meeting>& meetings() const { return meetings_; }
+    const PieceId& piece(std::int32_t triangle) const {
+        return chosen_[index(piece_of_[index(triangle)])];
+    }
+
+    /// Divides the pieces at some of the meetings, and rounds the new points. Pieces with such a
+    /// corner are fresh.
+    void divide(const std::vector<Meeting>& at);
+
+private:
+    void find_candidates();
+    bool may_meet(const Corners& a, const Corners& b) const;
+    void find_meetings();
+    bool is_contact(const Meeting& met) const;
+    bool meet_in_plane(std::int32_t one, std::int32_t other) const;
+    std::vector<Corners> divided(const arrangement::Region& region) const;
+    void divide_regions();
+
+    Pieces& pieces_;
+    std::vector<PieceId> chosen_;
+    int threads_;
+    Progress* progress_;
+    std::vector<std::array<std::int32_t, 2>> candidates_;  ///< first chosen pieces, then triangles
+    arrangement::TriangleArrangement arrangement_;
+    std::vector<std::int32_t> piece_of_;  ///< of triangles of the arrangement: the chosen piece
+    std::vector<Meeting> meetings_;
+};
+
+}  // namespace realmodel::booleans

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "exact/space_points.hpp"
+
+namespace realmodel::booleans {
+
+using exact::SpacePointId;
+using exact::SpacePoints;
+using Corners = std::array<SpacePointId, 3>;
+using Edge = std::array<SpacePointId, 2>;
+
+/// A triangle, and points near it that it is to get as vertices.
+struct FacetPoints {
+    Corners corners;
+    /// Of the edge from corner k to corner k + 1: its coordinate along edge_axis() grows or falls
+    /// from point to point.
+    std::array<std::vector<SpacePointId>, 3> on_edges;
+    std::vector<SpacePointId> within;
+    std::vector<Edge>
+        wanted;  ///< edges between these points that it gets where nothing crosses them
+};
+
+/// The axis along which an edge is longest: points near it are in the order of this coordinate.
+std::size_t edge_axis(const SpacePoints& points, SpacePointId a, SpacePointId b);
+
+/// The triangle in triangles of its corners and these points, turned as it is. Where points lie is
+/// decided where they are moved onto the edges and into the plane of the triangle, exactly; points
+/// within that fall outside or together there are left out. The same for the same triangle and
+/// points, however its corners are ordered. Each part of an edge has one triangle.
+std::vector<Corners> divided(const SpacePoints& points, const FacetPoints& facet);
+
+}  // namespace realmodel::booleans

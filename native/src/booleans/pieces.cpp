@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "booleans/pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/parallel.hpp"
+
+namespace realmodel::booleans {
+
+namespace {
+
+constexpr std::size_t kChunk = 1 << 12;
+
+void check(const TriangleMesh& mesh, int surface) {
+    if (mesh.triangle_count() == 0)
+        throw InputError("no_triangles", "the surface has no triangles", surface);
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        if (!std::isfinite(mesh.vertices[i]))
+            throw InputError("not_finite", "a coordinate is not finite", surface,
+                             {static_cast<std::int64_t>(i / 3)});
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const std::int32_t v = mesh.triangles[i];
+        if (v < 0 || static_cast<std::size_t>(v) >= mesh.vertex_count())
+            throw InputError("bad_index", "a triangle has a vertex that is not there", surface,
+                             {static_cast<std::int64_t>(i / 3)});
+    }
+}
+
+}  // namespace
+
+Pieces::Pieces(const std::array<TriangleMesh, 2>& surfaces, int threads, const Progress* progress) {
+    for (std::uint8_t source = 0; source < 2; ++source) {
+        const TriangleMesh& mesh = surfaces[source];
+        check(mesh, source);
+        checked_number(whole_.size() + mesh.triangle_count(), "triangles");
+        second_ = whole_.size();
+        std::vector<SpacePointId> number(mesh.vertex_count(), kNone);
+        for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+            poll(progress, t);
+            Piece piece;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::size_t v = index(mesh.triangles[3 * t + k]);
+                if (!number[v].has_value())
+                    number[v] = points.add(exact::SpacePosition{
+                        mesh.vertices[3 * v], mesh.vertices[3 * v + 1], mesh.vertices[3 * v + 2]});
+                piece.corners[k] = number[v];
+            }
+            piece.is_fresh = true;
+            whole_.push_back(piece);
+        }
+    }
+    list_.assign(whole_.size(), -1);
+    for (std::size_t v = 0; v < points.size(); ++v) {
+        for (const double x : points.rounded(SpacePointId(v)))
+            largest_ = std::max(largest_, std::abs(x));
+    }
+    std::vector<spatial::Box> boxes(whole_.size());
+    parallel_ranges(whole_.size(), kChunk, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t i = begin; i < end; ++i)
+                            boxes[i] = box(whole_[i].corners);
+                    });
+    tree_ = std::make_unique<spatial::BoxTree>(std::move(boxes));
+}
+
+void Pieces::replace(std::int32_t input, std::vector<Piece>&& pieces) {
+    std::int32_t& list = list_[index(input)];
+    if (list < 0) {
+        list = static_cast<std::int32_t>(lists_.size());
+        lists_.emplace_back();
+    }
+    lists_[index(list)] = std::move(pieces);
+}
+
+}  // namespace realmodel::booleans
