@@ -112,7 +112,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     )
     show_data: BoolProperty(
         name="Show Data",
-        description="Show the points of the surfaces and the outlines of the rock masses as they were read",
+        description="Show the points of the surfaces, the outlines, and the boreholes as they were read",
         options=set(),
         update=data_objects.shown_changed,
     )
