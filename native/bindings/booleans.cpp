@@ -38,7 +38,9 @@ py::array rows_seen(const py::object& owner,
                 {static_cast<py::ssize_t>(triangles.size()), 3});
 }
 
-const Refinement& in(const py::object& self) { return self.cast<const Refinement&>(); }
+const Refinement& in(const py::object& self) {
+    return self.cast<const Refinement&>();
+}
 
 const char* name_of(booleans::LoopKind kind) {
     switch (kind) {
