@@ -260,15 +260,15 @@ def draw_bounds(d):
         return x0, min(y0, y1), x1 - x0, abs(y1 - y0)
 
     told = {0: BLUE, 1: BLUE, 2: BLUE, 3: RED, 4: RED, 5: GREY}
-    for i, colour in told.items():
+    for i, color in told.items():
         x, y, width, height = span(LOWER, i)
-        fill = {BLUE: "#dbe7ef", RED: "#f3d9d6", GREY: PALE}[colour]
-        d.rect(x + 1, y - 2, width - 2, round(height + 4, 1), fill, colour, "3 2", 0)
+        fill = {BLUE: "#dbe7ef", RED: "#f3d9d6", GREY: PALE}[color]
+        d.rect(x + 1, y - 2, width - 2, round(height + 4, 1), fill, color, "3 2", 0)
     d.path(ENVELOPE, INK, 2)
     for point in ENVELOPE:
         d.dot(point, INK, 2.6)
-    for i, colour in told.items():
-        d.path(LOWER[i : i + 2], colour, 2.2)
+    for i, color in told.items():
+        d.path(LOWER[i : i + 2], color, 2.2)
     for point in LOWER:
         d.dot(point, INK, 2.6)
     d.text(4, 40, "E", 13, bold=True)

@@ -11,6 +11,7 @@ keeps pictures. docs/images/walk.png is the contact sheet that scripts/test.sh -
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -25,10 +26,11 @@ WIDEST = 1200  # pixels
 def main(names):
     """Outside Blender: runs this file in a window, then gives each picture a palette."""
     size = f"{SIZE[0]}x{SIZE[1]}"
-    command = ["xvfb-run", "-a", "-s", f"-screen 0 {size}x24", "blender", "--factory-startup"]
-    command += ["--enable-event-simulate", "--window-geometry", "0", "0", *map(str, SIZE)]
-    command += ["-P", __file__, "--", *names]
-    done = subprocess.run(command, cwd=ROOT, check=False)
+    with tempfile.TemporaryDirectory() as screen:
+        command = ["xvfb-run", "-a", "-s", f"-screen 0 {size}x24 -fbdir {screen}", "blender"]
+        command += ["--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0"]
+        command += [*map(str, SIZE), "-P", __file__, "--", screen, *names]
+        done = subprocess.run(command, cwd=ROOT, check=False)
     for path in (*sorted(IMAGES.glob("*.png")), IMAGES.parent / "view_modes.png"):
         shrink(path, path)
     sheet = ROOT / "build" / "gui" / "contact_sheet.png"
@@ -53,7 +55,7 @@ def shrink(source, target, widest=WIDEST, method=1):
 # -- in Blender
 
 
-def begin(names):
+def begin(screen, *names):
     """Registers the add-on and runs the chapters, one after another."""
     import bpy
 
@@ -71,7 +73,9 @@ def begin(names):
     TAB.update({cls: set(getattr(cls, "bl_options", ())) for cls in tab_panels()})
     IMAGES.mkdir(parents=True, exist_ok=True)
     chapters = [(draw.__name__, lambda walk, draw=draw: chapter(walk, draw)) for draw in CHAPTERS]
-    Walk(IMAGES).run([c for c in chapters if not names or c[0] in names], at_end)
+    Walk(IMAGES, Path(screen) / "Xvfb_screen0").run(
+        [c for c in chapters if not names or c[0] in names], at_end
+    )
 
 
 def at_end(walk):
@@ -140,18 +144,20 @@ def open_tab(walk):
 def keep(walk, name, region=None, panels=()):
     """Keeps a picture of a region of the 3D viewport, or of all of it with the sidebar, as NAME.png. panels:
     of the sidebar these alone, open; their idnames end so."""
+    from driver import save_picture
+
     if panels:
         yield from show_panels(walk, panels)
     yield walk.redrawn(3)
     picture = seen(walk, walk.area if region is None else walk.region(region))
-    write(without_tabs(picture) if region == "UI" else picture, IMAGES / f"{name}.png")
+    save_picture(without_tabs(picture) if region == "UI" else picture, IMAGES / f"{name}.png")
 
 
 def seen(walk, part):
     """(height, width, 3) a part of the window as it is on the screen."""
-    picture = walk.shot("part")
-    walk.pictures.pop().unlink()
-    return picture[part.y : part.y + part.height, part.x : part.x + part.width]
+    from driver import read_screen
+
+    return read_screen(walk.screen)[part.y : part.y + part.height, part.x : part.x + part.width]
 
 
 def without_tabs(picture):
@@ -163,21 +169,6 @@ def without_tabs(picture):
     drawn[:12] = False  # the border of the region
     lowest = int(drawn.argmax())
     return picture[max(lowest - 8, 0) :]
-
-
-def write(picture, path):
-    """(height, width, 3) from 0 to 1, the bottom row first, to a PNG."""
-    import bpy
-    import numpy as np
-
-    height, width = picture.shape[:2]
-    image = bpy.data.images.new("picture", width, height)
-    image.colorspace_settings.name = "Non-Color"
-    opaque = np.ones((height, width, 1), np.float32)
-    image.pixels.foreach_set(np.concatenate([picture, opaque], axis=2).astype(np.float32).ravel())
-    image.filepath_raw, image.file_format = str(path), "PNG"
-    image.save()
-    bpy.data.images.remove(image)
 
 
 def show_panels(walk, names=()):
@@ -238,6 +229,7 @@ def frame(walk):
 def side_by_side(pictures, name, columns, smaller=1):
     """Keeps several pictures of one width as one, so many times smaller, with white lines between."""
     import numpy as np
+    from driver import save_picture
 
     tiles, highest = [], max(len(picture) for picture in pictures)
     for picture in pictures:
@@ -246,7 +238,7 @@ def side_by_side(pictures, name, columns, smaller=1):
         blocks = picture[:height, :width].reshape(height // smaller, smaller, width // smaller, smaller, 3)
         tiles.append(np.pad(blocks.mean(axis=(1, 3)), ((4, 4), (4, 4), (0, 0)), constant_values=1.0))
     rows = [np.concatenate(tiles[n : n + columns], axis=1) for n in range(0, len(tiles), columns)]
-    write(np.concatenate(rows[::-1]), IMAGES / f"{name}.png")
+    save_picture(np.concatenate(rows[::-1]), IMAGES / f"{name}.png")
 
 
 # -- chapters
@@ -489,6 +481,6 @@ CHAPTERS = (start, tour, modes, csv, quality, sculpt, section, quarry)
 
 if __name__ == "__main__":
     if "bpy" in sys.modules:
-        begin(sys.argv[sys.argv.index("--") + 1 :])
+        begin(*sys.argv[sys.argv.index("--") + 1 :])
     else:
         sys.exit(main(sys.argv[1:]))

@@ -22,7 +22,7 @@ from draw_methods import save  # isort: skip
 
 _EDGE = 4.5
 _ROWS = 20  # of a histogram
-_COLOURS = "viridis"
+_COLORS = "viridis"
 
 
 def region():
@@ -55,7 +55,7 @@ def draw(path):
         plan, histogram = axes[:, column]
         plan.add_collection(
             PolyCollection(
-                vertices[triangles], array=ratios, cmap=_COLOURS, clim=(0.4, 1), edgecolor="k", linewidth=0.3
+                vertices[triangles], array=ratios, cmap=_COLORS, clim=(0.4, 1), edgecolor="k", linewidth=0.3
             )
         )
         plan.autoscale_view()

@@ -22,7 +22,7 @@ from PIL import Image  # isort: skip
 
 _OUTLINE = [[0, 0], [1000, 0], [1000, 700], [0, 700]]
 _LIMITS = (60.0, 145.0)
-_COLOURS = 96  # of a picture's palette
+_COLORS = 96  # of a picture's palette
 _MANY = 300  # points, beyond which their dots become smaller
 
 
@@ -56,10 +56,10 @@ def neighbour(vertices):
 
 
 def save(figure, path):
-    """Writes a small PNG: a palette of few colours."""
+    """Writes a small PNG: a palette of few colors."""
     figure.savefig(path, dpi=100)
     with Image.open(path) as picture:
-        few = picture.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)
+        few = picture.convert("RGB").quantize(_COLORS, dither=Image.Dither.NONE)
     few.save(path, optimize=True)
 
 
@@ -108,14 +108,14 @@ def draw(folder):
 
 
 def height_map(vertices, triangles, points, axes, limits=None):
-    """Heights of a triangulated surface (vertices (V, 3), triangles (T, 3)) as colours in plan with contour
-    lines, and the points (P, 2 or 3) that it was made from. limits: (lowest, highest) of the colours."""
+    """Heights of a triangulated surface (vertices (V, 3), triangles (T, 3)) as colors in plan with contour
+    lines, and the points (P, 2 or 3) that it was made from. limits: (lowest, highest) of the colors."""
     vertices = np.asarray(vertices, np.float64)
     _map(vertices[:, :2], triangles, vertices[:, 2], points, axes, limits, "height", "viridis")
 
 
 def variance_map(vertices, triangles, variance, points, axes, limits=None):
-    """The standard deviation of the heights of a surface, the root of variances (V,), as colours in plan, and
+    """The standard deviation of the heights of a surface, the root of variances (V,), as colors in plan, and
     the points."""
     deviation = np.sqrt(np.maximum(np.asarray(variance, np.float64), 0.0))
     plan = np.asarray(vertices, np.float64)[:, :2]
@@ -127,7 +127,7 @@ def _share_of_many(points: int) -> float:
     return min(1.0, max(_MANY / max(points, 1), 0.03))
 
 
-def _map(plan, triangles, values, points, axes, limits, label, colours):
+def _map(plan, triangles, values, points, axes, limits, label, colors):
     # matplotlib's own arithmetic has single precision in places: coordinates from the middle
     middle = np.round(plan.mean(axis=0), -2) if np.abs(plan).max() > 1e5 else np.zeros(2)
     x, y = (plan - middle).T
@@ -136,9 +136,7 @@ def _map(plan, triangles, values, points, axes, limits, label, colours):
     low, high = limits or (values[known].min(), values[known].max())
     mesh = Triangulation(x, y, shown)
     filled = np.where(known, values, low)
-    drawn = axes.tripcolor(
-        mesh, filled, cmap=colours, vmin=low, vmax=high, shading="gouraud", rasterized=True
-    )
+    drawn = axes.tripcolor(mesh, filled, cmap=colors, vmin=low, vmax=high, shading="gouraud", rasterized=True)
     if len(shown) and high > low:
         levels = np.linspace(low, high, 12)[1:-1]
         axes.tricontour(mesh, filled, levels=levels, colors="white", linewidths=0.4, alpha=0.6)

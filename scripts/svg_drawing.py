@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the scripts that draw for docs/ share: colours, and shapes that become an SVG file with the same
+"""What the scripts that draw for docs/ share: colors, and shapes that become an SVG file with the same
 bytes on every run."""
 
 from xml.sax.saxutils import escape
@@ -69,8 +69,8 @@ class Drawing:
         arrow = '<path d="M0,0 L8,4 L0,8 z" fill="{}"/>'
         markers = "".join(
             f'<marker id="{name}" markerWidth="8" markerHeight="8" refX="7" refY="4" orient="auto" '
-            f'markerUnits="userSpaceOnUse">{arrow.format(colour)}</marker>'
-            for name, colour in (("ink", INK), ("red", RED))
+            f'markerUnits="userSpaceOnUse">{arrow.format(color)}</marker>'
+            for name, color in (("ink", INK), ("red", RED))
         )
         return (
             f"<!-- SPDX-License-Identifier: GPL-3.0-or-later; drawn by scripts/{self.script} -->\n"

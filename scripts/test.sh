@@ -154,8 +154,9 @@ test_blender() { in_time 15m blender -b --factory-startup --python-exit-code 1 -
 
 # A window without a screen, drawn in software; its screenshots are kept in build/gui.
 test_gui() {
-    in_time 15m xvfb-run -a -s "-screen 0 1280x800x24" blender --factory-startup --enable-event-simulate \
-        --window-geometry 0 0 1280 800 -P tests/gui/run.py
+    mkdir -p build/gui
+    in_time 15m xvfb-run -a -s "-screen 0 1280x800x24 -fbdir build/gui" blender --factory-startup \
+        --enable-event-simulate --window-geometry 0 0 1280 800 -P tests/gui/run.py
 }
 
 test_bpy() { in_time 15m "$venv_bpy/bin/python" tests/blender/run.py; }

@@ -6,11 +6,12 @@
 #   Blender 3.4    Debian 12's own
 #   Blender 4.3    Debian 13's, in a folder entered with chroot
 #   Blender 4.5    the module bpy of PyPI
+#   Blender 5.0    the module bpy of PyPI
 #   Blender 5.2    Debian unstable's, in a folder entered with chroot
 #
 # The folders are made once and kept in ${XDG_CACHE_HOME:-~/.cache}/realmodel (4 GB). Needs root, for chroot.
 #
-#   scripts/test_blender_versions.sh [--zip FILE] [--native] [3.4|4.3|4.5|5.2]...     (default: all)
+#   scripts/test_blender_versions.sh [--zip FILE] [--native] [3.4|4.3|4.5|5.0|5.2]...     (default: all)
 #     --zip FILE    this zip, instead of one made by scripts/package.sh
 #     --native      with 5.2 also compile the native part and its tests with unstable's compiler and
 #                   libraries, and run them (half an hour)
@@ -20,21 +21,22 @@ set -uo pipefail # and not -e: a version that fails does not keep the others fro
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/realmodel
 results=$root/build/blender_versions
+declare -A module_of=([4.5]=$root/build/venv-bpy [5.0]=$root/build/venv-bpy-5.0) # their Pythons
 
 zip="" native="" versions=()
 while (($# > 0)); do
     case $1 in
         --zip) zip=$(realpath "${2:?test_blender_versions.sh: --zip needs a file}") && shift ;;
         --native) native=yes ;;
-        3.4 | 4.3 | 4.5 | 5.2) versions+=("$1") ;;
+        3.4 | 4.3 | 4.5 | 5.0 | 5.2) versions+=("$1") ;;
         *)
-            echo "usage: test_blender_versions.sh [--zip FILE] [--native] [3.4|4.3|4.5|5.2]..." >&2
+            echo "usage: test_blender_versions.sh [--zip FILE] [--native] [3.4|4.3|4.5|5.0|5.2]..." >&2
             exit 2
             ;;
     esac
     shift
 done
-((${#versions[@]} > 0)) || versions=(3.4 4.3 4.5 5.2)
+((${#versions[@]} > 0)) || versions=(3.4 4.3 4.5 5.0 5.2)
 if ((EUID != 0)); then
     echo "test_blender_versions.sh: only root may enter another system with chroot; run it as root" >&2
     exit 1
@@ -44,7 +46,7 @@ wants() { [[ " ${versions[*]} " == *" $1 "* ]]; }
 
 groups=()
 wants 3.4 && groups+=(blender)
-wants 4.5 && groups+=(bpy)
+{ wants 4.5 || wants 5.0; } && groups+=(bpy)
 { wants 4.3 || wants 5.2; } && groups+=(versions)
 "$root/scripts/install_dependencies.sh" build "${groups[@]}" || exit 1
 if [[ -z $zip ]]; then
@@ -73,11 +75,11 @@ background() { # VERSION USER SCRIPT ARGUMENT...: a script in this Blender, as t
     shift 3
     local blender=(blender -b --python-exit-code 1 -P "/stage/tree/$script" -- "$@")
     case $version in
-        3.4 | 4.5)
+        3.4 | 4.5 | 5.0)
             # Here /stage is another path.
             home=$stage/users/$user
             blender=("${blender[@]//\/stage\//$stage/}")
-            [[ $version == 3.4 ]] || blender=("$root/build/venv-bpy/bin/python" "$stage/tree/$script" "${@//\/stage\//$stage/}")
+            [[ $version == 3.4 ]] || blender=("${module_of[$version]}/bin/python" "$stage/tree/$script" "${@//\/stage\//$stage/}")
             (cd "$stage" && env -u XDG_CONFIG_HOME -u BLENDER_USER_SCRIPTS HOME="$home" "${limit[@]}" "${blender[@]}")
             ;;
         4.3) in_debian trixie env HOME="$home" "${limit[@]}" "${blender[@]}" ;;
@@ -90,7 +92,8 @@ prepare() { # VERSION
     case $1 in
         3.4) [[ $(blender --version) == "Blender 3.4"* ]] || echo "SKIPPED this system's Blender is another" ;;
         4.3) "$root/scripts/debian_chroot.sh" make trixie "$cache/debian-trixie" "${packages[@]}" ;;
-        4.5) "$root/scripts/python_environment.sh" "$root/build/venv-bpy" "$root/scripts/requirements/bpy.txt" /usr/bin/python3 ;;
+        4.5) "$root/scripts/python_environment.sh" "${module_of[4.5]}" "$root/scripts/requirements/bpy.txt" /usr/bin/python3 ;;
+        5.0) "$root/scripts/python_environment.sh" "${module_of[5.0]}" "$root/scripts/requirements/bpy-5.0.txt" /usr/bin/python3 ;;
         5.2)
             # Blender's own scripts want two packages more there than it depends on.
             "$root/scripts/debian_chroot.sh" make sid "$cache/debian-sid" "${packages[@]}" python3-cattr python3-requests
@@ -108,7 +111,7 @@ install_zip() { # VERSION
     local suite=trixie
     [[ $1 == 5.2 ]] && suite=sid
     case $1 in
-        3.4 | 4.5) background "$1" "$1" tests/package/as_user/install.py /stage/realmodel.zip ;;
+        3.4 | 4.5 | 5.0) background "$1" "$1" tests/package/as_user/install.py /stage/realmodel.zip ;;
         *) in_debian "$suite" env HOME="/stage/users/$1" blender --command extension install-file -r user_default -e /stage/realmodel.zip ;;
     esac
 }

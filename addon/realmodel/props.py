@@ -46,12 +46,12 @@ class RealModelProperty(bpy.types.PropertyGroup):
         min=0.0,
         max=1.0,
         default=(0.7019608, 0.7019608, 0.7019608),
-        update=changes.property_colour,
+        update=changes.property_color,
         options=set(),
     )
     has_color: BoolProperty(options={"HIDDEN"})
     rock: StringProperty(name="Lithology", description="Rock type, such as sandstone")
-    age: StringProperty(name="Age", description="Geological age, such as Triassic", update=changes.colouring)
+    age: StringProperty(name="Age", description="Geological age, such as Triassic", update=changes.coloring)
     structure: StringProperty(name="Structure", description="Bedding, texture, grain size")
     density: FloatProperty(
         name="Density",
@@ -112,7 +112,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
     )
     show_data: BoolProperty(
         name="Show Data",
-        description="Show the points of the surfaces and the outlines of the rock masses as they were read",
+        description="Show the points of the surfaces, the outlines, and the boreholes as they were read",
         options=set(),
         update=data_objects.shown_changed,
     )
@@ -190,7 +190,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
             ("ELEVATION", "Elevation", "Elevation in the coordinates of the model"),
             ("THICKNESS", "Thickness", "Vertical thickness of the layer"),
         ),
-        update=lambda self, _context: display.colours_changed(self.id_data),
+        update=lambda self, _context: display.colors_changed(self.id_data),
     )
     live: BoolProperty(
         name="Auto",

@@ -113,7 +113,7 @@ bool. Returns a list of tests, each a dict of name, unit, examined, failed, unde
 model as for check_topology, which it must have passed so far that its arrays fit together; rocks as for
 build_rock_masses; block_of_surface (S,) int32: the block beneath each surface, -1: none; places: about how
 many; seed: which. Returns tests like check_topology. Raises Cancelled, and InputError where a triangle names
-a vertex that is not there.)");
+a vertex that does not exist.)");
 }
 
 }  // namespace realmodel::bindings

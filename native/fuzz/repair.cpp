@@ -119,7 +119,7 @@ std::optional<std::string> unjust(const StackCase& stack, const InputError& refu
     }
     if (refusal.kind == "vertical_triangle") {
         if (!valid_items(mesh, refusal, 1) || !is_flat(plan_corners(mesh, triangle(0))))
-            return "the triangle does not stand upright: " + said;
+            return "the triangle is not vertical: " + said;
         return std::nullopt;
     }
     if (refusal.kind == "base_not_below") {

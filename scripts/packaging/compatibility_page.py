@@ -15,6 +15,7 @@ SOURCES = {
     "3.4": "Debian 12",
     "4.3": "Debian 13, in a chroot",
     "4.5": "PyPI, module `bpy`",
+    "5.0": "PyPI, module `bpy`",
     "5.2": "Debian unstable, in a chroot",
 }
 MARKED = re.compile(r"(<!-- versions begin -->\n).*?(<!-- versions end -->)", re.DOTALL)

@@ -26,7 +26,7 @@ def inventory():
     for mesh in bpy.data.meshes:
         state["mesh", mesh.name] = coordinates(mesh).tobytes()
     for material in bpy.data.materials:
-        state["colour", material.name] = tuple(material.diffuse_color)
+        state["color", material.name] = tuple(material.diffuse_color)
     return state
 
 

@@ -6,6 +6,7 @@ icons, settings of the layout. What a button stands for must be there: the prope
 with the values that are set on it, the menu, the list, whose rows are drawn too.
 """
 
+import inspect
 import types
 
 import bpy
@@ -204,7 +205,7 @@ class _Properties:
         """Identifiers of a menu; of one made by a function, what it makes."""
         cls = bpy.types.Operator.bl_rna_get_subclass_py(self._rna.identifier)
         for base in cls.__mro__ if cls is not None else ():
-            made = base.__dict__.get("__annotations__", {}).get(key)
+            made = inspect.get_annotations(base).get(key)
             if made is not None and callable(made.keywords.get("items")):
                 return [item[0] for item in made.keywords["items"](None, self._context)]
         return [item.identifier for item in self.rna(key).enum_items]

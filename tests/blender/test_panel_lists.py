@@ -254,8 +254,8 @@ class Surfaces(PanelCase):
     def test_a_fitted_variogram_fills_the_fields(self):
         ops.open_sample(sample="two_layers")
         ops.build()
-        row = self.rock().surfaces[0]
-        found = shown_models.whole(bpy.context.scene).interpolations[0].variogram
+        row = self.rock().surfaces[1]
+        found = shown_models.whole(bpy.context.scene).interpolations[1].variogram
         self.assertTrue(found.fitted)
         volumes = self.volumes()
         row.fit_variogram = False

@@ -2,6 +2,7 @@
 """How models begin in Blender, and how they go to project files."""
 
 import shutil
+from pathlib import Path
 from types import SimpleNamespace
 
 import bpy
@@ -41,6 +42,31 @@ class Start(PanelCase):
         mine = shown_models.whole(bpy.context.scene)
         for name in ARRAYS:
             self.assertEqual(getattr(mine, name).tobytes(), getattr(model, name).tobytes(), name)
+
+    def test_dropped_files_become_surfaces_where_blender_takes_files(self):
+        handler = getattr(bpy.types, "REALMODEL_FH_surfaces", None)
+        self.assertEqual(handler is not None, hasattr(bpy.types, "FileHandler"))
+        if handler is None:
+            return
+        areas = [area for screen in bpy.data.screens for area in screen.areas]
+        self.assertGreater(len(areas), 1)
+        for area in areas:
+            self.assertEqual(handler.poll_drop(SimpleNamespace(area=area)), area.type == "VIEW_3D")
+        files = [SAMPLES / "gravel_plain" / "ground.asc", SAMPLES / "haut_barr" / "ground.off"]
+        for number, file in enumerate(files):
+            self.assertIn(file.suffix, handler.bl_file_extensions.split(";"))
+            shutil.copy(file, self.folder / f"{number}{file.suffix}")
+        group, name = handler.bl_import_operator.split(".")
+        dropped = getattr(getattr(bpy.ops, group), name)
+        names = [f"{number}{file.suffix}" for number, file in enumerate(files)]
+        dropped(
+            "INVOKE_DEFAULT",
+            filepath=str(self.folder / names[0]),
+            directory=str(self.folder),
+            files=[{"name": name} for name in names],
+        )
+        sources = {s.name: (s.source, Path(s.filepath).name) for s in self.model.rocks[0].surfaces}
+        self.assertEqual(sources, {"0": ("POINTS_FILE", names[0]), "1": ("MESH_FILE", names[1])})
 
     def test_dropped_project_files_are_opened_where_blender_takes_files(self):
         handler = getattr(bpy.types, "REALMODEL_FH_project", None)

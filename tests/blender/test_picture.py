@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The picture: every block is seen in its colour, and the scene is left alone."""
+"""The picture: every block is seen in its color, and the scene is left alone."""
 
 import colorsys
 import tempfile
@@ -14,9 +14,9 @@ from realmodel.bl import batch, picture
 from realmodel.core import OutputFailed, Project, Rock, build
 
 
-def share_of_hue(image, colour, tolerance=0.05):
+def share_of_hue(image, color, tolerance=0.05):
     """Part of a picture's pixels that have the hue of "#rrggbb" and are not grey."""
-    wanted = colorsys.rgb_to_hsv(*(int(colour[i : i + 2], 16) / 255.0 for i in (1, 3, 5)))[0]
+    wanted = colorsys.rgb_to_hsv(*(int(color[i : i + 2], 16) / 255.0 for i in (1, 3, 5)))[0]
     flat = image.reshape(-1, 3)
     hsv = np.array([colorsys.rgb_to_hsv(*(float(c) for c in pixel)) for pixel in flat])
     away = np.abs((hsv[:, 0] - wanted + 0.5) % 1.0 - 0.5)
@@ -39,10 +39,10 @@ class Render(PanelCase):
 
     def assert_all_seen(self, model, image):
         for number in {block.property for block in model.blocks if block.cells} - {0}:
-            colour = LIBRARY.get(number).color
-            self.assertGreater(share_of_hue(image, colour), 0.002, f"property {number}, {colour}")
+            color = LIBRARY.get(number).color
+            self.assertGreater(share_of_hue(image, color), 0.002, f"property {number}, {color}")
 
-    def test_every_block_is_seen_in_its_colour(self):
+    def test_every_block_is_seen_in_its_color(self):
         empty_file()
         model = build(two_rocks())
         factor, image = self.render(model)
@@ -52,10 +52,10 @@ class Render(PanelCase):
     def test_the_model_fills_the_frame(self):
         empty_file()
         _, image = self.render(build(two_rocks()))
-        coloured = np.ptp(image, axis=2) > 0.15
-        columns, rows = coloured.any(axis=0), coloured.any(axis=1)
+        colored = np.ptp(image, axis=2) > 0.15
+        columns, rows = colored.any(axis=0), colored.any(axis=1)
         self.assertGreater(max(np.ptp(np.flatnonzero(seen)) / len(seen) for seen in (columns, rows)), 0.7)
-        for edge in (coloured[0], coloured[-1], coloured[:, 0], coloured[:, -1]):
+        for edge in (colored[0], colored[-1], colored[:, 0], colored[:, -1]):
             self.assertFalse(edge.any(), "the model is cut off by the frame")
 
     def test_a_lens_deep_inside_is_brought_to_light(self):

@@ -129,7 +129,7 @@ class SavedScene(unittest.TestCase):
         self.assertEqual(set(shared), {0, 1, 2, 3, 4})
         self.assertEqual(len({next(iter(names)) for names in shared.values()}), len(shared))
 
-    def test_colours(self):
+    def test_colors(self):
         # Worked out by hand from IEC 61966-2-1: 0xe0 is 0.745404, 0x20 is 0.014444, 0xb3 is 0.450786.
         expected = {
             2: ("Sandstone", (0.745404, 0.014444, 0.014444)),
@@ -137,13 +137,13 @@ class SavedScene(unittest.TestCase):
         }
         for item, _ in self.blocks():
             material = item.data.materials[0]
-            name, colour = expected.get(item["realmodel_property"], (material.name, None))
+            name, color = expected.get(item["realmodel_property"], (material.name, None))
             self.assertEqual(material.name, name)
             nodes = [n for n in material.node_tree.nodes if n.type == "BSDF_PRINCIPLED"]
             base = tuple(nodes[0].inputs["Base Color"].default_value)
             np.testing.assert_allclose(base, tuple(material.diffuse_color), atol=1e-7)
-            if colour is not None:
-                np.testing.assert_allclose(base, (*colour, 1.0), atol=1e-5)
+            if color is not None:
+                np.testing.assert_allclose(base, (*color, 1.0), atol=1e-5)
             elif item["realmodel_property"]:
                 self.assertEqual(name, LIBRARY.get(item["realmodel_property"]).name)
 

@@ -311,14 +311,14 @@ class Pictures(Viewed):
         bpy.ops.realmodel.capture(filepath=str(path), **settings)
         return blender_state.pixels(path)
 
-    def colours_seen(self, pixels):
-        """Names of the library's colours that many pixels come near to in hue."""
+    def colors_seen(self, pixels):
+        """Names of the library's colors that many pixels come near to in hue."""
         wanted = {"Granite": (0.54, 0.17, 0.89), "Sandstone": (0.88, 0.13, 0.13), "Marl": (0.13, 0.63, 0.25)}
         found = set()
         flat = pixels.reshape(-1, 3)
         flat = flat[np.ptp(flat, axis=1) > 0.2]
-        for name, colour in wanted.items():
-            cosine = flat @ np.array(colour) / np.linalg.norm(flat, axis=1) / np.linalg.norm(colour)
+        for name, color in wanted.items():
+            cosine = flat @ np.array(color) / np.linalg.norm(flat, axis=1) / np.linalg.norm(color)
             if np.count_nonzero(cosine > 0.985) > 20:
                 found.add(name)
         return found
@@ -333,13 +333,13 @@ class Pictures(Viewed):
             self.settings.display = mode
             pixels = self.capture(f"{mode}.png", width=320, height=200)
             self.assertEqual(pixels.shape, (200, 320, 3))
-            colours = self.colours_seen(pixels)
+            colors = self.colors_seen(pixels)
             if mode == "POINTS":  # neighbours share most of their points
-                self.assertIn("Granite", colours)
+                self.assertIn("Granite", colors)
             elif mode != "SURFACES":
-                self.assertEqual(colours, {"Granite", "Sandstone", "Marl"}, mode)
+                self.assertEqual(colors, {"Granite", "Sandstone", "Marl"}, mode)
             else:
-                self.assertIn("Marl", colours)
+                self.assertIn("Marl", colors)
             seen[mode] = pixels
         names = list(seen)
         for number, one in enumerate(names):
@@ -351,11 +351,11 @@ class Pictures(Viewed):
     def test_the_cut_is_seen_filled(self):
         bpy.ops.realmodel.view(direction="TOP")
         whole = self.capture("whole.png", width=160, height=120)
-        self.assertEqual(self.colours_seen(whole), {"Marl"})
+        self.assertEqual(self.colors_seen(whole), {"Marl"})
         bpy.ops.realmodel.section_plane(axis="Z")
         self.settings.view.plane.location.z = 15.0
         bpy.ops.realmodel.section_update()
-        self.assertEqual(self.colours_seen(self.capture("cut.png", width=160, height=120)), {"Sandstone"})
+        self.assertEqual(self.colors_seen(self.capture("cut.png", width=160, height=120)), {"Sandstone"})
 
     def test_refused(self):
         for path, words in (
@@ -388,6 +388,17 @@ class Coordinates(Case):
         with self.assertRaisesRegex(RuntimeError, "no block at this place"):
             bpy.ops.realmodel.coordinates(location=(50.0, 40.0, 400.0))
         self.assertIsNone(coordinates.last(self.scene))
+
+    def test_on_a_wall(self):
+        """Rounding puts a place on a wall inside or outside of the block."""
+        from realmodel.bl.display import coordinates
+
+        random = np.random.default_rng(3)
+        for aim in np.column_stack([random.uniform(5, 95, 40), np.zeros(40), random.uniform(12, 16, 40)]):
+            start = aim + random.uniform((-90, -300, -20), (90, -50, 20))
+            place = coordinates.under_ray(self.scene, start, aim - start)
+            self.assertEqual(place.block, "Sand")
+            self.assertGreater(place.thickness, 4.0)
 
     def test_along_a_ray_also_where_blocks_were_moved(self):
         from realmodel.bl.display import coordinates

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Looking at a built model: display modes, stages, blocks moved apart, colours, sections, views, capture,
+"""Looking at a built model: display modes, stages, blocks moved apart, colors, sections, views, capture,
 coordinates. The model stays what it is in all of them."""
 
 import itertools
@@ -80,14 +80,14 @@ class Modes(Case):
         self.settings.display = "BLOCKS"
         self.assertFalse(any(item.hide_render for item in self.blocks().values()))
 
-    def test_interfaces_have_the_colours_of_the_blocks_beneath(self):
+    def test_interfaces_have_the_colors_of_the_blocks_beneath(self):
         self.settings.display = "SURFACES"
         from realmodel.bl import materials
 
         for name, property_id in (("S1", 2), ("S3", 4), ("S2", 3)):
-            colour = bpy.data.objects[name].material_slots[0].material.diffuse_color
-            wanted = materials.linear_colour(LIBRARY.get(property_id).color)
-            np.testing.assert_allclose(colour[:3], wanted, atol=1e-6, err_msg=name)
+            color = bpy.data.objects[name].material_slots[0].material.diffuse_color
+            wanted = materials.linear_color(LIBRARY.get(property_id).color)
+            np.testing.assert_allclose(color[:3], wanted, atol=1e-6, err_msg=name)
 
     def test_interfaces_are_smooth_and_blocks_are_not(self):
         for item in self.scene.objects:
@@ -412,29 +412,29 @@ class Apart(Case):
         self.assertEqual(self.heights()["Sand"], before["Sand"])
 
 
-class Colours(Case):
-    def colours(self):
+class Colors(Case):
+    def colors(self):
         return {n: tuple(o.material_slots[0].material.diffuse_color) for n, o in self.blocks().items()}
 
     def test_each_rule(self):
         before = {n: o.data.materials[0] for n, o in self.blocks().items()}
-        library = self.colours()
+        library = self.colors()
         for rule in ("BLOCK", "AGE"):
             self.settings.color_by = rule
-            found = self.colours()
+            found = self.colors()
             self.assertEqual(len(set(found.values())), len(found), rule)
             self.assertNotEqual(found, library)
         self.settings.color_by = "ROCK"
-        self.assertEqual(len(set(self.colours().values())), 1)
+        self.assertEqual(len(set(self.colors().values())), 1)
         self.assertEqual({n: o.data.materials[0] for n, o in self.blocks().items()}, before)
         self.settings.color_by = "PROPERTY"
-        self.assertEqual(self.colours(), library)
+        self.assertEqual(self.colors(), library)
         names = [m.name for m in bpy.data.materials if m.name.startswith(("Block", "Age", "Rock"))]
         self.assertEqual(names, [])
 
-    def test_the_library_s_colour_follows_at_once(self):
+    def test_the_library_s_color_follows_at_once(self):
         self.settings.library[1].color = (0.0, 0.0, 1.0)
-        np.testing.assert_allclose(self.colours()["Sand"][:3], (0.0, 0.0, 1.0), atol=1e-6)
+        np.testing.assert_allclose(self.colors()["Sand"][:3], (0.0, 0.0, 1.0), atol=1e-6)
 
     def test_the_user_s_own_material_stays(self):
         mine = bpy.data.materials.new("mine")

@@ -89,7 +89,7 @@ def chart():
     drawing.line([(10, 20), (30, 40)], BLUE, layer="upper clay + sand")
     drawing.text(10, 110, "Ж")
     drawing.polygon([(0, 0), (1, 0), (1, 1)], fill=BLUE, layer="Grès à Voltzia")
-    legend(drawing, 150, 100, [("Clay", RED), ("Sand", BLUE)])
+    legend(drawing, 150, 100, "Block", [("Clay", RED), ("Sand", BLUE)])
     color_bar(drawing, (150, 20, 8, 40), (0.0, 1.0), np.eye(3))
     return drawing
 

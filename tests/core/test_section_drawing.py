@@ -58,7 +58,8 @@ def test_a_section_seen_from_the_south(model):
     # a round scale, in feet: 100 ft on at most 560 points
     assert "Scale 1 : 250, vertical exaggeration 3" in texts(drawing)
     assert drawing.scale == pytest.approx(0.3048 / 250 / (0.0254 / 72))
-    assert texts(drawing).index("sand") < texts(drawing).index("clay")  # the youngest on top
+    named = texts(drawing).index
+    assert named("Block") < named("sand") < named("clay")  # in the legend, the youngest on top
     assert {"A", "B", "x 431,000.0  y 5,398,050.0", "x 431,100.0  y 5,398,050.0", "Elevation (ft)"} <= set(
         texts(drawing)
     )

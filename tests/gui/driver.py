@@ -3,9 +3,12 @@
 
 Steps are generators. They yield a condition - a function without arguments - and go on when it holds, however
 slow the machine is; a condition that does not hold in time ends the walk.
+
+Screenshots are read from the frame buffer of Xvfb (its option -fbdir). Blender's own are black in Blender 4.3
+with Mesa 25, and end Blender 3.4 now and then while other threads run Python.
 """
 
-import threading
+import struct
 import time
 import traceback
 
@@ -22,15 +25,18 @@ _DIGITS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT
 
 
 class Walk:
-    """Runs steps in a window; `pictures` are the screenshots taken on the way."""
+    """Runs steps in a window; `pictures` are the screenshots taken on the way.
 
-    def __init__(self, folder):
+    folder: where they are saved. screen: the file in which Xvfb has the pixels of its screen.
+    """
+
+    def __init__(self, folder, screen):
         self.folder = folder
+        self.screen = screen
         self.pictures = []
         self.passed = []
         self.failure = None
         self._draws = 0
-        self._screenshot = None
 
     # -- running
 
@@ -159,33 +165,13 @@ class Walk:
 
     def shot(self, name):
         """A screenshot of the window, kept as NN_name.png; returns (height, width, 3) from 0 to 1, the bottom
-        row first. Waits for all threads: see `shot_while_working`."""
-        for thread in threading.enumerate():
-            if thread is not threading.current_thread() and not isinstance(thread, threading._DummyThread):
-                thread.join(PATIENCE)  # a dummy stands for a thread of Blender's, such as a render's
-        path = self._next_picture(name)
-        with bpy.context.temp_override(window=self.window, screen=self.window.screen, area=self.area):
-            bpy.ops.screen.screenshot(filepath=str(path))
-        return read_picture(path)
-
-    def shot_while_working(self, name):
-        """`shot` while other threads run Python, by a key. bpy.ops inside of temp_override then ends Blender
-        now and then: other threads run during the operator, which looks into the dictionary of the override
-        without holding Python's lock (Blender 3.4)."""
-        path = self._next_picture(name)
-        if self._screenshot is None:
-            keymap = bpy.context.window_manager.keyconfigs.addon.keymaps.new("Window")
-            self._screenshot = keymap.keymap_items.new("screen.screenshot", "F13", "PRESS")
-        self._screenshot.properties.filepath = str(path)
-        self.over_viewport()
-        self.key("F13")
-        yield path.exists
-        return read_picture(path)
-
-    def _next_picture(self, name):
+        row first."""
+        time.sleep(LOOK)  # the X server is another process
+        picture = read_screen(self.screen)
         path = self.folder / f"{len(self.pictures):02d}_{name}.png"
+        save_picture(picture, path)
         self.pictures.append(path)
-        return path
+        return picture
 
     def visible_place(self, name):
         """A place of an object that nothing hides: the middle of one of its faces."""
@@ -204,10 +190,34 @@ class Walk:
                 return place
         raise AssertionError(f"{name} cannot be seen")
 
-    def colour_at(self, picture, place, size=3):
-        """Mean colour of a screenshot around where a place of the scene is drawn."""
+    def color_at(self, picture, place, size=3):
+        """Mean color of a screenshot around where a place of the scene is drawn."""
         x, y = self.pixel_of(place)
         return picture[y - size : y + size + 1, x - size : x + size + 1].reshape(-1, 3).mean(axis=0)
+
+
+def read_screen(path):
+    """(height, width, 3) from 0 to 1, the bottom row first: what a screen of Xvfb shows, 32 bits a pixel. The
+    file has the format of xwd (XWDFile.h of X.Org)."""
+    content = path.read_bytes()
+    header = struct.unpack_from(">25I", content)
+    size, width, height, row, colors = (header[at] for at in (0, 4, 5, 12, 19))
+    flat = np.frombuffer(content, np.uint8, row * height, size + 12 * colors)
+    pixels = flat.reshape(height, row)[::-1, : 4 * width].reshape(height, width, 4)
+    return pixels[:, :, 2::-1] / np.float32(255)
+
+
+def save_picture(pixels, path):
+    """pixels: (height, width, 3) from 0 to 1, the bottom row first."""
+    image = bpy.data.images.new(path.name, pixels.shape[1], pixels.shape[0])
+    try:
+        image.colorspace_settings.name = "Non-Color"
+        opaque = np.ones((*pixels.shape[:2], 1), np.float32)
+        image.pixels.foreach_set(np.concatenate([pixels, opaque], axis=2).astype(np.float32).ravel())
+        image.filepath_raw, image.file_format = str(path), "PNG"
+        image.save()
+    finally:
+        bpy.data.images.remove(image)
 
 
 def read_picture(path):
@@ -241,16 +251,10 @@ def contact_sheet(pictures, path, columns=3, smaller=3):
         tiles.append(np.pad(blocks.mean(axis=(1, 3)), ((3, 3), (3, 3), (0, 0)), constant_values=1.0))
     tiles += [np.ones_like(tiles[0])] * (-len(tiles) % columns)
     rows = [np.concatenate(tiles[n : n + columns], axis=1) for n in range(0, len(tiles), columns)]
-    sheet = np.concatenate(rows[::-1], axis=0)
-    image = bpy.data.images.new("sheet", sheet.shape[1], sheet.shape[0])
-    image.colorspace_settings.name = "Non-Color"
-    opaque = np.ones((*sheet.shape[:2], 1), np.float32)
-    image.pixels.foreach_set(np.concatenate([sheet, opaque], axis=2).astype(np.float32).ravel())
-    image.filepath_raw, image.file_format = str(path), "PNG"
-    image.save()
+    save_picture(np.concatenate(rows[::-1], axis=0), path)
 
 
 def hue_differs(first, second):
-    """How far apart two colours are, whatever the light: 0 the same hue, 1 as far as can be."""
+    """How far apart two colors are, whatever the light: 0 the same hue, 1 as far as can be."""
     first, second = (np.asarray(c, float) - min(c) + 1e-6 for c in (first, second))
     return float(1.0 - first @ second / np.linalg.norm(first) / np.linalg.norm(second))

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The walk of a new user through a real window, under Xvfb:
 
-    xvfb-run -a -s "-screen 0 1280x800x24" blender --factory-startup --enable-event-simulate \\
-        --window-geometry 0 0 1280 800 -P tests/gui/run.py -- [FOLDER] [SAMPLE]
+    mkdir -p build/gui
+    xvfb-run -a -s "-screen 0 1280x800x24 -fbdir build/gui" blender --factory-startup \\
+        --enable-event-simulate --window-geometry 0 0 1280 800 -P tests/gui/run.py -- [FOLDER] [SAMPLE]
 
-FOLDER: where the screenshots and a sheet of all go (default build/gui). SAMPLE: the example that is opened
-(default two_layers).
+FOLDER: where Xvfb has its frame buffer, and where the screenshots and a sheet of all go (default build/gui).
+SAMPLE: the example that is opened (default two_layers).
 The steps are in steps_*.py, in the order of those files' names. Blender ends with status 1 where one failed.
 """
 
@@ -27,12 +28,11 @@ from driver import Walk, contact_sheet  # noqa: E402
 def main():
     given = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
     folder = Path(given[0] if given else ROOT / "build" / "gui").resolve()
-    folder.mkdir(parents=True, exist_ok=True)
     for picture in folder.glob("*.png"):
         picture.unlink()
     bpy.context.preferences.view.show_splash = False
     realmodel.register()
-    walk = Walk(folder)
+    walk = Walk(folder, folder / "Xvfb_screen0")
     walk.sample = given[1] if len(given) > 1 else "two_layers"
     modules = [importlib.import_module(path.stem) for path in sorted(FOLDER.glob("steps_*.py"))]
     steps = [(step.__name__, step) for module in modules for step in module.STEPS]

@@ -61,7 +61,7 @@ def open_the_example(walk):
 
 
 def look_at_it(walk):
-    """The blocks stand where the viewport looks, in the library's colours; there is no wall of warnings."""
+    """The blocks stand where the viewport looks, in the library's colors; there is no wall of warnings."""
     yield walk.redrawn(2)
     assert len(model().warnings.split("\n")) < 2, model().warnings
     picture = walk.shot("built")
@@ -74,10 +74,10 @@ def look_at_it(walk):
         except AssertionError:
             continue  # it lies inside
         wanted = next(e.color for e in model().library if e.id == row.property_id)
-        seen = walk.colour_at(picture, place)
+        seen = walk.color_at(picture, place)
         assert hue_differs(seen, wanted) < 0.1, (row.name, tuple(wanted), seen)
         shown += 1
-    assert shown >= 2, "fewer than two blocks show their colour"
+    assert shown >= 2, "fewer than two blocks show their color"
 
 
 def choose_a_block(walk):
@@ -98,7 +98,7 @@ def cancel_a_build(walk):
     yield lambda: bpy.context.window_manager.realmodel.progress > 0.5 or idle()
     yield walk.redrawn()
     assert not idle(), "the build was over before it could be cancelled"
-    yield from walk.shot_while_working("building")
+    walk.shot("building")
     walk.key("ESC")
     yield idle
     assert volumes() == before

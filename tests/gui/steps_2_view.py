@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The display modes, the cut, captures and coordinates, by their colours on the screen.
+"""The display modes, the cut, captures and coordinates, by their colors on the screen.
 
-The model is three level layers of made-up colours, in the place of whatever the steps before have left.
+The model is three level layers of made-up colors, in the place of whatever the steps before have left.
 """
 
 import shutil
@@ -21,13 +21,13 @@ from realmodel.bl.display import preparing
 from realmodel.core import Library, Project, Property, Rock
 from realmodel.core.project_writer import save_project
 
-COLOURS = {1: "#8a2be2", 2: "#e02020", 3: "#20a040"}
+COLORS = {1: "#8a2be2", 2: "#e02020", 3: "#20a040"}
 GRID = {"east": 0.0, "north": 0.0, "x0": 0.0, "y0": 0.0, "width": 100.0, "depth": 80.0}
 ALIKE = 0.06
 
 
 def rgb(property_id):
-    text = COLOURS[property_id]
+    text = COLORS[property_id]
     return [int(text[k : k + 2], 16) / 255 for k in (1, 3, 5)]
 
 
@@ -41,7 +41,7 @@ def project():
         ],
         base_elevation=-5.0,
     )
-    entries = [Property(key, f"Rock {key}", color=colour) for key, colour in COLOURS.items()]
+    entries = [Property(key, f"Rock {key}", color=color) for key, color in COLORS.items()]
     return Project("Layers", [rock], Library(entries))
 
 
@@ -82,7 +82,7 @@ def layers(walk):
     yield walk.redrawn(3)
     walk.plain = walk.shot("BLOCKS")
     for place, key in (((50, 0, 2), 1), ((50, 0, 17), 2), ((50, 0, 32), 3)):
-        assert hue_differs(walk.colour_at(walk.plain, place), rgb(key)) < ALIKE, place
+        assert hue_differs(walk.color_at(walk.plain, place), rgb(key)) < ALIKE, place
 
 
 def in_the_viewport(walk):
@@ -106,11 +106,11 @@ def modes(walk):
         for other in names[number + 1 :]:
             different = (np.abs(seen[one] - seen[other]).max(axis=2) > 0.08).mean()
             assert different > 0.002, f"{one} and {other} look alike: {different}"
-    covered = {mode: [share(shown, key) for key in COLOURS] for mode, shown in seen.items()}
+    covered = {mode: [share(shown, key) for key in COLORS] for mode, shown in seen.items()}
     for mode in ("BLOCKS", "AREAS", "POLYHEDRA"):
         assert min(covered[mode]) > 0.02, (mode, covered[mode])
     for mode in ("POINTS", "LINES"):
-        for key, one, whole in zip(COLOURS, covered[mode], covered["BLOCKS"], strict=True):
+        for key, one, whole in zip(COLORS, covered[mode], covered["BLOCKS"], strict=True):
             assert 0.0002 < one < 0.5 * whole, (mode, key, one, whole)
 
 
@@ -140,7 +140,7 @@ def stage_and_explode(walk):
         item = bpy.data.objects[name]
         middle = {"Sand": 17.5, "Cap": 32.5}[name]
         place = item.matrix_world @ item.matrix_world.translation.__class__((50.0, 0.0, middle))
-        assert hue_differs(walk.colour_at(shown, place), rgb({"Sand": 2, "Cap": 3}[name])) < ALIKE
+        assert hue_differs(walk.color_at(shown, place), rgb({"Sand": 2, "Cap": 3}[name])) < ALIKE
         assert item.matrix_world.translation.z > 5.0
     scene.realmodel.explode = 0.0
     with in_the_viewport(walk):
@@ -158,16 +158,16 @@ def cut(walk):
     yield lambda: ", 20.0]" in bpy.context.scene.realmodel.view.cut
     yield walk.redrawn(3)
     shown = walk.shot("cut")
-    assert hue_differs(walk.colour_at(shown, (30, 40, 20)), rgb(2)) < ALIKE
+    assert hue_differs(walk.color_at(shown, (30, 40, 20)), rgb(2)) < ALIKE
     assert share(viewport(walk, shown), 3) < 0.001
     plane.location.z = 5.0
     yield lambda: ", 5.0]" in bpy.context.scene.realmodel.view.cut
     yield walk.redrawn(3)
     shown = walk.shot("cut_lower")
-    assert hue_differs(walk.colour_at(shown, (30, 40, 5)), rgb(1)) < ALIKE
+    assert hue_differs(walk.color_at(shown, (30, 40, 5)), rgb(1)) < ALIKE
     bpy.ops.realmodel.section_remove()
     yield walk.redrawn(3)
-    assert hue_differs(walk.colour_at(walk.shot("whole"), (30, 40, 40)), rgb(3)) < ALIKE
+    assert hue_differs(walk.color_at(walk.shot("whole"), (30, 40, 40)), rgb(3)) < ALIKE
 
 
 def captures(walk):
@@ -182,7 +182,7 @@ def captures(walk):
             bpy.ops.realmodel.capture(filepath=str(path), width=700, height=300)
         shown = read_picture(path)
         assert shown.shape == (300, 700, 3), shown.shape
-        for key in COLOURS:
+        for key in COLORS:
             assert share(shown, key) > least, (mode, key, share(shown, key))
     scene.realmodel.display = "BLOCKS"
     yield walk.redrawn(2)
@@ -291,7 +291,7 @@ def exaggerated(walk):
         bpy.ops.realmodel.view(direction="FRONT")
     yield walk.redrawn(3)
     first = walk.shot("true_heights")
-    assert hue_differs(walk.colour_at(first, (50, 0, 32)), rgb(3)) < ALIKE
+    assert hue_differs(walk.color_at(first, (50, 0, 32)), rgb(3)) < ALIKE
     before = [tuple(vertex.co) for vertex in item.data.vertices]
     view.exaggeration = 2.0
     yield walk.redrawn(1)
@@ -300,7 +300,7 @@ def exaggerated(walk):
     yield walk.redrawn(3)
     shown = walk.shot("exaggerated")
     for place, key in (((50, 0, 5), 1), ((50, 0, 39), 2), ((50, 0, 69), 3)):
-        assert hue_differs(walk.colour_at(shown, place), rgb(key)) < ALIKE, place
+        assert hue_differs(walk.color_at(shown, place), rgb(key)) < ALIKE, place
     assert [tuple(vertex.co) for vertex in item.data.vertices] == before
     view.exaggeration = 1.0
     yield walk.redrawn(1)
@@ -315,7 +315,7 @@ def colors_of_values(walk):
     scene.realmodel.color_by = "ELEVATION"
     yield walk.redrawn(3)
     shown = walk.shot("ELEVATION")
-    high, low = (walk.colour_at(shown, (50, 0, z)) for z in (39, -4))
+    high, low = (walk.color_at(shown, (50, 0, z)) for z in (39, -4))
     assert high[0] > high[2] + 0.1 and low[2] > low[0], (high, low)
     for by in ("THICKNESS", "UNCERTAINTY"):
         scene.realmodel.color_by = by
@@ -323,7 +323,7 @@ def colors_of_values(walk):
         walk.shot(by)
     scene.realmodel.color_by = "PROPERTY"
     yield walk.redrawn(3)
-    assert hue_differs(walk.colour_at(walk.shot("PROPERTY"), (50, 0, 32)), rgb(3)) < ALIKE
+    assert hue_differs(walk.color_at(walk.shot("PROPERTY"), (50, 0, 32)), rgb(3)) < ALIKE
 
 
 def surfaces_as_they_survive(walk):

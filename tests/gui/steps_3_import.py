@@ -48,7 +48,7 @@ def import_horizons(walk):
     region = walk.region("WINDOW")
     inside = [(x - region.x, y - region.y) for x, y in inside]
     assert all(0 < x < region.width and 0 < y < region.height for x, y in inside), "not framed"
-    before = walk.colour_at(picture, item.matrix_world @ item.data.vertices[0].co, 1)
+    before = walk.color_at(picture, item.matrix_world @ item.data.vertices[0].co, 1)
     assert before.max() < 0.2, "the point is not drawn"
 
 
@@ -62,7 +62,7 @@ def region_and_build(walk):
     picture = walk.shot("own_data")
     for row in model().results:
         wanted = next(e.color for e in model().library if e.id == row.property_id)
-        seen = walk.colour_at(picture, walk.visible_place(row.object.name))
+        seen = walk.color_at(picture, walk.visible_place(row.object.name))
         assert hue_differs(seen, wanted) < 0.1, (row.name, tuple(wanted), seen)
     (walk.folder / "boundaries.csv").unlink()
 

@@ -200,9 +200,9 @@ def put(current, prepared, composed, in_place=False):
         _place_interfaces(current, tree, interfaces)
         _place_blocks(current, prepared, tree, blocks, palette)
         scene.remove_unused_materials(besides=palette.values())  # their names are free then
-        for name, colour, material in updates:
+        for name, color, material in updates:
             scene.give_name(bpy.data.materials, material, name)
-            materials.set_colour(material, colour)
+            materials.set_color(material, color)
         scene.remove_unused_materials()
         _keep(current, prepared)
         moved = project_settings.model_origin(current) - prepared.origin
@@ -243,15 +243,15 @@ def _keep(current, prepared):
 
 
 def _palette(current, model, created):
-    """Material of each property that a block has, and which are to be renamed or recoloured."""
+    """Material of each property that a block has, and which are to be renamed or recolored."""
     palette, updates = {}, []
     for property_id in sorted({int(block.property) for block in model.blocks if block.cells}):
         there = len(bpy.data.materials)
         palette[property_id] = library_rows.material_of(current, property_id)
         if len(bpy.data.materials) > there:
             created.append(palette[property_id])
-        name, colour = materials.name_and_colour(model.project.library, property_id)
-        updates.append((name, colour, palette[property_id]))
+        name, color = materials.name_and_color(model.project.library, property_id)
+        updates.append((name, color, palette[property_id]))
     return palette, updates
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points and outlines of a scene's model as they were read, as objects to look at before anything is built.
+"""Points, outlines and boreholes of a scene's model as they were read, as objects to look at before a build.
 
 They stand in the collection "<project> Data" beside the model, cannot be selected, are no input of anything
 and not in renders. `update` makes them from the settings, so they follow whatever becomes of these.
@@ -13,7 +13,7 @@ import numpy as np
 
 from ..core import InputRefused, PointFile, RealModelError
 from ..core.readers import read_point_file, read_region
-from . import display, project_settings, reading_text, settings, stored_arrays
+from . import borehole_picks, display, project_settings, reading_text, settings, stored_arrays
 from .origin import KEY as ORIGIN_KEY
 from .origin import choose_origin
 
@@ -120,6 +120,11 @@ def _wanted(scene, read):
                 f"{rock.name} outline",
                 lambda rock=rock: _outline(scene, rock),
             )
+        if rock.hole_picks:
+            found[f"boreholes {rock.name} {_checksum(rock.hole_picks)}"] = (
+                f"{rock.name} boreholes",
+                lambda rock=rock: _paths(rock),
+            )
         for row in rock.surfaces:
             if row.source == "POINTS_FILE" and (row.filepath or row.stored):
                 try:
@@ -140,6 +145,17 @@ def _checksum(text):
 def _cloud(scene, row, points):
     points = _read_points(scene, row) if points is None else points
     return points, np.empty((0, 2), np.int32)
+
+
+def _paths(rock):
+    """The boreholes of a rock mass: lines from their collars through their picks."""
+    holes = [
+        [*([] if collar is None else [collar]), *(place for _, place in picks)]
+        for collar, picks in borehole_picks.of_rock(rock).values()
+    ]
+    starts = np.cumsum([0, *map(len, holes)])
+    first = np.setdiff1d(np.arange(starts[-1]), starts[1:] - 1)
+    return np.concatenate(holes), np.stack([first, first + 1], 1).astype(np.int32)
 
 
 def _outline(scene, rock):

@@ -20,7 +20,7 @@ def library_of(scene):
 def _property(row):
     texts = {key: getattr(row, key) or None for key in _TEXTS}
     density = settings.number(row, "density") or None
-    color = hex_colour(row.color) if row.has_color else None
+    color = hex_color(row.color) if row.has_color else None
     return Property(row.id, row.name, color=color, density=density, **texts)
 
 
@@ -58,9 +58,9 @@ PALETTE = (
 )
 
 
-def next_colour(scene):
+def next_color(scene):
     """An "#rrggbb" of the palette for one more property: the first of those that are used least."""
-    used = [hex_colour(row.color) for row in scene.realmodel.library]
+    used = [hex_color(row.color) for row in scene.realmodel.library]
     return min(PALETTE, key=used.count)
 
 
@@ -68,7 +68,7 @@ def for_surface(scene, name):
     """The ID of the property called so, for a surface of that name; one is added where there is none."""
     same = (row.id for row in scene.realmodel.library if row.name.casefold() == name.casefold())
     found = next(same, None)
-    return add(scene, Property(free_id(scene), name, color=next_colour(scene))).id if found is None else found
+    return add(scene, Property(free_id(scene), name, color=next_color(scene))).id if found is None else found
 
 
 def remove_made(scene, surface):
@@ -91,7 +91,7 @@ def free_id(scene):
     return max((row.id for row in scene.realmodel.library), default=0) + 1
 
 
-def hex_colour(color):
+def hex_color(color):
     """The "#rrggbb" of three sRGB numbers from 0 to 1."""
     return "#" + "".join(f"{round(255 * min(max(channel, 0.0), 1.0)):02x}" for channel in color)
 
@@ -120,15 +120,15 @@ def take_id(row):
 
 
 def update_material(row):
-    """The material of the property in this scene takes its name and colour at once."""
+    """The material of the property in this scene takes its name and color at once."""
     for material in scene_materials(row.id_data, row.id):
         if material.name != row.name and row.name and row.name not in bpy.data.materials:
             material.name = row.name
-        materials.set_colour(material, hex_colour(row.color) if row.has_color else materials.NEUTRAL_GREY)
+        materials.set_color(material, hex_color(row.color) if row.has_color else materials.NEUTRAL_GRAY)
 
 
 def update_materials(scene):
-    """All materials take the names and colours of the library."""
+    """All materials take the names and colors of the library."""
     for row in scene.realmodel.library:
         update_material(row)
 
@@ -141,8 +141,8 @@ def material_of(scene, property_id):
     ]
     if known:
         return known[0]
-    name, colour = materials.name_and_colour(library_of(scene), property_id)
-    return materials.new_material(name, property_id, colour)
+    name, color = materials.name_and_color(library_of(scene), property_id)
+    return materials.new_material(name, property_id, color)
 
 
 def scene_materials(scene, property_id):

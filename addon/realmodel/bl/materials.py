@@ -7,18 +7,18 @@ from . import versions
 
 KEY = "realmodel_property"
 NO_PROPERTY = 0
-NEUTRAL_GREY = "#b3b3b3"
+NEUTRAL_GRAY = "#b3b3b3"
 
 
-def linear_colour(colour):
-    """Scene-linear (red, green, blue) of an sRGB colour "#rrggbb" (IEC 61966-2-1).
+def linear_color(color):
+    """Scene-linear (red, green, blue) of an sRGB color "#rrggbb" (IEC 61966-2-1).
 
-    Both the Principled base colour and the viewport colour (`diffuse_color`, subtype COLOR) are
+    Both the Principled base color and the viewport color (`diffuse_color`, subtype COLOR) are
     scene-linear, so both take this value.
     """
     channels = []
     for start in (1, 3, 5):
-        value = int(colour[start : start + 2], 16) / 255.0
+        value = int(color[start : start + 2], 16) / 255.0
         channels.append(value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4)
     return tuple(channels)
 
@@ -29,19 +29,19 @@ def srgb(value):
     return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
 
 
-def name_and_colour(library, property_id):
+def name_and_color(library, property_id):
     """What the library says of a property: its name and "#rrggbb".
 
-    Property 0 means that none was given; it, and an ID without a colour, is a neutral grey.
+    Property 0 means that none was given; it, and an ID without a color, is a neutral gray.
     """
     entry = None if library is None else library.get(property_id)
     if entry is None:
-        return ("no property" if property_id == NO_PROPERTY else f"property {property_id}"), NEUTRAL_GREY
-    return entry.name, entry.color or NEUTRAL_GREY
+        return ("no property" if property_id == NO_PROPERTY else f"property {property_id}"), NEUTRAL_GRAY
+    return entry.name, entry.color or NEUTRAL_GRAY
 
 
-def new_material(name, property_id, colour):
-    """A new material datablock: matt rock of one colour ("#rrggbb")."""
+def new_material(name, property_id, color):
+    """A new material datablock: matt rock of one color ("#rrggbb")."""
     material = bpy.data.materials.new(name)
     try:
         material[KEY] = property_id
@@ -49,7 +49,7 @@ def new_material(name, property_id, colour):
         principled = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
         versions.make_matt(principled)
         material.roughness = 1.0
-        set_colour(material, colour)
+        set_color(material, color)
     except BaseException:
         bpy.data.materials.remove(material)
         raise
@@ -65,9 +65,9 @@ def give(item, material):
         slots[0] = material
 
 
-def set_colour(material, colour):
-    """Set the colour "#rrggbb" of a material in its Principled shader and for the viewport."""
-    rgba = (*linear_colour(colour), 1.0)
+def set_color(material, color):
+    """Set the color "#rrggbb" of a material in its Principled shader and for the viewport."""
+    rgba = (*linear_color(color), 1.0)
     material.diffuse_color = rgba
     if material.node_tree:
         for node in material.node_tree.nodes:

@@ -133,7 +133,7 @@ def _ground_mesh(corners):
     mesh = meshes.triangle_mesh("RealModel Ground", corners, np.array([[0, 1, 2], [0, 2, 3]]))
     material = bpy.data.materials.new("RealModel Ground")
     material.use_nodes = True
-    materials.set_colour(material, GROUND_COLOR)
+    materials.set_color(material, GROUND_COLOR)
     versions.make_matt(next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED"))
     mesh.materials.append(material)
     return mesh
@@ -217,7 +217,7 @@ def _opened(model):
 
 
 def camera_matrix(points, size, left=0.0):
-    """World matrix of a camera that has all points centred in its frame, and its distance.
+    """World matrix of a camera that has all points centered in its frame, and its distance.
 
     points: (N, 3) float64. size: (width, height) in pixels. left: the part of
     the width that is kept free. The place follows from the four planes
@@ -230,13 +230,13 @@ def camera_matrix(points, size, left=0.0):
     tangents = (
         np.array([size[0] * (1.0 - left), size[1]]) / max(size) * math.tan(FIELD_OF_VIEW / 2.0) / MARGIN
     )
-    distance, centre = 0.0, []
+    distance, center = 0.0, []
     for axis, tangent in enumerate(tangents):
         high = (local[:, axis] + tangent * local[:, 2]).max()
         low = (tangent * local[:, 2] - local[:, axis]).max()
         distance = max(distance, (high + low) / (2.0 * tangent))
-        centre.append((high - low) / 2.0)
-    position = Vector(axes.T @ np.array([*centre, distance]))
+        center.append((high - low) / 2.0)
+    position = Vector(axes.T @ np.array([*center, distance]))
     return Matrix.Translation(position) @ rotation.to_4x4(), distance
 
 
@@ -255,9 +255,9 @@ def set_renderer(scene, path, size, samples, time_limit):
 def choose_renderer(scene, samples, time_limit):
     """Has a scene render by what renderer this Blender has, in the colors as they are."""
     render = scene.render
-    versions.plain_colours(scene)
+    versions.plain_colors(scene)
     if not versions.cycles_available(scene):
-        # Workbench knows the materials' viewport colours; light and shadow are plainer.
+        # Workbench knows the materials' viewport colors; light and shadow are plainer.
         render.engine = "BLENDER_WORKBENCH"
         shading = scene.display.shading
         shading.light, shading.color_type = "STUDIO", "MATERIAL"

@@ -28,5 +28,5 @@ def follow_surfaces(current):
     for _, surface in settings.surface_rows(current):
         if surface.interface is not None and surface.interface.library is None:
             surface.interface[scene.PROPERTY] = surface.property_id
-    display.colours_changed(current)
+    display.colors_changed(current)
     scene.remove_unused_materials()

@@ -16,9 +16,10 @@ from . import exaggeration, meshes, versions
 
 
 @contextmanager
-def evaluated_mesh(item, depsgraph):
-    """The mesh of an object as the viewport shows it, with its modifiers. Raises InputRefused where there is
-    none: the object was deleted, and only settings point to it."""
+def evaluated_mesh(item, depsgraph, all_layers=False):
+    """The mesh of an object as the viewport shows it, with its modifiers. all_layers: with its attributes, UV
+    maps and vertex groups. Raises InputRefused where there is none: the object was deleted, and only settings
+    point to it."""
     if item.mode == "EDIT":
         item.update_from_editmode()
     is_plain = item.type == "MESH" and not item.modifiers and item.data.shape_keys is None
@@ -26,7 +27,7 @@ def evaluated_mesh(item, depsgraph):
         yield item.data  # there is nothing to evaluate
         return
     evaluated = item.evaluated_get(depsgraph)
-    mesh = evaluated.to_mesh(preserve_all_data_layers=False, depsgraph=depsgraph)
+    mesh = evaluated.to_mesh(preserve_all_data_layers=all_layers, depsgraph=depsgraph)
     if mesh is None:
         raise InputRefused(
             f"object '{item.name}' was deleted from the scene",

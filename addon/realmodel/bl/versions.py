@@ -110,6 +110,29 @@ def polygon_starts(mesh):
     return found
 
 
+def marks():
+    """{domain: {name: dtype}}: what vertices, edges and polygons of a mesh are marked with, where that is no
+    attribute; creases and bevel weights became attributes in 4.0."""
+    wanted = {
+        "POINT": (bpy.types.MeshVertex, {"bevel_weight": np.float32}),
+        "EDGE": (
+            bpy.types.MeshEdge,
+            {
+                "use_seam": bool,
+                "use_edge_sharp": bool,
+                "use_freestyle_mark": bool,
+                "crease": np.float32,
+                "bevel_weight": np.float32,
+            },
+        ),
+        "FACE": (bpy.types.MeshPolygon, {"use_smooth": bool, "use_freestyle_mark": bool}),
+    }
+    return {
+        domain: {name: dtype for name, dtype in names.items() if name in kind.bl_rna.properties}
+        for domain, (kind, names) in wanted.items()
+    }
+
+
 def make_matt(principled):
     """Take the shine off a Principled shader; its socket was renamed in 4.0."""
     principled.inputs["Roughness"].default_value = 1.0
@@ -144,8 +167,8 @@ def denoise(scene):
     return True
 
 
-def plain_colours(scene):
-    """Show colours as they are: the film-like transforms would shift the library's colours."""
+def plain_colors(scene):
+    """Show colors as they are: the film-like transforms would shift the library's colors."""
     scene.display_settings.display_device = "sRGB"
     scene.view_settings.view_transform = "Standard"
     scene.view_settings.look = "None"
@@ -186,7 +209,7 @@ def colored_shader():
 
 
 def plain_shader(points):
-    """The built-in shader of one colour, for points or for lines; its names changed in 4.0 and 4.5."""
+    """The built-in shader of one color, for points or for lines; its names changed in 4.0 and 4.5."""
     import gpu
 
     names = ["UNIFORM_COLOR"] if bpy.app.version >= (4, 0, 0) else ["3D_UNIFORM_COLOR"]

@@ -2,6 +2,7 @@
 """RealModel without Blender: from a project to a model of polyhedral cells, and out of it to files."""
 
 from .blocks import Block, BlockBoundary
+from .booleans import Intersection, intersect
 from .boreholes import Boreholes
 from .build import build
 from .build_warning import BuildWarning
@@ -49,6 +50,7 @@ __all__ = [
     "Fence",
     "InputRefused",
     "Interpolation",
+    "Intersection",
     "Library",
     "MapLayer",
     "MeshEstimate",
@@ -74,6 +76,7 @@ __all__ = [
     "estimate",
     "estimate_mesh",
     "interpolate",
+    "intersect",
     "load_library",
     "load_project",
     "mesh_region",

@@ -29,7 +29,7 @@ class Property:
 
     @property
     def rgb(self) -> tuple[float, float, float] | None:
-        """Red, green, blue from 0 to 1, sRGB encoded; None without a colour."""
+        """Red, green, blue from 0 to 1, sRGB encoded; None without a color."""
         if self.color is None:
             return None
         return tuple(int(self.color[i : i + 2], 16) / 255.0 for i in (1, 3, 5))

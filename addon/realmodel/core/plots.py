@@ -14,7 +14,7 @@ from .cross_validation import CrossValidation
 from .drawing import Drawing
 from .drawing.charts import LINE, Axes
 from .drawing.drawing import BLACK, GRAY
-from .variogram import Variogram
+from .variogram import VARIOGRAMS, Variogram
 
 __all__ = ["cross_validation", "mesh_quality", "smallest_angles", "variogram"]
 
@@ -55,18 +55,20 @@ def variogram_lines(fitted: Variogram, unit: str = "") -> list[str]:
     if not fitted.structures:
         texts = (f"range {fitted.range:.4g}{length}", f"sill {fitted.sill:.4g}{square}")
         lines = [
-            f"{fitted.model.capitalize()}, {origin}:",
+            f"{VARIOGRAMS[fitted.model][0]}, {origin}:",
             ", ".join([*texts, f"nugget {fitted.nugget:.3g}{square}"]),
         ]
     else:
         lines = [f"Nested, {origin}: nugget {fitted.nugget:.3g}{square}"]
         lines += [
-            f"{part.model}: range {part.range:.4g}{length}, sill {part.sill:.4g}{square}"
+            f"{VARIOGRAMS[part.model][0]}: range {part.range:.4g}{length}, sill {part.sill:.4g}{square}"
             for part in fitted.structures
         ]
     if fitted.anisotropy:
         ratio, azimuth = fitted.anisotropy["ratio"], fitted.anisotropy["azimuth"]
         lines.append(f"anisotropy {ratio:.3g}, azimuth {azimuth:.0f}°")
+    if fitted.fitted:
+        lines.append("chosen by cross-validation, not by the dots alone")
     return lines
 
 

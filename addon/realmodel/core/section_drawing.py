@@ -24,6 +24,7 @@ _LEFT, _BELOW, _ABOVE, _GAP = 62.0, 44.0, 58.0, 16.0  # around it
 _SIZE = 8.0
 _SKY = 0.05  # of the height, left free above vertical sections
 _SAME = 1e9  # of the extent of a section: places nearer than one part are the same
+_LEGEND = "Block"  # what the names in the legend are; views have those of properties
 _UPRIGHT = 1e-6  # z of a unit normal below which a plane is vertical
 
 
@@ -51,7 +52,7 @@ def draw_section(section: Section, exaggeration: float = 1.0, title: str | None 
     width, height = extent * (1.0, exaggeration) * scale
     present = [int(block) for block in np.unique(section.block)[::-1]]
     entries = [(section.block_names[block], tuple(section.block_colors[block])) for block in present]
-    legend_width, legend_height = legend_size(entries, _SIZE)
+    legend_width, legend_height = legend_size(_LEGEND, entries, _SIZE)
     subtitle = _subtitle(section, ratio, exaggeration)
     title = title or section.name
     page = max(
@@ -71,7 +72,7 @@ def draw_section(section: Section, exaggeration: float = 1.0, title: str | None 
         drawing.polygon(rings, color, BLACK, 0.35, layer=name)
     axes.frame(*_axis_names(section), layer="Axes")
     _ends(drawing, axes, section, flat)
-    legend(drawing, _LEFT + width + _GAP, base + height, entries, _SIZE, layer="Legend")
+    legend(drawing, _LEFT + width + _GAP, base + height, _LEGEND, entries, _SIZE, layer="Legend")
     top = drawing.height - 20
     drawing.text(_LEFT, top, title, _SIZE + 3, layer="Text")
     drawing.text(_LEFT, top - 1.6 * _SIZE, subtitle, _SIZE, layer="Text")

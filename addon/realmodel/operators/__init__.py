@@ -3,6 +3,8 @@
 
 from ..registration import register_modules, unregister_modules
 from . import (
+    background,
+    booleans,
     boreholes,
     build,
     documentation,
@@ -37,6 +39,8 @@ _MODULES = (
     results,
     view,
     sections,
+    booleans,
+    background,
     documentation,
 )
 

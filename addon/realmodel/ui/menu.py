@@ -4,6 +4,7 @@
 import bpy
 
 from ..bl import samples
+from ..bl.boolean_job import OPERATIONS
 
 # (operator without "realmodel.", text or None for its label, properties); None: a line
 _SURFACE_OF_OBJECT = ("surface_add", "Surface from Active Object", {"use_object": True})
@@ -67,6 +68,9 @@ class REALMODEL_MT_object(_Menu, bpy.types.Menu):
         yield None
         yield "edit_surface", "Edit Active Surface", {}
         yield "assign_property", "Assign Active Property", {}
+        yield None
+        for operation, name, *_ in OPERATIONS:
+            yield "boolean", f"Boolean: {name}", {"operation": operation}
 
 
 class REALMODEL_MT_view(_Menu, bpy.types.Menu):

@@ -33,7 +33,7 @@ bool is_flat(const Position& a, const Position& b, const Position& c) {
 class SurfaceInput {
 public:
     explicit SurfaceInput(const TriangleView& given);
-    CutterSurface ready() &&;
+    CutterSurface ready(bool with_seam) &&;
 
 private:
     Position at(NodeId v) const { return surface_.vertices[index(v)]; }
@@ -330,7 +330,7 @@ void SurfaceInput::extend_border() {
     }
 }
 
-CutterSurface SurfaceInput::ready() && {
+CutterSurface SurfaceInput::ready(bool with_seam) && {
     surface_.is_closed = drop_repeated();
     if (!surface_.is_closed) {
         divide_borders();
@@ -338,15 +338,15 @@ CutterSurface SurfaceInput::ready() && {
     }
     if (!surface_.is_closed) {
         orient_upward();
-        extend_border();
+        if (with_seam) extend_border();
     }
     return std::move(surface_);
 }
 
 }  // namespace
 
-CutterSurface oriented_surface(const TriangleView& given) {
-    return SurfaceInput(given).ready();
+CutterSurface oriented_surface(const TriangleView& given, bool with_seam) {
+    return SurfaceInput(given).ready(with_seam);
 }
 
 }  // namespace realmodel::cutting

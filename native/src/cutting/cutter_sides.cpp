@@ -11,19 +11,82 @@ namespace realmodel::cutting {
 using arrangement::each_edge;
 
 CutterSides::CutterSides(SurfaceOverlay& overlay, const CutterWinding& winding, Progress* progress)
-    : overlay_(overlay),
+    : PartSides(cells_near_surface(overlay, winding)),
+      overlay_(overlay),
       winding_(winding),
-      sides_(2 * (overlay.size() + overlay.model().face_count())),
-      reaches_(overlay.model().cell_block.size(), 0) {
+      sides_(2 * (overlay.size() + overlay.model().face_count())) {
     checked_number(2 * (overlay.size() + overlay.model().face_count()), "faces and their parts");
-    find_reached_cells();
     refuse_borders();
-    join_beside_surface(progress);
+    join_beside_surface(overlay, winding, *this, progress,
+                        [this](std::int32_t a, std::int32_t b) { join(a, b, false); });
     for (std::size_t e = 0; e < winding.edge_count(); ++e) {
         poll(progress, e);
         go_round(e);
     }
     settle();
+}
+
+std::vector<std::uint8_t> cells_near_surface(const SurfaceOverlay& overlay,
+                                             const CutterWinding& winding) {
+    std::vector<std::uint8_t> reaches(overlay.model().cell_block.size(), 0);
+    const auto reach = [&reaches](std::int32_t cell) {
+        if (cell >= 0) reaches[index(cell)] = 1;
+    };
+    for (const std::int32_t f : overlay.active_faces()) {
+        for (std::size_t k = 0; k < 2; ++k)
+            reach(overlay.model().cell(index(f), k));
+    }
+    for (std::size_t r = 0; r < overlay.size(); ++r) {
+        if (!winding.counts(r)) continue;
+        for (std::size_t k = 0; k < 2; ++k) {
+            for (const auto& [cell, times] : winding.around(r, k))
+                reach(cell);
+        }
+    }
+    return reaches;
+}
+
+void join_beside_surface(SurfaceOverlay& overlay, const CutterWinding& winding,
+                         const PartSides& sides, const Progress* progress,
+                         const std::function<void(std::int32_t, std::int32_t)>& join) {
+    const ComplexView& model = overlay.model();
+    std::vector<std::int32_t> first(model.cell_block.size(), -1);
+    std::vector<EdgeUse> uses;
+    const auto join_around = [&](std::int32_t item, std::size_t face, const auto& loops) {
+        bool reached = false;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::int32_t cell = model.cell(face, k);
+            if (cell < 0) continue;
+            if (sides.reaches(cell)) {
+                reached = true;
+                continue;
+            }
+            auto& known = first[index(cell)];
+            if (known < 0) known = item;
+            join(known, item);
+        }
+        if (reached) each_edge(loops, item, [&](const EdgeUse& use) { uses.push_back(use); });
+    };
+    for (std::size_t r = 0; r < overlay.size(); ++r) {
+        if (!overlay.of_cutter(r) && winding.level(r) < 0)
+            join_around(static_cast<std::int32_t>(r), overlay.face_of(r), overlay.loops(r));
+    }
+    for (std::size_t f = 0; f < model.face_count(); ++f) {
+        if (!overlay.is_active(f))
+            join_around(static_cast<std::int32_t>(overlay.size() + f), f,
+                        std::array{model.face(f)});
+    }
+    parallel_sort(uses, std::less<>(), overlay.threads(), progress);
+    std::size_t edge = 0;
+    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+        while (edge < winding.edge_count() && winding.edge(edge)[0].edge < uses[begin].edge)
+            ++edge;
+        const bool own =
+            edge < winding.edge_count() && winding.edge(edge)[0].edge == uses[begin].edge;
+        for (; end < uses.size() && uses[end].edge == uses[begin].edge; ++end) {
+            if (!own) join(uses[begin].item, uses[end].item);
+        }
+    }
 }
 
 bool CutterSides::join(std::int32_t a, std::int32_t b, bool opposite) {
@@ -41,26 +104,6 @@ void CutterSides::refuse(const char* kind, const char* text,
     throw InputError(kind, text, -1, {}, middle);
 }
 
-/// Cells with a face near the surface, and those that it lies in. Of the others each is on one side
-/// as a whole; of a cell that rounding has flattened away where the surface passes it no face need
-/// meet the surface, though it has faces on both sides.
-void CutterSides::find_reached_cells() {
-    const auto reach = [this](std::int32_t cell) {
-        if (cell >= 0) reaches_[index(cell)] = 1;
-    };
-    for (const std::int32_t f : overlay_.active_faces()) {
-        for (std::size_t k = 0; k < 2; ++k)
-            reach(overlay_.model().cell(index(f), k));
-    }
-    for (std::size_t r = 0; r < overlay_.size(); ++r) {
-        if (!winding_.counts(r)) continue;
-        for (std::size_t k = 0; k < 2; ++k) {
-            for (const auto& [cell, times] : winding_.around(r, k))
-                reach(cell);
-        }
-    }
-}
-
 /// How many of the uses of an edge are the surface's.
 std::ptrdiff_t CutterSides::own_uses(std::span<const EdgeUse> uses) const {
     return std::ranges::count_if(
@@ -76,49 +119,6 @@ void CutterSides::refuse_borders() const {
             continue;
         refuse("ends_inside", "the surface does not part the model: it ends inside of it",
                uses[0].edge);
-    }
-}
-
-/// Faces around a cell that is not reached are on one side of the surface; so are regions that meet
-/// at an edge that is none of the surface's.
-void CutterSides::join_beside_surface(const Progress* progress) {
-    const ComplexView& model = overlay_.model();
-    std::vector<std::int32_t> first(reaches_.size(), -1);
-    std::vector<EdgeUse> uses;
-    const auto join_around = [&](std::int32_t item, std::size_t face, const auto& loops) {
-        bool reached = false;
-        for (std::size_t k = 0; k < 2; ++k) {
-            const std::int32_t cell = model.cell(face, k);
-            if (cell < 0) continue;
-            if (reaches(cell)) {
-                reached = true;
-                continue;
-            }
-            auto& known = first[index(cell)];
-            if (known < 0) known = item;
-            join(known, item, false);
-        }
-        if (reached) each_edge(loops, item, [&](const EdgeUse& use) { uses.push_back(use); });
-    };
-    for (std::size_t r = 0; r < overlay_.size(); ++r) {
-        if (!overlay_.of_cutter(r) && winding_.level(r) < 0)
-            join_around(static_cast<std::int32_t>(r), overlay_.face_of(r), overlay_.loops(r));
-    }
-    for (std::size_t f = 0; f < model.face_count(); ++f) {
-        if (!overlay_.is_active(f))
-            join_around(static_cast<std::int32_t>(overlay_.size() + f), f,
-                        std::array{model.face(f)});
-    }
-    parallel_sort(uses, std::less<>(), overlay_.threads(), progress);
-    std::size_t edge = 0;
-    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-        while (edge < winding_.edge_count() && winding_.edge(edge)[0].edge < uses[begin].edge)
-            ++edge;
-        const bool own =
-            edge < winding_.edge_count() && winding_.edge(edge)[0].edge == uses[begin].edge;
-        for (; end < uses.size() && uses[end].edge == uses[begin].edge; ++end) {
-            if (!own) join(uses[begin].item, uses[end].item, false);
-        }
     }
 }
 
@@ -172,7 +172,8 @@ std::int8_t CutterSides::side_at(std::size_t item, bool of_cutter) {
             for (std::size_t k = 0; k < 3; ++k)
                 middle[k] += overlay_.position(v)[k] / static_cast<double>(face.size());
         }
-        return side_of_nearest(overlay_.surface(), middle);
+        if (!nearest_) nearest_.emplace(overlay_.surface());
+        return (*nearest_)(middle);
     }
     exact::SpacePoints& points = overlay_.points();
     const std::pair<std::size_t, int> seen = is_region ? overlay_.view_of(item) : std::pair{2UL, 1};
@@ -212,7 +213,7 @@ void CutterSides::settle() {
         if (overlay_.surface().is_closed || side == kBelow) continue;
         const auto& outline = overlay_.loops(r)[0];
         refuse("two_sides",
-               "a place in the model is above one part of the surface and below another",
+               "a point of the model is above one part of the surface and below another",
                {outline[0], outline[1]});
     }
     for (std::size_t i = 0; i < count; ++i) {

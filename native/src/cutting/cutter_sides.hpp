@@ -1,31 +1,80 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
 #include "cutting/cutter_winding.hpp"
+#include "cutting/nearest_side.hpp"
 #include "cutting/plane_edges.hpp"
 
 namespace realmodel::cutting {
+
+/// Which parts of the cells that a surface divides are wanted.
+class PartSides {
+public:
+    virtual ~PartSides() = default;
+
+    /// The part of its cells that a face's region bounds which does not lie on the surface: kAbove
+    /// or kBelow, kOn where it is left out.
+    virtual std::int8_t of_region(std::size_t region) const = 0;
+    /// The same of a face that has no regions.
+    virtual std::int8_t of_face(std::size_t face) const = 0;
+    /// The same of a cell at side 0 or 1 of a region of the surface.
+    virtual std::int8_t of_cap(std::size_t region, std::size_t side, std::int32_t cell) const = 0;
+    /// Whether a region of the surface is a face between the parts of two cells; where it is not,
+    /// they are one.
+    virtual bool separates(std::size_t /*region*/, std::int32_t /*low*/,
+                           std::int32_t /*high*/) const {
+        return true;
+    }
+    /// What stands for a model's face in pieces of a region of the surface, less than 0. Either
+    /// cell may be -1.
+    virtual std::int32_t cap_face(std::size_t /*region*/, std::int32_t /*low*/,
+                                  std::int32_t /*high*/) const {
+        return -1;
+    }
+    /// Whether a cell reaches the surface, so that it may be divided.
+    bool reaches(std::int32_t cell) const { return reaches_[index(cell)] != 0; }
+
+protected:
+    explicit PartSides(std::vector<std::uint8_t> reaches) : reaches_(std::move(reaches)) {}
+
+private:
+    std::vector<std::uint8_t> reaches_;
+};
+
+/// Of cells: 1 with a face near the surface, and those that it lies in. Of the others each is on
+/// one side as a whole; of a cell that rounding has flattened away where the surface passes it no
+/// face need meet the surface, though it has faces on both sides.
+std::vector<std::uint8_t> cells_near_surface(const SurfaceOverlay& overlay,
+                                             const CutterWinding& winding);
+
+/// Calls join(one, other) for items that are on the same side: those around a cell that does not
+/// reach the surface, and those that meet at an edge that is none of the surface's. An item is a
+/// region of a face, or, counted after all regions, a face that has none.
+void join_beside_surface(SurfaceOverlay& overlay, const CutterWinding& winding,
+                         const PartSides& sides, const Progress* progress,
+                         const std::function<void(std::int32_t, std::int32_t)>& join);
 
 /// On which side of a surface everything is. Going round its edges, the side changes with every
 /// region of it that is crossed, and with nothing else; faces away from it have the side of those
 /// beside them. Inside of a closed surface is what a ray leaves through it an odd number of times;
 /// below an open one is what its regions have below them, and all must agree.
-class CutterSides {
+class CutterSides : public PartSides {
 public:
     /// @throws InputError kinds ends_inside, two_sides
     CutterSides(SurfaceOverlay& overlay, const CutterWinding& winding, Progress* progress);
 
-    /// kAbove or kBelow: of a face's region that does not lie on the surface.
-    std::int8_t of_region(std::size_t region) const { return side_[region]; }
-    /// Of a face that has no regions.
-    std::int8_t of_face(std::size_t face) const { return side_[overlay_.size() + face]; }
+    std::int8_t of_region(std::size_t region) const override { return side_[region]; }
+    std::int8_t of_face(std::size_t face) const override { return side_[overlay_.size() + face]; }
+    std::int8_t of_cap(std::size_t region, std::size_t side, std::int32_t) const override {
+        return static_cast<std::int8_t>(side == 0 ? below(region) : -below(region));
+    }
     /// Of what is at side 0 of a region of the surface; at side 1 it is the other.
     std::int8_t below(std::size_t region) const { return side_[region]; }
-    /// Whether a cell reaches the surface, so that it may be divided.
-    bool reaches(std::int32_t cell) const { return reaches_[index(cell)] != 0; }
 
 private:
     /// Notes that two items are on the same side or on opposite ones; false where they are known to
@@ -34,8 +83,6 @@ private:
     std::ptrdiff_t own_uses(std::span<const EdgeUse> uses) const;
     template <class Side>
     std::int8_t settled(std::int32_t item, const Side& if_unknown);
-    void find_reached_cells();
-    void join_beside_surface(const Progress* progress);
     void go_round(std::size_t edge);
     void refuse_borders() const;
     void settle();
@@ -48,8 +95,8 @@ private:
     /// Of each item i: 2 i its side, 2 i + 1 the other one; those that are the same are joined.
     DisjointSets sides_;
     std::vector<std::int8_t> of_set_;  ///< of the least member of each set, kOn not yet known
-    std::vector<std::uint8_t> reaches_;
     std::vector<std::int8_t> side_;
+    std::optional<NearestSide> nearest_;  ///< once it is asked for
 };
 
 }  // namespace realmodel::cutting

@@ -18,17 +18,14 @@ struct CutterSurface {
 
 /// A surface as a user gives it: checked, triangles that are there twice left out of an open one,
 /// its parts oriented upward on the whole. Where a border runs along another the edges are divided
-/// so that they are shared; other borders are extended by a seam, wider than rounding.
+/// so that they are shared; other borders are extended by a seam, wider than rounding, where asked.
 /// @throws InputError kinds not_finite, bad_index, no_triangles, branching (an edge of three or
 ///         more triangles of an open surface; items: they), one_sided (items: two neighbors)
-CutterSurface oriented_surface(const TriangleView& surface);
+CutterSurface oriented_surface(const TriangleView& surface, bool with_seam = true);
 
 /// The boundary of a block.
 /// @throws InputError kind no_block where the model has no cell of it
 CutterSurface block_boundary(const ComplexView& model, std::int32_t block);
-
-/// On which side of a surface a position is that is not on it: the side of its nearest triangle.
-std::int8_t side_of_nearest(const CutterSurface& surface, const Position& p);
 
 /// A face divided into triangles, always the same ones for the same face: numbers of its corners.
 void triangulate_face(const ComplexView& model, std::size_t face,

@@ -123,12 +123,12 @@ void CutterWinding::find_coinciding() {
         counts_[index(first.first)] =
             overlay_.surface().is_closed ? static_cast<std::uint8_t>(first.second % 2) : 1;
     for (std::size_t r = 0; r < count; ++r) {
-        if (overlay_.of_cutter(r)) continue;
         const auto found = find(overlay_.loops(r)[0], facing);
         if (found == outlines.end() || counts_[index(found->second.first)] == 0) continue;
         level_[r] = found->second.first;
         level_facing_[r] = facing;
-        lying_on_[index(level_[r])].push_back(static_cast<std::int32_t>(r));
+        if (!overlay_.of_cutter(r))
+            lying_on_[index(level_[r])].push_back(static_cast<std::int32_t>(r));
     }
 }
 

@@ -28,8 +28,8 @@ public:
     /// Regions of the surface that are boundaries: of several that coincide one is, or none where a
     /// closed surface is there an even number of times.
     bool counts(std::size_t region) const { return counts_[region] != 0; }
-    /// The region of the surface that a face's region lies on, -1 none, and whether both face the
-    /// same way (1) or not (-1).
+    /// The region of the surface that counts where this one is, of a face or of the surface: -1
+    /// none; and whether both face the same way (1) or not (-1).
     std::int32_t level(std::size_t region) const { return level_[region]; }
     std::int8_t level_facing(std::size_t region) const { return level_facing_[region]; }
     /// What is just below (side 0, where it is seen clockwise from) or above a region that counts.

@@ -2,6 +2,7 @@
 // Polygons of rounded parts that lie on each other, or are no longer convex.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "cutting/distinct.hpp"
 #include "cutting/part_rounding.hpp"
@@ -219,6 +220,94 @@ NodeId PartRounding::add_middle(std::size_t piece) {
         const bool on_base = face >= 0 && model_.face_surface[index(face)] == kBase;
         middle = free_position_beside(middle, on_base ? Freedom::kLevel : Freedom::kAny, taken_);
     }
+    new_positions_.push_back(middle);
+    return checked_number(vertices_.size() + new_positions_.size(), "vertices and new nodes") - 1;
+}
+
+/// Where parts use an edge more than twice, two polygons between the same parts that turn against
+/// each other get a node of their own there.
+void PartRounding::set_touching_apart() {
+    struct Use {
+        std::array<NodeId, 2> edge;
+        std::size_t piece;
+        int direction;
+    };
+    std::vector<Use> uses;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        const auto nodes = pieces_.polygons[p];
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const NodeId a = nodes[i], b = nodes[(i + 1) % nodes.size()];
+            if (is_near_[index(a)] != 0 && is_near_[index(b)] != 0)
+                uses.push_back({unordered(a, b), p, a < b ? 1 : -1});
+        }
+    }
+    std::ranges::stable_sort(uses, {}, &Use::edge);
+    std::map<std::size_t, std::vector<std::pair<std::array<NodeId, 2>, NodeId>>> nodes_on;
+    for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
+        while (end < uses.size() && uses[end].edge == uses[begin].edge)
+            ++end;
+        std::vector<Use> own(uses.begin() + static_cast<std::ptrdiff_t>(begin),
+                             uses.begin() + static_cast<std::ptrdiff_t>(end));
+        const auto touches = [&own, this] {
+            std::map<std::int32_t, int> count;
+            for (const Use& use : own) {
+                for (const std::int32_t part : pieces_[use.piece].parts) {
+                    if (part >= 0 && ++count[part] > 2) return true;
+                }
+            }
+            return false;
+        };
+        while (own.size() > 2 && touches()) {
+            const auto turned = [this](const Use& use) {  // low part first
+                auto parts = pieces_[use.piece].parts;
+                const bool swapped = parts[0] > parts[1];
+                if (swapped) std::swap(parts[0], parts[1]);
+                return std::pair(parts, swapped ? -use.direction : use.direction);
+            };
+            std::size_t i = 0, j = 0;
+            for (i = 0; i < own.size(); ++i) {
+                for (j = i + 1; j < own.size(); ++j) {
+                    if (turned(own[i]).first == turned(own[j]).first &&
+                        turned(own[i]).second == -turned(own[j]).second)
+                        break;
+                }
+                if (j < own.size()) break;
+            }
+            if (i >= own.size()) break;
+            const auto& edge = own[i].edge;
+            const NodeId middle = add_between(edge);
+            for (const std::size_t k : {i, j})
+                nodes_on[own[k].piece].push_back({edge, middle});
+            own.erase(own.begin() + static_cast<std::ptrdiff_t>(j));
+            own.erase(own.begin() + static_cast<std::ptrdiff_t>(i));
+        }
+    }
+    if (nodes_on.empty()) return;
+    Pieces apart;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        std::vector<NodeId> loop;
+        const auto nodes = pieces_.polygons[p];
+        const auto found = nodes_on.find(p);
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            loop.push_back(nodes[i]);
+            if (found == nodes_on.end()) continue;
+            const auto edge = unordered(nodes[i], nodes[(i + 1) % nodes.size()]);
+            for (const auto& [at, middle] : found->second) {
+                if (at == edge) loop.push_back(middle);
+            }
+        }
+        apart.add(loop, pieces_[p]);
+    }
+    pieces_ = std::move(apart);
+    find_pieces_of_parts();
+}
+
+/// A new node between the ends of an edge, where no other is.
+NodeId PartRounding::add_between(const std::array<NodeId, 2>& edge) {
+    Position middle;
+    for (std::size_t k = 0; k < 3; ++k)
+        middle[k] = at(edge[0])[k] + (at(edge[1])[k] - at(edge[0])[k]) / 2;
+    if (!taken_.insert(middle).second) middle = free_position_beside(middle, Freedom::kAny, taken_);
     new_positions_.push_back(middle);
     return checked_number(vertices_.size() + new_positions_.size(), "vertices and new nodes") - 1;
 }

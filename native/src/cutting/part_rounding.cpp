@@ -15,12 +15,13 @@ using spatial::Box;
 
 PartRounding::PartRounding(const ComplexView& model, std::vector<Position>& new_positions,
                            Pieces& pieces, std::vector<HalfCell>& half_cells,
-                           const std::array<bool, 2>& touches)
+                           const std::array<bool, 2>& touches, bool joins_models)
     : model_(model),
       new_positions_(new_positions),
       pieces_(pieces),
       half_cells_(half_cells),
-      touches_(touches) {
+      touches_(touches),
+      joins_models_(joins_models) {
     checked_number(model.vertex_count() + new_positions.size(), "vertices and new nodes");
     vertices_.reserve(model.vertex_count());
     for (std::size_t v = 0; v < model.vertex_count(); ++v)
@@ -39,7 +40,8 @@ const Position& PartRounding::at(NodeId node) const {
 
 /// Whether a part is less than the model's cell, which was sound.
 bool PartRounding::is_changed(std::int32_t part) const {
-    return parts_of_[index(half_cells_[index(part)].cell)] > 1;
+    const HalfCell& own = half_cells_[index(part)];
+    return own.is_changed || parts_of_[index(own.cell)] > 1;
 }
 
 bool PartRounding::is_wall(std::size_t piece) const {
@@ -52,10 +54,16 @@ void PartRounding::run() {
     drop_hollow();  // of a cell that lies flat on the cutter
     level_base();
     contract();
+    if (joins_models_) cancel_doubled();
     set_apart();
     give_extents();
     glue_doubled();
     divide_bent();
+    if (joins_models_) {
+        find_pieces_of_parts();
+        cancel_doubled();
+        set_touching_apart();
+    }
     drop_empty();
 }
 
@@ -113,45 +121,65 @@ std::vector<NodeId> PartRounding::contracted(std::size_t piece) const {
     return loop;
 }
 
+namespace {
+
+/// Which way round a loop goes from its least node to its second least.
+int winding_of(std::span<const NodeId> nodes) {
+    const auto least =
+        static_cast<std::size_t>(std::min_element(nodes.begin(), nodes.end()) - nodes.begin());
+    const std::size_t n = nodes.size();
+    return nodes[(least + 1) % n] < nodes[(least + n - 1) % n] ? 1 : -1;
+}
+
+}  // namespace
+
+/// How often a part uses an edge beyond twice, as contractions leave the polygons around it. None
+/// where a polygon passes a node twice, two are the same, or it has no extent. Where models are
+/// joined, two that are the same and face each other make up for each other.
+std::optional<std::size_t> PartRounding::touches_of(std::int32_t part) const {
+    std::map<std::vector<NodeId>, std::pair<int, std::vector<NodeId>>> faces;  // by sorted nodes
+    for (const std::int32_t own : pieces_of_[index(part)]) {
+        std::vector<NodeId> loop = contracted(index(own));
+        if (loop.empty()) continue;
+        std::vector<NodeId> sorted = loop;
+        std::sort(sorted.begin(), sorted.end());
+        if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) return std::nullopt;
+        const int facing = pieces_[index(own)].parts[0] == part ? 1 : -1;
+        const int winding = facing * winding_of(loop);
+        const auto [known, is_new] = faces.try_emplace(std::move(sorted));
+        if (!is_new && (!joins_models_ || known->second.first + winding != 0)) return std::nullopt;
+        known->second.first += winding;
+        known->second.second = std::move(loop);
+    }
+    std::vector<std::array<NodeId, 2>> uses;
+    std::size_t count = 0;
+    Box box;
+    for (const auto& [sorted, face] : faces) {
+        if (face.first == 0) continue;
+        ++count;
+        const std::vector<NodeId>& loop = face.second;
+        for (std::size_t k = 0; k < loop.size(); ++k) {
+            uses.push_back(unordered(loop[k], loop[(k + 1) % loop.size()]));
+            box.include(at(loop[k]));
+        }
+    }
+    if (count < 4) return std::nullopt;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (box.low[k] == box.high[k]) return std::nullopt;
+    }
+    std::sort(uses.begin(), uses.end());
+    std::size_t touches = 0;
+    for (std::size_t i = 2; i < uses.size(); ++i)
+        touches += uses[i] == uses[i - 2];
+    return touches;
+}
+
 /// Whether a part would still be closed, with polygons that pass no node twice, none of them twice
 /// there, and an extent.
 bool PartRounding::stays_sound(std::int32_t part) const {
-    struct Use {
-        NodeId low, high;
-        int direction;
-        auto operator<=>(const Use&) const = default;
-    };
-    std::vector<Use> uses;
-    std::vector<std::vector<NodeId>> faces;
-    Box box;
-    for (const std::int32_t own : pieces_of_[index(part)]) {
-        const auto piece = index(own);
-        std::vector<NodeId> loop = contracted(piece);
-        if (loop.empty()) continue;
-        const int facing = pieces_[piece].parts[0] == part ? 1 : -1;
-        for (std::size_t k = 0; k < loop.size(); ++k) {
-            const NodeId a = loop[k], b = loop[(k + 1) % loop.size()];
-            uses.push_back({std::min(a, b), std::max(a, b), a < b ? facing : -facing});
-            box.include(at(a));
-        }
-        std::sort(loop.begin(), loop.end());
-        if (std::adjacent_find(loop.begin(), loop.end()) != loop.end()) return false;
-        faces.push_back(std::move(loop));
-    }
-    if (faces.size() < 4) return false;
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (box.low[k] == box.high[k]) return false;
-    }
-    std::sort(faces.begin(), faces.end());
-    if (std::adjacent_find(faces.begin(), faces.end()) != faces.end()) return false;
-    if (model_.cell_kind == CellKind::kBlocks ||
-        touches_[half_cells_[index(part)].side == kAbove ? 1 : 0])
-        return true;
-    std::sort(uses.begin(), uses.end());
-    for (std::size_t i = 2; i < uses.size(); ++i) {
-        if (uses[i].low == uses[i - 2].low && uses[i].high == uses[i - 2].high) return false;
-    }
-    return true;
+    const auto touches = touches_of(part);
+    return touches && (*touches == 0 || model_.cell_kind == CellKind::kBlocks ||
+                       touches_[half_cells_[index(part)].side == kAbove ? 1 : 0]);
 }
 
 /// Notes of new nodes that came to lie where a vertex of the model or an earlier new node is that
@@ -167,7 +195,6 @@ std::vector<NodeId> PartRounding::find_contractions() {
     }
     becomes_.resize(vertices_.size() + new_positions_.size());
     std::iota(becomes_.begin(), becomes_.end(), 0);
-    std::vector<NodeId> contracted;
     for (std::size_t i = 0; i < new_positions_.size(); ++i) {
         const auto node = static_cast<NodeId>(vertices_.size() + i);
         NodeId& first = first_at.find(new_positions_[i])->second;
@@ -175,8 +202,11 @@ std::vector<NodeId> PartRounding::find_contractions() {
             first = node;
         } else {
             becomes_[index(node)] = first;
-            contracted.push_back(node);
         }
+    }
+    std::vector<NodeId> contracted;
+    for (std::size_t node = vertices_.size(); node < becomes_.size(); ++node) {
+        if (index(becomes_[node]) != node) contracted.push_back(static_cast<NodeId>(node));
     }
     return contracted;
 }
@@ -218,10 +248,76 @@ void PartRounding::keep_sound(const std::vector<NodeId>& contracted) {
     }
 }
 
+/// Contracts edges of new nodes that are as short as rounding, one after another, where no part
+/// comes to touch itself for it: what two models have in common was rounded in each by itself.
+bool PartRounding::join_short_edges() {
+    const double allowed = rounding_of(vertices_);
+    std::set<std::array<NodeId, 2>> edges;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        const std::vector<NodeId> loop = contracted(p);
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const auto edge = unordered(loop[i], loop[(i + 1) % loop.size()]);
+            const Position away = minus(at(edge[0]), at(edge[1]));
+            if (is_new(edge[1]) &&
+                std::ranges::all_of(away, [allowed](double x) { return std::abs(x) <= allowed; }))
+                edges.insert(edge);
+        }
+    }
+    if (edges.empty()) return false;
+    std::map<NodeId, std::set<NodeId>> group;  // by the node that they became
+    std::map<NodeId, std::set<std::int32_t>> parts_at;
+    for (const auto& edge : edges) {
+        for (const NodeId node : edge)
+            group[node], parts_at[node];
+    }
+    for (NodeId node = 0; index(node) < becomes_.size(); ++node) {
+        const auto found = group.find(becomes_[index(node)]);
+        if (found != group.end()) found->second.insert(node);
+    }
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        for (const NodeId node : pieces_.polygons[p]) {
+            const auto found = parts_at.find(becomes_[index(node)]);
+            if (found == parts_at.end()) continue;
+            for (const std::int32_t part : pieces_[p].parts) {
+                if (part >= 0) found->second.insert(part);
+            }
+        }
+    }
+    bool any = false;
+    for (const auto& edge : edges) {
+        const NodeId a = becomes_[index(edge[0])], b = becomes_[index(edge[1])];
+        const NodeId from = std::max(a, b), to = std::min(a, b);
+        if (from == to || !is_new(from)) continue;
+        std::map<std::int32_t, std::size_t> before;
+        bool is_known = true;
+        for (const std::int32_t part : parts_at[from]) {
+            const auto touches = touches_of(part);
+            is_known = is_known && touches;
+            before[part] = touches.value_or(0);
+        }
+        for (const NodeId node : group[from])
+            becomes_[index(node)] = to;
+        const bool sound = is_known && std::ranges::all_of(before, [this](const auto& was) {
+                               const auto touches = touches_of(was.first);
+                               return touches && *touches <= was.second;
+                           });
+        if (!sound) {
+            for (const NodeId node : group[from])
+                becomes_[index(node)] = from;
+            continue;
+        }
+        group[to].merge(group[from]);
+        parts_at[to].merge(parts_at[from]);
+        any = true;
+    }
+    return any;
+}
+
 void PartRounding::contract() {
     const std::vector<NodeId> nodes = find_contractions();
-    if (nodes.empty()) return;
-    keep_sound(nodes);
+    if (!nodes.empty()) keep_sound(nodes);
+    const bool any_near = joins_models_ && join_short_edges();
+    if (nodes.empty() && !any_near) return;
     Pieces kept;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const std::vector<NodeId> loop = contracted(p);
@@ -229,6 +325,61 @@ void PartRounding::contract() {
     }
     pieces_ = std::move(kept);
     find_pieces_of_parts();
+}
+
+/// Of polygons that are the same, those that face each other within one part make up for each
+/// other: what is left is between the others.
+void PartRounding::cancel_doubled() {
+    std::map<std::vector<NodeId>, std::vector<std::size_t>> equal;  // pieces by sorted nodes
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        const auto nodes = pieces_.polygons[p];
+        if (!std::ranges::all_of(nodes, [this](NodeId node) { return is_near_[index(node)] != 0; }))
+            continue;
+        std::vector<NodeId> sorted(nodes.begin(), nodes.end());
+        std::sort(sorted.begin(), sorted.end());
+        equal[std::move(sorted)].push_back(p);
+    }
+    std::vector<std::uint8_t> is_gone(pieces_.size(), 0);
+    Pieces fresh;
+    for (const auto& [sorted, same] : equal) {
+        if (same.size() < 2) continue;
+        std::map<std::int32_t, int> facing;  // of parts: how often a polygon faces away from each
+        std::size_t before = 0;
+        for (const std::size_t p : same) {
+            const int winding = winding_of(pieces_.polygons[p]);
+            for (std::size_t k = 0; k < 2; ++k) {
+                if (pieces_[p].parts[k] < 0) continue;
+                facing[pieces_[p].parts[k]] += k == 0 ? winding : -winding;
+                ++before;
+            }
+        }
+        std::array<std::vector<std::int32_t>, 2> left;  // parts that it faces away from, and faces
+        for (const auto& [part, times] : facing)
+            left[times > 0 ? 0 : 1].insert(left[times > 0 ? 0 : 1].end(), std::abs(times), part);
+        if (left[0].size() + left[1].size() == before) continue;
+        const Piece first = pieces_[same[0]];
+        std::vector<NodeId> nodes(pieces_.polygons[same[0]].begin(),
+                                  pieces_.polygons[same[0]].end());
+        if (winding_of(nodes) < 0) std::reverse(nodes.begin(), nodes.end());
+        for (std::size_t i = 0; i < std::max(left[0].size(), left[1].size()); ++i) {
+            Piece piece = first;
+            for (std::size_t k = 0; k < 2; ++k) {
+                const bool has_part = i < left[k].size();
+                piece.parts[k] = has_part ? left[k][i] : -1;
+                piece.cells[k] = has_part ? half_cells_[index(left[k][i])].cell : -1;
+                piece.sides[k] = has_part ? half_cells_[index(left[k][i])].side : kOn;
+            }
+            fresh.add(nodes, piece);
+        }
+        for (const std::size_t p : same)
+            is_gone[p] = 1;
+    }
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        if (is_gone[p] == 0) fresh.add(pieces_.polygons[p], pieces_[p]);
+    }
+    pieces_ = std::move(fresh);
+    find_pieces_of_parts();
+    drop_hollow();
 }
 
 /// Moves a node to the nearest free position beside it that its faces allow.

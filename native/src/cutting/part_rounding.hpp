@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <set>
 #include <span>
 #include <vector>
@@ -21,8 +22,12 @@ class PartRounding {
 public:
     /// @param new_positions  of nodes after the model's vertices; they may move
     /// @param touches        whether parts below, above may use an edge more than twice
+    /// @param joins_models   whether several models are joined, of which each was rounded by
+    /// itself:
+    ///                       then nodes, too, become one whose edge is as short as rounding
     PartRounding(const ComplexView& model, std::vector<Position>& new_positions, Pieces& pieces,
-                 std::vector<HalfCell>& half_cells, const std::array<bool, 2>& touches);
+                 std::vector<HalfCell>& half_cells, const std::array<bool, 2>& touches,
+                 bool joins_models = false);
     void run();
 
 private:
@@ -36,9 +41,13 @@ private:
     void level_base();
     void contract();
     std::vector<NodeId> find_contractions();
+    bool join_short_edges();
     void keep_sound(const std::vector<NodeId>& contracted);
+    std::optional<std::size_t> touches_of(std::int32_t part) const;
     bool stays_sound(std::int32_t part) const;
     std::vector<NodeId> contracted(std::size_t piece) const;
+    void cancel_doubled();
+    void set_touching_apart();
     void set_apart();
     void move_aside(NodeId node);
     void give_extents();
@@ -49,6 +58,7 @@ private:
     void drop_hollow();
     bool is_bent(std::size_t piece) const;
     NodeId add_middle(std::size_t piece);
+    NodeId add_between(const std::array<NodeId, 2>& edge);
     void divide_bent();
     void drop_empty();
 
@@ -57,6 +67,7 @@ private:
     Pieces& pieces_;
     std::vector<HalfCell>& half_cells_;
     std::array<bool, 2> touches_;
+    bool joins_models_;
 
     std::vector<Position> vertices_;      ///< of the model, as `at` gives them
     std::vector<std::uint8_t> parts_of_;  ///< of the model's cells: how many, 2 for more

@@ -15,7 +15,7 @@ namespace realmodel::cutting {
 /// counter-clockwise seen from outside of the first of its two cells. A cap has one cell twice:
 /// first the part below it, then the part above.
 struct Piece {
-    std::int32_t face;                  ///< the model's face, -1 a cap
+    std::int32_t face;                  ///< the model's face; a cap: below 0 (PartSides::cap_face)
     std::array<std::int32_t, 2> cells;  ///< the model's cells, -1 outside
     std::array<std::int8_t, 2> sides;   ///< of either cell's part; kOn: no cell there
     bool is_level;                      ///< whether it lies on the cutter
@@ -68,6 +68,7 @@ struct CellPieces {
 struct HalfCell {
     std::int32_t cell;
     std::int8_t side;
+    bool is_changed = false;  ///< less than its cell though no other part of it is here
 };
 
 }  // namespace realmodel::cutting

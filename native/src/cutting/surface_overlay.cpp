@@ -273,16 +273,23 @@ void SurfaceOverlay::overlay_all() {
     std::vector<std::vector<TriangleArrangement::Intersection>> found((count + kChunk - 1) /
                                                                       kChunk);
     if (progress_ != nullptr) progress_->begin(0.08, 0.15, "finding where surface and faces meet");
+    const auto box_of = [this](std::int32_t t) {
+        Box box;
+        for (const SpacePointId p : arrangement_.corners(t))
+            box.include(points_.rounded(p));
+        return box;
+    };
+    // triangles of the surface that cross each other beyond the model are left alone, unless one of
+    // them reaches it
+    std::vector<std::uint8_t> is_beyond(count, 0);
+    for (std::size_t t = index(first_cutter_); t < count; ++t)
+        is_beyond[t] = box_of(static_cast<std::int32_t>(t)).meets(model_box_) ? 0 : 1;
     parallel_ranges(count, kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto t = static_cast<std::int32_t>(i);
-            Box box;
-            for (const SpacePointId p : arrangement_.corners(t))
-                box.include(points_.rounded(p));
-            if (t >= first_cutter_ && !box.meets(model_box_)) continue;
-            tree_->find(box, [&](std::int32_t c) {
+            tree_->find(box_of(t), [&](std::int32_t c) {
                 const std::int32_t other = first_cutter_ + c;
-                if (other <= t) return;
+                if (other <= t || (is_beyond[i] != 0 && is_beyond[index(other)] != 0)) return;
                 if (const auto intersection = arrangement_.intersection(t, other))
                     found[begin / kChunk].push_back(*intersection);
             });

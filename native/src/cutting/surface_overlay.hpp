@@ -30,6 +30,10 @@ public:
     int threads() const { return threads_; }
     std::size_t size() const { return arrangement_.regions().size(); }
     bool of_cutter(std::size_t region) const { return triangle(region) >= first_cutter_; }
+    /// The triangle of the surface that a region is part of.
+    std::int32_t cutter_triangle(std::size_t region) const {
+        return triangle(region) - first_cutter_;
+    }
     /// The face that a region is part of.
     std::size_t face_of(std::size_t region) const {
         return index(face_of_[index(triangle(region))]);

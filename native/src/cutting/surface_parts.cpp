@@ -15,14 +15,18 @@ namespace realmodel::cutting {
 using arrangement::each_edge;
 
 SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding,
-                           const CutterSides& sides, Progress* progress)
-    : overlay_(overlay), winding_(winding), sides_(sides) {
+                           const PartSides& sides, Progress* progress)
+    : overlay_(overlay),
+      winding_(winding),
+      sides_(sides),
+      loses_(overlay.model().cell_block.size(), 0) {
     make_patches(progress);
     if (progress != nullptr) progress->begin(0.68, 0.75, "joining what bounds a part");
     make_caps();
     joined_.emplace(slots_.size());
     join_parts(progress);
     attach_hollows();
+    join_across();
     number_parts();
     if (progress != nullptr) progress->begin(0.77, 0.85, "dividing faces into polygons");
     write_patches(progress);
@@ -32,9 +36,21 @@ SurfaceParts::SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding
 
 std::int32_t SurfaceParts::add_slot(std::int32_t cell, std::int8_t half, std::int8_t sign) {
     if (cell < 0) return -1;
+    if (half == kOn) {
+        loses_[index(cell)] = 1;
+        return -1;
+    }
     const std::int32_t number = checked_number(slots_.size(), "faces of parts of cells");
     slots_.push_back({cell, half, sign});
     return number;
+}
+
+/// Notes of the cells of a face that is left out, or part of it, that they lose a part.
+void SurfaceParts::leave_out(std::size_t face) {
+    for (std::size_t k = 0; k < 2; ++k) {
+        const std::int32_t cell = overlay_.model().cell(face, k);
+        if (cell >= 0) loses_[index(cell)] = 1;
+    }
 }
 
 SurfaceParts::Patch& SurfaceParts::add_patch(std::size_t face, std::int8_t half) {
@@ -66,7 +82,12 @@ void SurfaceParts::make_patches(Progress* progress) {
             divide_face(f, of_face[f]);
             continue;
         }
-        for (const std::int32_t slot : add_patch(f, sides_.of_face(f)).slots) {
+        const std::int8_t half = sides_.of_face(f);
+        if (half == kOn) {
+            leave_out(f);
+            continue;
+        }
+        for (const std::int32_t slot : add_patch(f, half).slots) {
             each_edge(std::array{model.face(f)}, static_cast<std::int32_t>(overlay_.size() + f),
                       [&](const EdgeUse& use) { use_edge(slot, use); });
         }
@@ -88,8 +109,13 @@ void SurfaceParts::divide_face(std::size_t face, std::span<const std::int32_t> r
     std::map<std::int32_t, std::size_t> patch_of;  // by the first region of each
     for (const auto& outline : joined.outlines()) {
         const std::int32_t first = together.find(outline[0].polygon);
+        const std::int8_t half = sides_.of_region(index(regions[index(first)]));
+        if (half == kOn) {
+            leave_out(face);
+            continue;
+        }
         const auto [at, is_new] = patch_of.try_emplace(first, patches_.size());
-        if (is_new) add_patch(face, sides_.of_region(index(regions[index(first)])));
+        if (is_new) add_patch(face, half);
         Patch& patch = patches_[at->second];
         auto& loop = patch.loops.emplace_back();
         for (const auto& edge : outline) {
@@ -109,19 +135,64 @@ void SurfaceParts::divide_face(std::size_t face, std::span<const std::int32_t> r
 void SurfaceParts::make_caps() {
     for (std::size_t r = 0; r < overlay_.size(); ++r) {
         if (!winding_.counts(r) || !winding_.touches_model(r)) continue;
-        Caps& caps = caps_.emplace_back(Caps{static_cast<std::int32_t>(r), {}});
+        Caps& caps = caps_.emplace_back(Caps{static_cast<std::int32_t>(r), {}, {}, {}});
         for (std::size_t k = 0; k < 2; ++k) {
-            const std::int8_t below = sides_.below(r);
-            const auto half = static_cast<std::int8_t>(k == 0 ? below : -below);
             for (const auto& [cell, times] : winding_.around(r, k)) {
-                for (int i = 0; i < std::abs(times); ++i)
-                    caps.slots[k].push_back(add_slot(cell, half, (times > 0) == (k == 0) ? 1 : -1));
+                const std::int8_t half = sides_.of_cap(r, k, cell);
+                for (int i = 0; i < std::abs(times); ++i) {
+                    const std::int32_t slot =
+                        add_slot(cell, half, (times > 0) == (k == 0) ? 1 : -1);
+                    if (slot >= 0) caps.slots[k].push_back(slot);
+                }
             }
             each_edge(overlay_.loops(r), caps.region, [&](const EdgeUse& use) {
                 for (const std::int32_t slot : caps.slots[k])
                     use_edge(slot, use);
             });
         }
+        pair_caps(caps);
+    }
+}
+
+/// Pairs what a region of the surface lies between.
+void SurfaceParts::pair_caps(Caps& caps) {
+    const auto sign = [this](std::int32_t slot) { return slots_[index(slot)].sign; };
+    std::array<std::vector<std::int32_t>, 2> alone;
+    for (std::size_t k = 0; k < 2; ++k) {
+        std::vector<std::int32_t> ahead, back;  // facing as the surface, and against it
+        for (const std::int32_t slot : caps.slots[k])
+            (sign(slot) > 0 ? ahead : back).push_back(slot);
+        const std::size_t count = std::min(ahead.size(), back.size());
+        for (std::size_t i = 0; i < count; ++i)
+            caps.beside.push_back({ahead[i], back[i]});
+        auto& rest = ahead.size() > count ? ahead : back;
+        alone[k].assign(rest.begin() + static_cast<std::ptrdiff_t>(count), rest.end());
+    }
+    for (std::size_t i = 0; i < std::max(alone[0].size(), alone[1].size()); ++i) {
+        const std::int32_t low = i < alone[0].size() ? alone[0][i] : -1;
+        const std::int32_t high = i < alone[1].size() ? alone[1][i] : -1;
+        if (low >= 0 && high >= 0 && sign(low) > 0 && sign(high) < 0) {
+            caps.across.push_back({low, high});
+            continue;
+        }
+        for (const std::int32_t slot : {low, high}) {
+            if (slot >= 0) caps.across.push_back({slot, -1});
+        }
+    }
+}
+
+/// Parts that the surface does not separate become one.
+void SurfaceParts::join_across() {
+    for (Caps& caps : caps_) {
+        std::erase_if(caps.across, [&](const std::array<std::int32_t, 2>& pair) {
+            if (pair[1] < 0) return false;
+            const std::int32_t low = slots_[index(pair[0])].cell,
+                               high = slots_[index(pair[1])].cell;
+            if (sides_.separates(index(caps.region), low, high)) return false;
+            joined_->join(pair[0], pair[1]);
+            loses_[index(low)] = loses_[index(high)] = 1;
+            return true;
+        });
     }
 }
 
@@ -132,10 +203,13 @@ void SurfaceParts::join_parts(Progress* progress) {
     const auto bit = [](std::int8_t half) { return static_cast<std::uint8_t>(half > 0 ? 2 : 1); };
     for (const Slot& slot : slots_)
         halves[index(slot.cell)] |= bit(slot.half);
+    const auto is_divided = [&](std::size_t cell) {
+        return halves[cell] == 3 || loses_[cell] != 0;
+    };
     std::vector<std::int32_t> first(cells, -1);
     for (std::size_t s = 0; s < slots_.size(); ++s) {
         const auto cell = index(slots_[s].cell);
-        if (halves[cell] == 3) continue;
+        if (is_divided(cell)) continue;
         if (first[cell] < 0) first[cell] = static_cast<std::int32_t>(s);
         joined_->join(first[cell], static_cast<std::int32_t>(s));
     }
@@ -145,7 +219,7 @@ void SurfaceParts::join_parts(Progress* progress) {
         while (end < uses_.size() && uses_[end].cell == uses_[begin].cell &&
                uses_[end].half == uses_[begin].half && uses_[end].use.edge == uses_[begin].use.edge)
             ++end;
-        if (halves[index(uses_[begin].cell)] != 3) continue;
+        if (!is_divided(index(uses_[begin].cell))) continue;
         if (end - begin == 2) {
             joined_->join(uses_[begin].slot, uses_[begin + 1].slot);
         } else {

@@ -14,10 +14,10 @@ namespace realmodel::cutting {
 /// nothing of the surface lies between, joined again, and for each region of the surface a cap for
 /// whatever it goes through. A part has all that bounds its cell on one side, and as many caps as
 /// the cell's boundary goes round them: so every part is closed, whatever rounding made of the
-/// cell.
+/// cell. Parts that are not wanted are left out; parts that the surface does not separate are one.
 class SurfaceParts {
 public:
-    SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding, const CutterSides& sides,
+    SurfaceParts(SurfaceOverlay& overlay, const CutterWinding& winding, const PartSides& sides,
                  Progress* progress);
 
     Pieces pieces;
@@ -44,6 +44,9 @@ private:
     struct Caps {
         std::int32_t region;
         std::array<std::vector<std::int32_t>, 2> slots;
+        /// Slots with the region between them, -1 nothing wanted: of cells that lie one below and
+        /// one above it, and of those that overlap on one side and make up for each other.
+        std::vector<std::array<std::int32_t, 2>> across, beside;
     };
     /// A slot at one of its edges.
     struct SlotUse {
@@ -57,10 +60,13 @@ private:
     void make_patches(Progress* progress);
     void divide_face(std::size_t face, std::span<const std::int32_t> regions);
     void make_caps();
+    void leave_out(std::size_t face);
     Patch& add_patch(std::size_t face, std::int8_t half);
     std::int32_t add_slot(std::int32_t cell, std::int8_t half, std::int8_t sign);
     void use_edge(std::int32_t slot, const EdgeUse& use);
+    void pair_caps(Caps& caps);
     void join_parts(Progress* progress);
+    void join_across();
     void join_round_edge(std::span<const SlotUse> uses);
     void attach_hollows();
     void number_parts();
@@ -73,13 +79,14 @@ private:
 
     SurfaceOverlay& overlay_;
     const CutterWinding& winding_;
-    const CutterSides& sides_;
+    const PartSides& sides_;
     std::vector<Slot> slots_;
     std::vector<Patch> patches_;
     std::vector<Caps> caps_;
     std::vector<SlotUse> uses_;
     std::optional<DisjointSets> joined_;  ///< slots of the same part
     std::vector<std::int32_t> part_;      ///< of slots
+    std::vector<std::uint8_t> loses_;     ///< of the model's cells: a part of it is left out
 };
 
 /// The region that some of the overlay's loops bound, in convex polygons (`is_wall`: one polygon if

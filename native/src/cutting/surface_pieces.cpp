@@ -81,7 +81,8 @@ void SurfaceParts::number_parts() {
     part_.assign(slots_.size(), -1);
     for (const std::int32_t root : roots) {
         part_[index(root)] = static_cast<std::int32_t>(half_cells.size());
-        half_cells.push_back({slots_[index(root)].cell, slots_[index(root)].half});
+        const Slot& own = slots_[index(root)];
+        half_cells.push_back({own.cell, own.half, loses_[index(own.cell)] != 0});
     }
     for (std::size_t s = 0; s < slots_.size(); ++s)
         part_[s] = part_[index(joined_->find(static_cast<std::int32_t>(s)))];
@@ -100,6 +101,7 @@ void SurfaceParts::write(const Polygons& polygons, std::size_t first, std::size_
         origin.sides[k] = slot.half;
         origin.parts[k] = part_[index(slots[k])];
     }
+    if (origin.parts[0] >= 0 && origin.parts[0] == origin.parts[1]) return;  // within one
     for (std::size_t p = first; p < end; ++p) {
         if (reversed) {
             pieces.add_reversed(polygons[p], origin);
@@ -198,32 +200,18 @@ void SurfaceParts::write_caps() {
             }
         };
         const std::int32_t outer = outer_face[index(caps.region)];
-        std::array<std::vector<std::int32_t>, 2> alone;
-        const auto sign = [this](std::int32_t slot) { return slots_[index(slot)].sign; };
-        std::vector<std::array<std::int32_t, 2>> pairs;
-        for (std::size_t k = 0; k < 2; ++k) {
-            std::vector<std::int32_t> ahead, back;  // facing as the surface, and against it
-            for (const std::int32_t slot : caps.slots[k])
-                (sign(slot) > 0 ? ahead : back).push_back(slot);
-            const std::size_t count = std::min(ahead.size(), back.size());
-            for (std::size_t i = 0; i < count; ++i)
-                pairs.push_back({ahead[i], back[i]});
-            auto& rest = ahead.size() > count ? ahead : back;
-            alone[k].assign(rest.begin() + static_cast<std::ptrdiff_t>(count), rest.end());
+        const auto cap = [&](const std::array<std::int32_t, 2>& slots) {
+            const auto cell = [&](std::int32_t slot) {
+                return slot < 0 ? -1 : slots_[index(slot)].cell;
+            };
+            return sides_.cap_face(index(caps.region), cell(slots[0]), cell(slots[1]));
+        };
+        for (const auto& pair : caps.across) {
+            const bool reversed = pair[1] < 0 && slots_[index(pair[0])].sign < 0;
+            add(reversed, pair[1] >= 0 || outer < 0 ? cap(pair) : outer, pair, true);
         }
-        for (std::size_t i = 0; i < std::max(alone[0].size(), alone[1].size()); ++i) {
-            const std::int32_t low = i < alone[0].size() ? alone[0][i] : -1;
-            const std::int32_t high = i < alone[1].size() ? alone[1][i] : -1;
-            if (low >= 0 && high >= 0 && sign(low) > 0 && sign(high) < 0) {
-                add(false, -1, {low, high}, true);
-                continue;
-            }
-            for (const std::int32_t slot : {low, high}) {
-                if (slot >= 0) add(sign(slot) < 0, outer, {slot, -1}, true);
-            }
-        }
-        for (const auto& pair : pairs)
-            add(false, -1, pair, false);
+        for (const auto& pair : caps.beside)
+            add(false, cap(pair), pair, false);
     }
 }
 

@@ -25,10 +25,11 @@ bool usable(double number) {
     const auto& a = points[first];
     const auto& b = points[second];
     char text[200];
-    std::snprintf(text, sizeof text,
-                  "points %d and %d lie at one place (%.12g, %.12g) but have the values %.12g and "
-                  "%.12g; remove one of them",
-                  first, second, a[0], a[1], a[2], b[2]);
+    std::snprintf(
+        text, sizeof text,
+        "points %d and %d have the same position in plan (%.12g, %.12g) but the values %.12g and "
+        "%.12g; remove one of them",
+        first, second, a[0], a[1], a[2], b[2]);
     throw InputError("contradicting_points", text, -1, {first, second}, a);
 }
 

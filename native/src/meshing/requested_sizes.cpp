@@ -34,7 +34,8 @@ void check_size(const LocalLength& size, std::size_t number, double edge_length)
         refuse("its length must be shorter than the edge length elsewhere");
     }
     for (const PlanPoint& p : size.line) {
-        if (!std::isfinite(p[0]) || !std::isfinite(p[1])) refuse("a place is not a finite number");
+        if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
+            refuse("a coordinate of its position is not a finite number");
     }
 }
 

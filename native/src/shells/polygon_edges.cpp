@@ -29,11 +29,11 @@ void require_in_range(std::span<const std::int32_t> offsets, std::span<const std
     if (offsets.empty() || offsets[0] != 0) refuse(0, "does not begin with the first corner");
     for (std::size_t f = 0; f + 1 < offsets.size(); ++f) {
         if (offsets[f + 1] < offsets[f] || std::cmp_greater(offsets[f + 1], corners.size()))
-            refuse(f, "has corners that are not there");
+            refuse(f, "has corners that do not exist");
         for (auto c = offsets[f]; c < offsets[f + 1]; ++c) {
             const std::int32_t v = corners[static_cast<std::size_t>(c)];
             if (v < 0 || std::cmp_greater_equal(v, vertices))
-                refuse(f, "names a vertex that is not there");
+                refuse(f, "refers to a vertex that does not exist");
         }
     }
     if (std::cmp_not_equal(offsets.back(), corners.size()))

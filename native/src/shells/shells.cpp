@@ -35,19 +35,19 @@ void require_in_range(const ComplexView& complex, const Progress* progress) {
         poll(progress, f);
         const auto begin = complex.face_offsets[f], end = complex.face_offsets[f + 1];
         if (begin < 0 || begin > end || std::cmp_greater(end, complex.face_vertices.size()))
-            refuse(f, "has corners that are not there");
+            refuse(f, "has corners that do not exist");
         for (const std::int32_t v : complex.face(f)) {
             if (v < 0 || std::cmp_greater_equal(v, complex.vertex_count()))
-                refuse(f, "names a vertex that is not there");
+                refuse(f, "refers to a vertex that does not exist");
         }
         for (const std::int32_t cell : {complex.cell(f, 0), complex.cell(f, 1)}) {
             if (cell < -1 || std::cmp_greater_equal(cell, complex.cell_count()))
-                refuse(f, "names a cell that is not there");
+                refuse(f, "refers to a cell that does not exist");
         }
     }
     for (const std::int32_t block : complex.cell_block) {
         if (block < 0 || std::cmp_greater_equal(block, complex.blocks))
-            throw InputError("bad_index", "a cell names a block that is not there", -1, {});
+            throw InputError("bad_index", "a cell refers to a block that does not exist", -1, {});
     }
 }
 

@@ -66,6 +66,12 @@ public:
     void find(const Box& box, const Visit& visit) const {
         if (!nodes_.empty()) find(0, box, visit);
     }
+    /// Calls visit(number) for each box whose squared distance from p is at most bound(), which may
+    /// grow less with every visit; near ones come first on the whole, always in the same order.
+    template <class Bound, class Visit>
+    void approach(const Box::Position& p, const Bound& bound, const Visit& visit) const {
+        if (!nodes_.empty()) approach(0, p, bound, visit);
+    }
     bool any(const Box& box) const {
         bool found = false;
         find(box, [&found](std::int32_t) { found = true; });
@@ -105,6 +111,35 @@ private:
         const std::size_t second = build(middle, end);
         nodes_[number].second = second;
         return number;
+    }
+    static double squared_distance(const Box& box, const Box::Position& p) {
+        double sum = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double off = std::max({box.low[k] - p[k], p[k] - box.high[k], 0.0});
+            sum += off * off;
+        }
+        return sum;
+    }
+    template <class Bound, class Visit>
+    void approach(std::size_t number, const Box::Position& p, const Bound& bound,
+                  const Visit& visit) const {
+        const Node& node = nodes_[number];
+        if (node.second == 0) {
+            for (std::size_t i = node.begin; i < node.end; ++i) {
+                if (squared_distance(boxes_[index(order_[i])], p) <= bound()) visit(order_[i]);
+            }
+            return;
+        }
+        std::array children{number + 1, node.second};
+        std::array away{squared_distance(nodes_[children[0]].box, p),
+                        squared_distance(nodes_[children[1]].box, p)};
+        if (away[1] < away[0]) {
+            std::swap(children[0], children[1]);
+            std::swap(away[0], away[1]);
+        }
+        for (std::size_t i = 0; i < 2; ++i) {
+            if (away[i] <= bound()) approach(children[i], p, bound, visit);
+        }
     }
     template <class Visit>
     void find(std::size_t number, const Box& box, const Visit& visit) const {

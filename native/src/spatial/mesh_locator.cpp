@@ -24,9 +24,10 @@ void check_mesh(std::span<const PlanPosition> vertices,
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         for (const std::int32_t v : triangles[t]) {
             if (v >= 0 && static_cast<std::size_t>(v) < vertices.size()) continue;
-            throw InputError("bad_index",
-                             "triangle " + std::to_string(t) + " names a vertex that is not there",
-                             -1, {static_cast<std::int64_t>(t)});
+            throw InputError(
+                "bad_index",
+                "triangle " + std::to_string(t) + " refers to a vertex that does not exist", -1,
+                {static_cast<std::int64_t>(t)});
         }
     }
 }

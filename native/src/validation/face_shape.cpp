@@ -37,7 +37,7 @@ std::optional<std::string> FaceShape::fault() {
     if (surface == kWall) {
         const PlanPosition way = way_of_wall();
         if (way == PlanPosition{0, 0}) return "is a wall, but has no extent in plan";
-        if (!is_upright(way)) return "is a wall, but does not stand upright";
+        if (!is_upright(way)) return "is a wall but is not vertical";
         project(std::abs(way[0]) >= std::abs(way[1]) ? 0 : 1, 2);
         return crosses_itself() ? std::optional<std::string>("crosses itself") : std::nullopt;
     }

@@ -56,7 +56,8 @@ Findings check_outside(const ComplexView& model, int threads, const Progress* pr
         found.fail([&] {
             return Offender{.text = "face " + std::to_string(other) + " has one cell, but face " +
                                     std::to_string(one) + " of cell " +
-                                    std::to_string(model.cell(one, 0)) + " lies in its place",
+                                    std::to_string(model.cell(one, 0)) +
+                                    " lies at the same position",
                             .cell = model.cell(other, 0),
                             .face = static_cast<std::int64_t>(other),
                             .place = model.vertex(model.face(other)[0])};

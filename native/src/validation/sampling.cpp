@@ -251,8 +251,8 @@ void require_vertices(const ModelInput& input) {
                           int surface) {
         for (std::size_t i = 0; i < triangles.size(); ++i) {
             if (triangles[i] >= 0 && static_cast<std::size_t>(triangles[i]) < vertices) continue;
-            throw InputError("bad_index", "a triangle names a vertex that is not there", surface,
-                             {static_cast<std::int64_t>(i / 3)});
+            throw InputError("bad_index", "a triangle refers to a vertex that does not exist",
+                             surface, {static_cast<std::int64_t>(i / 3)});
         }
     };
     int surface = 0;
@@ -274,13 +274,13 @@ std::vector<TestResult> check_samples(const ComplexView& model, const ModelInput
         progress->check();
         progress->report(fraction, text);
     };
-    report(0.0, "choosing places");
+    report(0.0, "choosing test points");
     require_vertices(input);
     const PlanRounding rounding(largest_plan_coordinate(model, input));
     const Probes probes = choose_probes(model, input, places, seed, rounding, progress);
-    report(0.1, "finding the faces there");
+    report(0.1, "finding the faces at the test points");
     const ModelColumns model_columns(model, probes, rounding, threads, progress);
-    report(0.5, "finding the surfaces there");
+    report(0.5, "finding the surfaces at the test points");
     const InputColumns input_columns(input, probes, rounding, threads, progress);
     report(0.7, "comparing with the closed form");
     const Comparison comparison(model, input, probes, rounding, model_columns, input_columns);

@@ -187,7 +187,7 @@ Findings check_block_volumes(const ComplexView& model, const CellSides& sides,
             continue;
         }
         found.fail([&] {
-            return Offender{.text = "block " + std::to_string(b) + " is told to have volume " +
+            return Offender{.text = "block " + std::to_string(b) + " is reported with volume " +
                                     figure(told) + ", its cells have " + figure(summed),
                             .block = static_cast<std::int64_t>(b)};
         });

@@ -102,8 +102,8 @@ Findings check_distinct(const ComplexView& model, int threads, const Progress* p
     Findings found;
     for (const auto& [v, earlier] : all) {
         found.fail([&, v = v, earlier = earlier] {
-            return Offender{.text = "vertex " + std::to_string(v) + " is in the place of vertex " +
-                                    std::to_string(earlier),
+            return Offender{.text = "vertex " + std::to_string(v) +
+                                    " has the coordinates of vertex " + std::to_string(earlier),
                             .vertex = v,
                             .place = model.vertex(v)};
         });

@@ -38,26 +38,6 @@ TEST(CutterSurface, WithinABlockThereIsNoBoundary) {
     EXPECT_DOUBLE_EQ(volume(surface), 2);
 }
 
-/// Two slopes that meet in a ridge along y at x = 0, height 0.
-const CutterSurface kRidge{{{0, -9, 0}, {0, 9, 0}, {3, 0, -9}, {-3, 0, -9}},
-                           {{0, 2, 1}, {0, 1, 3}}};
-
-TEST(CutterSurface, TheNearestTriangleTellsTheSide) {
-    EXPECT_EQ(side_of_nearest(kRidge, {0.25, 0, 5}), kAbove);
-    EXPECT_EQ(side_of_nearest(kRidge, {-4, 0, -3}), kAbove);
-    EXPECT_EQ(side_of_nearest(kRidge, {0.25, 0, -5}), kBelow);
-    EXPECT_EQ(side_of_nearest(kRidge, {-0.25, 0, -5}), kBelow);
-}
-
-TEST(CutterSurface, BeyondItsBorderTheTriangleSeenMostSquarelyTellsTheSide) {
-    // nearest is the corner in common; the upright triangle is seen almost along itself
-    const CutterSurface bent{{{0, 0, 0}, {1, 1, 0}, {1, -1, 0}, {1, -1, 1}},
-                             {{0, 3, 2}, {0, 2, 1}, {0, 3, 2}}};
-    EXPECT_EQ(side_of_nearest(bent, {-1, 0.8, 0.5}), kAbove);
-    EXPECT_EQ(side_of_nearest(bent, {-1, 0.8, -0.5}), kBelow);
-    EXPECT_EQ(side_of_nearest(bent, {-1, 0, 0.5}), kBelow);  // it is that one's turn
-}
-
 TEST(CutterSurface, AFaceThatIsNotConvexIsDividedWithinItself) {
     auto u = u_shape();
     std::vector<std::array<std::int32_t, 3>> triangles;

@@ -87,7 +87,7 @@ TEST(FaceShape, AWallIsUprightAndNeedNotBeConvex) {
     EXPECT_EQ(fault(upright(kBowTie), kWall), "crosses itself");
     Corners leaning = upright(kSquare);
     leaning[2][1] += 1e-9;
-    EXPECT_EQ(fault(leaning, kWall), "is a wall, but does not stand upright");
+    EXPECT_EQ(fault(leaning, kWall), "is a wall but is not vertical");
     EXPECT_EQ(fault({{1, 1, 0}, {1, 1, 1}, {1, 1, 2}}, kWall),
               "is a wall, but has no extent in plan");
 }

@@ -31,7 +31,7 @@ TEST(OutsideTest, AFaceStoredTwiceIsFoundWhateverItsFirstCornerAndDirection) {
         const Findings found = check_outside(cubes.view(), 1, nullptr);
         ASSERT_EQ(found.failed, 1);
         EXPECT_EQ(found.first[0].text,
-                  "face 11 has one cell, but face 1 of cell 0 lies in its place");
+                  "face 11 has one cell, but face 1 of cell 0 lies at the same position");
         EXPECT_EQ(found.first[0].face, 11);
         EXPECT_EQ(found.first[0].cell, 1);
         std::rotate(cubes.loops[11].begin(), cubes.loops[11].begin() + 1, cubes.loops[11].end());

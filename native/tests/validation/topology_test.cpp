@@ -139,7 +139,7 @@ TEST(Topology, FindsEqualVertices) {
     const auto results = check(cubes);
     const Offender found = only(results, "vertices");
     EXPECT_EQ(found.vertex, 12);
-    EXPECT_EQ(found.text, "vertex 12 is in the place of vertex 9");
+    EXPECT_EQ(found.text, "vertex 12 has the coordinates of vertex 9");
     EXPECT_EQ(only(results, "closed").cell, 1);
 }
 
@@ -183,7 +183,7 @@ TEST(Topology, FindsAFaceThatIsNotConvex) {
     const Findings& found = findings(results, "faces");
     EXPECT_EQ(found.failed, 2);
     EXPECT_EQ(found.first[0].text, "face 2 is not convex");
-    EXPECT_EQ(found.first[1].text, "face 7 is a wall, but does not stand upright");
+    EXPECT_EQ(found.first[1].text, "face 7 is a wall but is not vertical");
 }
 
 TEST(Topology, AllowsAWallThatIsNotConvex) {
@@ -222,7 +222,7 @@ TEST(Topology, FindsAWallThatLeans) {
     for (std::size_t v : {8u, 9u})
         cubes.vertices[v][1] = 0.25;
     cubes.volume[1] = 0.875;
-    EXPECT_EQ(only(check(cubes), "faces").text, "face 7 is a wall, but does not stand upright");
+    EXPECT_EQ(only(check(cubes), "faces").text, "face 7 is a wall but is not vertical");
 }
 
 TEST(Topology, FindsABaseWhereNoneIs) {
@@ -246,7 +246,7 @@ TEST(Topology, FindsAFaceStoredTwice) {
     const Offender found = only(results, "outside");
     EXPECT_EQ(found.face, 11);
     EXPECT_EQ(found.cell, 1);
-    EXPECT_EQ(found.text, "face 11 has one cell, but face 1 of cell 0 lies in its place");
+    EXPECT_EQ(found.text, "face 11 has one cell, but face 1 of cell 0 lies at the same position");
 }
 
 TEST(Topology, FindsACellInsideOut) {
@@ -277,7 +277,7 @@ TEST(Topology, FindsAWrongBlockVolume) {
     const auto results = check(cubes);
     EXPECT_EQ(failed(results), Names{"block volumes"});
     EXPECT_EQ(only(results, "block volumes").text,
-              "block 1 is told to have volume 1.00000001, its cells have 1");
+              "block 1 is reported with volume 1.00000001, its cells have 1");
     cubes.volume[1] = 1 + 1e-13;
     EXPECT_EQ(failed(check(cubes)), Names{});
 }

@@ -43,15 +43,15 @@ TEST(VertexTest, DistinctVerticesPassInAnyOrder) {
 
 TEST(VertexTest, AVertexInThePlaceOfAnotherIsNamedWithIt) {
     EXPECT_EQ(about_vertices({{3, 1, 2}, {0, 0, 0}, {3, 1, 2}}),
-              Texts{"vertex 2 is in the place of vertex 0"});
+              Texts{"vertex 2 has the coordinates of vertex 0"});
     // though all ascend but for being equal
     EXPECT_EQ(about_vertices({{0, 0, 0}, {1, 1, 1}, {1, 1, 1}, {2, 2, 2}}),
-              Texts{"vertex 2 is in the place of vertex 1"});
+              Texts{"vertex 2 has the coordinates of vertex 1"});
 }
 
 TEST(VertexTest, BothZerosAreOnePlace) {
     EXPECT_EQ(about_vertices({{0, -0.0, 1}, {5, 5, 5}, {-0.0, 0, 1}}),
-              Texts{"vertex 2 is in the place of vertex 0"});
+              Texts{"vertex 2 has the coordinates of vertex 0"});
 }
 
 TEST(VertexTest, OfManyInOnePlaceEachButTheFirstIsCounted) {

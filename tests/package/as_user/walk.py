@@ -57,14 +57,14 @@ def check_blocks(expected, when):
 
 
 def check_picture(path):
-    """It shows something: the model's two colours cover a good part of it."""
+    """It shows something: the model's two colors cover a good part of it."""
     image = bpy.data.images.load(str(path))
     flat = np.empty(image.size[0] * image.size[1] * image.channels, np.float32)
     image.pixels.foreach_get(flat)
-    colours = flat.reshape(image.size[1], image.size[0], -1)[:, :, :3]
-    drawn = np.abs(colours - colours[0, 0]).max(axis=2) > 0.1
+    colors = flat.reshape(image.size[1], image.size[0], -1)[:, :, :3]
+    drawn = np.abs(colors - colors[0, 0]).max(axis=2) > 0.1
     check(0.05 < drawn.mean() < 0.9, f"{path.name}: {100 * drawn.mean():.1f} % of it is drawn on")
-    check(colours[drawn].std(axis=0).max() > 0.02, f"{path.name}: one colour only")
+    check(colors[drawn].std(axis=0).max() > 0.02, f"{path.name}: one color only")
     bpy.data.images.remove(image)
 
 

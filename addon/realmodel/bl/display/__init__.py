@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a built model is shown: the display modes, the stage, the blocks moved apart, the colours, the cut.
+"""How a built model is shown: the display modes, the stage, the blocks moved apart, the colors, the cut.
 
 The settings call one function here when they change, the build calls `built` and `cleared`. All of it leaves
 the model as it is: see docs/guide/tour.md, "View".
@@ -11,7 +11,7 @@ visible        hiding and showing objects without taking back what the user does
 bodies, cells  objects that are only for viewing
 drawing        points and lines; render_marks: the same in a final render
 explosion      the blocks moved apart
-colours        what the colours tell
+colors        what the colors tell
 cuts, sections the movable plane; sections as mesh objects
 preparing      what takes long, in a thread
 viewpoints     where the viewports look from
@@ -29,7 +29,7 @@ from ..scene import TAG
 from . import (
     bodies,
     boreholes,
-    colours,
+    colors,
     coordinates,
     cuts,
     drawing,
@@ -51,12 +51,12 @@ def register():
     """Called when the add-on is enabled."""
     cuts.show_with(mode_changed)
     preparing.show_with(show_all)
-    drawing.register()
+    drawing.handler.register()
 
 
 def unregister():
     """Called when the add-on is disabled: no handler of drawing may stay."""
-    drawing.unregister()
+    drawing.handler.unregister()
     stop()
 
 
@@ -130,12 +130,12 @@ def boreholes_changed(scene):
     if scene.realmodel.view.show_boreholes and len(scene.realmodel.results):
         boreholes.show(scene)
     else:
-        bodies.remove_kind(scene, bodies.BOREHOLES)
+        bodies.remove(scene, bodies.BOREHOLES)
     exaggeration_changed(scene)
 
 
-def colours_changed(scene):
-    """Another rule of colouring, or another colour in the library."""
+def colors_changed(scene):
+    """Another rule of coloring, or another color in the library."""
     _show(scene, color_by=scene.realmodel.color_by)
 
 
@@ -184,13 +184,12 @@ def let_go(item):
 def cleared(scene):
     """The blocks are gone."""
     forget_meshes()
-    for kind in (bodies.CELLS, bodies.SURVIVING):
+    for kind in (bodies.CELLS, bodies.SURVIVING, bodies.BOREHOLES):
         bodies.remove(scene, kind)
     scene.realmodel.view.surviving_of = ""
     residuals.hide(scene)
-    bodies.remove_kind(scene, bodies.BOREHOLES)
     cuts.take_off(scene)
-    colours.forget(scene)
+    colors.forget(scene)
     modes.without_blocks(scene)
     exaggeration_changed(scene)
     scene.realmodel.view.applied = ""
@@ -235,7 +234,7 @@ def undoing():
     """Blender is about to undo or redo. It keeps objects that did not change between two of its steps, and
     does not know what a live build has changed since: they must not point to materials that it takes away."""
     for scene in bpy.data.scenes:
-        colours.take_off(scene)
+        colors.take_off(scene)
 
 
 def undone():
@@ -243,7 +242,7 @@ def undone():
     forget_meshes()
     for scene in bpy.data.scenes:
         if len(scene.realmodel.results):
-            colours.apply(scene)
+            colors.apply(scene)
         if cuts.is_on(scene):
             cuts.touch(scene)
 
@@ -293,8 +292,8 @@ def _show(scene, has_shapes=False, **wanted):
         if replacing.is_rendering():
             render_marks.put(scene, now["display"])
     if "color_by" in wanted or "stage" in wanted or now["color_by"] in shades.TITLES:
-        colours.apply(scene)
-        colours.shade_viewports(now["color_by"], _applied(scene))
+        colors.apply(scene)
+        colors.shade_viewports(now["color_by"], _applied(scene))
     if not replacing.is_rendering():
         exaggeration_changed(scene)
     group.view.applied = json.dumps({key: now[key] for key in _ANIMATED})

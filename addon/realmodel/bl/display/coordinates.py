@@ -9,8 +9,7 @@ import numpy as np
 from .. import caches, exaggeration, library_rows, meshes, project_settings, shapes
 from . import modes, stages
 
-_soups = caches.new()  # by the name of a mesh: its triangles, (T, 3, 3) float32
-_MOST_SOUPS = 64
+_soups = caches.new(most=64)  # by the name of a mesh: its triangles, (T, 3, 3) float32
 
 
 @dataclass(frozen=True)
@@ -52,8 +51,12 @@ def under_ray(scene, start, direction):
         begin, along = turn @ (start - matrix[:3, 3]), turn @ direction
         hits = _hits(_soup(item.data), begin, along)
         if len(hits) and (nearest is None or hits[0] < nearest[0]):
-            nearest = (hits[0], row, begin + hits[0] * along)
-    return None if nearest is None else _place(scene, *nearest[1:])
+            nearest = (hits[0], row, begin + hits[0] * along, along / np.linalg.norm(along))
+    if nearest is None:
+        return None
+    _, row, local, along = nearest
+    span = _span(row.object, local + _rounding(_soup(row.object.data), local) * along)  # not beside a wall
+    return _place(scene, row, local, span or _span(row.object, local))
 
 
 def at_point(scene, location):
@@ -65,12 +68,11 @@ def at_point(scene, location):
         local = np.linalg.pinv(matrix[:3, :3]) @ (np.asarray(location, np.float64) - matrix[:3, 3])
         span = _span(row.object, local)
         if span is not None and span[0] <= local[2] <= span[1]:
-            return _place(scene, row, local)
+            return _place(scene, row, local, span)
     return None
 
 
-def _place(scene, row, local):
-    span = _span(row.object, local)
+def _place(scene, row, local, span):
     model = local + project_settings.model_origin(scene)
     entry = library_rows.find(scene, row.property_id)
     return Place(
@@ -107,9 +109,7 @@ def _hits(soup, start, direction):
     side /= np.linalg.norm(side)
     frame = np.column_stack([side, np.cross(along, side), along])
     corners = (soup - start.astype(np.float32)) @ frame[:, :2].astype(np.float32)
-    reach = (
-        np.spacing(np.abs(soup).max() + np.abs(start).max()) * 4
-    )  # what rounding may have moved corners by
+    reach = _rounding(soup, start)
     near = ((corners.min(axis=1) <= reach) & (corners.max(axis=1) >= -reach)).all(axis=1)
     corners = (soup[near].astype(np.float64) - start) @ frame
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
@@ -120,6 +120,11 @@ def _hits(soup, start, direction):
     return np.sort(found[found >= 0.0]) / length
 
 
+def _rounding(soup, point):
+    """The most that rounding to float32 may have moved corners by, seen from a point."""
+    return 4 * np.spacing(np.float32(np.abs(soup).max() + np.abs(point).max()))
+
+
 def _cross(a, b):
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
@@ -127,8 +132,6 @@ def _cross(a, b):
 def _soup(mesh):
     key = mesh.name_full
     if key not in _soups:
-        while len(_soups) >= _MOST_SOUPS:
-            _soups.pop(next(iter(_soups)))
         triangles = shapes.mesh_triangles(mesh)
         _soups[key] = meshes.mesh_coordinates(mesh)[triangles]
     return _soups[key]

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Points and lines of the model in its colours, drawn over the viewport from arrays on the graphics card.
+"""Points and lines of the model in its colors, drawn over the viewport from arrays on the graphics card.
 
-Blender draws the vertices and wires of objects in the theme's one colour; here each block has its own. The
+Blender draws the vertices and wires of objects in the theme's one color; here each block has its own. The
 arrays go to the card when they are first drawn, and again when a mesh has changed.
 """
 
 import bpy
 
 from .. import caches, exaggeration, meshes, versions
-from . import colours, modes
+from ..draw_handler import DrawHandler
+from . import colors, modes
 
 POINT_SIZE = 4.0  # pixels
 _batches = caches.new()  # (mesh name, "POINTS" or "LINES") -> (vertices, edges of the mesh, gpu batch)
-_handle = None
 
 
 def forget(names=None):
@@ -50,7 +50,7 @@ def draw_items(items, mode, layer):
             continue
         with gpu.matrix.push_pop():
             gpu.matrix.multiply_matrix(exaggeration.world_matrix(item))
-            shader.uniform_float("color", (*colours.shown_colour(item), 1.0))
+            shader.uniform_float("color", (*colors.shown_color(item), 1.0))
             batch.draw(shader)
     gpu.state.depth_test_set("NONE")
     gpu.state.depth_mask_set(False)
@@ -81,14 +81,4 @@ def _new_batch(mesh, mode):
     return gpu.types.GPUBatch(type="LINES", buf=vertices, elem=indices)
 
 
-def register():
-    global _handle
-    if not bpy.app.background:
-        _handle = bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", "POST_VIEW")
-
-
-def unregister():
-    global _handle
-    if _handle is not None:
-        bpy.types.SpaceView3D.draw_handler_remove(_handle, "WINDOW")
-        _handle = None
+handler = DrawHandler(draw, "POST_VIEW")

@@ -33,7 +33,7 @@ def apply(scene, amount, direction):
         elif direction == "BLOCK":
             shift = (amount * 1.1 * extent[0] * rank, 0.0, 0.0)
         else:
-            shift = amount * (_centre(row.object) - (low + high) / 2)
+            shift = amount * (_center(row.object) - (low + high) / 2)
             shift[2] *= max(1.0, _LEAST_STEP * extent[:2].max() / max(extent[2], 1e-9))
         move(row.object, shift)
 
@@ -73,7 +73,7 @@ def _has_mesh(row):
     return row.object is not None and row.object.type == "MESH"
 
 
-def _centre(item):
+def _center(item):
     found = meshes.mesh_coordinates(item.data) if item.type == "MESH" else ()
     if not len(found):
         return np.zeros(3)

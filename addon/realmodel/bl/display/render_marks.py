@@ -5,7 +5,7 @@ beside it, as thick as points and lines are on the screen."""
 import numpy as np
 
 from .. import meshes, versions
-from . import bodies, colours, marks, modes, viewpoints
+from . import bodies, colors, marks, modes, viewpoints
 
 POINT_RADIUS, LINE_RADIUS = 2.0, 0.8  # pixels
 
@@ -25,7 +25,7 @@ def put(scene, mode):
             shapes.append(
                 (item, marks.lines(coordinates, versions.edge_vertices(item.data), LINE_RADIUS * pixel))
             )
-    bodies.put(scene, bodies.MARKS, shapes, colours.dark() if mode == "AREAS" else None)
+    bodies.put(scene, bodies.MARKS, shapes, colors.dark() if mode == "AREAS" else None)
 
 
 def _pixel_size(scene):

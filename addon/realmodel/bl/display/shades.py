@@ -52,7 +52,7 @@ def material():
     known = next((m for m in bpy.data.materials if m.get(ATTRIBUTE) and m.library is None), None)
     if known is not None:
         return known
-    made = materials.new_material("Color Scale", materials.NO_PROPERTY, materials.NEUTRAL_GREY)
+    made = materials.new_material("Color Scale", materials.NO_PROPERTY, materials.NEUTRAL_GRAY)
     del made[materials.KEY]
     made[ATTRIBUTE] = True
     nodes = made.node_tree.nodes

@@ -11,6 +11,7 @@ import numpy as np
 from .drawing import BLACK, GRAY, Color, Drawing
 from .glyphs import text_width
 
+TITLE = 1.8  # height of the title of a legend, in sizes of the text
 LINE = 1.5  # from baseline to baseline, in sizes of the text
 _TICK = 3.0  # points
 
@@ -95,21 +96,30 @@ class Axes:
 
 
 def legend(
-    drawing: Drawing, x: float, y: float, entries: Sequence[tuple[str, Color]], size=8.0, layer=""
-) -> tuple[float, float]:
-    """Boxes of color with their names, the first on top; x, y: the upper left corner. Returns the width and
-    height that they take."""
+    drawing: Drawing,
+    x: float,
+    y: float,
+    title: str,
+    entries: Sequence[tuple[str, Color]],
+    size=8.0,
+    layer="",
+) -> None:
+    """A title that says what the names are, then boxes of color with their names, the first on top.
+
+    x, y: the upper left corner.
+    """
+    drawing.text(x, y - size, title, size, layer=layer)
+    y -= TITLE * size
     for number, (name, color) in enumerate(entries):
         base = y - (number + 1) * LINE * size + 0.35 * size
         drawing.rectangle(x, base - 0.2 * size, 1.6 * size, 1.1 * size, color, GRAY, 0.4, layer)
         drawing.text(x + 2.2 * size, base, name, size, layer=layer)
-    return legend_size(entries, size)
 
 
-def legend_size(entries: Sequence[tuple[str, Color]], size=8.0) -> tuple[float, float]:
+def legend_size(title: str, entries: Sequence[tuple[str, Color]], size=8.0) -> tuple[float, float]:
     """The width and height of a legend in points."""
     widest = max((text_width(name, size) for name, _ in entries), default=0.0)
-    return 2.2 * size + widest, len(entries) * LINE * size
+    return max(2.2 * size + widest, text_width(title, size)), (TITLE + len(entries) * LINE) * size
 
 
 def color_bar(

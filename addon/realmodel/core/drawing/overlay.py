@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .charts import color_bar, legend, legend_size, round_length, scale_bar, tick_texts, ticks
+from .charts import TITLE, color_bar, legend, legend_size, round_length, scale_bar, tick_texts, ticks
 from .drawing import BLACK, WHITE, Color, Drawing
 from .glyphs import text_width
 
@@ -111,11 +111,15 @@ def _paper(drawing: Drawing, x: float, y: float, width: float, height: float) ->
 def legend_extent(key: ColorKey) -> tuple[float, float]:
     """Width and height of a legend's paper in points."""
     if key.colors is None:
-        width, height = legend_size(key.entries, SIZE)
+        width, height = legend_size(key.title, key.entries, SIZE)
     else:
         values = tick_texts(ticks(*key.limits, max(3, int(_BAR[1] / (2.5 * SIZE)))))
-        width, height = _BAR[0] + 6 + max(text_width(text, SIZE) for text in values), _BAR[1] + 0.5 * SIZE
-    return max(width, text_width(key.title, SIZE)) + 2 * _PAD, height + 1.8 * SIZE + 2 * _PAD
+        width, height = (
+            _BAR[0] + 6 + max(text_width(text, SIZE) for text in values),
+            _BAR[1] + (TITLE + 0.5) * SIZE,
+        )
+        width = max(width, text_width(key.title, SIZE))
+    return width + 2 * _PAD, height + 2 * _PAD
 
 
 def _legend(drawing: Drawing, key: ColorKey, left: float) -> float:
@@ -128,10 +132,10 @@ def _legend(drawing: Drawing, key: ColorKey, left: float) -> float:
     width, height = legend_extent(key)
     _paper(drawing, left, _MARGIN, width, height)
     inner, top = left + _PAD, _MARGIN + height - _PAD
-    drawing.text(inner, top - SIZE, key.title, SIZE)
     if key.colors is None:
-        legend(drawing, inner, top - 1.8 * SIZE, key.entries, SIZE)
+        legend(drawing, inner, top, key.title, key.entries, SIZE)
     else:
+        drawing.text(inner, top - SIZE, key.title, SIZE)
         color_bar(drawing, (inner, _MARGIN + _PAD + 0.4 * SIZE, *_BAR), key.limits, key.colors, size=SIZE)
     return left + width + _MARGIN
 

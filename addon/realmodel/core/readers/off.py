@@ -13,7 +13,7 @@ from .text import LINES_AT_ONCE, NUMBER, Step, column_numbers, no_step, read_tex
 from .triangle_mesh import TriangleMesh, mesh_of_faces
 
 _WHOLE = re.compile(r"-?[0-9]{1,18}")
-_HEADERS = ("OFF", "COFF", "NOFF", "CNOFF")  # colours and normals behind the coordinates are not used
+_HEADERS = ("OFF", "COFF", "NOFF", "CNOFF")  # colors and normals behind the coordinates are not used
 
 
 def begins_as_off(head: bytes) -> bool:

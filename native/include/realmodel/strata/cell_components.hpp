@@ -16,7 +16,7 @@ namespace realmodel::strata {
 /// faces does not matter.
 /// @param face_cells  the cells on both sides of each face, -1 outside
 /// @param cell_block  the block of each cell
-/// @throws InputError kind bad_index where a face names a cell that is not there
+/// @throws InputError kind bad_index where a face refers to a cell that does not exist
 /// @throws Cancelled
 std::vector<std::int32_t> cell_components(std::span<const std::array<std::int32_t, 2>> face_cells,
                                           std::span<const std::int32_t> cell_block,
@@ -28,7 +28,7 @@ struct CellSides {
     std::vector<std::int64_t> sides;    ///< 2 face + 1 where the cell is the face's second one
 };
 /// Sorts the sides of faces by cell, in the order of the faces.
-/// @throws InputError kind bad_index where a face names a cell that is not there
+/// @throws InputError kind bad_index where a face refers to a cell that does not exist
 /// @throws Cancelled
 CellSides cell_sides(std::span<const std::array<std::int32_t, 2>> face_cells, std::size_t cells,
                      const Progress* progress = nullptr);

@@ -18,7 +18,7 @@ void check_cells(const std::array<std::int32_t, 2>& sides, std::size_t face, std
     const auto count = static_cast<std::int64_t>(cells);
     if (std::max(sides[0], sides[1]) < count && std::min(sides[0], sides[1]) >= -1) return;
     throw InputError("bad_index",
-                     "face " + std::to_string(face) + " names a cell that is not there", -1,
+                     "face " + std::to_string(face) + " refers to a cell that does not exist", -1,
                      {static_cast<std::int64_t>(face)});
 }
 

@@ -56,7 +56,7 @@ std::vector<double> cell_volumes(std::span<const Position> vertices,
     const auto loop_of = [&](std::size_t f) {
         const std::int64_t begin = face_offsets[f], end = face_offsets[f + 1];
         if (begin < 0 || begin >= end || end > static_cast<std::int64_t>(face_vertices.size()))
-            refuse(f, "corners that are not there");
+            refuse(f, "corners that do not exist");
         return face_vertices.subspan(static_cast<std::size_t>(begin),
                                      static_cast<std::size_t>(end - begin));
     };
@@ -66,11 +66,11 @@ std::vector<double> cell_volumes(std::span<const Position> vertices,
         const auto loop = loop_of(f);
         for (const std::int32_t v : loop) {
             if (v < 0 || static_cast<std::size_t>(v) >= vertices.size())
-                refuse(f, "a vertex that is not there");
+                refuse(f, "a vertex that does not exist");
         }
         for (const std::int32_t cell : face_cells[f]) {
             if (cell < -1 || cell >= static_cast<std::int64_t>(cells))
-                refuse(f, "a cell that is not there");
+                refuse(f, "a cell that does not exist");
             if (cell >= 0 && origin[static_cast<std::size_t>(cell)] < 0)
                 origin[static_cast<std::size_t>(cell)] = loop[0];
         }

@@ -303,15 +303,15 @@ Warning joined_by_rounding(const PlanSnapping& snapping, const JoinedBorders& bo
     const std::size_t coordinates = snapping.x.size() + snapping.y.size();
     std::string text;
     if (coordinates > 0) {
-        text = "plan coordinates that differ by rounding only taken as one: " +
-               std::to_string(coordinates);
+        text =
+            "plan coordinates merged that differ only by rounding: " + std::to_string(coordinates);
     }
     if (borders.divided > 0) {
         text += (text.empty() ? "" : "; ") +
-                ("border edges divided at vertices within rounding of them: " +
+                ("border edges split at vertices that lie on them up to rounding: " +
                  std::to_string(borders.divided));
     }
-    return {"joined", -1, {}, text};
+    return {"joined", -1, {}, text + "; no action is needed"};
 }
 
 }  // namespace realmodel::strata

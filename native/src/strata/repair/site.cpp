@@ -35,8 +35,12 @@ std::vector<PlanTriangle> enter_region(PlanArrangement& geometry, const RegionVi
             const auto row = static_cast<std::size_t>(region.triangles[t * 3 + i]) * 2;
             if (region.triangles[t * 3 + i] < 0 || row + 1 >= region.vertices.size()) {
                 throw InputError("bad_index",
-                                 "a triangle of the region names a vertex that is not there", -1,
-                                 {static_cast<std::int64_t>(t)});
+                                 "triangle " + std::to_string(t) +
+                                     " of the region refers to vertex " +
+                                     std::to_string(region.triangles[t * 3 + i]) +
+                                     ", but the vertices are numbered from 0 to " +
+                                     std::to_string(region.vertices.size() / 2 - 1),
+                                 -1, {static_cast<std::int64_t>(t)});
             }
             p[i] = {snapping.x(region.vertices[row]), snapping.y(region.vertices[row + 1])};
         }
@@ -166,9 +170,9 @@ void check_base(const EnteredRock& rock, const std::array<double, 3>& lowest) {
     if (lowest[2] > base) return;
     throw InputError("base_not_below",
                      "base_elevation " + std::to_string(base) +
-                         " is not below all of the rock mass: its lowest place is " +
-                         std::to_string(lowest[2]) + " at (" + std::to_string(lowest[0]) + ", " +
-                         std::to_string(lowest[1]) + "); give a lower base_elevation",
+                         " is not below the whole rock mass, whose lowest point is " + "(" +
+                         std::to_string(lowest[0]) + ", " + std::to_string(lowest[1]) + ", " +
+                         std::to_string(lowest[2]) + "); choose a lower base_elevation",
                      rock.first_surface, {}, lowest);
 }
 

@@ -84,7 +84,8 @@ RangeOfTriangles triangles_with_area(const SurfaceView& surface, int index,
             if (!in_one_line(p[0], p[1], p[2])) {
                 throw InputError("vertical_triangle",
                                  "triangle " + std::to_string(t) +
-                                     " stands upright: the surface has no single height there",
+                                     " is vertical: a surface may have only one height at each "
+                                     "point in plan; tilt or remove it",
                                  index, {number}, p[0]);
             }
             found.flat.push_back(number);

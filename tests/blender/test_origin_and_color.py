@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The model origin, and colours of the library as Blender wants them."""
+"""The model origin, and colors of the library as Blender wants them."""
 
 import unittest
 
@@ -32,28 +32,28 @@ class Origin(unittest.TestCase):
         self.assertEqual(origin.choose_origin(np.array([[5.0, 5.0, 5.0]])).tolist(), [0.0, 0.0, 0.0])
 
 
-class Colour(unittest.TestCase):
-    def test_blender_shows_the_colour_that_was_given(self):
+class LibraryColors(unittest.TestCase):
+    def test_blender_shows_the_color_that_was_given(self):
         for value in range(256):
-            linear = materials.linear_colour(f"#{value:02x}{255 - value:02x}40")
+            linear = materials.linear_color(f"#{value:02x}{255 - value:02x}40")
             shown = [round(255.0 * c) for c in Color(linear).from_scene_linear_to_srgb()]
             self.assertEqual(shown, [value, 255 - value, 64])
 
-    def test_the_viewport_colour_is_linear(self):
+    def test_the_viewport_color_is_linear(self):
         kind = bpy.types.Material.bl_rna.properties["diffuse_color"].subtype
         self.assertEqual(kind, "COLOR", "COLOR_GAMMA would want sRGB values")
 
     def test_without_a_library(self):
-        self.assertEqual(materials.name_and_colour(None, 0), ("no property", materials.NEUTRAL_GREY))
-        self.assertEqual(materials.name_and_colour(None, 7)[0], "property 7")
+        self.assertEqual(materials.name_and_color(None, 0), ("no property", materials.NEUTRAL_GRAY))
+        self.assertEqual(materials.name_and_color(None, 7)[0], "property 7")
 
-    def test_a_colour_that_a_texture_gives_is_left_alone(self):
+    def test_a_color_that_a_texture_gives_is_left_alone(self):
         empty_file()
         material = materials.new_material("rock", 3, "#808080")
         principled = next(n for n in material.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
         noise = material.node_tree.nodes.new("ShaderNodeTexNoise")
         material.node_tree.links.new(noise.outputs[0], principled.inputs["Base Color"])
         before = tuple(principled.inputs["Base Color"].default_value)
-        materials.set_colour(material, "#ff0000")
+        materials.set_color(material, "#ff0000")
         self.assertEqual(tuple(principled.inputs["Base Color"].default_value), before)
         self.assertEqual(tuple(material.diffuse_color), (1.0, 0.0, 0.0, 1.0))

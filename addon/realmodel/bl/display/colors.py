@@ -2,7 +2,7 @@
 """What the colors of blocks and interfaces mean: their property, themselves, their rock mass, their age, or a
 value (`shades`).
 
-The mesh of a block keeps its property's material. Other colours are materials that the object, not the mesh,
+The mesh of a block keeps its property's material. Other colors are materials that the object, not the mesh,
 has in its slot, so they show in every way of shading and in renders, and go without a trace.
 """
 
@@ -16,7 +16,7 @@ from ...core.drawing.overlay import ColorKey
 from .. import library_rows, materials, settings, viewports
 from . import bodies, modes, shades, stages
 
-KEY = "realmodel_colour"  # on a material: what it stands for
+KEY = "realmodel_colour"  # on a material: what it stands for; .blend files hold this name
 _GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
 _OLD, _YOUNG = (0.72, 0.62, 0.55), (0.13, 0.55, 0.95)  # hue, saturation, value at the ends of the ages
 
@@ -72,12 +72,12 @@ def key(scene):
         if item is None or not stages.present(row) or modes.is_hidden(scene, row):
             continue
         if by == "PROPERTY":
-            name, _ = materials.name_and_colour(library, row.property_id)
-            entries.setdefault(name, shown_colour(item))
+            name, _ = materials.name_and_color(library, row.property_id)
+            entries.setdefault(name, shown_color(item))
         else:
-            _, colour = _entry(scene, by, row, places)
+            _, color = _entry(scene, by, row, places)
             name = {"ROCK": row.rock, "BLOCK": row.name, "AGE": row.surface}[by]
-            entries.setdefault(name, tuple(int(colour[k : k + 2], 16) / 255.0 for k in (1, 3, 5)))
+            entries.setdefault(name, tuple(int(color[k : k + 2], 16) / 255.0 for k in (1, 3, 5)))
     titles = {"PROPERTY": "Property", "ROCK": "Rock Mass", "BLOCK": "Block", "AGE": "Age"}
     return ColorKey(titles[by], list(entries.items())) if entries else None
 
@@ -96,8 +96,8 @@ def shade_viewports(by, before):
 
 
 def forget(scene):
-    """Takes all such colours out of a scene."""
-    for item in _coloured(scene):
+    """Takes all such colors out of a scene."""
+    for item in _colored(scene):
         slot = item.material_slots[0]
         if slot.link == "OBJECT" and not _is_of_user(slot):
             slot.material = None
@@ -106,7 +106,7 @@ def forget(scene):
     _remove_unused()
 
 
-def shown_colour(item):
+def shown_color(item):
     """(red, green, blue) of an object's material from 0 to 1, sRGB, as the screen has it."""
     return tuple(materials.srgb(channel) for channel in shown_linear(item))
 
@@ -115,11 +115,11 @@ def shown_linear(item):
     """(red, green, blue) of an object's material from 0 to 1, scene-linear."""
     material = item.material_slots[0].material if len(item.material_slots) else None
     if material is None:
-        return materials.linear_colour(materials.NEUTRAL_GREY)
+        return materials.linear_color(materials.NEUTRAL_GRAY)
     return tuple(material.diffuse_color[:3])
 
 
-def _coloured(scene):
+def _colored(scene):
     items = [row.object for row in scene.realmodel.results]
     items += [surface.interface for _, surface in settings.surface_rows(scene)]
     return [item for item in items if _can_take(item) and len(item.material_slots)]
@@ -139,7 +139,7 @@ def _places(scene):
 
 
 def _entry(scene, by, row, places):
-    """(name, "#rrggbb") of what a block is coloured by."""
+    """(name, "#rrggbb") of what a block is colored by."""
     if by == "ROCK":
         number = [rock.name for rock in scene.realmodel.rocks].index(row.rock) if _has_rock(scene, row) else 0
         return f"Rock mass {row.rock}", _hue(number)
@@ -150,7 +150,7 @@ def _entry(scene, by, row, places):
     last = max(places.values(), default=0)
     at = place / last if last else 0.0
     hsv = [old + at * (young - old) for old, young in zip(_OLD, _YOUNG, strict=True)]
-    return f"Age {place}", library_rows.hex_colour(colorsys.hsv_to_rgb(*hsv))
+    return f"Age {place}", library_rows.hex_color(colorsys.hsv_to_rgb(*hsv))
 
 
 def _has_rock(scene, row):
@@ -159,16 +159,16 @@ def _has_rock(scene, row):
 
 def _hue(number):
     brightness = 0.9 if number % 2 else 0.7
-    return library_rows.hex_colour(colorsys.hsv_to_rgb((0.06 + number * _GOLDEN) % 1.0, 0.65, brightness))
+    return library_rows.hex_color(colorsys.hsv_to_rgb((0.06 + number * _GOLDEN) % 1.0, 0.65, brightness))
 
 
-def plain_material(name, colour):
-    """The material of a name and colour that another scene or block may have already."""
-    stands_for = f"{name} {colour}"
+def plain_material(name, color):
+    """The material of a name and color that another scene or block may have already."""
+    stands_for = f"{name} {color}"
     for material in bpy.data.materials:
         if material.get(KEY) == stands_for and material.library is None:
             return material
-    material = materials.new_material(name, materials.NO_PROPERTY, colour)
+    material = materials.new_material(name, materials.NO_PROPERTY, color)
     del material[materials.KEY]
     material[KEY] = stands_for
     return material
@@ -184,7 +184,7 @@ def of_property(scene, property_id):
     known = library_rows.scene_materials(scene, property_id)
     if known:
         return known[0]
-    return plain_material(*materials.name_and_colour(library_rows.library_of(scene), property_id))
+    return plain_material(*materials.name_and_color(library_rows.library_of(scene), property_id))
 
 
 def _put_into_slot(item, material):

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exact Booleans of two mesh objects."""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty
+
+from ..bl.boolean_job import DIVIDE, OPERATIONS, BooleanJob
+from ..core.errors import number_list
+from .background import InBackground
+from .reporting import not_building
+
+
+def _object_mode(context):
+    return None if context.mode == "OBJECT" else "this works in Object Mode; leave the other mode first"
+
+
+def _two_meshes(context):
+    active = context.active_object
+    if active is None or active.type != "MESH":
+        return "the active object is no mesh; make the object that is to be changed active"
+    others = [item for item in context.selected_objects if item != active and item.type == "MESH"]
+    if len(others) != 1:
+        return "select one other mesh object beside the active one"
+    return None
+
+
+def _editable(context):
+    item = context.active_object
+    if item.library is None and item.override_library is None:
+        return None
+    return f"{item.name} is linked from another file; make it local first"
+
+
+class REALMODEL_OT_boolean(InBackground, bpy.types.Operator):
+    """Join, intersect, subtract or divide the active mesh object and one other selected, exactly. Materials,
+    attributes, UV maps and vertex groups of both stay on their parts. Esc cancels"""
+
+    bl_idname = "realmodel.boolean"
+    bl_label = "Boolean"
+    needs = (not_building, _object_mode, _two_meshes, _editable)
+
+    operation: EnumProperty(
+        name="Operation",
+        description="What is made of the two objects",
+        items=OPERATIONS,
+        default="DIFFERENCE",
+    )
+    keep_operands: BoolProperty(
+        name="Keep Operands",
+        description="Leave both objects as they are and make a new one of the result. Otherwise the active "
+        "object gets the result, its modifiers are applied, and the other object is hidden",
+    )
+
+    def begin(self, context):
+        active = context.active_object
+        other = next(item for item in context.selected_objects if item != active and item.type == "MESH")
+        depsgraph = context.evaluated_depsgraph_get()
+        return BooleanJob(context.scene, active, other, self.operation, depsgraph, self.keep_operands)
+
+    def tell_done(self, result):
+        made, left_out = result
+        if left_out:
+            self.report(
+                {"WARNING"},
+                f"Not taken over, as the first object has others of these names: {number_list(left_out)}",
+            )
+        if self.operation == DIVIDE:
+            self.report({"INFO"}, f"Divided into {len(made.all_objects)} objects: see {made.name}")
+        else:
+            self.report({"INFO"}, f"{made.name} has {len(made.data.polygons)} faces")
+
+
+CLASSES = (REALMODEL_OT_boolean,)

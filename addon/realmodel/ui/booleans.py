@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Booleans of two mesh objects."""
+
+import bpy
+
+from ..bl.boolean_job import OPERATIONS
+from .panel import TabPanel, hint
+
+_ICONS = {
+    "UNION": "SELECT_EXTEND",
+    "INTERSECT": "SELECT_INTERSECT",
+    "DIFFERENCE": "SELECT_SUBTRACT",
+    "DIVIDE": "MOD_EXPLODE",
+}
+
+
+class REALMODEL_PT_booleans(TabPanel, bpy.types.Panel):
+    bl_label = "Booleans"
+    bl_idname = "REALMODEL_PT_booleans"
+    bl_order = 7
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_in(self, layout, context, _group):
+        if len(context.selected_objects) < 2:
+            hint(layout, "Select two mesh objects; the active one is changed.")
+        grid = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+        for operation, name, *_ in OPERATIONS:
+            grid.operator("realmodel.boolean", text=name, icon=_ICONS[operation]).operation = operation
+
+
+CLASSES = (REALMODEL_PT_booleans,)

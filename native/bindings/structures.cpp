@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// structure_parts, join_structured, structure_sides.
+#include "realmodel/structures/structures.hpp"
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <tuple>
+#include <utility>
+
+#include "arrays.hpp"
+#include "complex_arrays.hpp"
+#include "realmodel/base/progress.hpp"
+
+namespace py = pybind11;
+
+namespace realmodel::bindings {
+
+namespace {
+
+/// vertices, triangles, is_body, ends_at, dies_out
+using StructureArrays =
+    std::tuple<Array<double>, Array<std::int32_t>, bool, std::vector<std::int32_t>, bool>;
+
+structures::Structure view_of(const StructureArrays& arrays) {
+    const auto& [vertices, triangles, is_body, ends_at, dies_out] = arrays;
+    require_columns(vertices, 3, "vertices of a structure");
+    require_columns(triangles, 3, "triangles of a structure");
+    return {{{vertices.data(), static_cast<std::size_t>(vertices.size())},
+             {triangles.data(), static_cast<std::size_t>(triangles.size())}},
+            is_body,
+            ends_at,
+            dies_out};
+}
+
+std::vector<structures::Structure> views_of(const std::vector<StructureArrays>& arrays) {
+    std::vector<structures::Structure> views;
+    for (const StructureArrays& own : arrays)
+        views.push_back(view_of(own));
+    return views;
+}
+
+struct PartArrays : ComplexArrays {
+    explicit PartArrays(const py::dict& arrays) : ComplexArrays(arrays) {
+        complex.blocks = arrays["blocks"].cast<std::size_t>();
+        complex.surfaces = arrays["surfaces"].cast<std::int32_t>();
+        if (arrays["cell_kind"].cast<std::string>() == "blocks")
+            complex.cell_kind = CellKind::kBlocks;
+    }
+};
+
+Array<std::int8_t> sides_array(const std::vector<structures::Sides>& rows, std::size_t columns) {
+    Array<std::int8_t> array({rows.size(), columns});
+    std::int8_t* out = array.mutable_data();
+    for (const structures::Sides& row : rows)
+        out = std::copy(row.begin(), row.end(), out);
+    return array;
+}
+
+py::tuple structure_parts(const py::dict& rock, const std::vector<StructureArrays>& structures,
+                          int threads, Progress* control) {
+    const PartArrays arrays(rock);
+    const auto views = views_of(structures);
+    std::vector<structures::Part> parts;
+    {
+        const py::gil_scoped_release release;
+        parts = structures::parts_of(arrays.complex, views, threads, control);
+    }
+    std::vector<structures::Sides> sides;
+    std::vector<std::array<double, 3>> low, high;
+    for (const structures::Part& part : parts) {
+        sides.push_back(part.sides);
+        low.push_back(part.low);
+        high.push_back(part.high);
+    }
+    return py::make_tuple(sides_array(sides, views.size()), to_array(std::move(low)),
+                          to_array(std::move(high)));
+}
+
+py::dict join_structured(const std::vector<std::pair<py::dict, structures::Sides>>& models,
+                         const std::vector<StructureArrays>& structures,
+                         const Array<std::uint8_t>& acts, int threads, Progress* control) {
+    std::vector<PartArrays> arrays;
+    for (const auto& [model, sides] : models)
+        arrays.emplace_back(model);
+    std::vector<structures::PartModel> parts;
+    for (std::size_t m = 0; m < models.size(); ++m) {
+        if (models[m].second.size() != structures.size())
+            throw py::value_error("sides: one for each structure");
+        parts.push_back({arrays[m].complex, models[m].second});
+    }
+    const auto views = views_of(structures);
+    structures::Joined joined;
+    {
+        const py::gil_scoped_release release;
+        joined = structures::join_models(
+            parts, views, {acts.data(), static_cast<std::size_t>(acts.size())}, threads, control);
+    }
+    py::dict result = complex_arrays(joined.complex);
+    result["cell_part"] = to_array(std::move(joined.cell_part));
+    return result;
+}
+
+Array<std::int8_t> structure_sides(const StructureArrays& structure, const Array<double>& points,
+                                   int threads, const Progress* control) {
+    require_columns(points, 3, "points");
+    const structures::Structure view = view_of(structure);
+    std::vector<std::int8_t> sides;
+    {
+        const py::gil_scoped_release release;
+        sides = structures::sides_of_points(
+            view, {points.data(), static_cast<std::size_t>(points.size())}, threads, control);
+    }
+    return to_array(std::move(sides));
+}
+
+}  // namespace
+
+void bind_structures(py::module_& module) {
+    module.def("structure_parts", &structure_parts, py::arg("rock"), py::arg("structures"),
+               py::arg("threads") = 0, py::arg("control") = nullptr,
+               R"(The parts that faults and bodies divide rock into.
+
+rock: dict of the arrays of docs/dev/geometry.md, "blocks" and "surfaces" (their numbers) and
+"cell_kind". structures: list of (vertices (V, 3) float64, triangles (T, 3) int32, is_body, ends_at:
+numbers of the faults that a fault ends at, dies_out). Returns (sides (P, S) int8: 1 above a fault or
+outside of a body, -1 below or inside, 0 where there is none beyond a fault that it ends at; low
+(P, 3), high (P, 3) float64: a box around each part), each combination of sides once. Raises
+InputError (surface: the number of the structure) and Cancelled.)");
+    module.def("join_structured", &join_structured, py::arg("models"), py::arg("structures"),
+               py::arg("acts"), py::arg("threads") = 0, py::arg("control") = nullptr,
+               R"(Models of the parts that faults and bodies leave, cut by them and joined.
+
+models: list of (dict as of structure_parts, sides: one a structure; 0: either). structures: as of
+structure_parts. acts: (S, B) uint8, whether a structure divides a block. Returns the arrays of a
+complex, face_surface counting structures after the surfaces; volumes (B,); cell_part (C,) int32, the
+model of each cell (where cells of several became one, the first). Raises InputError and Cancelled.)");
+    module.def(
+        "structure_sides", &structure_sides, py::arg("structure"), py::arg("points"),
+        py::arg("threads") = 0, py::arg("control") = nullptr,
+        R"(The side of a structure that points (N, 3) are on: (N,) int8, 1 above or outside, -1
+below or inside; of a fault by its nearest triangle. Raises InputError and Cancelled.)");
+}
+
+}  // namespace realmodel::bindings

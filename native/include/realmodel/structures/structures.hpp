@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "realmodel/base/progress.hpp"
+#include "realmodel/complex.hpp"
+#include "realmodel/cutting/cut.hpp"
+
+namespace realmodel::structures {
+
+/// A fault, an open surface, or a body, a closed one (docs/dev/structures.md).
+struct Structure {
+    cutting::TriangleView surface;
+    bool is_body = false;
+    std::vector<std::int32_t> ends_at;  ///< of a fault: the faults that it ends at
+    bool dies_out = false;              ///< a fault that ends in the rock
+};
+
+/// The side of each structure that something is on: 1 above a fault or outside of a body, -1 below
+/// or inside, 0 where there is no such structure: beyond a fault that it ends at.
+using Sides = std::vector<std::int8_t>;
+
+/// A part of space that structures leave, within a rock.
+struct Part {
+    Sides sides;
+    std::array<double, 3> low, high;  ///< a box around it
+};
+
+/// The parts that structures divide some rock into, each combination of sides once, ascending.
+/// @throws InputError  `surface` is the structure's number; kinds not_finite, bad_index,
+///         no_triangles, branching, one_sided; not_closed (of a body: the place of an open edge);
+///         does_not_meet (a fault and one that it ends at, which it does not meet)
+/// @throws Cancelled
+std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> structures,
+                           int threads, Progress* progress);
+
+/// What the rock is in one of the parts, though its cells may reach beyond it.
+struct PartModel {
+    ComplexView model;
+    Sides sides;  ///< 0: on either side, or where there is none
+};
+
+/// Cells of several models, each in its part alone, that share faces where parts meet.
+struct Joined {
+    CellComplex complex;
+    std::vector<std::int32_t> cell_part;  ///< the number of the model of each cell, or of its first
+};
+
+/// Cuts each model by the structures around its part and joins what is left. Faces on a structure
+/// have its number, counted after all surfaces. Where no structure acts the cells on both sides are
+/// one. Decisions are exact on the models' coordinates and the structures'; coordinates are rounded
+/// once.
+/// @param models  none overlaps another within one part; of several that a part's sides allow the
+///                first counts
+/// @param acts    S x B: whether a structure divides a block of the models
+/// @throws InputError  as parts_of does; kinds bad_model; ends_inside (a fault, and the place where
+///                     it ends though the rock on both sides differs)
+/// @throws Cancelled
+Joined join_models(std::span<const PartModel> models, std::span<const Structure> structures,
+                   std::span<const std::uint8_t> acts, int threads, Progress* progress);
+
+/// The side of a structure that points are on: of a fault that of the triangle nearest to each,
+/// of a body by the number of times that a ray from there leaves it. A point on it is above, or
+/// outside.
+/// @param points  3 P coordinates
+/// @throws InputError  as parts_of does
+std::vector<std::int8_t> sides_of_points(const Structure& structure, std::span<const double> points,
+                                         int threads, const Progress* progress);
+
+}  // namespace realmodel::structures

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cutting/nearest_side.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exact/sign_filters.hpp"
+#include "exact/space_predicates.hpp"
+
+namespace realmodel::cutting {
+
+using spatial::Box;
+
+namespace {
+
+/// The point of a triangle that is nearest to p (C. Ericson, "Real-time collision detection", 2005,
+/// section 5.1.5).
+Position nearest_in_triangle(const Position& p, const Position& a, const Position& b,
+                             const Position& c) {
+    const auto along = [](const Position& from, const Position& line, double share) {
+        return Position{from[0] + share * line[0], from[1] + share * line[1],
+                        from[2] + share * line[2]};
+    };
+    const Position ab = minus(b, a), ac = minus(c, a), ap = minus(p, a);
+    const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return a;
+    const Position bp = minus(p, b);
+    const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return b;
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return along(a, ab, d1 / (d1 - d3));
+    const Position cp = minus(p, c);
+    const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return c;
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return along(a, ac, d2 / (d2 - d6));
+    const double va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+        return along(b, minus(c, b), (d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    const double share = 1 / (va + vb + vc);
+    return along(along(a, ab, vb * share), ac, vc * share);
+}
+
+/// 1 where a triangle turns counter-clockwise seen from p, or p is in its plane; -1 else.
+std::int8_t side_of(const std::array<Position, 3>& t, const Position& p) {
+    std::optional<int> side = exact::orient3d_filter(t[0], t[1], t[2], p);
+    if (!side) {
+        exact::SpacePoints points;
+        const std::array of{points.add(t[0]), points.add(t[1]), points.add(t[2]), points.add(p)};
+        side = exact::orient3d(points, of[0], of[1], of[2], of[3]);
+    }
+    return *side < 0 ? kBelow : kAbove;
+}
+
+std::vector<Box> boxes_of(const CutterSurface& surface) {
+    std::vector<Box> boxes;
+    for (const auto& t : surface.triangles) {
+        Box& box = boxes.emplace_back();
+        for (const NodeId v : t)
+            box.include(surface.vertices[index(v)]);
+    }
+    return boxes;
+}
+
+}  // namespace
+
+NearestSide::NearestSide(const CutterSurface& surface)
+    : surface_(surface), tree_(boxes_of(surface)) {}
+
+std::array<Position, 3> NearestSide::corners(std::int32_t triangle) const {
+    const auto& t = surface_.triangles[index(triangle)];
+    return {surface_.vertices[index(t[0])], surface_.vertices[index(t[1])],
+            surface_.vertices[index(t[2])]};
+}
+
+std::int8_t NearestSide::operator()(const Position& p) const {
+    constexpr double kAlike = 1e-9;  // of squared distances that are told apart no more
+    struct Near {
+        double distance, square;
+        std::int32_t triangle;
+    };
+    std::vector<Near> near;
+    double least = HUGE_VAL;
+    tree_.approach(
+        p, [&least] { return least * (1 + kAlike); },
+        [&](std::int32_t t) {
+            const auto own = corners(t);
+            const Position away = minus(p, nearest_in_triangle(p, own[0], own[1], own[2]));
+            const double distance = dot(away, away);
+            if (distance > least * (1 + kAlike)) return;
+            const Position normal = polygon_normal(own);
+            near.push_back(
+                {distance,
+                 std::abs(dot(normal, away)) / std::sqrt(std::max(dot(normal, normal), 1e-300)),
+                 t});
+            least = std::min(least, distance);
+        });
+    const Near* best = nullptr;
+    for (const Near& one : near) {
+        if (one.distance > least * (1 + kAlike)) continue;
+        if (best == nullptr || one.square > best->square ||
+            (one.square == best->square && one.triangle < best->triangle))
+            best = &one;
+    }
+    return best == nullptr ? kAbove : side_of(corners(best->triangle), p);
+}
+
+std::int8_t NearestSide::within(const Position& p) const {
+    Box ray;
+    ray.include(p);
+    ray.high[2] = HUGE_VAL;
+    exact::SpacePoints points;
+    const exact::SpacePointId from = points.add(p);
+    bool inside = false;
+    tree_.find(ray, [&](std::int32_t t) {
+        const auto own = corners(t);
+        const std::array of{points.add(own[0]), points.add(own[1]), points.add(own[2])};
+        if (exact::ray_crosses(points, 2, from, of, false) != 0) inside = !inside;
+    });
+    return inside ? kBelow : kAbove;
+}
+
+}  // namespace realmodel::cutting

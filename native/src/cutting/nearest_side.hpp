@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "cutting/cutter_surface.hpp"
+#include "spatial/box_tree.hpp"
+
+namespace realmodel::cutting {
+
+/// On which side of a surface positions are.
+class NearestSide {
+public:
+    explicit NearestSide(const CutterSurface& surface);
+
+    /// Of any surface: the side of the triangle that is nearest; of several that are, of the one
+    /// seen most squarely. Exact with regard to that triangle; on its plane is above.
+    std::int8_t operator()(const Position& p) const;
+    /// Of a closed surface: below is inside, where a ray leaves it an odd number of times. Exact.
+    std::int8_t within(const Position& p) const;
+
+private:
+    std::array<Position, 3> corners(std::int32_t triangle) const;
+
+    const CutterSurface& surface_;
+    spatial::BoxTree tree_;
+};
+
+}  // namespace realmodel::cutting

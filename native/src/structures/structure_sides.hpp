@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "base/disjoint_sets.hpp"
+#include "cutting/cutter_sides.hpp"
+#include "structures/structure_surface.hpp"
+
+namespace realmodel::structures {
+
+using arrangement::EdgeUse;
+using cutting::CutterWinding;
+using cutting::NodeId;
+using cutting::Position;
+using cutting::SurfaceOverlay;
+using cutting::Winding;
+
+/// What a region of the surface is of one structure.
+struct RegionOf {
+    std::int32_t structure;
+    std::int32_t change;  ///< of a fault: how far its side goes up from side 0 of the region to 1;
+                          ///< of a body: 1 where its inside ends there
+    bool is_own;          ///< not only its continuation
+};
+
+/// The parts of space that structures leave where rock is, and on which side of each structure they
+/// are. Going round the edges of their regions, the part changes with every region crossed and with
+/// nothing else. Sides are known at one region of each structure and change only with its regions.
+class StructureSides {
+public:
+    /// @throws InputError kinds does_not_meet, ends_inside
+    StructureSides(SurfaceOverlay& overlay, const CutterWinding& winding,
+                   const StructureSurface& surface, std::span<const Structure> structures,
+                   Progress* progress);
+
+    std::size_t parts() const { return sides_.size(); }
+    const Sides& sides(std::size_t part) const { return sides_[part]; }
+    /// The part that a region of a face or a face without regions (counted after all regions) is
+    /// in.
+    std::size_t part_of(std::size_t item) const { return index(part_[item]); }
+    /// The part at side 0 or 1 of a region of the surface that counts and touches rock.
+    std::size_t part_at(std::size_t region, std::size_t side) const {
+        return index(part_[side == 0 ? region : items_ + region]);
+    }
+    /// Of a region of the surface that counts.
+    const std::vector<RegionOf>& structures_at(std::size_t region) const { return of_[region]; }
+    const std::vector<std::uint8_t>& near_cells() const { return near_; }
+    [[noreturn]] void refuse(const char* kind, const char* text, std::int32_t structure,
+                             std::size_t region) const;
+
+private:
+    void name_structures();
+    bool is_known_in_rock_alone(std::span<const EdgeUse> uses) const;
+    void join_sectors(const Progress* progress);
+    void number_parts();
+    void find_neighbors();
+    void find_sides(std::int32_t s);
+    void spread(std::int32_t s, std::size_t start, std::vector<std::int32_t>& known);
+    bool is_beyond(std::int32_t s, std::size_t part) const;
+    void find_kept_sides(std::int32_t s);
+    bool meets(std::int32_t s, std::int32_t other) const;
+    Position middle_of(std::size_t region) const;
+    bool is_inside(std::int32_t s, std::size_t part);
+
+    /// A way from one part to another through a region.
+    struct Neighbor {
+        std::int32_t part, region;
+        std::int8_t direction;  ///< 1 from side 0 to 1
+    };
+
+    SurfaceOverlay& overlay_;
+    const CutterWinding& winding_;
+    const StructureSurface& surface_;
+    std::span<const Structure> structures_;
+    std::size_t items_;  ///< regions and faces; sides 1 of regions come after them
+    std::vector<std::uint8_t> near_;
+    std::vector<std::vector<RegionOf>> of_;
+    DisjointSets joined_;
+    std::vector<std::int32_t> part_;  ///< of items, -1 none
+    std::vector<std::int32_t> item_;  ///< of parts: one of each
+    std::vector<std::vector<Neighbor>> neighbors_;
+    std::vector<Sides> sides_;
+    std::vector<std::vector<std::int8_t>> kept_;  ///< of structures: the side of each it ends at
+    std::vector<cutting::NearestSide> nearest_;   ///< of structures
+};
+
+}  // namespace realmodel::structures

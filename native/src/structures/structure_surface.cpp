@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Faults and bodies as one surface that cuts.
+#include "structures/structure_surface.hpp"
+
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::structures {
+
+using cutting::CutterSurface;
+using cutting::dot;
+using cutting::minus;
+using cutting::NodeId;
+using cutting::Position;
+using cutting::unordered;
+using spatial::Box;
+
+namespace {
+
+Position unit(const Position& p) {
+    const double size = std::sqrt(dot(p, p));
+    return size > 0 ? Position{p[0] / size, p[1] / size, p[2] / size} : Position{0, 0, 0};
+}
+
+Position sum(const Position& a, const Position& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+Position beyond(const Position& p, const Position& direction, double length) {
+    return {p[0] + length * direction[0], p[1] + length * direction[1],
+            p[2] + length * direction[2]};
+}
+
+/// An edge of one triangle, as that triangle runs.
+struct BorderEdge {
+    NodeId from, to, corner;
+};
+
+std::vector<BorderEdge> border_of(const CutterSurface& surface) {
+    std::map<std::array<NodeId, 2>, std::pair<int, BorderEdge>> users;
+    for (const auto& t : surface.triangles) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            auto& [count, edge] = users[unordered(t[i], t[(i + 1) % 3])];
+            ++count;
+            edge = {t[i], t[(i + 1) % 3], t[(i + 2) % 3]};
+        }
+    }
+    std::vector<BorderEdge> border;
+    for (const auto& [key, use] : users) {
+        if (use.first % 2 == 1) border.push_back(use.second);
+    }
+    return border;
+}
+
+/// Continues one fault beyond its border.
+class Continuation {
+public:
+    Continuation(const CutterSurface& fault, bool in_its_plane, const Box& rock)
+        : fault_(fault), in_its_plane_(in_its_plane), rock_(rock) {
+        Box box = rock;
+        for (const Position& p : fault.vertices)
+            box.include(p);
+        const Position size = minus(box.high, box.low);
+        length_ = 4 * std::sqrt(dot(size, size));
+    }
+
+    std::vector<std::array<Position, 3>> triangles() {
+        std::map<NodeId, std::vector<std::pair<NodeId, Position>>> arriving, leaving;
+        for (const BorderEdge& edge : border_of(fault_)) {
+            const Position way = direction(edge);
+            const Position a = at(edge.from), b = at(edge.to);
+            const Position far_a = beyond(a, way, length_), far_b = beyond(b, way, length_);
+            add({b, a, far_a});
+            add({b, far_a, far_b});
+            arriving[edge.to].push_back({edge.from, way});
+            leaving[edge.from].push_back({edge.to, way});
+        }
+        for (const auto& [v, ins] : arriving) {
+            const auto& outs = leaving[v];
+            for (std::size_t i = 0; i < std::min(ins.size(), outs.size()); ++i) {
+                // both edges run back from v: their middle points away from the surface
+                const Position away = sum(unit(minus(at(v), at(ins[i].first))),
+                                          unit(minus(at(v), at(outs[i].first))));
+                add_fan(at(v), ins[i].second, outs[i].second, away, 0);
+            }
+        }
+        return std::move(triangles_);
+    }
+
+private:
+    Position at(NodeId v) const { return fault_.vertices[index(v)]; }
+
+    Position direction(const BorderEdge& edge) const {
+        const Position along = minus(at(edge.to), at(edge.from));
+        const Position inward = minus(at(edge.corner), at(edge.from));
+        const double share = dot(inward, along) / dot(along, along);
+        Position away;
+        for (std::size_t k = 0; k < 3; ++k)
+            away[k] = share * along[k] - inward[k];
+        away = unit(away);
+        if (in_its_plane_ || std::abs(away[2]) < 0.5) return away;
+        return {0, 0, away[2] > 0 ? 1.0 : -1.0};
+    }
+
+    /// What lies between two neighboring edges' continuations, from that of the edge that arrives
+    /// to that of the one that leaves, so narrow that its far side is far away.
+    void add_fan(const Position& p, const Position& from, const Position& to, const Position& away,
+                 int depth) {
+        if (from == to) return;
+        if (depth < 4 && dot(from, to) < 0.5) {
+            Position middle = sum(from, to);
+            if (dot(middle, middle) < 0.1) middle = away;
+            middle = unit(middle);
+            if (dot(middle, middle) > 0) {
+                add_fan(p, from, middle, away, depth + 1);
+                add_fan(p, middle, to, away, depth + 1);
+                return;
+            }
+        }
+        add({p, beyond(p, from, length_), beyond(p, to, length_)});
+    }
+
+    void add(const std::array<Position, 3>& triangle) {
+        Box box;
+        for (const Position& p : triangle)
+            box.include(p);
+        if (box.meets(rock_)) triangles_.push_back(triangle);
+    }
+
+    const CutterSurface& fault_;
+    bool in_its_plane_;
+    const Box& rock_;
+    double length_;
+    std::vector<std::array<Position, 3>> triangles_;
+};
+
+}  // namespace
+
+CutterSurface checked_surface(const Structure& structure, std::int32_t number) {
+    try {
+        CutterSurface surface = cutting::oriented_surface(structure.surface, false);
+        if (structure.is_body && !surface.is_closed) {
+            const auto border = border_of(surface);
+            const Position place = surface.vertices[border.empty() ? 0 : index(border[0].from)];
+            throw InputError("not_closed", "the body is not closed: its surface ends at an edge",
+                             -1, {}, place);
+        }
+        if (!structure.is_body && surface.is_closed)
+            throw InputError("is_closed", "the fault is a closed surface: it has no border");
+        return surface;
+    } catch (InputError& error) {
+        error.surface = number;
+        throw;
+    }
+}
+
+StructureSurface structure_surface(std::span<const Structure> structures, const Box& rock) {
+    StructureSurface all;
+    std::map<Position, NodeId> number;
+    const auto node = [&](const Position& p) {
+        const auto [found, is_new] =
+            number.try_emplace(p, static_cast<NodeId>(all.surface.vertices.size()));
+        if (is_new) all.surface.vertices.push_back(p);
+        return found->second;
+    };
+    for (std::int32_t s = 0; index(s) < structures.size(); ++s) {
+        const CutterSurface own = checked_surface(structures[index(s)], s);
+        const auto add = [&](const std::array<Position, 3>& corners, bool is_continuation) {
+            const std::array<NodeId, 3> t{node(corners[0]), node(corners[1]), node(corners[2])};
+            if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return;
+            all.surface.triangles.push_back(t);
+            all.structure.push_back(s);
+            all.is_continuation.push_back(is_continuation ? 1 : 0);
+        };
+        const std::size_t first = all.surface.triangles.size();
+        for (const auto& t : own.triangles)
+            add({own.vertices[index(t[0])], own.vertices[index(t[1])], own.vertices[index(t[2])]},
+                false);
+        if (!structures[index(s)].is_body) {
+            for (const auto& t : Continuation(own, structures[index(s)].dies_out, rock).triangles())
+                add(t, true);
+        }
+        CutterSurface& single = all.single.emplace_back();
+        single.is_closed = own.is_closed;
+        for (std::size_t t = first; t < all.surface.triangles.size(); ++t) {
+            std::array<NodeId, 3> corners{};
+            for (std::size_t i = 0; i < 3; ++i) {
+                corners[i] = static_cast<NodeId>(single.vertices.size());
+                single.vertices.push_back(all.surface.vertices[index(all.surface.triangles[t][i])]);
+            }
+            single.triangles.push_back(corners);
+        }
+    }
+    return all;
+}
+
+}  // namespace realmodel::structures

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "structures/wanted_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace realmodel::structures {
+
+using cutting::kAbove;
+using cutting::kOn;
+
+namespace {
+
+/// How many times rounding a region may be wide that rounding alone left.
+constexpr double kSliver = 64;
+
+}  // namespace
+
+WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
+                         const StructureSides& sides, std::span<const std::int32_t> model_of_cell,
+                         std::span<const Sides> model_sides, std::span<const std::uint8_t> acts)
+    : PartSides(sides.near_cells()),
+      overlay_(overlay),
+      winding_(winding),
+      sides_(sides),
+      model_of_cell_(model_of_cell),
+      acts_(acts) {
+    for (std::size_t part = 0; part < sides.parts(); ++part) {
+        const Sides& own = sides.sides(part);
+        const auto allows = [&own](const Sides& wanted) {
+            return std::ranges::equal(wanted, own, [](std::int8_t asked, std::int8_t is) {
+                return asked == 0 || asked == is;
+            });
+        };
+        const auto found = std::ranges::find_if(model_sides, allows);
+        model_of_part_.push_back(found == model_sides.end()
+                                     ? -1
+                                     : static_cast<std::int32_t>(found - model_sides.begin()));
+    }
+    for (std::size_t r = 0; r < overlay.size(); ++r) {
+        if (overlay.of_cutter(r) && winding.counts(r) && winding.touches_model(r)) find_same(r);
+    }
+}
+
+std::int8_t WantedParts::of_item(std::size_t item, std::size_t face) const {
+    const std::int32_t model = model_of_cell_[index(overlay_.model().cell(face, 0))];
+    return model_of_part_[sides_.part_of(item)] == model ? kAbove : kOn;
+}
+
+std::int8_t WantedParts::of_region(std::size_t region) const {
+    return of_item(region, overlay_.face_of(region));
+}
+
+std::int8_t WantedParts::of_face(std::size_t face) const {
+    return of_item(overlay_.size() + face, face);
+}
+
+std::int8_t WantedParts::of_cap(std::size_t region, std::size_t side, std::int32_t cell) const {
+    return model_of_part_[sides_.part_at(region, side)] == model_of_cell_[index(cell)] ? kAbove
+                                                                                       : kOn;
+}
+
+bool WantedParts::does_act(std::int32_t structure, std::int32_t cell) const {
+    const std::size_t blocks = overlay_.model().blocks;
+    return cell >= 0 && acts_[index(structure) * blocks + index(overlay_.model().block(cell))] != 0;
+}
+
+/// The last structure that acts between two cells, -1 none. It must part their sides.
+std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int32_t high) const {
+    const Sides& below = sides_.sides(sides_.part_at(region, 0));
+    const Sides& above = sides_.sides(sides_.part_at(region, 1));
+    std::int32_t found = -1;
+    for (const RegionOf& of : sides_.structures_at(region)) {
+        const auto s = index(of.structure);
+        if (of.is_own && below[s] != above[s] &&
+            (does_act(of.structure, low) || does_act(of.structure, high)))
+            found = of.structure;
+    }
+    return found;
+}
+
+bool WantedParts::separates(std::size_t /*region*/, std::int32_t low, std::int32_t high) const {
+    return !same_.contains({low, high});
+}
+
+/// Where nothing acts, in slivers that rounding left, there is a wall between cells of one block,
+/// and between blocks the surface that they meet at.
+std::int32_t WantedParts::cap_face(std::size_t region, std::int32_t low, std::int32_t high) const {
+    const std::int32_t structure = acting(region, low, high);
+    const ComplexView& model = overlay_.model();
+    if (structure >= 0) return -2 - (model.surfaces + structure);
+    if (model.block(low) == model.block(high)) return -2 - kWall;
+    std::int32_t surface = std::max(model.block(low), model.block(high));
+    if (low >= 0 && high >= 0) surface = std::min(model.block(low), model.block(high));
+    return -2 - surface;
+}
+
+/// The cell that is wanted on one side of a region, -1 none.
+std::int32_t WantedParts::wanted_at(std::size_t region, std::size_t side) const {
+    for (const auto& [cell, times] : winding_.around(region, side)) {
+        if (times > 0 && of_cap(region, side, cell) == kAbove) return cell;
+    }
+    return -1;
+}
+
+/// Whether a region of the surface is narrower than rounding may have made it.
+bool WantedParts::is_sliver(std::size_t region) const {
+    double length = 0, area = 0, rounding = 0;
+    for (const auto& loop : overlay_.loops(region)) {
+        std::vector<Position> corners;
+        for (const NodeId node : loop)
+            corners.push_back(overlay_.position(node));
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const Position step = cutting::minus(corners[(i + 1) % corners.size()], corners[i]);
+            length += std::sqrt(cutting::dot(step, step));
+        }
+        const Position normal = cutting::polygon_normal(corners);
+        const double size = std::sqrt(cutting::dot(normal, normal));
+        area += &loop == overlay_.loops(region).data() ? size : -size;
+        rounding = std::max(rounding, cutting::rounding_of(corners));
+    }
+    return area <= kSliver * rounding * length;
+}
+
+/// Cells of one block that meet where nothing acts are one. Where nothing acts but the rock differs
+/// by more than slivers, a fault ends in it.
+void WantedParts::find_same(std::size_t region) {
+    const std::int32_t low = wanted_at(region, 0), high = wanted_at(region, 1);
+    if ((low < 0 && high < 0) || acting(region, low, high) >= 0 || is_sliver(region)) return;
+    const ComplexView& model = overlay_.model();
+    if (model.block(low) == model.block(high)) {
+        same_.insert({low, high});
+        return;
+    }
+    const auto& structures = sides_.structures_at(region);
+    const auto fault = std::ranges::find_if(structures, [&](const RegionOf& of) {
+        const auto s = index(of.structure);
+        return sides_.sides(sides_.part_at(region, 0))[s] !=
+               sides_.sides(sides_.part_at(region, 1))[s];
+    });
+    sides_.refuse("ends_inside",
+                  "the fault ends in the rock: what is beyond differs on its two sides",
+                  fault == structures.end() ? -1 : fault->structure, region);
+}
+
+}  // namespace realmodel::structures

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <set>
+#include <span>
+#include <vector>
+
+#include "structures/structure_sides.hpp"
+
+namespace realmodel::structures {
+
+/// Of the cells of several models those parts that lie in their model's part of space.
+class WantedParts : public cutting::PartSides {
+public:
+    /// @param model_of_cell  of the cells of all models together
+    /// @param model_sides    the sides of each model
+    /// @param acts           S x B
+    /// @throws InputError kind ends_inside
+    WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding, const StructureSides& sides,
+                std::span<const std::int32_t> model_of_cell, std::span<const Sides> model_sides,
+                std::span<const std::uint8_t> acts);
+
+    std::int8_t of_region(std::size_t region) const override;
+    std::int8_t of_face(std::size_t face) const override;
+    std::int8_t of_cap(std::size_t region, std::size_t side, std::int32_t cell) const override;
+    bool separates(std::size_t region, std::int32_t low, std::int32_t high) const override;
+    std::int32_t cap_face(std::size_t region, std::int32_t low, std::int32_t high) const override;
+
+    /// The number of a face's surface from that of a piece (cap_face).
+    static std::int32_t surface_of_cap(std::int32_t face) { return -2 - face; }
+
+private:
+    std::int8_t of_item(std::size_t item, std::size_t face) const;
+    std::int32_t acting(std::size_t region, std::int32_t low, std::int32_t high) const;
+    bool does_act(std::int32_t structure, std::int32_t cell) const;
+    bool is_sliver(std::size_t region) const;
+    void find_same(std::size_t region);
+    std::int32_t wanted_at(std::size_t region, std::size_t side) const;
+
+    SurfaceOverlay& overlay_;
+    const CutterWinding& winding_;
+    const StructureSides& sides_;
+    std::span<const std::int32_t> model_of_cell_;
+    std::span<const std::uint8_t> acts_;
+    std::vector<std::int32_t> model_of_part_;  ///< -1 none
+    /// Cells below and above that are parts of one.
+    std::set<std::array<std::int32_t, 2>> same_;
+};
+
+}  // namespace realmodel::structures
