@@ -14,19 +14,20 @@ class NearCells {
 public:
     NearCells(const StructureSurface& surface, int threads);
 
-    /// Of cells: 1 where they come near structures, or are beside cells that do, on the sides that
-    /// are asked for.
+    /// Of cells: 1 where they are on the side that is asked for of every structure, or near it.
     std::vector<std::uint8_t> that_may_be_in(const ComplexView& model, const Sides& sides,
                                              const Progress* progress) const;
 
 private:
-    std::vector<std::uint8_t> near(const ComplexView& model, const Progress* progress) const;
-    bool is_on(const cutting::Position& p, const Sides& sides) const;
+    /// A structure by itself.
+    struct Single {
+        spatial::BoxTree tree;
+        cutting::NearestSide side;
+    };
 
     const StructureSurface& surface_;
     int threads_;
-    spatial::BoxTree tree_;
-    std::vector<cutting::NearestSide> nearest_;
+    std::vector<Single> singles_;
 };
 
 }  // namespace realmodel::structures
