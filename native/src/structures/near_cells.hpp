@@ -14,9 +14,11 @@ class NearCells {
 public:
     NearCells(const StructureSurface& surface, int threads);
 
-    /// Of cells: 1 where they are on the side that is asked for of every structure, or near it.
-    std::vector<std::uint8_t> that_may_be_in(const ComplexView& model, const Sides& sides,
-                                             const Progress* progress) const;
+    /// Of cells: kNear where they come near a structure and are not on the wrong side of another,
+    /// kInside where they come near none and are on the sides that are asked for, kElsewhere.
+    enum Place : std::uint8_t { kElsewhere, kInside, kNear };
+    std::vector<std::uint8_t> places_of(const ComplexView& model, const Sides& sides,
+                                        const Progress* progress) const;
 
 private:
     /// A structure by itself.
@@ -27,6 +29,7 @@ private:
 
     const StructureSurface& surface_;
     int threads_;
+    double margin_;
     std::vector<Single> singles_;
 };
 
