@@ -85,7 +85,7 @@ class RealModelSurface(settings_of(_OWN), settings_of(READING, changes.reading),
     hide: BoolProperty(
         name="Hide",
         description="Hide this interface in the viewport; it is still built",
-        update=changes.hide,
+        update=changes.view,
         options=set(),
     )
     interface: PointerProperty(type=bpy.types.Object, options={"HIDDEN"})
