@@ -298,6 +298,7 @@ def _half(work: Work, model: Model, arrays: dict, touches: bool) -> Model:
         is_cut=True,
         warnings=list(model.warnings),
         timings={},
+        cell_compartment=model.cell_compartment[arrays["cells"]],
     )
     half.cell_component = component
     return half

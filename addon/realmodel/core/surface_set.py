@@ -58,7 +58,7 @@ def vertex_attributes(inputs: list[RockInput], number: int, vertices: np.ndarray
     """What is known of the vertices (V, 3) of one surface, by its global index: `height`, and `variance` and
     `distance`, NaN where there are none."""
     told = [entry.told.get(k, {}) for entry in inputs for k in range(len(entry.surfaces))]
-    known = told[number] if told else {}
+    known = told[number] if number < len(told) else {}  # nothing of faults and bodies
     unknown = np.full(len(vertices), np.nan)
     return {
         "height": vertices[:, 2].copy(),

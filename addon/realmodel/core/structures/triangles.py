@@ -55,27 +55,6 @@ def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
     return [loop for loop in loops if len(loop) > 2]
 
 
-def divided(vertices: np.ndarray, triangles: np.ndarray, longest: float, low=None, high=None) -> np.ndarray:
-    """(K, 3, 3) triangles that cover the same, no edge longer than `longest`; those that lie outside of the
-    box from low to high are left out."""
-    pieces = vertices[triangles]
-    done = []
-    while len(pieces):
-        if low is not None:
-            away = (pieces.max(axis=1) < low).any(axis=1) | (pieces.min(axis=1) > high).any(axis=1)
-            pieces = pieces[~away]
-        sides = np.linalg.norm(pieces[:, [1, 2, 0]] - pieces, axis=2)
-        side = sides.argmax(axis=1)
-        short = sides[np.arange(len(side)), side] <= longest
-        done.append(pieces[short])
-        rows = np.arange(3)
-        order = (side[~short, None] + rows) % 3
-        a, b, c = np.take_along_axis(pieces[~short], order[:, :, None], axis=1).transpose(1, 0, 2)
-        middle = (a + b) / 2
-        pieces = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
-    return np.concatenate(done) if done else np.empty((0, 3, 3))
-
-
 def distances(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """(P,) how far the nearest triangle is from each point, up to rounding."""
     corners = vertices[triangles]
