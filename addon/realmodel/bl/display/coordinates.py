@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from .. import caches, exaggeration, library_rows, meshes, project_settings, shapes
+from .. import caches, compartments, exaggeration, library_rows, meshes, project_settings, shapes
 from . import modes, stages
 
 _soups = caches.new()  # by the name of a mesh: its triangles, (T, 3, 3) float32
@@ -50,14 +50,29 @@ def under_ray(scene, start, direction):
         matrix = np.array(exaggeration.world_matrix(item), np.float64)
         turn = np.linalg.pinv(matrix[:3, :3])
         begin, along = turn @ (start - matrix[:3, 3]), turn @ direction
-        hits = _hits(_soup(item.data), begin, along)
-        if len(hits) and (nearest is None or hits[0] < nearest[0]):
-            nearest = (hits[0], row, begin + hits[0] * along, along / np.linalg.norm(along))
+        for soup, shift in _pieces(scene, item):
+            hits = _hits(soup, begin, along)
+            if len(hits) and (nearest is None or hits[0] < nearest[0]):
+                place = begin + hits[0] * along - shift
+                nearest = (hits[0], row, place, along / np.linalg.norm(along))
     if nearest is None:
         return None
     _, row, local, along = nearest
     span = _span(row.object, local + _rounding(_soup(row.object.data), local) * along)  # not beside a wall
     return _place(scene, row, local, span or _span(row.object, local))
+
+
+def _pieces(scene, item):
+    """(triangles, by how much they were moved) of a body; compartments may have been moved apart."""
+    soup, apart = _soup(item.data), modes.apart_shown(scene)
+    if not apart:
+        return [(soup, np.zeros(3))]
+    mesh = item.data
+    number = np.empty(len(mesh.polygons), np.int32)
+    mesh.attributes[meshes.FACE_COMPARTMENT].data.foreach_get("value", number)
+    number = number[shapes.triangle_polygons(mesh)]
+    shifts = compartments.shifts(scene, apart)
+    return [(soup[number == n], shifts[min(n, len(shifts) - 1)]) for n in np.unique(number)]
 
 
 def at_point(scene, location):
