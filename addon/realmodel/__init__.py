@@ -31,7 +31,7 @@ def register():
 
     done = []
     try:
-        for part in (preferences, props, operators, ui, display, viewport, handlers):
+        for part in (preferences, props, operators, ui, display, viewport.handler, handlers):
             part.register()
             done.append(part)
     except BaseException:
@@ -63,7 +63,7 @@ def unregister():
     from .bl import display
     from .bl.overlay import viewport
 
-    for part in (handlers, viewport, display, ui, operators, props, preferences):
+    for part in (handlers, viewport.handler, display, ui, operators, props, preferences):
         part.unregister()
 
 

@@ -29,7 +29,7 @@ def interface_properties():
         "hide": BoolProperty(
             name="Hide",
             description="Hide this interface in the viewport; it is still built",
-            update=changes.hide,
+            update=changes.view,
             options=set(),
         ),
         "interface": PointerProperty(type=bpy.types.Object, options={"HIDDEN"}),

@@ -455,7 +455,7 @@ class Written(PanelCase):
         ops.structure_remove(index=1)
         ops.structure_remove(index=0)
         self.assertEqual(row.variogram_range, 50.0)
-        self.refused(ops.structure_remove, "no part 0", index=0)
+        self.refused(ops.structure_remove, "no structure 0", index=0)
 
     def test_a_sheet_has_no_mesh_to_be_shaped(self):
         sheet("a", 1.0)

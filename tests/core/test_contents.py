@@ -34,9 +34,9 @@ def test_of_a_table_without_header(write):
     assert column_values(file, "4") == ["60", "61"]
 
 
-def test_only_so_many_values(write):
-    file = write("p.csv", "x,y,z,n\n" + "".join(f"{n},0,0,{n}\n" for n in range(80)))
-    assert column_values(file, "n") == [str(n) for n in range(50)]
+def test_each_value_once_and_no_empty_one(write):
+    file = write("p.csv", "x,y,z,n\n" + "".join(f"{n},0,0,{n % 80 or ''}\n" for n in range(99)))
+    assert column_values(file, "n") == [str(n) for n in range(1, 80)]
 
 
 def test_of_shapes(write):

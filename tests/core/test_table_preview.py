@@ -6,7 +6,8 @@ import time
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, PointFile
-from realmodel.core.readers import column_values, preview_table, read_point_file
+from realmodel.core.readers import preview_table, read_point_file
+from realmodel.core.readers.contents import column_values
 
 SEMICOLONS = (
     "Survey of 2019, zone 3\n"

@@ -5,9 +5,23 @@ another file is opened or the add-on is disabled."""
 _caches = []
 
 
-def new(kind=dict):
-    """An empty cache, a dict or a list."""
-    cache = kind()
+class _Bounded(dict):
+    """Drops what was put in first, where it would hold more than `most` entries."""
+
+    def __init__(self, most):
+        super().__init__()
+        self._most = most
+
+    def __setitem__(self, key, value):
+        self.pop(key, None)
+        super().__setitem__(key, value)
+        if len(self) > self._most:
+            del self[next(iter(self))]
+
+
+def new(kind=dict, most=None):
+    """An empty cache, a dict or a list. most: entries that a dict holds; None: any number."""
+    cache = kind() if most is None else _Bounded(most)
     _caches.append(cache)
     return cache
 

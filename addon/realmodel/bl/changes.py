@@ -18,10 +18,23 @@ from . import (
 )
 
 
-def setting(row, _context):
-    """Any setting that the model depends on."""
-    if not settings.is_filling():
-        live.touch(row.id_data)
+def _unless_filling(consequence):
+    """A callback of a property by which the scene changes, if a person or a script has set it."""
+
+    def changed(row, _context):
+        if not settings.is_filling():
+            consequence(row.id_data)
+
+    return changed
+
+
+setting = _unless_filling(live.touch)  # that the model depends on
+coloring = _unless_filling(display.colors_changed)
+view = _unless_filling(display.mode_changed)  # what is drawn in the display modes
+boreholes = _unless_filling(display.boreholes_changed)
+residuals = _unless_filling(display.residuals_changed)
+exaggeration = _unless_filling(display.exaggeration_changed)
+section = _unless_filling(display.section_changed)  # another plane, or none
 
 
 def model_unit(group, _context):
@@ -29,12 +42,6 @@ def model_unit(group, _context):
     if not settings.is_filling():
         units.set_up(group.id_data, group.units)
         live.touch(group.id_data)
-
-
-def coloring(row, _context):
-    """A setting that only the colors depend on."""
-    if not settings.is_filling():
-        display.colors_changed(row.id_data)
 
 
 def edge_length(rock, _context):
@@ -117,11 +124,6 @@ def fit_variogram(surface, context):
     setting(surface, context)
 
 
-def hide(surface, _context):
-    if not settings.is_filling():
-        display.mode_changed(surface.id_data)
-
-
 def live_switched(_row, _context):
     live.switched()
 
@@ -135,35 +137,8 @@ def stage(group, _context):
         display.stage_changed(scene)
 
 
-def view(row, _context):
-    """What is drawn in the display modes."""
-    if not settings.is_filling():
-        display.mode_changed(row.id_data)
-
-
 def overlay(_row, _context):
     viewports.redraw()
-
-
-def boreholes(row, _context):
-    if not settings.is_filling():
-        display.boreholes_changed(row.id_data)
-
-
-def residuals(row, _context):
-    if not settings.is_filling():
-        display.residuals_changed(row.id_data)
-
-
-def exaggeration(row, _context):
-    if not settings.is_filling():
-        display.exaggeration_changed(row.id_data)
-
-
-def section(row, _context):
-    """Another section plane, or none."""
-    if not settings.is_filling():
-        display.section_changed(row.id_data)
 
 
 def property_id(row, _context):

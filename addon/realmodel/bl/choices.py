@@ -6,8 +6,8 @@ from ..core import RealModelError
 from ..core.readers import contents
 from . import caches, project_settings, reading_text, settings, stored_arrays
 
-_found = caches.new()  # by the stamp of a file and what was asked: the names found lately
-_MOST = 64
+_MOST_VALUES = 50
+_found = caches.new(most=64)  # by the stamp of a file and what was asked: the names found lately
 
 
 def surfaces(row, _context, _text):
@@ -41,7 +41,7 @@ def columns(row, _context, _text):
 
 def values(row, _context, _text):
     surface = settings.surface_of(row)
-    found = _of_file(surface, contents.column_values, row.column.strip('" '), surface.layer)
+    found = _of_file(surface, contents.column_values, row.column.strip('" '), surface.layer)[:_MOST_VALUES]
     return [reading_text.value_text(reading_text.value(value)) for value in found]
 
 
@@ -56,8 +56,6 @@ def _of_file(surface, ask, *arguments):
     if not key[0]:
         return []
     if key not in _found:
-        while len(_found) >= _MOST:
-            _found.pop(next(iter(_found)))
         try:
             _found[key] = ask(path, *(given or None for given in arguments))
         except RealModelError:

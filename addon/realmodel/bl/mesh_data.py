@@ -103,8 +103,17 @@ def write(mesh, parts, given):
             if any(values is not None for values in kept):
                 values = _together(mesh, domain, parts, kept)
                 getattr(mesh, _DOMAINS[domain]).foreach_set(name, values)
+    _mark_meeting(mesh, parts, given)
     _write_active(mesh, given)
     return left_out
+
+
+def _mark_meeting(mesh, parts, given):
+    """Where smooth surfaces meet, they are not shaded as if they were one."""
+    if len(parts.meeting) and any(("FACE", "use_smooth") in layers.marks for layers in given):
+        sharp = _numbers(mesh.edges, "use_edge_sharp", bool)
+        sharp[parts.meeting] = True
+        mesh.edges.foreach_set("use_edge_sharp", sharp)
 
 
 def write_groups(item, parts, given):

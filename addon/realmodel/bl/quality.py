@@ -22,11 +22,11 @@ CHARTS = (
     ("MESH", "Mesh", "Smallest angles of the triangles"),
 )
 _LOOK_SECONDS = 0.05
-_MOST = 64  # results and pictures that are kept
+_MOST = 64  # pictures that are kept
 _PAGE = 220.0  # points: of a chart in a wide sidebar
 _PIXELS = 1.2  # for a point, at least: the texts stay legible
 
-_found = caches.new()  # key -> SurfaceQuality
+_found = caches.new(most=64)  # key -> SurfaceQuality
 # Stamp of a model -> {(rock mass, block): what its volume's standard deviation is at most}.
 _deviations = caches.new()
 _working = {}  # the job, its recipe, and its key, while there is one
@@ -101,10 +101,7 @@ def _keep(key, recipe, made):
     quality, deviations = made
     _deviations.clear()  # of one model at a time
     _deviations[key[0]] = deviations
-    _found.pop(key, None)
     _found[key] = quality
-    while len(_found) > _MOST:
-        _found.pop(next(iter(_found)))
     if _pictures is not None:
         _pictures.clear()
 

@@ -57,7 +57,11 @@ def cut_by_plane(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Cut:
-    """Model.cut_by_plane."""
+    """Both halves of a model, above (where the normal points) and below a plane, and the section.
+
+    point, normal: three numbers each; the normal may have any length. The model stays as it is.
+    Raises UsageError for a plane that is none, BuildFailed, Cancelled.
+    """
     point, normal = _plane(point, normal)
     return _cut(model, lambda native: (native.cut_by_plane, point, normal), threads, progress, cancel)
 
@@ -70,7 +74,12 @@ def cut_by_surface(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Cut:
-    """Model.cut_by_surface."""
+    """What lies above and below a triangulated surface in any position; outside and inside of a closed one.
+
+    vertices: (V, 3) float64; triangles: (T, 3) whole numbers, either way round.
+    Raises InputRefused for a surface that does not part the model, branches, has no two sides or crosses
+    itself; BuildFailed, Cancelled.
+    """
     vertices, triangles = checked_triangulation(vertices, triangles)
     return _cut(model, lambda native: (native.cut_by_surface, vertices, triangles), threads, progress, cancel)
 
@@ -83,7 +92,10 @@ def cut_by_block(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Cut:
-    """Model.cut_by_block."""
+    """What lies inside and outside of a block (number or name) of another model, or of the same one.
+
+    Raises UsageError for a block that does not exist, InputRefused, BuildFailed, Cancelled.
+    """
     number = _block_number(other, block)
     return _cut(
         model,
@@ -155,7 +167,7 @@ def section(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Section:
-    """Model.section."""
+    """The section by a plane alone, in a fraction of the time of cut_by_plane."""
     point, normal = _plane(point, normal)
     threads = check_threads(threads)
     native_module()
@@ -177,7 +189,7 @@ def fence(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Fence:
-    """Model.fence."""
+    """Vertical sections along a polyline in plan, (N, 2), each between its two ends."""
     try:
         polyline = np.ascontiguousarray(polyline, np.float64)
     except (TypeError, ValueError) as error:

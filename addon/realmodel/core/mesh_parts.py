@@ -63,7 +63,8 @@ class Source:
 
 @dataclass(eq=False)
 class MeshParts:
-    """A mesh of polygons (its coordinates in double precision), and what it has of each operand."""
+    """A mesh of polygons (its coordinates in double precision), and what it has of each operand. meeting:
+    (K,) the edges between polygons of one and of the other."""
 
     vertices: np.ndarray
     offsets: np.ndarray
@@ -71,6 +72,7 @@ class MeshParts:
     edges: np.ndarray
     corner_edges: np.ndarray
     sources: tuple[Source, Source]
+    meeting: np.ndarray
 
     def shape(self, coordinates: np.ndarray) -> PolygonMesh:
         """The mesh with other coordinates, (V, 3) float32."""
@@ -179,7 +181,8 @@ def mesh_of_parts(
                 corner_weights[at],
             )
         )
-    return MeshParts(found.vertices[used], offsets, corners, edges, edge_of_corner, tuple(sources))
+    meeting = np.intersect1d(*(edge_of_corner[own.corners] for own in sources))
+    return MeshParts(found.vertices[used], offsets, corners, edges, edge_of_corner, tuple(sources), meeting)
 
 
 def interpolated(values: np.ndarray, between: np.ndarray, weights: np.ndarray) -> np.ndarray:

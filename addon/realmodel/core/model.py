@@ -14,14 +14,12 @@ from . import cutting
 from .assembly import build_stage
 from .blocks import Block, BlockBoundary
 from .build_warning import BuildWarning
-from .cutting import Cut
 from .erosion import Erosion, eroded
 from .errors import UsageError
 from .exporters import save_model
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
-from .section import Fence, Section
 from .structures.parts import Structures
 from .surface_set import vertex_attributes
 from .validation import PLACES_OF_CHECK, ValidationReport, validate
@@ -170,71 +168,11 @@ class Model:
         """
         return validate(self, places, seed, threads, progress, cancel)
 
-    def cut_by_plane(
-        self,
-        point,
-        normal,
-        threads: int = 0,
-        progress: Progress | None = None,
-        cancel: Cancel | None = None,
-    ) -> Cut:
-        """Both halves of the model, above (where the normal points) and below a plane, and the section.
-
-        point, normal: three numbers each; the normal may have any length. This model stays as it is.
-        Raises UsageError for a plane that is none, BuildFailed, Cancelled.
-        """
-        return cutting.cut_by_plane(self, point, normal, threads, progress, cancel)
-
-    def cut_by_surface(
-        self,
-        vertices,
-        triangles,
-        threads: int = 0,
-        progress: Progress | None = None,
-        cancel: Cancel | None = None,
-    ) -> Cut:
-        """What lies above and below a triangulated surface in any position, or outside and inside of a closed
-        one. vertices: (V, 3) float64; triangles: (T, 3) whole numbers, either way round.
-
-        Raises InputRefused for a surface that does not part the model, branches, has no two sides or crosses
-        itself; BuildFailed, Cancelled.
-        """
-        return cutting.cut_by_surface(self, vertices, triangles, threads, progress, cancel)
-
-    def cut_by_block(
-        self,
-        other: Model,
-        block: int | str,
-        threads: int = 0,
-        progress: Progress | None = None,
-        cancel: Cancel | None = None,
-    ) -> Cut:
-        """What lies inside and outside of a block (number or name) of another model, or of this one.
-
-        Raises UsageError for a block that is not there, InputRefused, BuildFailed, Cancelled.
-        """
-        return cutting.cut_by_block(self, other, block, threads, progress, cancel)
-
-    def section(
-        self,
-        point,
-        normal,
-        threads: int = 0,
-        progress: Progress | None = None,
-        cancel: Cancel | None = None,
-    ) -> Section:
-        """The section by a plane alone, in a fraction of the time of cut_by_plane."""
-        return cutting.section(self, point, normal, threads, progress, cancel)
-
-    def fence(
-        self,
-        polyline,
-        threads: int = 0,
-        progress: Progress | None = None,
-        cancel: Cancel | None = None,
-    ) -> Fence:
-        """Vertical sections along a polyline in plan, (N, 2), each between its two ends."""
-        return cutting.fence(self, polyline, threads, progress, cancel)
+    cut_by_plane = cutting.cut_by_plane
+    cut_by_surface = cutting.cut_by_surface
+    cut_by_block = cutting.cut_by_block
+    section = cutting.section
+    fence = cutting.fence
 
     @cached_property
     def face_blocks(self) -> np.ndarray:

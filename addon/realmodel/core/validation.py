@@ -38,7 +38,7 @@ _SAYS = {
 }
 _SAYS_OF_BLOCKS = {"closed": "every cell is closed: its faces use each edge as often in either direction"}
 _SAYS_OF_STRUCTURES = {
-    "places": "at points anywhere, beside faces, faults and bodies the model has the block of the closed form",
+    "places": "at points anywhere and beside faces and structures the model has the closed form's block",
     "surfaces": "faces lie on the surfaces, faults and bodies that they name",
 }
 _WIDTH = 100

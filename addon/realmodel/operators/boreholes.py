@@ -13,7 +13,7 @@ from ..core.readers import TABLE_ENDINGS, read_boreholes
 from ..core.schema import READING
 from ..props_schema import items
 from .imports import arrived
-from .reporting import Reporting, needed_path
+from .reporting import Reporting, chosen_path, require_file
 from .rocks import add_rock
 
 
@@ -64,7 +64,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
     )
 
     def act(self, context):
-        picks = project_settings.absolute(needed_path(self.filepath, "the picks"))
+        picks = chosen_path(self, "the picks")
         given = Boreholes(
             picks,
             _beside(picks, self.collars),
@@ -74,8 +74,7 @@ class REALMODEL_OT_boreholes_read(Reporting, bpy.types.Operator, ImportHelper):
             downward_dip=None if self.downward_dip == "TOLD" else self.downward_dip.lower(),
         )
         for file in given.files:
-            if not file.is_file():
-                raise InputRefused(f"file not found: {file}", advice="check the path")
+            require_file(file)
         try:
             given.check()
         except ReadingRefused as error:

@@ -7,13 +7,13 @@ import bpy
 from bpy.props import EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ..bl import project_settings, results
+from ..bl import results
 from ..bl.display import shown_models
 from ..core import UsageError
 from ..core.atomic import Outputs
 from ..core.exporters import save_model
 from ..core.exporters.report import write_report
-from .reporting import Reporting, a_model, needed_path
+from .reporting import Reporting, a_model, chosen_path
 
 _MODELS = (
     ("NPZ", "NumPy (.npz)", "All arrays of the model, for Python"),
@@ -72,7 +72,7 @@ class Exporting(Reporting, ExportHelper):
         return super().invoke(context, event)
 
     def act(self, context):
-        path = project_settings.absolute(needed_path(self.filepath, "the output"))
+        path = chosen_path(self, "the output")
         known = self.filter_glob.replace("*", "").split(";")
         if path.suffix.lower() not in known:
             raise UsageError(f"{path}: the name must end in {' or '.join(known)}")

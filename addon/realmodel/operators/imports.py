@@ -30,12 +30,12 @@ from ..core.readers import (
     MESH_ENDINGS,
     RASTER_ENDINGS,
     TABLE_ENDINGS,
-    column_values,
     preview_table,
     read_mesh,
     read_point_file,
 )
-from .reporting import Reporting
+from ..core.readers.contents import column_values
+from .reporting import Reporting, require_file
 from .rocks import add_rock
 from .start import invoke
 
@@ -214,8 +214,7 @@ class REALMODEL_OT_surface_add(Reporting, bpy.types.Operator, ImportHelper):
 
     def _of_file(self, path):
         """The surfaces of a file: one, or one for each value of a column."""
-        if not path.is_file():
-            raise InputRefused(f"file not found: {path}", advice="check the path")
+        require_file(path)
         if path.suffix.lower() in MESH_ENDINGS:
             return [_Given(path.stem, "MESH_FILE", path)]
         reading = {}

@@ -5,10 +5,10 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 
-from ..bl import display, library_rows, live, project_settings, properties_of_blocks, settings
+from ..bl import display, library_rows, live, properties_of_blocks, settings
 from ..core import Property, load_library
 from ..core.project_writer import save_library
-from .reporting import Reporting, a_library, needed_path, selected_blocks
+from .reporting import Reporting, a_library, chosen_path, selected_blocks
 
 
 class REALMODEL_OT_library_add(Reporting, bpy.types.Operator):
@@ -61,7 +61,7 @@ class REALMODEL_OT_library_import(Reporting, bpy.types.Operator, ImportHelper):
     replace: BoolProperty(name="Replace", description="Remove all properties of the library first")
 
     def act(self, context):
-        path = project_settings.absolute(needed_path(self.filepath, "the library"))
+        path = chosen_path(self, "the library")
         library = load_library(path)
         scene = context.scene
         kept = (
@@ -87,7 +87,7 @@ class REALMODEL_OT_library_export(Reporting, bpy.types.Operator, ExportHelper):
 
     def act(self, context):
         library = library_rows.library_of(context.scene)
-        path = project_settings.absolute(needed_path(self.filepath, "the library"))
+        path = chosen_path(self, "the library")
         save_library(library, path)
         self.report({"INFO"}, f"Wrote {len(library)} properties to {path}")
 

@@ -5,17 +5,18 @@ import bpy
 from bpy.props import IntProperty
 from bpy_extras.io_utils import ImportHelper
 
-from ..bl import live, plan_mesh, project_settings, settings
-from ..core import InputRefused
+from ..bl import live, plan_mesh, settings
 from ..core.plan_input import read_constraints
 from ..core.readers import MAP_ENDINGS
-from .reporting import Reporting, a_rock, an_outline_object, needed_path
-
-
-def _removed(rows, index, what):
-    if not 0 <= index < len(rows):
-        raise InputRefused(f"there is no {what} {index}", advice="they are counted from 0")
-    rows.remove(index)
+from .reporting import (
+    Reporting,
+    a_rock,
+    an_outline_object,
+    chosen_path,
+    remove_row,
+    require_file,
+    row_number,
+)
 
 
 class REALMODEL_OT_size_add(Reporting, bpy.types.Operator):
@@ -42,10 +43,10 @@ class REALMODEL_OT_size_remove(Reporting, bpy.types.Operator):
     bl_label = "Remove Smaller Triangles"
     needs = (a_rock,)
 
-    index: IntProperty(name="Number", description="Which of them, counted from 0", min=0)
+    index: row_number()
 
     def act(self, context):
-        _removed(settings.active_rock(context.scene).sizes, self.index, "entry")
+        remove_row(settings.active_rock(context.scene).sizes, self.index, "entry")
         live.touch(context.scene)
 
 
@@ -79,7 +80,7 @@ class REALMODEL_OT_constraint_remove(Reporting, bpy.types.Operator):
         if self.index < 0:
             rock.constraints_stored = ""
         else:
-            _removed(rock.constraints, self.index, "constraint")
+            remove_row(rock.constraints, self.index, "constraint")
         live.touch(context.scene)
 
 
@@ -97,9 +98,8 @@ class REALMODEL_OT_constraint_read(Reporting, bpy.types.Operator, ImportHelper):
 
     def act(self, context):
         rock = settings.active_rock(context.scene)
-        path = project_settings.absolute(needed_path(self.filepath, "the constraints"))
-        if not path.is_file():
-            raise InputRefused(f"file not found: {path}", advice="check the path")
+        path = chosen_path(self, "the constraints")
+        require_file(path)
         found = read_constraints([path], context.scene.realmodel.units)
         plan_mesh.add_constraints(rock, found)
         live.touch(context.scene)

@@ -6,9 +6,9 @@ sentence. Blender shows it at the grayed-out button; in a script it is the text 
 looked at whenever the panel is drawn, so they read nothing but the scene.
 """
 
-from bpy.props import FloatVectorProperty
+from bpy.props import FloatVectorProperty, IntProperty
 
-from ..bl import build_job, settings, viewports
+from ..bl import build_job, project_settings, settings, viewports
 from ..bl.display import cuts
 from ..core import InputRefused, RealModelError
 
@@ -135,8 +135,26 @@ def place_property(description):
     return FloatVectorProperty(name="Location", description=description, subtype="TRANSLATION")
 
 
-def needed_path(path, what):
-    """Raises InputRefused where no file was named."""
-    if not path.strip():
+def row_number():
+    """A property of an operator: which row of a list it is about."""
+    return IntProperty(name="Number", description="Which of them, counted from 0", min=0)
+
+
+def remove_row(rows, index, what):
+    """Removes a row of a list. Raises InputRefused where there is none of this number."""
+    if not 0 <= index < len(rows):
+        raise InputRefused(f"there is no {what} {index}", advice="they are counted from 0")
+    rows.remove(index)
+
+
+def chosen_path(operator, what):
+    """The absolute path of the file of an operator. Raises InputRefused where none was named."""
+    if not operator.filepath.strip():
         raise InputRefused(f"no file for {what} was given", advice="choose a file name")
-    return path
+    return project_settings.absolute(operator.filepath)
+
+
+def require_file(path):
+    """Raises InputRefused where there is no such file."""
+    if not path.is_file():
+        raise InputRefused(f"file not found: {path}", advice="check the path")

@@ -6,7 +6,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 from mathutils import Quaternion, Vector
 
 from ..bl import display, exaggeration, project_settings, settings
-from ..bl.display import cuts, sections
+from ..bl.display import cuts, sections, visible
 from ..core import InputRefused, UsageError
 from ..core.section_drawing import MOST_EXAGGERATION
 from .files import SECTIONS, Exporting, format_filter, format_menu
@@ -21,10 +21,7 @@ _FLAT = "Unroll the section beside the model instead of leaving it in its place"
 def _show(operator, context, made):
     """Selects a new section alone, and says where it went."""
     display.exaggeration_changed(context.scene)
-    for item in context.selected_objects:
-        item.select_set(False)
-    made.select_set(True)
-    context.view_layer.objects.active = made
+    visible.select_alone(context, made)
     hidden = "" if operator.flat or cuts.is_on(context.scene) else "; blocks are in front of it"
     operator.report({"INFO"}, f"Section made: see {made.name}{hidden}")
 
@@ -160,10 +157,7 @@ class REALMODEL_OT_section_plane(Reporting, bpy.types.Operator):
         with settings.filling():
             view.plane, view.use_section = plane, True
         context.view_layer.update()
-        for item in context.selected_objects:
-            item.select_set(False)
-        plane.select_set(True)
-        context.view_layer.objects.active = plane
+        visible.select_alone(context, plane)
         display.section_changed(scene)
 
 

@@ -26,7 +26,7 @@ from ..bl.origin import KEY as ORIGIN_KEY
 from ..core import BuildFailed, load_project
 from ..core.project_writer import save_project
 from ..core.rock_input import with_arrays
-from .reporting import Reporting, any_surface, needed_path, not_building, selected_meshes
+from .reporting import Reporting, any_surface, chosen_path, not_building, selected_meshes
 
 
 def _begin(current, name):
@@ -116,7 +116,7 @@ class REALMODEL_OT_open_project(Replacing, bpy.types.Operator, ImportHelper):
     )
 
     def act(self, context):
-        path = project_settings.absolute(needed_path(self.filepath, "the project"))
+        path = chosen_path(self, "the project")
         if self._browses and not self._asked:  # the file was chosen: now it can be named in the question
             invoke(bpy.ops.realmodel.open_project, self, filepath=self.filepath, build=self.build)
             return
@@ -182,7 +182,7 @@ class REALMODEL_OT_save_project(Reporting, bpy.types.Operator, ExportHelper):
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
 
     def act(self, context):
-        path = project_settings.absolute(needed_path(self.filepath, "the project"))
+        path = chosen_path(self, "the project")
         depsgraph = context.evaluated_depsgraph_get()
         project = project_settings.read_project(project_settings.compose(context.scene, depsgraph))
         written = save_project(project, path)

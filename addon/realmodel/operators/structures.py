@@ -5,7 +5,7 @@ import os
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, CollectionProperty, EnumProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, CollectionProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..bl import built_scene, data_objects, library_rows, live, project_settings, settings, shapes
@@ -14,7 +14,16 @@ from ..core.point_file import PointFile
 from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, TABLE_ENDINGS, read_mesh
 from ..core.readers.fault_sticks import read_fault_points
 from ..core.structures.triangles import open_edges
-from .reporting import Reporting, a_body, a_fault, a_structure, selected_meshes
+from .reporting import (
+    Reporting,
+    a_body,
+    a_fault,
+    a_structure,
+    remove_row,
+    require_file,
+    row_number,
+    selected_meshes,
+)
 from .surfaces import library_items
 
 _KINDS = (
@@ -149,8 +158,7 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
 
     def _looked_at(self, path, units):
         """(kind, source, path, vertices or points) of a file. Raises InputRefused."""
-        if not path.is_file():
-            raise InputRefused(f"file not found: {path}", advice="check the path")
+        require_file(path)
         if path.suffix.lower() not in MESH_ENDINGS:
             if self.kind == "BODY":
                 raise InputRefused(f"{path.name} has no triangles", advice="give a closed mesh for a body")
@@ -254,13 +262,11 @@ class REALMODEL_OT_fault_list_remove(Reporting, bpy.types.Operator):
     needs = (a_fault,)
 
     of: EnumProperty(name="List", description="Which list", items=_LISTS)
-    index: IntProperty(name="Index", description="Which row, from 0", min=0)
+    index: row_number()
 
     def act(self, context):
         rows = getattr(settings.active_structure(context.scene), self.of.lower())
-        if self.index >= len(rows):
-            raise InputRefused(f"the list has no row {self.index}")
-        rows.remove(self.index)
+        remove_row(rows, self.index, "row")
         live.touch(context.scene)
 
 

@@ -2,11 +2,11 @@
 """Rows of a surface: the structures of a nested variogram, the filters of its file."""
 
 import bpy
-from bpy.props import BoolProperty, IntProperty
+from bpy.props import BoolProperty
 
 from ..bl import changes, live, settings
 from ..core import InputRefused
-from .reporting import Reporting, a_fault, a_surface
+from .reporting import Reporting, a_fault, a_surface, remove_row, row_number
 
 
 class REALMODEL_OT_structure_add(Reporting, bpy.types.Operator):
@@ -44,13 +44,10 @@ class REALMODEL_OT_structure_remove(Reporting, bpy.types.Operator):
     bl_label = "Remove Structure"
     needs = (a_surface,)
 
-    index: IntProperty(name="Number", description="Which of them, counted from 0", min=0)
+    index: row_number()
 
     def act(self, context):
-        rows = settings.active_surface(context.scene).structures
-        if not 0 <= self.index < len(rows):
-            raise InputRefused(f"there is no part {self.index}", advice="they are counted from 0")
-        rows.remove(self.index)
+        remove_row(settings.active_surface(context.scene).structures, self.index, "structure")
         live.touch(context.scene)
 
 
@@ -89,14 +86,12 @@ class REALMODEL_OT_filter_remove(Reporting, bpy.types.Operator):
     bl_label = "Remove Filter"
     needs = (_a_file,)
 
-    index: IntProperty(name="Number", description="Which of them, counted from 0", min=0)
+    index: row_number()
     of_fault: _OF_FAULT
 
     def act(self, context):
         surface = _filtered(context, self.of_fault)
-        if not 0 <= self.index < len(surface.filters):
-            raise InputRefused(f"there is no filter {self.index}", advice="they are counted from 0")
-        surface.filters.remove(self.index)
+        remove_row(surface.filters, self.index, "filter")
         changes.reading(surface, context)
 
 

@@ -16,7 +16,7 @@ from .reporting import (
     a_viewport,
     an_edit,
     an_interface,
-    needed_path,
+    chosen_path,
     place_property,
 )
 
@@ -113,7 +113,7 @@ class REALMODEL_OT_capture(Reporting, bpy.types.Operator, ExportHelper):
     )
 
     def act(self, context):
-        path = project_settings.absolute(needed_path(self.filepath, "the picture"))
+        path = chosen_path(self, "the picture")
         if path.suffix.lower() != ".png":
             raise UsageError(f"{path}: a picture ends in .png")
         width, height = self._size(context)
@@ -188,10 +188,7 @@ class REALMODEL_OT_edit_surface(Reporting, bpy.types.Operator):
             bpy.ops.object.mode_set(mode="OBJECT")
         context.scene.realmodel.display = "BLOCKS"
         visible.show(context.scene, item, True)
-        for other in context.selected_objects:
-            other.select_set(False)
-        item.select_set(True)
-        context.view_layer.objects.active = item
+        visible.select_alone(context, item)
         bpy.ops.object.mode_set(mode="EDIT")
         display.mode_changed(context.scene)
 

@@ -51,12 +51,12 @@ def register():
     """Called when the add-on is enabled."""
     cuts.show_with(mode_changed)
     preparing.show_with(show_all)
-    drawing.register()
+    drawing.handler.register()
 
 
 def unregister():
     """Called when the add-on is disabled: no handler of drawing may stay."""
-    drawing.unregister()
+    drawing.handler.unregister()
     stop()
 
 
@@ -130,7 +130,7 @@ def boreholes_changed(scene):
     if scene.realmodel.view.show_boreholes and len(scene.realmodel.results):
         boreholes.show(scene)
     else:
-        bodies.remove_kind(scene, bodies.BOREHOLES)
+        bodies.remove(scene, bodies.BOREHOLES)
     exaggeration_changed(scene)
 
 
@@ -184,11 +184,10 @@ def let_go(item):
 def cleared(scene):
     """The blocks are gone."""
     forget_meshes()
-    for kind in (bodies.CELLS, bodies.SURVIVING):
+    for kind in (bodies.CELLS, bodies.SURVIVING, bodies.BOREHOLES):
         bodies.remove(scene, kind)
     scene.realmodel.view.surviving_of = ""
     residuals.hide(scene)
-    bodies.remove_kind(scene, bodies.BOREHOLES)
     cuts.take_off(scene)
     colors.forget(scene)
     modes.without_blocks(scene)

@@ -34,13 +34,15 @@ def put(current, kind, shapes, material=None):
     known = of_kind(current, kind)
     wanted = {block for block, _ in shapes}
     remove(current, kind, [item for item in _listed(current, kind) if item.parent not in wanted])
-    collection = view_collection(current)
     for block, shape in shapes:
         item = known.get(block)
         if item is not None and item.data.users == 1:
             replacing.give_shape(item, shape)
         else:
-            item = _new(collection, kind, block, meshes.new_mesh(f"{block.name} {kind}", shape))
+            item = add(current, kind, f"{block.name} {kind}", shape)
+            item[scene.BLOCK] = block.get(scene.BLOCK, "")
+            item.hide_viewport = kind == MARKS  # which viewports draw themselves
+            item.parent = block
         if kind == SURVIVING:  # its mesh is in the coordinates of the model, not in those of the interface
             item.matrix_parent_inverse = Matrix(np.linalg.inv(exaggeration.true_matrix(block)))
         if material is None:
@@ -49,15 +51,12 @@ def put(current, kind, shapes, material=None):
             item.data.materials.append(material)
 
 
-def _new(collection, kind, block, mesh):
-    item = bpy.data.objects.new(mesh.name, mesh)
-    item[KIND] = kind
-    item[scene.TAG] = "view"
-    item[scene.BLOCK] = block.get(scene.BLOCK, "")
+def add(current, kind, name, shape):
+    """A new body of a kind; shape: PolygonMesh. Returns its object."""
+    item = bpy.data.objects.new(name, meshes.new_mesh(name, shape))
+    item[KIND], item[scene.TAG] = kind, "view"
     item.hide_select = True
-    item.hide_viewport = kind == MARKS  # which viewports draw themselves
-    item.parent = block
-    collection.objects.link(item)
+    view_collection(current).objects.link(item)
     return item
 
 
@@ -82,13 +81,6 @@ def remove(current, kind, items=None):
     for item in _listed(current, kind) if items is None else items:
         replacing.remove(item)
     remove_collection_if_empty(current)
-
-
-def remove_kind(current, kind):
-    """Removes what is of a kind and stands for no block."""
-    collection = current.realmodel.view.collection
-    if collection is not None:
-        remove(current, kind, [item for item in collection.objects if item.get(KIND) == kind])
 
 
 def remove_collection_if_empty(current):

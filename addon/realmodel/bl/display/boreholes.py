@@ -3,10 +3,9 @@
 
 from itertools import pairwise
 
-import bpy
 import numpy as np
 
-from .. import borehole_picks, meshes, project_settings, scene
+from .. import borehole_picks, project_settings
 from . import bodies, colors, explosion, marks
 
 _RADIUS = 0.005  # of the model's size
@@ -15,7 +14,7 @@ _SIDES = 8
 
 def show(current):
     """Shows the boreholes of a scene's model, in place of those that are shown."""
-    bodies.remove_kind(current, bodies.BOREHOLES)
+    bodies.remove(current, bodies.BOREHOLES)
     places, properties = [], []
     for rock in current.realmodel.rocks:
         ids = [surface.property_id for surface in rock.surfaces]
@@ -34,14 +33,10 @@ def show(current):
     places = np.array(places) - project_settings.model_origin(current)
     pairs = np.arange(len(places)).reshape(-1, 2)
     shape = marks.lines(places, pairs, _RADIUS * float(np.linalg.norm(high - low)), _SIDES)
-    mesh = meshes.new_mesh("Boreholes", shape)
+    mesh = bodies.add(current, bodies.BOREHOLES, "Boreholes", shape).data
     slots = sorted(set(properties), key=lambda number: -1 if number is None else number)
     for number in slots:
         mesh.materials.append(colors.of_property(current, number or 0))
     given = np.array([slots.index(number) for number in properties], np.int32)
     mesh.polygons.foreach_set("material_index", np.repeat(given, _SIDES))
     mesh.update()
-    item = bpy.data.objects.new("Boreholes", mesh)
-    item[bodies.KIND], item[scene.TAG] = bodies.BOREHOLES, "view"
-    item.hide_select = True
-    bodies.view_collection(current).objects.link(item)

@@ -10,7 +10,7 @@ from ..threads import threads
 from . import cuts, shown_models
 
 SHRINK = 0.88  # of a cell's size: the gaps let each be seen
-_kept = caches.new()  # by the name of a scene: (what the cells are of, {(rock mass, block): PolygonMesh})
+_kept = caches.new(most=1)  # by what the cells are of: {(rock mass, block): PolygonMesh}
 
 
 def made_of(scene, stage, apart=False):
@@ -24,14 +24,13 @@ class Recipe:
     Used as `shown_models.Recipe` is. Raises InputRefused."""
 
     def __init__(self, scene, stage, apart=False):
-        self.scene_name, self.made_of = scene.name, made_of(scene, stage, apart)
+        self.made_of = made_of(scene, stage, apart)
         self._shrink, kind = (None, None) if apart else (SHRINK, "columns")
         self._compartments = compartments.names(scene) or None
-        known, shapes = _kept.get(scene.name, ("", None))
-        self.shapes = shapes if known == self.made_of else None
+        self.shapes = _kept.get(self.made_of)
         self._half = self._plane = None
         if cuts.is_shown(scene):
-            self._half = cuts.known_half(scene, scene.realmodel.view.cut, kind)
+            self._half = cuts.known_half(scene.realmodel.view.cut, kind)
             self._plane = json.loads(scene.realmodel.view.cut)[:2]
         self._model = shown_models.Recipe(scene, stage, kind) if self._half is None else None
         self._origin = project_settings.model_origin(scene)
@@ -56,7 +55,7 @@ class Recipe:
 
     def keep(self):
         """Keeps what was made until other cells are asked for."""
-        _kept[self.scene_name] = (self.made_of, self.shapes)
+        _kept[self.made_of] = self.shapes
         if self._model is not None:
             self._model.keep()
 

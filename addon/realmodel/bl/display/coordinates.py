@@ -9,8 +9,7 @@ import numpy as np
 from .. import caches, compartments, exaggeration, library_rows, meshes, project_settings, shapes
 from . import modes, stages
 
-_soups = caches.new()  # by the name of a mesh: its triangles, (T, 3, 3) float32
-_MOST_SOUPS = 64
+_soups = caches.new(most=64)  # by the name of a mesh: its triangles, (T, 3, 3) float32
 
 
 @dataclass(frozen=True)
@@ -148,8 +147,6 @@ def _cross(a, b):
 def _soup(mesh):
     key = mesh.name_full
     if key not in _soups:
-        while len(_soups) >= _MOST_SOUPS:
-            _soups.pop(next(iter(_soups)))
         triangles = shapes.mesh_triangles(mesh)
         _soups[key] = meshes.mesh_coordinates(mesh)[triangles]
     return _soups[key]

@@ -28,7 +28,7 @@ from ..threads import threads
 from . import bodies, explosion, replacing, shown_models
 
 REST_SECONDS = 0.08  # without a movement of the plane, after which it is cut
-_halves = caches.new()  # by the name of a scene: (what it was cut from and where, the half as a Model)
+_halves = caches.new(most=1)  # by what it was cut from and where: the half as a Model
 
 
 def is_on(current):
@@ -101,11 +101,11 @@ def _state(current, stage, matrix=None):
     return json.dumps([point.tolist(), normal.tolist(), stage, current.realmodel.built_stamp])
 
 
-def known_half(current, state, cells=None):
+def known_half(state, cells=None):
     """The half that is left by a cut, as a realmodel.core.Model; None where it is not at hand. state: as
     `view.cut` has it."""
-    known, model = _halves.get(current.name, ("", None))
-    return model if known == state and (cells is None or model.cell_kind == cells) else None
+    model = _halves.get(state)
+    return model if cells is None or (model is not None and model.cell_kind == cells) else None
 
 
 def cut_now(current, stage=None, matrix=None):
@@ -155,8 +155,8 @@ def _put(current, shapes, state):
 def take_off(current):
     """Forgets the cut: the blocks are whole again."""
     bodies.remove(current, bodies.CUT)
+    _halves.pop(current.realmodel.view.cut, None)
     current.realmodel.view.cut = ""
-    _halves.pop(current.name, None)
 
 
 def touch(current):
@@ -169,7 +169,7 @@ def _begun(current, state):
     point, normal, stage, _ = json.loads(state)
     recipe = shown_models.Recipe(current, stage, _wanted_cells(current))
     names = compartments.names(current) or None
-    half, origin = known_half(current, state, _wanted_cells(current)), project_settings.model_origin(current)
+    half, origin = known_half(state, _wanted_cells(current)), project_settings.model_origin(current)
 
     def task(_):
         model = half
@@ -186,7 +186,7 @@ def _take(current, made):
     """Shows the halves that a job has made, and keeps them."""
     state, model, shapes, recipe = made
     recipe.keep()
-    _halves[current.name] = (state, model)
+    _halves[state] = model
     _put(current, shapes, state)
 
 

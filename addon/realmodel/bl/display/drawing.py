@@ -8,11 +8,11 @@ arrays go to the card when they are first drawn, and again when a mesh has chang
 import bpy
 
 from .. import caches, exaggeration, meshes, versions
+from ..draw_handler import DrawHandler
 from . import colors, modes
 
 POINT_SIZE = 4.0  # pixels
 _batches = caches.new()  # (mesh name, "POINTS" or "LINES") -> (vertices, edges of the mesh, gpu batch)
-_handle = None
 
 
 def forget(names=None):
@@ -81,14 +81,4 @@ def _new_batch(mesh, mode):
     return gpu.types.GPUBatch(type="LINES", buf=vertices, elem=indices)
 
 
-def register():
-    global _handle
-    if not bpy.app.background:
-        _handle = bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", "POST_VIEW")
-
-
-def unregister():
-    global _handle
-    if _handle is not None:
-        bpy.types.SpaceView3D.draw_handler_remove(_handle, "WINDOW")
-        _handle = None
+handler = DrawHandler(draw, "POST_VIEW")

@@ -187,7 +187,7 @@ def _make_surviving(scene, stage):
     view = scene.realmodel.view
     made_of = cells.made_of(scene, stage)
     if view.surviving_of != made_of:
-        half = cuts.known_half(scene, view.cut) if cuts.is_shown(scene) else None
+        half = cuts.known_half(view.cut) if cuts.is_shown(scene) else None
         model = half or shown_models.at_stage(scene, stage)
         shapes = polygon_mesh.of_surfaces(model, project_settings.model_origin(scene))
         places = [(r, s) for r, rock in enumerate(model.project.rocks) for s in range(len(rock.surfaces))]

@@ -3,13 +3,12 @@
 
 import json
 
-import bpy
 import numpy as np
 
 from ...core import layer_values
 from ...core.drawing.overlay import ColorKey
 from ...core.residuals import residuals
-from .. import library_rows, meshes, project_settings, scene
+from .. import library_rows, project_settings
 from . import bodies, colors, explosion, marks, shown_models
 
 _MOST = 20_000  # points that are shown: of more those that are farthest from their surfaces
@@ -42,21 +41,18 @@ def show(current):
     order = np.sort(np.argsort(-np.abs(values), kind="stable")[:_MOST])
     low, high = explosion.bounds(current)
     shape = marks.points(points[order], _RADIUS * float(np.linalg.norm(high - low)))
-    item = bpy.data.objects.new("Residuals", meshes.new_mesh("Residuals", shape))
-    item[bodies.KIND], item[scene.TAG] = bodies.RESIDUALS, "view"
-    item.hide_select = True
+    mesh = bodies.add(current, bodies.RESIDUALS, "Residuals", shape).data
     low, high = limits(current)
     steps = (values[order] - low) / ((high - low) or 1.0) * (_STEPS - 1)
     for color in _colors(_STEPS)[:, :3].tolist():
         code = library_rows.hex_color(color)
-        item.data.materials.append(colors.plain_material(f"Residual {code}", code))
-    item.data.polygons.foreach_set("material_index", np.repeat(np.rint(steps).astype(np.int32), 8))
-    bodies.view_collection(current).objects.link(item)
+        mesh.materials.append(colors.plain_material(f"Residual {code}", code))
+    mesh.polygons.foreach_set("material_index", np.repeat(np.rint(steps).astype(np.int32), 8))
 
 
 def hide(current):
     """Takes the residuals out of a scene."""
-    bodies.remove_kind(current, bodies.RESIDUALS)
+    bodies.remove(current, bodies.RESIDUALS)
     current.realmodel.view.residuals = ""
 
 

@@ -30,3 +30,11 @@ def want(scene, item, shown, rendered):
     elif not rendered and not item.hide_render:
         item.hide_render = True
         item[RENDER_HIDDEN] = True
+
+
+def select_alone(context, item):
+    """Selects an object and nothing else, and makes it the active one."""
+    for other in context.selected_objects:
+        other.select_set(False)
+    item.select_set(True)
+    context.view_layer.objects.active = item

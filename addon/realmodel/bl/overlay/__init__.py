@@ -12,8 +12,7 @@ from .. import caches, exaggeration, project_settings
 from ..display import colors, explosion, residuals
 
 WIDTH = 900.0  # points across the longer side of a picture
-_MOST_KEPT = 8
-_drawings = caches.new()  # by what they are made of: a viewport is drawn again and again
+_drawings = caches.new(most=8)  # by what they are made of: a viewport is drawn again and again
 
 
 def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0), stretched=None):
@@ -56,8 +55,6 @@ def drawing_for(scene, projection, view, is_perspective, size, margins=(0.0, 0.0
     given = (eye, shown, keys, *wanted, margins)
     name = pickle.dumps(given)
     if name not in _drawings:
-        while len(_drawings) >= _MOST_KEPT:
-            del _drawings[next(iter(_drawings))]
         _drawings[name] = draw_overlay(*given)
     return _drawings[name]
 

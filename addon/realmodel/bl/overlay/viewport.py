@@ -11,14 +11,14 @@ from mathutils.geometry import tessellate_polygon
 
 from ...core.drawing.drawing import ANCHORS, Text
 from ...core.drawing.raster import item_shapes
-from .. import versions
+from .. import caches, versions
+from ..draw_handler import DrawHandler
 from . import drawing_for
 
 _FONT = 0  # Blender's own
 _PIXELS = 1.25  # for a point, where Blender's interface is not scaled
 _MOST_KEPT = 4
-_batches = []  # (drawing, scale, texts and batches), the last one drawn at the end
-_handle = None
+_batches = caches.new(list)  # (drawing, scale, texts and batches), the last one drawn at the end
 
 
 def draw():
@@ -104,15 +104,4 @@ def pixel_matrix(width, height):
     return Matrix(((2 / width, 0, 0, -1), (0, 2 / height, 0, -1), (0, 0, 1, 0), (0, 0, 0, 1)))
 
 
-def register():
-    global _handle
-    if not bpy.app.background:
-        _handle = bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL")
-
-
-def unregister():
-    global _handle
-    if _handle is not None:
-        bpy.types.SpaceView3D.draw_handler_remove(_handle, "WINDOW")
-        _handle = None
-    _batches.clear()
+handler = DrawHandler(draw, "POST_PIXEL")

@@ -7,7 +7,7 @@ from .mesh_file import MESH_ENDINGS, read_mesh
 from .off import read_off
 from .point_input import RASTER_ENDINGS, read_point_file
 from .points import TABLE_ENDINGS, read_points
-from .table_preview import TablePreview, column_values, preview_table
+from .table_preview import TablePreview, preview_table
 
 __all__ = [
     "MAP_ENDINGS",
@@ -16,7 +16,6 @@ __all__ = [
     "TABLE_ENDINGS",
     "Picks",
     "TablePreview",
-    "column_values",
     "preview_table",
     "read_boreholes",
     "read_mesh",

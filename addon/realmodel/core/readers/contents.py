@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import sqlite3
 from contextlib import closing
-from itertools import islice
 from pathlib import Path
 
 from ..errors import InputRefused
@@ -16,7 +15,6 @@ from .point_input import RASTER_FORMATS, head_of
 from .points import KNOWN, body_rows, open_table
 from .shapes import NothingSelected
 
-_MOST = 50  # values
 _NOTHING = "\0"  # no attribute is called so, and none has it
 
 
@@ -35,14 +33,12 @@ def column_names(file: Path, layer: str | None = None) -> list[str]:
 
 
 def column_values(file: Path, column: str, layer: str | None = None) -> list[str]:
-    """The different values of a column, or attribute, in the order of the file: the first of them. Raises
-    InputRefused."""
+    """The different values of a column, or attribute, in the order of the file. Raises InputRefused."""
     if is_map_layer(file, head_of(file)):
-        return list(_nothing_selected(file, layer, column).values)[:_MOST]
+        return list(_nothing_selected(file, layer, column).values)
     table = open_table(file, None, (column,), {}, KNOWN)
     at = table.column(column)
-    different = dict.fromkeys(row[at] for row in body_rows(table) if at < len(row))
-    return list(islice(different, _MOST))
+    return list(dict.fromkeys(row[at] for row in body_rows(table) if at < len(row) and row[at]))
 
 
 def layer_names(file: Path) -> list[str]:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputRefused
-from .points import KNOWN, Table, body_rows, head_rows, open_table, wanted_columns
+from .points import KNOWN, Table, head_rows, open_table, wanted_columns
 from .table_layout import is_any_number, plain_name
 
 _ROWS = 3
@@ -65,13 +65,6 @@ def preview_table(file: str | Path, columns: Sequence[str | int] | None = None) 
     found.splits = {name: values for *_, name, values in splits}
     found.is_plain = bool(splits) and not splits[0][0]
     return found
-
-
-def column_values(file: str | Path, column: str) -> list[str]:
-    """The values of a column of a table, in the order of the file. Raises InputRefused."""
-    table = open_table(Path(file), None, (column,), {}, KNOWN)
-    at = table.column(column)
-    return list(dict.fromkeys(row[at] for row in body_rows(table) if at < len(row) and row[at]))
 
 
 def _sampled_rows(table: Table) -> list[list[str]]:

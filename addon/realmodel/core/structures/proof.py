@@ -159,9 +159,10 @@ def _check_faces(model, places: int, random) -> dict:
                 away[n] = distances_of_pairs(at, vertices[triangles]).min()
     allowed = _ROUNDING * np.spacing(np.abs(model.vertices).max()) * (1 + _steepness(model))
     wrong = np.flatnonzero(away > allowed)
+    names = [model.surface_names[number] for number in model.face_surface[faces]]
     offenders = [
         {
-            "text": f"face {faces[n]} is {away[n]:.3g} off '{model.surface_names[model.face_surface[faces[n]]]}'",
+            "text": f"face {faces[n]} is {away[n]:.3g} off '{names[n]}'",
             "cell": -1,
             "face": int(faces[n]),
             "vertex": -1,

@@ -7,10 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..work import Work
+from ..project import Project
+from ..work import Work, native_module
 from .branches import require_meeting
 from .entries import Body, Fault
 from .parts import Structures, add_compartments, box_around, divide, structures_of
+from .refusals import refused_structure
 from .sheets import make_sheets
 from .sides import fault_sides
 
@@ -64,6 +66,12 @@ def _facing_up(work: Work, fault: Fault) -> Fault:
     largest = int(np.linalg.norm(normals, axis=1).argmax())
     size = np.linalg.norm(normals[largest])
     beside = corners[largest].mean(axis=0) + normals[largest] / size * 1e-3 * np.sqrt(size)
-    if fault_sides(work, beside[None], (fault.vertices, fault.triangles))[0] > 0:
+    native = native_module()
+    try:
+        side = fault_sides(work, beside[None], (fault.vertices, fault.triangles))
+    except native.InputError as error:
+        error.surface = 0
+        raise refused_structure(error, structures_of(Project("", []), [fault], [])) from error
+    if side[0] > 0:
         return fault
     return replace(fault, triangles=np.ascontiguousarray(fault.triangles[:, ::-1]))

@@ -38,11 +38,10 @@ def open_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
     """The rings of vertices along edges that one triangle alone has, with the triangles on their left."""
     edges = edges_of(triangles)
-    twin = {(int(a), int(b)) for a, b in edges}
+    _, number, count = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
     following: dict[int, list[int]] = {}
-    for a, b in edges.tolist():
-        if (b, a) not in twin:
-            following.setdefault(a, []).append(b)
+    for a, b in edges[count[number.ravel()] == 1].tolist():
+        following.setdefault(a, []).append(b)
     loops = []
     for start in sorted(following):
         while following[start]:
@@ -83,16 +82,19 @@ def distances_of_pairs(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 def crossing_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """(K, 2) rows of triangles (N, 3, 3) and (M, 3, 3) whose boxes touch."""
+    if len(first) > len(second):
+        return crossing_pairs(second, first)[:, ::-1]
     low, high = second.min(axis=1), second.max(axis=1)
     order = np.argsort(low[:, 0], kind="stable")
     low, high = low[order], high[order]
     widest = (high[:, 0] - low[:, 0]).max(initial=0.0)
+    lowest, highest = first.min(axis=1), first.max(axis=1)
+    begin = np.searchsorted(low[:, 0], lowest[:, 0] - widest, "left")
+    end = np.searchsorted(low[:, 0], highest[:, 0], "right")
     found = []
-    begin = np.searchsorted(low[:, 0], first.min(axis=1)[:, 0] - widest, "left")
-    end = np.searchsorted(low[:, 0], first.max(axis=1)[:, 0], "right")
-    for number, (lowest, highest) in enumerate(zip(first.min(axis=1), first.max(axis=1), strict=True)):
+    for number in range(len(first)):
         some = slice(begin[number], end[number])
-        near = ((high[some] >= lowest) & (low[some] <= highest)).all(axis=1)
+        near = ((high[some] >= lowest[number]) & (low[some] <= highest[number])).all(axis=1)
         rows = order[some][near]
         found.append(np.column_stack([np.full(len(rows), number), rows]))
     return np.concatenate(found) if found else np.empty((0, 2), np.int64)
