@@ -102,23 +102,38 @@ def _place(scene, row, local, span):
 
 
 def _span(item, local):
-    """(lowest, highest) height of a block on the vertical through a point, or None where it is not there. A
-    block is one interval of each vertical, since its bounds are single-valued."""
+    """(lowest, highest) height of a block on the vertical through a point, of its intervals there the one
+    that is nearest to the point; None where it is not there. Bodies and reverse faults leave several."""
     soup = _soup(item.data)
     start = np.array([local[0], local[1], float(soup[:, :, 2].min()) - 1.0])
-    heights = start[2] + _hits(soup, start, np.array([0.0, 0.0, 1.0]))
-    return (heights[0], heights[-1]) if len(heights) else None
+    distances, leaves = _crossings(soup, start, np.array([0.0, 0.0, 1.0]))
+    if not len(distances):
+        return None
+    # On an edge both of its triangles are met: of several in a row that enter the first counts, else the last
+    begins = ~leaves & np.append(True, leaves[:-1])
+    ends = leaves & np.append(~leaves[1:], True)
+    low, high = start[2] + distances[begins], start[2] + distances[ends]
+    if len(low) != len(high):  # met where it is upright
+        return start[2] + distances[0], start[2] + distances[-1]
+    nearest = np.maximum(low - local[2], local[2] - high).argmin()
+    return low[nearest], high[nearest]
 
 
 def _hits(soup, start, direction):
-    """Where a ray meets triangles, (N,) float64 in rising order, in lengths of the direction.
+    """Where a ray meets triangles, (N,) float64 in rising order, in lengths of the direction."""
+    return _crossings(soup, start, direction)[0]
+
+
+def _crossings(soup, start, direction):
+    """Where a ray meets triangles, (N,) float64 in rising order, in lengths of the direction, and whether it
+    leaves what they bound, (N,) bool.
 
     soup: (T, 3, 3). Seen along the ray the start is a point, which lies in the triangles whose three edges
     it is on one side of.
     """
     length = np.linalg.norm(direction)
     if not length > 0.0 or not len(soup):
-        return np.empty(0)
+        return np.empty(0), np.empty(0, bool)
     along = direction / length
     side = np.cross(along, np.eye(3)[np.abs(along).argmin()])
     side /= np.linalg.norm(side)
@@ -131,8 +146,11 @@ def _hits(soup, start, direction):
     weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)])
     inside = ((weights >= 0.0).all(axis=0) | (weights <= 0.0).all(axis=0)) & (weights.sum(axis=0) != 0.0)
     weights, depths = weights[:, inside], corners[inside][:, :, 2].T
-    found = (weights * depths).sum(axis=0) / weights.sum(axis=0)
-    return np.sort(found[found >= 0.0]) / length
+    total = weights.sum(axis=0)
+    found = (weights * depths).sum(axis=0) / total
+    ahead = np.flatnonzero(found >= 0.0)
+    ahead = ahead[np.argsort(found[ahead], kind="stable")]
+    return found[ahead] / length, total[ahead] > 0.0
 
 
 def _rounding(soup, point):
