@@ -14,19 +14,23 @@ class NearCells {
 public:
     NearCells(const StructureSurface& surface, int threads);
 
-    /// Of cells: 1 where they come near structures, or are beside cells that do, on the sides that
-    /// are asked for.
-    std::vector<std::uint8_t> that_may_be_in(const ComplexView& model, const Sides& sides,
-                                             const Progress* progress) const;
+    /// Of cells: kNear where they come near a structure and are not on the wrong side of another,
+    /// kInside where they come near none and are on the sides that are asked for, kElsewhere.
+    enum Place : std::uint8_t { kElsewhere, kInside, kNear };
+    std::vector<std::uint8_t> places_of(const ComplexView& model, const Sides& sides,
+                                        const Progress* progress) const;
 
 private:
-    std::vector<std::uint8_t> near(const ComplexView& model, const Progress* progress) const;
-    bool is_on(const cutting::Position& p, const Sides& sides) const;
+    /// A structure by itself.
+    struct Single {
+        spatial::BoxTree tree;
+        cutting::NearestSide side;
+    };
 
     const StructureSurface& surface_;
     int threads_;
-    spatial::BoxTree tree_;
-    std::vector<cutting::NearestSide> nearest_;
+    double margin_;
+    std::vector<Single> singles_;
 };
 
 }  // namespace realmodel::structures

@@ -11,7 +11,9 @@ from ..stack_refusals import refused_stack
 from ..work import Work, native_module
 from .part_models import NOTHING, Stack, inside_body, plain_stack
 from .parts import Structures, compartment_of
+from .reach import Reach
 from .refusals import refused_structure
+from .rock_structure import Triangulation
 
 _BUILT = 0.4  # of the time: until the stacks are built; then they are cut and joined
 
@@ -26,10 +28,11 @@ def build_joined(
     Raises InputRefused.
     """
     models, parts, warnings = [], [], {}
+    reach = Reach(work, structures, threads)
     steps = np.linspace(start, start + _BUILT * (end - start), len(structures.sides) + 1)
     for part, (begin, finish) in enumerate(itertools.pairwise(steps)):
         with work.phase(float(begin), float(finish), "intersecting and cutting"):
-            built = _part_model(work, inputs, structures, part, cells, threads)
+            built = _part_model(work, inputs, structures, reach, part, cells, threads)
         if built is not None and len(built["cell_block"]):
             warnings |= dict.fromkeys((w[0], w[1], tuple(w[2]), w[3]) for w in built.pop("warnings"))
             models.append((built, structures.sides[part].tolist()))
@@ -70,23 +73,31 @@ def _first_surfaces(inputs: list) -> list[int]:
 
 
 def _part_model(
-    work: Work, inputs: list, structures: Structures, part: int, cells: str, threads: int
+    work: Work, inputs: list, structures: Structures, reach: Reach, part: int, cells: str, threads: int
 ) -> dict | None:
     """The arrays of all rock masses as they are in one part; None where there is nothing."""
     first = _first_surfaces(inputs)
     stacks = [
         _stack(inputs, structures, part, number, first[number], first[-1]) for number in range(len(inputs))
     ]
-    taken = [number for number, stack in enumerate(stacks) if stack.sheets]
+    columns = reach.columns(part)
+    kept = {id(sheet): reach.over(columns, sheet) for stack in stacks for sheet in stack.sheets}
+    stacks = [stack.without([not kept[id(sheet)].any() for sheet in stack.sheets]) for stack in stacks]
+    taken = [n for n, stack in enumerate(stacks) if stack.sheets]
     if not taken:
         return None
+    rows = [np.flatnonzero(kept[id(sheet)]) for n in taken for sheet in stacks[n].sheets]
+    for n in taken:
+        stacks[n].sheets = [_narrowed(sheet, kept[id(sheet)]) for sheet in stacks[n].sheets]
     rocks = [(stacks[n].sheets, inputs[n].region, stacks[n].base_elevation, stacks[n].rules) for n in taken]
     surfaces = [first[n] + own if own >= 0 else -1 for n in taken for own in stacks[n].surfaces]
     native = native_module()
     try:
         built = work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)
     except native.InputError as error:
-        error.surface = surfaces[error.surface] if 0 <= error.surface < len(surfaces) else error.surface
+        if 0 <= error.surface < len(surfaces):
+            error.items = rows[error.surface][error.items].tolist()
+            error.surface = surfaces[error.surface]
         raise refused_stack(error, inputs) from error
     blocks = np.array([block for n in taken for block in stacks[n].blocks], np.int32)
     # faces keep -1, a wall, and -2, the base; the level surfaces that only fill bodies are no surfaces
@@ -104,8 +115,22 @@ def _part_model(
     }
     if cells == "blocks" and len(set(blocks.tolist())) < len(blocks):
         model |= one_cell_each(model)
-    warnings = [(w[0], surfaces[w[1]] if w[1] >= 0 else -1, w[2], w[3]) for w in built["warnings"]]
+    warnings = [
+        (kind, surfaces[k], rows[k][items].tolist(), text) if k >= 0 else (kind, k, items, text)
+        for kind, k, items, text in built["warnings"]
+    ]
     return {**model, "warnings": warnings}
+
+
+def _narrowed(sheet: Triangulation, kept: np.ndarray) -> Triangulation:
+    """Some triangles of a sheet, with their vertices alone."""
+    vertices, triangles = sheet
+    if kept.all():
+        return sheet
+    used = np.zeros(len(vertices), bool)
+    used[triangles[kept]] = True
+    number = np.cumsum(used, dtype=np.int64) - 1
+    return np.ascontiguousarray(vertices[used]), number[triangles[kept]].astype(np.int32)
 
 
 def _stack(inputs: list, structures: Structures, part: int, number: int, first: int, surfaces: int) -> Stack:

@@ -27,6 +27,17 @@ class Stack:
     blocks: list[int]
     surfaces: list[int]
 
+    def without(self, empty: list[bool]) -> Stack:
+        """Without the surfaces that do not exist here. Where the oldest is none, no block is on the base."""
+        kept = [k for k, is_empty in enumerate(empty) if not is_empty]
+        if len(kept) == len(empty):
+            return self
+        blocks, base = [self.blocks[k] for k in kept], self.base_elevation
+        if kept and kept[0] > 0:
+            base, blocks[0] = None, NOTHING
+        sheets, rules = [self.sheets[k] for k in kept], [self.rules[k] for k in kept]
+        return Stack(sheets, rules, base, blocks, [self.surfaces[k] for k in kept])
+
 
 def plain_stack(sheets: list[Triangulation], rules: list[str], base: float | None, first: int) -> Stack:
     """first: the number of the oldest surface in the project, which blocks are numbered by."""

@@ -107,12 +107,21 @@ def meet(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     found = np.zeros(len(first), bool)
     for start in range(0, len(pairs), 1 << 16):
         some = pairs[start : start + (1 << 16)]
+        some = some[_straddles(first[some[:, 0]], second[some[:, 1]])]
         one, other = first[some[:, 0]], second[some[:, 1]]
         hit = np.zeros(len(some), bool)
         for (triangle, edges), (i, j) in itertools.product(((one, other), (other, one)), _EDGES):
             hit |= segments_hit(edges[:, i], edges[:, j], triangle)
         found[some[hit, 0]] = True
     return found
+
+
+def _straddles(triangles: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """(K,) bool: whether the first triangle of each pair (K, 3, 3) has corners on both sides of the plane of
+    the second one, or on it."""
+    a, b, c = others.transpose(1, 0, 2)
+    off = np.einsum("kij,kj->ki", triangles - a[:, None], np.cross(b - a, c - a))
+    return (off.min(axis=1) <= 0) & (off.max(axis=1) >= 0)
 
 
 def segments_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> np.ndarray:
