@@ -20,7 +20,8 @@ constexpr std::size_t kChunk = 1 << 10;
 /// What is nearer than so many units in the last place comes together, twice as many with every
 /// time that rounding makes pieces cross.
 constexpr double kNearest = 64;
-constexpr double kGrowth = 32;
+constexpr double kGrowth = 8;
+constexpr int kExactRounds = 4;
 constexpr int kMostRounds = 40;
 
 /// Divides the surfaces in rounds: first exactly, then where rounding has changed something, until
@@ -49,7 +50,8 @@ private:
     std::vector<std::int32_t> fresh_;  ///< triangles of the inputs that have fresh pieces
     bool is_first_ = true;
     double ulps_ = kNearest;
-    std::size_t last_meetings_ = SIZE_MAX / 2;  ///< of the round before
+    std::size_t last_meetings_ = SIZE_MAX;  ///< when edges and triangles last got vertices
+    int exact_rounds_ = 0;
 };
 
 bool Refiner::is_flat(const Corners& c) const {
@@ -184,7 +186,9 @@ bool Refiner::round() {
         for (const std::int32_t triangle : {met.one, met.other})
             pieces_[division.piece(triangle)].is_fresh = true;
     }
-    if (!apart.empty() || !snapping.merges()) {
+    if (!apart.empty()) {
+        if (++exact_rounds_ % kExactRounds == 0) ulps_ *= kGrowth;
+    } else if (!snapping.merges()) {
         if (2 * meetings.size() > last_meetings_) ulps_ *= kGrowth;
         last_meetings_ = meetings.size();
     }

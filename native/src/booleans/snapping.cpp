@@ -30,6 +30,10 @@ Position along(const Position& a, const Position& b, double t) {
     return p;
 }
 
+Position cross(const Position& u, const Position& v) {
+    return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+
 double length(const Position& v) {
     return std::sqrt(dot(v, v));
 }
@@ -227,13 +231,16 @@ void Snapping::find_crossing(const Edge& e, const Edge& f, double within, bool& 
     const auto& points = pieces_.points;
     const Position &a = points.rounded(e[0]), &b = points.rounded(e[1]), &c = points.rounded(f[0]),
                    &d = points.rounded(f[1]);
-    const Position u = minus(b, a), v = minus(d, c), w = minus(a, c);
-    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
-    const double area = uu * vv - uv * uv;
-    if (!(area > 0)) return;
-    const double s = (uv * vw - vv * uw) / area, r = (uu * vw - uv * uw) / area;
-    if (!(s > 0 && s < 1 && r > 0 && r < 1)) return;
-    const Position on_e = along(a, b, s), on_f = along(c, d, r);
+    // where edges are nearly parallel the place is uncertain along them, but not across
+    const Position u = minus(b, a), v = minus(d, c), w = minus(c, a), normal = cross(u, v);
+    const double size = dot(normal, normal);
+    if (!(size > 0)) return;
+    const double s = dot(cross(w, v), normal) / size;
+    if (!(s > 0 && s < 1)) return;
+    const Position on_e = along(a, b, s);
+    const double r = dot(minus(on_e, c), v) / dot(v, v);
+    if (!(r > 0 && r < 1)) return;
+    const Position on_f = along(c, d, r);
     if (length(minus(on_e, on_f)) > within) return;
     const SpacePointId p = vertex_near(along(on_e, on_f, 0.5), within);
     for (const Edge& edge : {e, f}) {
@@ -266,14 +273,11 @@ bool Snapping::is_over(SpacePointId p, const Corners& t, double within) const {
     const Position u = minus(pieces_.points.rounded(t[1]), a),
                    v = minus(pieces_.points.rounded(t[2]), a),
                    w = minus(pieces_.points.rounded(p), a);
-    const Position normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                          u[0] * v[1] - u[1] * v[0]};
-    const double size = length(normal);
-    if (!(size > 0) || std::abs(dot(normal, w)) > within * size) return false;
+    const Position normal = cross(u, v);
+    const double size = dot(normal, normal);
+    if (!(size > 0) || std::abs(dot(normal, w)) > within * std::sqrt(size)) return false;
     // the shares of the corners
-    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w),
-                 area = uu * vv - uv * uv;
-    const double s = (vv * uw - uv * vw) / area, r = (uu * vw - uv * uw) / area;
+    const double s = dot(cross(w, v), normal) / size, r = dot(cross(u, w), normal) / size;
     return s > 0 && r > 0 && s + r < 1;
 }
 
