@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sample with faults: its script writes it, its model is closed and displaced as it was made; and sticks of
-a real reservoir, where these are there."""
+"""The sample with faults: its script writes it, its model is closed and displaced as it was made; and sticks
+of a real reservoir, where these are there."""
 
 import subprocess
 import sys
