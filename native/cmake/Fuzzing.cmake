@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The fuzzer of the stack builder (native/fuzz): made stacks, judged by oracles of their own.
+# The fuzzers of the stack builder and of Booleans (native/fuzz): made inputs, judged by oracles of their own.
 
 file(GLOB fuzzing_sources CONFIGURE_DEPENDS fuzz/*.cpp)
 add_library(realmodel_fuzzing STATIC ${fuzzing_sources})
@@ -10,7 +10,7 @@ target_link_libraries(realmodel_fuzzing
     PUBLIC realmodel realmodel_settings
     PRIVATE realmodel_dependencies realmodel_warnings)
 
-set(fuzzing_programs stack_fuzzer build_digests)
+set(fuzzing_programs stack_fuzzer boolean_fuzzer build_digests)
 if(REALMODEL_SANITIZE MATCHES "fuzzer-no-link") # preset fuzz: clang++'s libFuzzer
     list(APPEND fuzzing_programs coverage_fuzzer)
 endif()
@@ -37,4 +37,10 @@ set(fuzz_findings "${CMAKE_CURRENT_BINARY_DIR}/fuzz_findings")
 add_test(NAME StackFuzzer.Corpus COMMAND stack_fuzzer --into ${fuzz_findings} ${stack_files})
 add_test(NAME StackFuzzer.Cases
     COMMAND stack_fuzzer --cases ${fuzz_cases} --seed 1 --corpus ${stacks} --into ${fuzz_findings})
-set_tests_properties(StackFuzzer.Corpus StackFuzzer.Cases PROPERTIES ${test_properties})
+# The same of pairs of surfaces.
+set(pairs "${PROJECT_SOURCE_DIR}/tests/data/booleans")
+file(GLOB pair_files CONFIGURE_DEPENDS "${pairs}/*.json")
+add_test(NAME BooleanFuzzer.Corpus COMMAND boolean_fuzzer --into ${fuzz_findings} ${pair_files})
+add_test(NAME BooleanFuzzer.Cases
+    COMMAND boolean_fuzzer --cases ${fuzz_cases} --seed 1 --corpus ${pairs} --into ${fuzz_findings})
+set_tests_properties(StackFuzzer.Corpus StackFuzzer.Cases BooleanFuzzer.Corpus BooleanFuzzer.Cases PROPERTIES ${test_properties})

@@ -2,13 +2,11 @@
 """Small faults, surfaces and rock masses for the tests of structures."""
 
 import numpy as np
-from realmodel.core.structures.closed_form import nearest_side
-
-
-def fault_sides(points, vertices, triangles, threads=0, control=None):
-    """_native.fault_sides in NumPy."""
-    side = nearest_side(np.asarray(points), vertices, triangles)
-    return np.where(side == 0, 1, side).astype(np.int8)
+from realmodel.core.rock_input import mesh_rock, read_rocks
+from realmodel.core.structures.closed_form import ClosedForm
+from realmodel.core.structures.reading import read_structures
+from realmodel.core.structures.setup import make_structures
+from realmodel.core.work import run
 
 
 def plane_fault(x=5.0, lean=0.0, y=(-5.0, 15.0), z=(-20.0, 20.0), turn=0.0):
@@ -25,3 +23,54 @@ def plane_fault(x=5.0, lean=0.0, y=(-5.0, 15.0), z=(-20.0, 20.0), turn=0.0):
 
 
 SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
+
+
+def prepared(project, threads=1):
+    """The rock masses (RockInput) of a project with their sheets."""
+
+    def task(work):
+        inputs = read_rocks(work, project)
+        for entry in inputs:
+            mesh_rock(work, entry)
+        faults, bodies, _ = read_structures(work, project, threads)
+        make_structures(work, project, faults, bodies, inputs, threads, None, 0.0, 1.0)
+        return inputs
+
+    return run(task)
+
+
+def closed_form_of(entry):
+    """The closed form of a RockInput that `prepared` returned; blocks are numbered as the surfaces."""
+    return ClosedForm(
+        [surface.rule for surface in entry.rock.surfaces],
+        entry.structure.faults,
+        entry.structure.compartments,
+        entry.structure.sheets,
+        list(range(len(entry.rock.surfaces))),
+        entry.rock.base_elevation,
+    )
+
+
+def box_body(low, high):
+    """A closed box."""
+    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+    triangles = [
+        *([0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4]),
+        *([2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5]),
+    ]
+    return np.asarray(low) + corners * (np.asarray(high, float) - low), np.array(triangles, np.int32)
+
+
+def ball(center, radius, n=9):
+    """A closed surface of some hundred triangles in the shape of a ball."""
+    up, around = np.linspace(-np.pi / 2, np.pi / 2, n + 1)[1:-1], 2 * np.arange(2 * n) * np.pi / (2 * n) + 0.1
+    rings = [[np.cos(a) * np.cos(t), np.cos(a) * np.sin(t), np.sin(a)] for a in up for t in around]
+    vertices = np.array([[0, 0, -1.0], *rings, [0, 0, 1.0]])
+    k, turn, last = np.arange(2 * n), np.roll(np.arange(2 * n), -1), len(vertices) - 1
+    triangles = [np.column_stack([0 * k, 1 + turn, 1 + k])]
+    for row in range(n - 2):
+        low, high = 1 + row * 2 * n, 1 + (row + 1) * 2 * n
+        triangles += [np.column_stack([low + k, low + turn, high + k])]
+        triangles += [np.column_stack([low + turn, high + turn, high + k])]
+    triangles.append(np.column_stack([last - 2 * n + k, last - 2 * n + turn, last + 0 * k]))
+    return np.asarray(center) + radius * vertices, np.concatenate(triangles).astype(np.int32)

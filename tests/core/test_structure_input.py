@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build, load_project
+from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, load_project
 from realmodel.core.project import check_project
 from realmodel.core.project_writer import save_project
 from realmodel.core.readers import read_mesh
@@ -203,11 +203,6 @@ def test_a_project_that_is_written_says_the_same(tmp_path):
         assert np.array_equal(given.triangles, found.triangles)
         for key in ("name", "youngest", "ends_at", "dies_out", "rocks", "after", "property", "void", "rock"):
             assert getattr(given, key, None) == getattr(found, key, None), key
-
-
-def test_until_they_can_be_built_they_are_refused():
-    with pytest.raises(InputRefused, match="faults and bodies cannot be built yet"):
-        build(a_project(faults=[Fault("F", *plane_fault())]))
 
 
 def test_sticks_as_arrays():

@@ -14,6 +14,8 @@ from .build_options import check_cells, check_stage
 from .build_warning import BuildWarning
 from .rock_input import RockInput
 from .stack_refusals import refused_stack
+from .structures.joining import build_joined
+from .structures.labels import cell_compartments, warnings_where_rock_is
 from .work import Cancel, Progress, Work, native_module, run
 
 if TYPE_CHECKING:
@@ -43,18 +45,32 @@ def build_stage(
     project = replace(given, rocks=[entry.rock for entry in inputs])
 
     def task(work: Work) -> Model:
-        built = intersect(work, inputs, kind, model.threads, 0.0, _STAGE_INTERSECTED)
+        structures = None if model.structures is None else model.structures.stage(m)
+        built = intersect(work, inputs, kind, model.threads, 0.0, _STAGE_INTERSECTED, structures)
         timings = {"intersect": time.perf_counter() - began}
         return assemble(
-            type(model), work, project, inputs, built, kind, model.threads, timings, _STAGE_INTERSECTED
+            type(model),
+            work,
+            project,
+            inputs,
+            built,
+            kind,
+            model.threads,
+            timings,
+            _STAGE_INTERSECTED,
+            structures,
         )
 
     began = time.perf_counter()
     return run(task, progress, cancel)
 
 
-def intersect(work: Work, inputs, cells: str, threads: int, start: float, end: float) -> dict:
-    """The native result of all rock masses."""
+def intersect(
+    work: Work, inputs, cells: str, threads: int, start: float, end: float, structures=None
+) -> dict:
+    """The native result of all rock masses, divided by structures where there are some."""
+    if structures is not None:
+        return build_joined(work, inputs, structures, cells, threads, start, end)
     native = native_module()
     rocks = [
         (
@@ -82,23 +98,33 @@ def assemble(
     threads,
     timings,
     start: float,
+    structures=None,
 ) -> Model:
     """The model that the native arrays are of. kind: the class Model."""
     began = time.perf_counter()
     with work.phase(start, 1.0, "assembling the model"):
-        arrays = _arrays(inputs, built)
+        arrays = _arrays(inputs, built, structures)
         component = work.native(native_module().cell_components, arrays["face_cells"], arrays["cell_block"])
         work.step(0.8)
-        blocks = _blocks(inputs, built["volumes"], arrays["cell_block"], component)
+        blocks = _blocks(inputs, built["volumes"], arrays["cell_block"], component, structures)
         names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
+        kinds = [0] * len(names)
+        if structures is not None:
+            names += structures.names
+            kinds += [1] * len(structures.faults) + [2] * len(structures.bodies)
+        compartment, compartment_names = cell_compartments(inputs, built, structures)
         model = kind(
             **arrays,
+            surface_kind=np.array(kinds, np.int32),
+            cell_compartment=compartment,
+            compartment_names=compartment_names,
+            structures=structures,
             cell_kind=cells,
             blocks=blocks,
             surface_names=names,
             project=project,
             rock_inputs=inputs,
-            warnings=_warnings(inputs, built, blocks),
+            warnings=_warnings(inputs, built, blocks, structures),
             timings=timings,
             threads=threads,
         )
@@ -107,16 +133,19 @@ def assemble(
     return model
 
 
-def _arrays(inputs: list[RockInput], built: dict) -> dict[str, np.ndarray]:
+def _arrays(inputs: list[RockInput], built: dict, structures) -> dict[str, np.ndarray]:
     """The arrays that docs/dev/geometry.md names; blocks are numbered without those that cannot exist."""
     exists = [
         number > 0 or _first_block(entry) == 0 for entry in inputs for number in range(len(entry.surfaces))
     ]
+    surfaces = [surface for entry in inputs for surface in entry.surfaces]
+    if structures is not None:
+        exists += [structures.has_block(number) for number in range(len(structures))]
+        surfaces += [(each.vertices, each.triangles) for each in (*structures.faults, *structures.bodies)]
     block_of_surface = np.cumsum(exists, dtype=np.int32) - 1
     names = ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface")
     arrays = {name: built[name] for name in names}
     arrays["cell_block"] = block_of_surface[built["cell_block"]].astype(np.int32, copy=False)
-    surfaces = [surface for entry in inputs for surface in entry.surfaces]
     arrays["surface_vertices"] = np.concatenate([vertices for vertices, _ in surfaces])
     arrays["surface_triangles"] = np.concatenate([triangles for _, triangles in surfaces])
     for name, column in (("surface_vertex_offsets", 0), ("surface_triangle_offsets", 1)):
@@ -129,8 +158,12 @@ def _first_block(entry: RockInput) -> int:
     return 0 if entry.rock.base_elevation is not None else 1
 
 
-def _blocks(inputs, volumes: np.ndarray, cell_block: np.ndarray, component: np.ndarray) -> list[Block]:
+def _blocks(
+    inputs, volumes: np.ndarray, cell_block: np.ndarray, component: np.ndarray, structures
+) -> list[Block]:
     total = sum(len(entry.surfaces) - _first_block(entry) for entry in inputs)
+    bodies = [] if structures is None else structures.blocks_of_bodies()
+    total += len(bodies)
     cells, components = count_blocks(cell_block, component, total)
     blocks, first_surface = [], 0
     for number, entry in enumerate(inputs):
@@ -149,15 +182,30 @@ def _blocks(inputs, volumes: np.ndarray, cell_block: np.ndarray, component: np.n
                 )
             )
         first_surface += len(entry.surfaces)
+    for number, body, rock in bodies:
+        at = len(blocks)
+        blocks.append(
+            Block(
+                name=body.name,
+                rock=rock,
+                surface=first_surface + number,
+                property=int(body.property),
+                volume=float(volumes[first_surface + number]),
+                cells=int(cells[at]),
+                components=int(components[at]),
+            )
+        )
     return blocks
 
 
-def _warnings(inputs, built: dict, blocks: list[Block]) -> list[BuildWarning]:
+def _warnings(inputs, built: dict, blocks: list[Block], structures) -> list[BuildWarning]:
     warnings = [warning for entry in inputs for warning in entry.warnings]
     owners = [(entry.rock.name, surface.name) for entry in inputs for surface in entry.rock.surfaces]
     for kind, surface, items, text in built["warnings"]:
         rock, named = owners[surface] if 0 <= surface < len(owners) else (None, None)
         warnings.append(BuildWarning(text, kind, rock, named, tuple(int(i) for i in items)))
+    if structures is not None:
+        warnings += warnings_where_rock_is(inputs, built, structures)
     for number, entry in enumerate(inputs):
         if len(entry.surfaces) == 1 and entry.rock.base_elevation is None:
             text = "a single surface does not bound a block"

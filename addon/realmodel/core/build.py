@@ -17,6 +17,8 @@ from .method_options import check_threads
 from .model import Model
 from .project import Project, check_project
 from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
+from .structures.reading import read_structures
+from .structures.setup import make_structures
 from .work import Cancel, Progress, Work, native_module, run
 
 # Of the time of a build, roughly; a phase that a project does not have has none
@@ -71,6 +73,7 @@ def _build(
 
     with timed("read"), work.phase(0.0, ends["read"], "reading"):
         inputs = read_rocks(work, project)
+        faults, bodies, told = read_structures(work, project, threads)
     for entry, (start, end) in zip(inputs, _parts(ends["read"], ends["mesh"], len(inputs)), strict=True):
         with timed("mesh"), work.phase(start, end, f"meshing the region of {entry.rock.name}"):
             mesh_rock(work, entry)
@@ -78,22 +81,31 @@ def _build(
     def taken() -> list[RockInput]:
         return inputs if stage is None else [entry.stage(stage) for entry in inputs]
 
-    require_memory(taken(), cells, memory)
-    parts = _parts(ends["mesh"], ends["interpolate"], len(inputs))
-    for entry, (start, end) in zip(inputs, parts, strict=True):
-        with timed("interpolate"):
-            interpolate_rock(work, entry, start, end, threads, stage)
+    require_memory(taken(), cells, memory, len(faults) + len(bodies))
+    structures = None
+    with timed("interpolate"):
+        if faults or bodies:
+            structures = make_structures(
+                work, project, faults, bodies, inputs, threads, stage, ends["mesh"], ends["interpolate"]
+            )
+        else:
+            parts = _parts(ends["mesh"], ends["interpolate"], len(inputs))
+            for entry, (start, end) in zip(inputs, parts, strict=True):
+                interpolate_rock(work, entry, start, end, threads, stage)
     inputs = taken()
+    if structures is not None:
+        inputs[0].warnings += told
+        structures = structures if stage is None else structures.stage(stage)
     with timed("intersect"):
-        built = intersect(work, inputs, cells, threads, ends["interpolate"], ends["intersect"])
-    given = replace(project, rocks=[entry.rock for entry in inputs])
-    return assemble(Model, work, given, inputs, built, cells, threads, timings, ends["intersect"])
+        built = intersect(work, inputs, cells, threads, ends["interpolate"], ends["intersect"], structures)
+    given = replace(project, rocks=[entry.rock for entry in inputs], faults=faults, bodies=bodies)
+    return assemble(Model, work, given, inputs, built, cells, threads, timings, ends["intersect"], structures)
 
 
 def _phase_ends(project: Project) -> dict[str, float]:
     """Where each phase ends in the progress: by fixed shares of the phases that this project has."""
     has_files = bool(project.input_files())
-    interpolates = any(rock.interpolates for rock in project.rocks)
+    interpolates = bool(project.faults) or any(rock.interpolates for rock in project.rocks)
     shares = _SHARES | {
         "read": _SHARES["read"] * has_files,
         "mesh": _SHARES["mesh"] * interpolates,

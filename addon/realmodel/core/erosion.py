@@ -9,6 +9,7 @@ import numpy as np
 
 from .native_rocks import native_rocks
 from .rules import RULES
+from .structures.joining import build_joined
 from .work import Cancel, Progress, Work, native_module, run
 
 _RELATIVE = 1e-12  # how far sums of cells may be off
@@ -83,25 +84,49 @@ def _cut_at(model, k: int) -> list[tuple[int, np.ndarray]]:
     """Of each rock mass whose surface k cuts what is older: its global index, and which blocks are."""
     found = []
     first_surfaces = _first_surfaces(model)
-    for rock, first in zip(model.project.rocks, first_surfaces[:-1], strict=True):
+    for number, (rock, first) in enumerate(zip(model.project.rocks, first_surfaces[:-1], strict=True)):
         if k < len(rock.surfaces) and RULES[rock.surfaces[k].rule].cuts:
             older = [b for b, block in enumerate(model.blocks) if first <= block.surface < first + k]
+            older += _bodies_before(model, number, k)
             if older:
                 found.append((int(first + k), np.array(older)))
     return found
 
 
+def _bodies_before(model, rock: int, k: int) -> list[int]:
+    """The blocks of bodies that were in a rock mass before its surface k."""
+    if model.structures is None:
+        return []
+    first, times = _first_surfaces(model)[-1] + len(model.structures.faults), model.structures.times
+    return [
+        b
+        for b, block in enumerate(model.blocks)
+        if block.surface >= first and block.rock == rock and times[block.surface - first].get(rock, k) < k
+    ]
+
+
 def _stage_volumes(work: Work, model, m: int, threads: int) -> np.ndarray:
     """(B,) volumes of the blocks just after surface m; NaN for those that come later."""
-    built = work.native(
-        native_module().build_rock_masses, native_rocks(model, m), cells="blocks", threads=threads
-    )
+    first = _first_surfaces(model)
     kept = [min(len(rock.surfaces), m + 1) for rock in model.project.rocks]
-    first_kept, first = np.cumsum([0, *kept]), _first_surfaces(model)
+    first_kept = np.cumsum([0, *kept])
     volumes = np.full(len(model.blocks), np.nan)
+    if model.structures is None:
+        built = work.native(
+            native_module().build_rock_masses, native_rocks(model, m), cells="blocks", threads=threads
+        )
+        bodies = None
+    else:
+        bodies = model.structures.stage(m)
+        inputs = [entry.stage(m) for entry in model.rock_inputs]
+        built = build_joined(work, inputs, bodies, "blocks", threads, *work.stretch)
     for b, block in enumerate(model.blocks):
         own = block.surface - first[block.rock]
-        if own < kept[block.rock]:
+        body = block.surface - first[-1]
+        if body >= 0:
+            if bodies.has_block(body):
+                volumes[b] = built["volumes"][first_kept[-1] + body]
+        elif own < kept[block.rock]:
             volumes[b] = built["volumes"][first_kept[block.rock] + own]
     return volumes
 

@@ -20,6 +20,7 @@ from .exporters import save_model
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
+from .structures.parts import Structures
 from .surface_set import vertex_attributes
 from .validation import PLACES_OF_CHECK, ValidationReport, validate
 from .work import Cancel, Progress, native_module
@@ -56,6 +57,16 @@ class Model:
     timings: dict[str, float] = field(default_factory=dict)
     threads: int = 0
     is_cut: bool = False
+    surface_kind: np.ndarray | None = None
+    cell_compartment: np.ndarray | None = None
+    compartment_names: list[str] = field(default_factory=list)
+    structures: Structures | None = field(default=None, repr=False)
+
+    def __post_init__(self):
+        if self.surface_kind is None:
+            self.surface_kind = np.zeros(len(self.surface_names), np.int32)
+        if self.cell_compartment is None:
+            self.cell_compartment = np.zeros(len(self.cell_block), np.int32)
 
     @property
     def volume(self) -> float:
@@ -94,6 +105,27 @@ class Model:
             self.surface_vertices[v[number] : v[number + 1]],
             self.surface_triangles[t[number] : t[number + 1]],
         )
+
+    @property
+    def surface_triangle_sheet(self) -> np.ndarray:
+        """(Ts,) int32: of each of `surface_triangles` the sheet of its surface that it is of, from 0."""
+        if self.structures is None:
+            return np.zeros(len(self.surface_triangles), np.int32)
+        sizes = [
+            [len(triangles) for _, triangles in entry.structure.distinct(k)]
+            for entry in self.rock_inputs
+            for k in range(len(entry.surfaces))
+        ]
+        sizes += [[len(self.surface(number)[1])] for number in np.flatnonzero(self.surface_kind)]
+        return np.concatenate([np.repeat(np.arange(len(each)), each) for each in sizes]).astype(np.int32)
+
+    def sheet_triangles(self, number: int) -> list[np.ndarray]:
+        """The triangles (T, 3) of each sheet of a surface, by its global index; a surface that no fault
+        displaces has one."""
+        triangles = self.surface(number)[1]
+        begin, end = self.surface_triangle_offsets[number : number + 2]
+        sheet = self.surface_triangle_sheet[begin:end]
+        return [np.ascontiguousarray(triangles[sheet == each]) for each in np.unique(sheet)]
 
     def save(self, path: str | Path) -> None:
         """Writes the model to a file, by its ending (.npz, .vtu). It appears whole or not at all.

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .layer_values import at_places
+from .structures.sides import sides_of
+from .work import Work, run
 
 if TYPE_CHECKING:
     from .model import Model
@@ -39,14 +41,33 @@ class Residuals:
         return float(self.values[np.abs(self.values).argmax()]) if len(self.values) else 0.0
 
 
+def _heights(model: Model, number: int, at: int, entry, points: np.ndarray) -> np.ndarray:
+    """(P,) the heights of a surface at points; with faults those of its sheet in each point's compartment."""
+    if model.structures is None:
+        return at_places(*model.surface(number), points[:, :2], model.threads)
+    structure = entry.structure
+
+    def task(work: Work) -> np.ndarray:
+        sides = sides_of(work, points, structure.faults, model.threads)
+        active = structure.faults.active(at)
+        found = np.full(len(points), np.nan)
+        for row, sheets in zip(structure.compartments, structure.sheets, strict=True):
+            own = ((sides == row) | ~active).all(axis=1)
+            if own.any():
+                found[own] = at_places(*sheets[at], points[own, :2], model.threads)
+        return found
+
+    return run(task)
+
+
 def residuals(model: Model) -> list[Residuals]:
     """Of each surface of a model that was interpolated from points, in the model's order."""
     found, number = [], 0
-    for rock in model.project.rocks:
-        for surface in rock.surfaces:
+    for rock, entry in zip(model.project.rocks, model.rock_inputs or model.project.rocks, strict=True):
+        for at, surface in enumerate(rock.surfaces):
             points = surface.points
             if points is not None and len(points) and number < len(model.surface_names):
-                there = at_places(*model.surface(number), points[:, :2], model.threads)
+                there = _heights(model, number, at, entry, np.asarray(points, np.float64))
                 known = np.isfinite(there)
                 values = points[known, 2] - there[known]
                 found.append(Residuals(rock.name, surface.name, points[known], values, int((~known).sum())))

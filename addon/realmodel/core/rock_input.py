@@ -89,8 +89,6 @@ class RockInput:
 def read_rocks(work: Work, project: Project) -> list[RockInput]:
     """Reads every file of a project. The surfaces that have points are not interpolated yet: their entry
     in `surfaces` is None."""
-    if project.faults or project.bodies:
-        raise InputRefused("faults and bodies cannot be built yet", file=project.path)
     total = sum(1 + len(rock.surfaces) for rock in project.rocks)
     done = 0
     inputs = []

@@ -11,6 +11,7 @@ import numpy as np
 from .errors import UsageError, place_text
 from .method_options import check_threads
 from .native_rocks import native_rocks
+from .structures.proof import check_points
 from .work import Cancel, Progress, Work, native_module, run
 
 _DTYPES = {
@@ -36,6 +37,10 @@ _SAYS = {
     "walls": (5, "each side of a wall is the block that the wall names, or the outside"),
 }
 _SAYS_OF_BLOCKS = {"closed": "every cell is closed: its faces use each edge as often in either direction"}
+_SAYS_OF_STRUCTURES = {
+    "places": "at points anywhere and beside faces and structures the model has the closed form's block",
+    "surfaces": "faces lie on the surfaces, faults and bodies that they name",
+}
 _WIDTH = 100
 PLACES_OF_CHECK = 40_000  # where nothing is said: for a reviewer, seconds at most
 PLACES_OF_REPORT = 4_000  # in every report.json
@@ -199,16 +204,19 @@ def validate(
             found = work.native(native.check_topology, arrays, threads=threads)
         if places and not model.is_cut and found[0]["failed"] == 0:
             with work.phase(0.6, 1.0, "comparing with the closed form"):
-                found += work.native(
-                    native.check_samples,
-                    arrays,
-                    native_rocks(model),
-                    _block_of_surface(model),
-                    int(places),
-                    int(seed),
-                    threads,
-                )
-        tests = [_test(entry, model.cell_kind) for entry in found]
+                if model.structures is not None:
+                    found += check_points(work, model, int(places), int(seed))
+                else:
+                    found += work.native(
+                        native.check_samples,
+                        arrays,
+                        native_rocks(model),
+                        _block_of_surface(model),
+                        int(places),
+                        int(seed),
+                        threads,
+                    )
+        tests = [_test(entry, model) for entry in found]
         return sorted(tests, key=lambda test: test.number)
 
     tests = run(task, progress, cancel)
@@ -269,10 +277,12 @@ def _block_of_surface(model) -> np.ndarray:
     return of_surface
 
 
-def _test(entry: dict, cell_kind: str) -> ValidationTest:
+def _test(entry: dict, model) -> ValidationTest:
     """A test as the native part tells it; -1 stands for no number there."""
     number, says = _SAYS[entry["name"]]
-    if cell_kind == "blocks":
+    if model.structures is not None:
+        says = _SAYS_OF_STRUCTURES.get(entry["name"], says)
+    if model.cell_kind == "blocks":
         says = _SAYS_OF_BLOCKS.get(entry["name"], says)
     offenders = [
         Offender(

@@ -28,11 +28,15 @@ def volume_deviations(model) -> np.ndarray:
         faces = np.flatnonzero((model.face_surface == number) & (sides[:, 0] != sides[:, 1]))
         if not np.isfinite(variance).any() or not len(faces):
             continue
-        vertices, triangles = model.surface(number)
+        vertices, _ = model.surface(number)
         deviation = np.sqrt(np.maximum(np.nan_to_num(variance), 0.0))
         shape = np.column_stack([vertices[:, :2], deviation])
         places = np.ascontiguousarray(middle[faces])
-        here = np.nan_to_num(native_module().surface_heights(shape, triangles, places))
+        sheets = [
+            np.nan_to_num(native_module().surface_heights(shape, triangles, places))
+            for triangles in model.sheet_triangles(number)
+        ]
+        here = np.max(sheets, axis=0)  # of the sheets of a surface that faults displace
         for side in sides[faces].T:
             inside = side >= 0
             blocks = side[inside]

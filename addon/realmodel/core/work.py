@@ -50,6 +50,11 @@ class Work:
         yield
         self.step(1.0)
 
+    @property
+    def stretch(self) -> tuple[float, float]:
+        """The progress that the present phase begins and ends at."""
+        return self._start, self._end
+
     def step(self, share: float) -> None:
         """Tells the share done of the present phase. Raises Cancelled where the caller asked to stop."""
         self.check()

@@ -5,6 +5,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty
 
 from ..bl.boolean_job import DIVIDE, OPERATIONS, BooleanJob
+from ..core import InputRefused
 from ..core.errors import number_list
 from .background import InBackground
 from .reporting import not_building
@@ -14,7 +15,7 @@ def _object_mode(context):
     return None if context.mode == "OBJECT" else "this works in Object Mode; leave the other mode first"
 
 
-def _two_meshes(context):
+def _selected(context):
     active = context.active_object
     if active is None or active.type != "MESH":
         return "the active object is no mesh; make the object that is to be changed active"
@@ -24,9 +25,18 @@ def _two_meshes(context):
     return None
 
 
+def _two_meshes(context):
+    """Also after the operation, when the other object is hidden: Blender asks before it takes the operation
+    back to do it anew with what was changed in its panel."""
+    done = context.window_manager.operators
+    if len(done) and done[-1].bl_idname == REALMODEL_OT_boolean.__name__:
+        return None
+    return _selected(context)
+
+
 def _editable(context):
     item = context.active_object
-    if item.library is None and item.override_library is None:
+    if item is None or (item.library is None and item.override_library is None):
         return None
     return f"{item.name} is linked from another file; make it local first"
 
@@ -52,6 +62,9 @@ class REALMODEL_OT_boolean(InBackground, bpy.types.Operator):
     )
 
     def begin(self, context):
+        reason = _selected(context)
+        if reason:
+            raise InputRefused(reason)
         active = context.active_object
         other = next(item for item in context.selected_objects if item != active and item.type == "MESH")
         depsgraph = context.evaluated_depsgraph_get()

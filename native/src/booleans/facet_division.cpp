@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "arrangement/polygons.hpp"
 #include "exact/space_predicates.hpp"
 
 namespace realmodel::booleans {
@@ -22,14 +23,6 @@ void add_fan(const std::vector<SpacePointId>& loop, std::vector<Corners>& triang
         const Corners t{at(0), at(i), at(i + 1)};
         if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
     }
-}
-
-/// The square of a distance.
-double squared(const exact::SpacePosition& a, const exact::SpacePosition& b) {
-    double sum = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-        sum += (a[k] - b[k]) * (a[k] - b[k]);
-    return sum;
 }
 
 /// A triangulation of one triangle, in which points are where they would be if they lay on it. Its
@@ -52,7 +45,7 @@ public:
             insert(p, own);
         for (const Edge& edge : facet.wanted)
             insert_edge(edge);
-        shorten_edges();
+        improve();
     }
 
     bool has_area() const { return facing_ != 0; }
@@ -215,25 +208,47 @@ private:
         }
         kept_.push_back({std::min(p, q), std::max(p, q)});
     }
-    /// Of two diagonals that a convex quadrilateral can have the shorter one: so triangles near one
-    /// another that have the same points get the same edges.
-    void shorten_edges() {
-        const auto key = [&](SpacePointId a, SpacePointId b) {
-            const SpacePointId p = name(a), q = name(b);
-            return std::pair(squared(global_.rounded(p), global_.rounded(q)),
-                             std::pair(std::min(p, q), std::max(p, q)));
-        };
-        for (bool changed = true; changed;) {
-            changed = false;
+    /// The cotangent of the angle at a point, between two others.
+    double cotangent(SpacePointId at, SpacePointId from, SpacePointId to) const {
+        const auto &p = global_.rounded(at), &q = global_.rounded(from), &r = global_.rounded(to);
+        const auto u = arrangement::minus(q, p), v = arrangement::minus(r, p);
+        const std::array<double, 3> normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                                           u[0] * v[1] - u[1] * v[0]};
+        return arrangement::dot(u, v) / std::sqrt(arrangement::dot(normal, normal));
+    }
+    /// Whether of a quadrilateral's diagonals that from a to b is against Delaunay's rule: the sum
+    /// of the angles at c and d is more than half a turn. The same for the same four points in
+    /// whichever triangles, and seen along whichever axis.
+    bool is_worse(SpacePointId a, SpacePointId b, SpacePointId c, SpacePointId d) const {
+        constexpr double kTie = 1e-6;
+        if (b < a) std::swap(a, b);
+        if (d < c) std::swap(c, d);
+        const bool other_first = c < a;
+        if (other_first) {
+            std::swap(a, c);
+            std::swap(b, d);
+        }
+        const double sum = cotangent(c, a, b) + cotangent(d, a, b);
+        return (sum < -kTie) != other_first;
+    }
+    /// Flips edges until none has a point across it within its circle (C. L. Lawson, 1977): so
+    /// triangles near one another that have the same points get the same edges.
+    void improve() {
+        for (std::size_t pass = 0; pass < 64; ++pass) {
+            bool changed = false;
             for (std::size_t t = 0; t < triangles_.size(); ++t) {
                 for (std::size_t k = 0; k < 3; ++k) {
                     const SpacePointId a = triangles_[t][k], b = triangles_[t][(k + 1) % 3];
+                    if (is_kept(a, b)) continue;
                     const auto other = left_of(b, a);
-                    if (!other || is_kept(a, b)) continue;
-                    if (key(triangles_[t][(k + 2) % 3], other->tip) < key(a, b) && flip(a, b))
+                    if (other &&
+                        is_worse(name(a), name(b), name(triangles_[t][(k + 2) % 3]),
+                                 name(other->tip)) &&
+                        flip(a, b))
                         changed = true;
                 }
             }
+            if (!changed) break;
         }
     }
 

@@ -19,8 +19,10 @@ namespace {
 constexpr std::size_t kChunk = 1 << 10;
 /// What is nearer than so many units in the last place comes together, twice as many with every
 /// time that rounding makes pieces cross.
-constexpr double kNearest = 4;
-constexpr int kMostRounds = 48;
+constexpr double kNearest = 64;
+constexpr double kGrowth = 8;
+constexpr int kExactRounds = 4;
+constexpr int kMostRounds = 40;
 
 /// Divides the surfaces in rounds: first exactly, then where rounding has changed something, until
 /// nothing meets out of order.
@@ -39,7 +41,7 @@ private:
     bool is_flat(const Corners& corners) const;
     std::vector<PieceId> pieces_near_fresh() const;
     void find_fresh(const std::vector<std::int32_t>& among);
-    bool round(double ulps);
+    bool round();
     Parts result() const;
 
     Pieces pieces_;
@@ -47,6 +49,9 @@ private:
     Progress* progress_;
     std::vector<std::int32_t> fresh_;  ///< triangles of the inputs that have fresh pieces
     bool is_first_ = true;
+    double ulps_ = kNearest;
+    std::size_t last_meetings_ = SIZE_MAX;  ///< when edges and triangles last got vertices
+    int exact_rounds_ = 0;
 };
 
 bool Refiner::is_flat(const Corners& c) const {
@@ -64,24 +69,33 @@ bool Refiner::is_flat(const Corners& c) const {
     return true;
 }
 
-/// Pieces without area go: what has a vertex on one of their edges gets it itself.
+/// Pieces without area go. As long as nothing is divided, what has a vertex on one of their edges
+/// meets another piece there, and gets it; later their edges get it.
 void Refiner::drop_flat() {
-    std::vector<std::uint8_t> has_flat(fresh_.size(), 0);
-    parallel_ranges(fresh_.size(), kChunk, threads_, progress_,
-                    [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t i = begin; i < end; ++i) {
-                            for (const Piece& piece : pieces_.of(fresh_[i])) {
-                                if (piece.is_fresh && is_flat(piece.corners)) has_flat[i] = 1;
+    for (;;) {
+        std::vector<std::vector<Corners>> found(fresh_.size());
+        parallel_ranges(fresh_.size(), kChunk, threads_, progress_,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t i = begin; i < end; ++i) {
+                                for (const Piece& piece : pieces_.of(fresh_[i])) {
+                                    if (piece.is_fresh && is_flat(piece.corners))
+                                        found[i].push_back(in_order(piece.corners).first);
+                                }
                             }
-                        }
-                    });
-    for (std::size_t i = 0; i < fresh_.size(); ++i) {
-        if (has_flat[i] == 0) continue;
-        std::vector<Piece> kept;
-        for (const Piece& piece : pieces_.of(fresh_[i])) {
-            if (!piece.is_fresh || !is_flat(piece.corners)) kept.push_back(piece);
+                        });
+        std::vector<Corners> flat;
+        for (std::size_t i = 0; i < fresh_.size(); ++i) {
+            flat.insert(flat.end(), found[i].begin(), found[i].end());
+            if (is_first_ && !found[i].empty()) pieces_.replace(fresh_[i], {});
         }
-        pieces_.replace(fresh_[i], std::move(kept));
+        if (is_first_ || flat.empty()) return;
+        std::sort(flat.begin(), flat.end());
+        flat.erase(std::unique(flat.begin(), flat.end()), flat.end());
+        std::vector<std::int32_t> changed = Snapping(pieces_, flat).apply(threads_, progress_);
+        changed.insert(changed.end(), fresh_.begin(), fresh_.end());
+        std::sort(changed.begin(), changed.end());
+        changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+        find_fresh(changed);
     }
 }
 
@@ -129,7 +143,7 @@ void Refiner::find_fresh(const std::vector<std::int32_t>& among) {
 
 /// Divides what meets out of order, or brings it together where it is near. False where nothing
 /// does.
-bool Refiner::round(double ulps) {
+bool Refiner::round() {
     drop_flat();
     auto near = pieces_near_fresh();
     std::vector<std::int32_t> touched = fresh_;
@@ -159,7 +173,7 @@ bool Refiner::round(double ulps) {
     };
     for (const auto& met : meetings)
         pairs.push_back(pair_of(met));
-    Snapping snapping(pieces_, std::move(pairs), ulps);
+    Snapping snapping(pieces_, std::move(pairs), ulps_);
     std::vector<ExactDivision::Meeting> apart;
     for (const auto& met : meetings) {
         const auto at =
@@ -171,6 +185,12 @@ bool Refiner::round(double ulps) {
         }
         for (const std::int32_t triangle : {met.one, met.other})
             pieces_[division.piece(triangle)].is_fresh = true;
+    }
+    if (!apart.empty()) {
+        if (++exact_rounds_ % kExactRounds == 0) ulps_ *= kGrowth;
+    } else if (!snapping.merges()) {
+        if (2 * meetings.size() > last_meetings_) ulps_ *= kGrowth;
+        last_meetings_ = meetings.size();
     }
     if (!apart.empty()) {
         division.divide(apart);
@@ -185,13 +205,11 @@ bool Refiner::round(double ulps) {
 }
 
 Parts Refiner::run() {
-    double ulps = kNearest;
     for (int n = 0; n < kMostRounds; ++n) {
         const double share = 0.8 * n / (n + 1.0);
         if (progress_ != nullptr)
             progress_->begin(share, 0.8 * (n + 1) / (n + 2.0), "intersecting triangles");
-        if (fresh_.empty() || !round(ulps)) return result();
-        if (n > 0) ulps *= 2;
+        if (fresh_.empty() || !round()) return result();
     }
     throw InputError(
         "too_close",

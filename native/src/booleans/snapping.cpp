@@ -30,6 +30,10 @@ Position along(const Position& a, const Position& b, double t) {
     return p;
 }
 
+Position cross(const Position& u, const Position& v) {
+    return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+
 double length(const Position& v) {
     return std::sqrt(dot(v, v));
 }
@@ -42,6 +46,25 @@ std::array<Edge, 3> edges_of(const Corners& c) {
     return {edge_of(c[0], c[1]), edge_of(c[1], c[2]), edge_of(c[2], c[0])};
 }
 
+/// Pieces of one triangle that have been folded upon each other go, two and two.
+void cancel_folds(std::vector<Piece>& pieces) {
+    std::map<Corners, std::array<std::vector<std::size_t>, 2>> by_corners;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const auto [corners, is_odd] = in_order(pieces[i].corners);
+        by_corners[corners][is_odd ? 1 : 0].push_back(i);
+    }
+    std::vector<std::uint8_t> goes(pieces.size(), 0);
+    for (const auto& [corners, found] : by_corners) {
+        for (std::size_t k = 0; k < std::min(found[0].size(), found[1].size()); ++k)
+            goes[found[0][k]] = goes[found[1][k]] = 1;
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (goes[i] == 0) pieces[kept++] = pieces[i];
+    }
+    pieces.resize(kept);
+}
+
 }  // namespace
 
 Snapping::Snapping(Pieces& pieces, std::vector<FacetPair>&& pairs, double ulps)
@@ -49,23 +72,49 @@ Snapping::Snapping(Pieces& pieces, std::vector<FacetPair>&& pairs, double ulps)
     std::sort(pairs_.begin(), pairs_.end());
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
     is_near_.assign(pairs_.size(), false);
-    merge_vertices();
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
-        FacetPair pair;
-        bool merges = false;
-        for (std::size_t k = 0; k < 2; ++k) {
-            Corners corners = pairs_[i][k];
-            for (SpacePointId& p : corners) {
-                const SpacePointId to = merged(p);
-                merges = merges || to != p;
-                p = to;
+    // what gets new vertices hands them on to all that is near it, so that layers that lie upon one
+    // another are divided alike
+    std::vector<Corners> facets;
+    for (const FacetPair& pair : pairs_)
+        facets.insert(facets.end(), pair.begin(), pair.end());
+    std::set<Corners> known;
+    std::set<FacetPair> done;
+    while (!facets.empty()) {
+        std::vector<FacetPair> near = pairs_near(facets);
+        facets.clear();
+        std::erase_if(near, [&](const FacetPair& pair) { return !done.insert(pair).second; });
+        for (const FacetPair& pair : near) {
+            for (const Corners& corners : pair) {
+                if (!known.insert(corners).second) continue;
+                for (const SpacePointId p : corners)
+                    add_vertex(p);
             }
-            pair[k] = in_order(corners).first;
         }
-        is_near_[i] = merges;
-        if (has_equal_corners(pair[0]) || has_equal_corners(pair[1]) || pair[0] == pair[1])
-            continue;
-        if (find_near(pair)) is_near_[i] = true;
+        for (const FacetPair& pair : near) {
+            const bool merges = find_merges(pair);
+            if (!find_near(pair) && !merges) continue;
+            facets.insert(facets.end(), pair.begin(), pair.end());
+            const auto own = std::lower_bound(pairs_.begin(), pairs_.end(), pair);
+            if (own != pairs_.end() && *own == pair)
+                is_near_[static_cast<std::size_t>(own - pairs_.begin())] = true;
+        }
+    }
+    merge_vertices();
+    if (!merged_.empty()) {  // the others are found again, with the vertices that remain
+        on_edges_.clear();
+        additions_.clear();
+    } else {
+        spread_points();
+    }
+    order_points();
+}
+
+Snapping::Snapping(Pieces& pieces, const std::vector<Corners>& flat) : pieces_(pieces) {
+    for (const Corners& t : flat) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Edge edge = edge_of(t[k], t[(k + 1) % 3]);
+            if (is_between(t[(k + 2) % 3], edge)) on_edges_[edge].push_back(t[(k + 2) % 3]);
+        }
     }
     order_points();
 }
@@ -86,13 +135,56 @@ SpacePointId Snapping::merged(SpacePointId p) const {
     return found == merged_.end() ? p : found->second;
 }
 
+/// Triangles with all that come near them.
+std::vector<FacetPair> Snapping::pairs_near(std::vector<Corners>& facets) {
+    std::sort(facets.begin(), facets.end());
+    facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
+    std::vector<FacetPair> pairs;
+    for (const Corners& facet : facets) {
+        if (!asked_.insert(facet).second) continue;
+        spatial::Box box = pieces_.box(facet);
+        box.widen(distance_of({facet, facet}));
+        pieces_.find_inputs(box, [&](std::int32_t input) {
+            for (const Piece& piece : pieces_.of(input)) {
+                const Corners other = in_order(piece.corners).first;
+                if (other == facet || !box.meets(pieces_.box(other))) continue;
+                pairs.push_back({std::min(facet, other), std::max(facet, other)});
+            }
+        });
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+}
+
+void Snapping::add_vertex(SpacePointId p) {
+    if (vertices_.insert(p).second) by_x_.emplace(pieces_.points.rounded(p)[0], p);
+}
+
+/// Notes vertices that are to become one.
+bool Snapping::find_merges(const FacetPair& pair) {
+    const double within = distance_of(pair);
+    std::array<SpacePointId, 6> all;
+    std::copy(pair[0].begin(), pair[0].end(), all.begin());
+    std::copy(pair[1].begin(), pair[1].end(), all.begin() + 3);
+    bool found = false;
+    for (std::size_t i = 0; i < 6; ++i) {
+        for (std::size_t j = i + 1; j < 6; ++j) {
+            if (all[i] == all[j] || length(minus(pieces_.points.rounded(all[i]),
+                                                 pieces_.points.rounded(all[j]))) > within)
+                continue;
+            same_.push_back(edge_of(all[i], all[j]));
+            found = true;
+        }
+    }
+    return found;
+}
+
 /// Of vertices that become one the first stands for all: the inputs' come before new ones.
 void Snapping::merge_vertices() {
     std::vector<SpacePointId> vertices;
-    for (const FacetPair& pair : pairs_) {
-        for (const Corners& corners : pair)
-            vertices.insert(vertices.end(), corners.begin(), corners.end());
-    }
+    for (const Edge& pair : same_)
+        vertices.insert(vertices.end(), pair.begin(), pair.end());
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     const auto number = [&](SpacePointId p) {
@@ -100,19 +192,8 @@ void Snapping::merge_vertices() {
                                          vertices.begin());
     };
     DisjointSets sets(vertices.size());
-    for (const FacetPair& pair : pairs_) {
-        const double within = distance_of(pair);
-        std::array<SpacePointId, 6> all;
-        std::copy(pair[0].begin(), pair[0].end(), all.begin());
-        std::copy(pair[1].begin(), pair[1].end(), all.begin() + 3);
-        for (std::size_t i = 0; i < 6; ++i) {
-            for (std::size_t j = i + 1; j < 6; ++j) {
-                if (all[i] != all[j] && length(minus(pieces_.points.rounded(all[i]),
-                                                     pieces_.points.rounded(all[j]))) <= within)
-                    sets.join(number(all[i]), number(all[j]));
-            }
-        }
-    }
+    for (const Edge& pair : same_)
+        sets.join(number(pair[0]), number(pair[1]));
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const auto to = index(sets.find(static_cast<std::int32_t>(i)));
         if (to == i) continue;
@@ -150,19 +231,79 @@ void Snapping::find_crossing(const Edge& e, const Edge& f, double within, bool& 
     const auto& points = pieces_.points;
     const Position &a = points.rounded(e[0]), &b = points.rounded(e[1]), &c = points.rounded(f[0]),
                    &d = points.rounded(f[1]);
-    const Position u = minus(b, a), v = minus(d, c), w = minus(a, c);
-    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
-    const double area = uu * vv - uv * uv;
-    if (!(area > 0)) return;
-    const double s = (uv * vw - vv * uw) / area, r = (uu * vw - uv * uw) / area;
-    if (!(s > 0 && s < 1 && r > 0 && r < 1)) return;
-    const Position on_e = along(a, b, s), on_f = along(c, d, r);
+    // where edges are nearly parallel the place is uncertain along them, but not across
+    const Position u = minus(b, a), v = minus(d, c), w = minus(c, a), normal = cross(u, v);
+    const double size = dot(normal, normal);
+    if (!(size > 0)) return;
+    const double s = dot(cross(w, v), normal) / size;
+    if (!(s > 0 && s < 1)) return;
+    const Position on_e = along(a, b, s);
+    const double r = dot(minus(on_e, c), v) / dot(v, v);
+    if (!(r > 0 && r < 1)) return;
+    const Position on_f = along(c, d, r);
     if (length(minus(on_e, on_f)) > within) return;
-    const SpacePointId p = pieces_.points.add(along(on_e, on_f, 0.5));
-    if (!is_between(p, e) || !is_between(p, f)) return;
-    on_edges_[e].push_back(p);
-    on_edges_[f].push_back(p);
-    found = true;
+    const SpacePointId p = vertex_near(along(on_e, on_f, 0.5), within);
+    for (const Edge& edge : {e, f}) {
+        if (p == edge[0] || p == edge[1] || !is_between(p, edge)) continue;
+        on_edges_[edge].push_back(p);
+        found = true;
+    }
+}
+
+/// The nearest known vertex within a distance, or a new one.
+SpacePointId Snapping::vertex_near(const Position& at, double within) {
+    SpacePointId nearest = kNone;
+    double least = within;
+    for (auto next = by_x_.lower_bound(at[0] - within);
+         next != by_x_.end() && next->first <= at[0] + within; ++next) {
+        const double distance = length(minus(pieces_.points.rounded(next->second), at));
+        if (distance > least || (distance == least && nearest.has_value())) continue;
+        least = distance;
+        nearest = next->second;
+    }
+    if (nearest.has_value()) return nearest;
+    nearest = pieces_.points.add(at);
+    by_x_.emplace(pieces_.points.rounded(nearest)[0], nearest);
+    return nearest;
+}
+
+/// Whether a vertex is near the inside of a triangle.
+bool Snapping::is_over(SpacePointId p, const Corners& t, double within) const {
+    const Position& a = pieces_.points.rounded(t[0]);
+    const Position u = minus(pieces_.points.rounded(t[1]), a),
+                   v = minus(pieces_.points.rounded(t[2]), a),
+                   w = minus(pieces_.points.rounded(p), a);
+    const Position normal = cross(u, v);
+    const double size = dot(normal, normal);
+    if (!(size > 0) || std::abs(dot(normal, w)) > within * std::sqrt(size)) return false;
+    // the shares of the corners
+    const double s = dot(cross(w, v), normal) / size, r = dot(cross(u, w), normal) / size;
+    return s > 0 && r > 0 && s + r < 1;
+}
+
+/// Points on the edges of a triangle go to all that is near it, until all have them.
+void Snapping::spread_points() {
+    std::map<Corners, std::set<SpacePointId>> placed;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (auto& [t, addition] : additions_) {
+            auto& own = placed[t];
+            for (const Corners& near : addition.near) {
+                const double within = distance_of({t, near});
+                for (const Edge& edge : edges_of(near)) {
+                    const auto on = on_edges_.find(edge);
+                    if (on == on_edges_.end()) continue;
+                    for (std::size_t i = 0; i < on->second.size(); ++i) {
+                        const SpacePointId p = on->second[i];
+                        if (has(t, p) || !own.insert(p).second) continue;
+                        changed = true;
+                        if (find_near_edges(p, t, within)) continue;
+                        if (is_over(p, t, within)) addition.within.push_back(p);
+                    }
+                }
+            }
+        }
+    }
 }
 
 bool Snapping::find_near(const FacetPair& pair) {
@@ -178,29 +319,15 @@ bool Snapping::find_near(const FacetPair& pair) {
                 at_edges = true;
                 continue;
             }
-            const Position& a = pieces_.points.rounded(other[0]);
-            const Position u = minus(pieces_.points.rounded(other[1]), a),
-                           v = minus(pieces_.points.rounded(other[2]), a),
-                           w = minus(pieces_.points.rounded(p), a);
-            const Position normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                                  u[0] * v[1] - u[1] * v[0]};
-            const double size = length(normal);
-            if (!(size > 0) || std::abs(dot(normal, w)) > within * size) continue;
-            // the shares of the corners
-            const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w),
-                         vw = dot(v, w), area = uu * vv - uv * uv;
-            const double s = (vv * uw - uv * vw) / area, r = (uu * vw - uv * uw) / area;
-            if (!(s > 0 && r > 0 && s + r < 1)) continue;
+            if (!is_over(p, other, within)) continue;
             additions_[other].within.push_back(p);
             found = true;
         }
     }
-    if (!at_edges) {
-        for (const Edge& e : edges_of(pair[0])) {
-            for (const Edge& f : edges_of(pair[1])) {
-                if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) continue;
-                find_crossing(e, f, within, found);
-            }
+    for (const Edge& e : edges_of(pair[0])) {
+        for (const Edge& f : edges_of(pair[1])) {
+            if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) continue;
+            find_crossing(e, f, within, found);
         }
     }
     found = found || at_edges;
@@ -332,6 +459,7 @@ std::vector<std::int32_t> Snapping::apply(int threads, const Progress* progress)
     std::vector<std::int32_t> changed;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
         if (is_changed[i] == 0) continue;
+        cancel_folds(made[i]);
         pieces_.replace(inputs[i], std::move(made[i]));
         changed.push_back(inputs[i]);
     }

@@ -2,11 +2,12 @@
 // Models of the parts that structures leave, cut and joined.
 #include <algorithm>
 #include <map>
-#include <numeric>
+#include <optional>
 
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
 #include "cutting/model_check.hpp"
+#include "cutting/near_part.hpp"
 #include "cutting/nearest_side.hpp"
 #include "cutting/part_rounding.hpp"
 #include "cutting/surface_parts.hpp"
@@ -37,12 +38,12 @@ struct Together {
     std::vector<std::int64_t> face_offsets{0};
     std::vector<std::int32_t> face_vertices, face_cells, face_surface, cell_block;
     std::vector<std::int32_t> model_of_cell;
+    std::vector<std::uint8_t> is_near;  ///< of cells
     std::size_t blocks = 0;
     std::int32_t surfaces = 0;
     CellKind cell_kind = CellKind::kColumns;
 
-    void add(const ComplexView& model, std::int32_t number,
-             std::span<const std::uint8_t> is_wanted);
+    void add(const ComplexView& model, std::int32_t number, std::span<const Place> places);
     void share_vertices(int threads, const Progress* progress);
     ComplexView view() const {
         return {.vertices = {reinterpret_cast<const double*>(vertices.data()), 3 * vertices.size()},
@@ -57,16 +58,16 @@ struct Together {
     }
 };
 
-void Together::add(const ComplexView& model, std::int32_t number,
-                   std::span<const std::uint8_t> is_wanted) {
+void Together::add(const ComplexView& model, std::int32_t number, std::span<const Place> places) {
     const auto first_vertex = checked_number(vertices.size() + model.vertex_count(), "vertices") -
                               static_cast<std::int32_t>(model.vertex_count());
     std::vector<std::int32_t> cell(model.cell_count(), -1);
     for (std::size_t c = 0; c < cell.size(); ++c) {
-        if (is_wanted[c] == 0) continue;
+        if (places[c] == Place::kElsewhere) continue;
         cell[c] = checked_number(cell_block.size(), "cells");
         cell_block.push_back(model.cell_block[c]);
         model_of_cell.push_back(number);
+        is_near.push_back(places[c] == Place::kNear ? 1 : 0);
     }
     for (std::size_t v = 0; v < model.vertex_count(); ++v)
         vertices.push_back(model.vertex(static_cast<std::int32_t>(v)));
@@ -153,6 +154,45 @@ CellComplex assemble(const Together& together, const std::vector<Position>& new_
     return complex;
 }
 
+/// Joins the models where only the cells that are near structures take part in cutting; nothing
+/// where rounding went beyond them.
+std::optional<Joined> join(const Together& together, const StructureSurface& surface,
+                           std::span<const PartModel> models, std::span<const Structure> structures,
+                           std::span<const std::uint8_t> acts, int threads, Progress* progress) {
+    const ComplexView all = together.view();
+    const cutting::NearPart part(all, together.is_near);
+    const ComplexView near = part.view();
+    std::vector<std::int32_t> model_of_cell;
+    for (std::int32_t c = 0; index(c) < near.cell_count(); ++c)
+        model_of_cell.push_back(together.model_of_cell[index(part.cell(c))]);
+    begin(progress, 0.1, 0.15, "finding faces near structures");
+    SurfaceOverlay overlay(near, surface.surface, threads, progress);
+    begin(progress, 0.3, 0.5, "finding what structures go through");
+    const CutterWinding winding(overlay, progress);
+    const StructureSides sides(overlay, winding, surface, structures, progress);
+    std::vector<Sides> model_sides;
+    for (const PartModel& own : models)
+        model_sides.push_back(own.sides);
+    const WantedParts wanted(overlay, winding, sides, model_of_cell, model_sides, acts);
+    begin(progress, 0.5, 0.68, "finding the parts of cells");
+    cutting::SurfaceParts made(overlay, winding, wanted, progress);
+    begin(progress, 0.85, 0.92, "rounding what was cut");
+    cutting::PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
+                          true)
+        .run();
+    const std::vector<std::int8_t> sides_beside(all.cell_count(), kAbove);
+    if (!part.put_back(made.pieces, made.half_cells, sides_beside)) return std::nullopt;
+    begin(progress, 0.95, 1.0, "putting the parts together");
+    Joined joined;
+    joined.complex =
+        assemble(together, overlay.new_positions(), made.pieces, made.half_cells, progress);
+    for (const cutting::HalfCell& cell : made.half_cells)
+        joined.cell_part.push_back(together.model_of_cell[index(cell.cell)]);
+    joined.complex.volumes =
+        strata::block_volumes(joined.complex, together.blocks, threads, progress);
+    return joined;
+}
+
 }  // namespace
 
 std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> structures,
@@ -199,39 +239,15 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     }
     const StructureSurface surface = structure_surface(structures, rock);
     begin(progress, 0, 0.1, "leaving out what is in other parts");
-    {
-        const NearCells near(surface, threads);
-        for (std::size_t m = 0; m < models.size(); ++m) {
-            together.add(models[m].model, static_cast<std::int32_t>(m),
-                         near.that_may_be_in(models[m].model, models[m].sides, progress));
-        }
+    for (std::size_t m = 0; m < models.size(); ++m) {
+        together.add(models[m].model, static_cast<std::int32_t>(m),
+                     places_of_cells(models[m].model, models[m].sides, surface, threads, progress));
     }
     together.share_vertices(threads, progress);
-    const ComplexView all = together.view();
-    begin(progress, 0.1, 0.15, "finding faces near structures");
-    SurfaceOverlay overlay(all, surface.surface, threads, progress);
-    begin(progress, 0.3, 0.5, "finding what structures go through");
-    const CutterWinding winding(overlay, progress);
-    const StructureSides sides(overlay, winding, surface, structures, progress);
-    std::vector<Sides> model_sides;
-    for (const PartModel& own : models)
-        model_sides.push_back(own.sides);
-    const WantedParts wanted(overlay, winding, sides, together.model_of_cell, model_sides, acts);
-    begin(progress, 0.5, 0.68, "finding the parts of cells");
-    cutting::SurfaceParts made(overlay, winding, wanted, progress);
-    begin(progress, 0.85, 0.92, "rounding what was cut");
-    cutting::PartRounding(all, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
-                          true)
-        .run();
-    begin(progress, 0.95, 1.0, "putting the parts together");
-    Joined joined;
-    joined.complex =
-        assemble(together, overlay.new_positions(), made.pieces, made.half_cells, progress);
-    joined.complex.volumes =
-        strata::block_volumes(joined.complex, together.blocks, threads, progress);
-    for (const cutting::HalfCell& cell : made.half_cells)
-        joined.cell_part.push_back(together.model_of_cell[index(cell.cell)]);
-    return joined;
+    if (auto joined = join(together, surface, models, structures, acts, threads, progress))
+        return *std::move(joined);
+    together.is_near.assign(together.is_near.size(), 1);
+    return *join(together, surface, models, structures, acts, threads, progress);
 }
 
 std::vector<std::int8_t> sides_of_points(const Structure& structure, std::span<const double> points,

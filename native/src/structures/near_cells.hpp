@@ -1,32 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
 #include <vector>
 
-#include "cutting/nearest_side.hpp"
 #include "structures/structure_surface.hpp"
 
 namespace realmodel::structures {
 
-/// Tells which cells of a model need not be looked at, as they are in other parts of space than it.
-class NearCells {
-public:
-    NearCells(const StructureSurface& surface, int threads);
+/// Of a cell of a model: that it comes near a structure and is not on the wrong side of another,
+/// that it comes near none and is on the sides that are asked for, or that it is elsewhere.
+enum class Place : std::uint8_t { kElsewhere, kInside, kNear };
 
-    /// Of cells: 1 where they come near structures, or are beside cells that do, on the sides that
-    /// are asked for.
-    std::vector<std::uint8_t> that_may_be_in(const ComplexView& model, const Sides& sides,
-                                             const Progress* progress) const;
-
-private:
-    std::vector<std::uint8_t> near(const ComplexView& model, const Progress* progress) const;
-    bool is_on(const cutting::Position& p, const Sides& sides) const;
-
-    const StructureSurface& surface_;
-    int threads_;
-    spatial::BoxTree tree_;
-    std::vector<cutting::NearestSide> nearest_;
-};
+std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
+                                   const StructureSurface& surface, int threads,
+                                   const Progress* progress);
 
 }  // namespace realmodel::structures

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..erosion import Erosion
+from ..structures.displacement import displacements
 from ..surface_heights import used_vertices
 from ..validation import PLACES_OF_REPORT, ValidationReport
 from ..volume_uncertainty import volume_deviations
@@ -43,7 +44,7 @@ def model_report(
         },
         "counts": {
             "rocks": len(model.project.rocks),
-            "surfaces": len(model.surface_names),
+            "surfaces": int((model.surface_kind == 0).sum()),
             "surface_triangles": len(model.surface_triangles),
             "blocks": len(model.blocks),
             "blocks_present": sum(block.cells > 0 for block in model.blocks),
@@ -65,6 +66,10 @@ def model_report(
         "peak_memory": _peak_memory(),
         "versions": versions(),
     }
+    if model.structures is not None:
+        report["compartments"] = _compartments(model)
+        report["faults"] = _faults(model)
+        report["bodies"] = _bodies(model)
     if erosion is not None:
         report["erosion"] = _erosion(model, erosion)
     return report
@@ -92,9 +97,66 @@ def _erosion(model, erosion: Erosion) -> dict:
                     for b in np.flatnonzero(erosion.volume[k])
                 ],
             }
-            for k, surface in enumerate(model.surface_names)
+            for k, surface in enumerate(model.surface_names[: len(rock_of)])
         ],
     }
+
+
+def _compartments(model) -> list[dict]:
+    """The volume of every block in every compartment."""
+    count = len(model.blocks)
+    volumes = np.bincount(
+        model.cell_compartment.astype(np.int64) * count + model.cell_block,
+        model.cell_volumes,
+        count * len(model.compartment_names),
+    ).reshape(-1, count)
+    return [
+        {
+            "name": name,
+            "volume": float(own.sum()),
+            "blocks": [
+                {"block": model.blocks[number].name, "volume": float(own[number])}
+                for number in np.flatnonzero(own)
+            ],
+        }
+        for name, own in zip(model.compartment_names, volumes, strict=True)
+    ]
+
+
+def _faults(model) -> list[dict]:
+    """Throw and heave along each fault: their means, and where they are largest."""
+    found = displacements(model)
+    return [
+        {
+            "name": fault.name,
+            "triangles": len(fault.triangles),
+            "youngest": fault.youngest,
+            "ends_at": list(fault.ends_at),
+            "dies_out": fault.dies_out,
+            "surfaces": [
+                {
+                    "rock": each.rock,
+                    "surface": each.surface,
+                    "throw": _mean_and_largest(each.throw),
+                    "heave": _mean_and_largest(each.heave),
+                }
+                for each in found
+                if each.fault == fault.name
+            ],
+        }
+        for fault in model.structures.faults
+    ]
+
+
+def _mean_and_largest(values: np.ndarray) -> dict:
+    return {"mean": float(values.mean()), "max": float(values[np.abs(values).argmax()])}
+
+
+def _bodies(model) -> list[dict]:
+    return [
+        {"name": body.name, "triangles": len(body.triangles), "after": body.after, "void": body.void}
+        for body in model.structures.bodies
+    ]
 
 
 def _block(model, number: int, total: float, deviation: float) -> dict:

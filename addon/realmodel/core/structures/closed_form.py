@@ -14,6 +14,7 @@ import numpy as np
 from ..rules import RULES
 from .exact import orient2d, orient3d
 from .sides import RockFaults
+from .triangles import distances_of_pairs
 
 Triangulation = tuple[np.ndarray, np.ndarray]
 
@@ -187,31 +188,30 @@ def nearest_side(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray
     counter-clockwise. Of triangles equally near, at an edge or a corner, that which the point is farthest off
     the plane of counts. 0 on the plane."""
     corners = vertices[triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    middles = corners.mean(axis=1)
+    radius = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
     chosen = np.empty(len(points), np.int64)
-    some = max(1, _AT_ONCE // 8 // len(corners))
+    some = max(1, _AT_ONCE // len(corners))
     for start in range(0, len(points), some):
-        part = points[start : start + some, None]
-        away = _squared_distances(part, corners, normals)
-        off = np.abs(((part - corners[:, 0]) * normals).sum(axis=2))
-        least = away.min(axis=1)
-        scale = np.abs(part[:, 0]).max(axis=1) ** 2 * np.finfo(np.float64).eps
-        near = away <= (least * (1 + _EQUAL) + 64 * scale)[:, None]
-        chosen[start : start + some] = np.where(near, off, -1.0).argmax(axis=1)
+        part = points[start : start + some]
+        apart = np.linalg.norm(part[:, None] - middles, axis=2)
+        farthest = (apart + radius).min(axis=1)
+        rows, near = np.nonzero(apart - radius <= farthest[:, None] * (1 + _EQUAL))
+        chosen[start : start + some] = _nearest(part, rows, corners[near], near)
     return orient3d(*corners[chosen].transpose(1, 0, 2), points)
 
 
-def _squared_distances(points: np.ndarray, corners: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """(N, T) of points (N, 1, 3) from triangles (T, 3, 3) with unit normals (T, 3)."""
-    height = ((points - corners[:, 0]) * normals).sum(axis=2)
-    inside = np.ones(height.shape, bool)
-    found = np.full(height.shape, np.inf)
-    for first, second in ((0, 1), (1, 2), (2, 0)):
-        a, along = corners[:, first], corners[:, second] - corners[:, first]
-        from_a = points - a
-        inside &= (np.cross(along, from_a) * normals).sum(axis=2) >= 0
-        share = (from_a * along).sum(axis=2) / (along * along).sum(axis=1)
-        apart = from_a - np.clip(share, 0.0, 1.0)[..., None] * along
-        found = np.minimum(found, (apart * apart).sum(axis=2))
-    return np.where(inside, height * height, found)
+def _nearest(points: np.ndarray, rows: np.ndarray, corners: np.ndarray, numbers: np.ndarray) -> np.ndarray:
+    """(N,) the nearest triangle of each point, of pairs: `rows` of points, triangles (K, 3, 3), `numbers`."""
+    p = points[rows]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    off = np.abs(((p - corners[:, 0]) * normal).sum(axis=1))
+    away = distances_of_pairs(p, corners)
+    least = np.full(len(points), np.inf)
+    np.minimum.at(least, rows, away)
+    rounding = 16 * np.spacing(np.abs(points).max(axis=1, initial=0.0))
+    equal = away <= (least * (1 + _EQUAL) + rounding)[rows]
+    order = np.lexsort((numbers, -off, ~equal, rows))
+    first = order[np.concatenate([[True], np.diff(rows[order]) > 0])]
+    return numbers[first]

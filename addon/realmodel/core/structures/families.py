@@ -8,7 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..work import Work
 from .rock_structure import RockStructure
+from .sides import sides_of
 
 _DIES_OUT = 2  # in a key: a fault that dies out is there, on either side
 
@@ -32,6 +34,14 @@ def keys_of(structure: RockStructure, number: int, sides: np.ndarray) -> np.ndar
     faults = structure.faults
     rows = np.where(faults.active(number), sides, 0)
     return np.where(np.array(faults.dies_out, bool) & (rows != 0), _DIES_OUT, rows)
+
+
+def are_within(
+    work: Work, entry, number: int, family: Family, points: np.ndarray, threads: int
+) -> np.ndarray:
+    """(N,) bool: the points (N, 3) in the compartments of a family of surface `number` of a RockInput."""
+    rows = sides_of(work, points, entry.structure.faults, threads)
+    return (keys_of(entry.structure, number, rows) == family.key).all(axis=1)
 
 
 def families(structure: RockStructure, number: int) -> list[Family]:

@@ -20,6 +20,7 @@ Triangulation = tuple[np.ndarray, np.ndarray]
 _METHOD = "dsi"  # smooth, through the points, and goes on beyond them without a bend
 _IN_LINE = 1e-9  # of the longest extent: points so near a line bound no area
 _TRIED = 100  # sticks of which each is tried as the first one
+_NEIGHBORS = 3  # on either side of a stick that say where it goes on
 _ROUND = 16  # directions of an outline that is extended
 
 
@@ -27,9 +28,9 @@ def fit_sticks(sticks, extend: float = 0.0, extend_sideways: bool = True) -> Tri
     """The surface through fault sticks: their points, and triangles between neighbors.
 
     sticks: arrays (N, 3), each from one end to the other, in any order and either direction. extend: how far
-    each stick goes on straight at both ends, and the surface beyond the first and the last stick unless
-    extend_sideways is False. Returns vertices (V, 3) float64 and triangles (T, 3) int32. Neighbors are joined
-    at equal shares of their lengths, so sticks keep their shape. Raises InputRefused.
+    each stick goes on at both ends, and, if extend_sideways, the surface beyond the first and the last one.
+    Returns vertices (V, 3) float64 and triangles (T, 3) int32. Neighbors are joined at equal shares of their
+    lengths, so sticks keep their shape. Raises InputRefused.
     """
     sticks = [_without_repeats(np.asarray(stick, np.float64).reshape(-1, 3)) for stick in sticks]
     sticks = [stick for stick in sticks if len(stick) > 1]
@@ -41,7 +42,7 @@ def fit_sticks(sticks, extend: float = 0.0, extend_sideways: bool = True) -> Tri
         )
     sticks = _one_way(_in_order(sticks))
     if extend > 0:
-        sticks = [_longer(stick, extend) for stick in sticks]
+        sticks = _longer(sticks, extend)
         if extend_sideways:
             first = sticks[0] + extend * _unit(sticks[0].mean(axis=0) - sticks[1].mean(axis=0))
             last = sticks[-1] + extend * _unit(sticks[-1].mean(axis=0) - sticks[-2].mean(axis=0))
@@ -60,7 +61,8 @@ def fit_sticks(sticks, extend: float = 0.0, extend_sideways: bool = True) -> Tri
 
 
 def _without_repeats(stick: np.ndarray) -> np.ndarray:
-    return stick[np.concatenate([[True], (np.diff(stick, axis=0) != 0).any(axis=1)])]
+    """Of points at one position only the first: a stick does not return to itself."""
+    return stick[np.sort(np.unique(stick, axis=0, return_index=True)[1])]
 
 
 def _in_order(sticks: list[np.ndarray]) -> list[np.ndarray]:
@@ -102,10 +104,16 @@ def _unit(direction: np.ndarray) -> np.ndarray:
     return direction / length if length > 0 else direction
 
 
-def _longer(stick: np.ndarray, by: float) -> np.ndarray:
-    begin = stick[0] + by * _unit(stick[0] - stick[1])
-    end = stick[-1] + by * _unit(stick[-1] - stick[-2])
-    return np.concatenate([begin[None], stick, end[None]])
+def _longer(sticks: list[np.ndarray], by: float) -> list[np.ndarray]:
+    """Each goes on at both ends in the mean direction of its own end and its neighbors', so that sticks that
+    are not quite parallel do not cross."""
+    ends = np.array([[_unit(stick[0] - stick[1]), _unit(stick[-1] - stick[-2])] for stick in sticks])
+    found = []
+    for number, stick in enumerate(sticks):
+        near = ends[max(0, number - _NEIGHBORS) : number + _NEIGHBORS + 1].mean(axis=0)
+        begin, end = stick[0] + by * _unit(near[0]), stick[-1] + by * _unit(near[1])
+        found.append(np.concatenate([begin[None], stick, end[None]]))
+    return found
 
 
 def _between(left: np.ndarray, right: np.ndarray, first_left: int, first_right: int):

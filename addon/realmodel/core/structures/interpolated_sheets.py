@@ -11,7 +11,7 @@ import numpy as np
 from ..surface_heights import give_heights, needed_surfaces, where_known
 from ..work import Work
 from ..wrong_sides import heights_at
-from .families import Family, keys_of
+from .families import Family, are_within, keys_of
 from .rock_structure import Triangulation
 from .sides import sides_of
 from .tips import trace_of, with_equal_ends
@@ -54,11 +54,12 @@ class InterpolatedSurface:
         faults = [self.entry.structure.faults.shapes[fault] for fault in family.dying]
         nodes, triangles = self.entry.region
         z = self._on_nodes(common)
-        within = self._within(family, z) if faults else None
         known = np.isfinite(z)
         meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
         flat = np.column_stack([nodes, np.where(known, z, 0.0)])
-        traces = [trace_of(self.work, (flat, meshed), fault, within, self.threads) for fault in faults]
+        traces = [
+            trace_of(self.work, (flat, meshed), fault, self._within(family), self.threads) for fault in faults
+        ]
         met = [number for number, trace in enumerate(traces) if len(trace.points)]
         if not met:
             return dict.fromkeys(family.members.values(), common)
@@ -86,7 +87,7 @@ class InterpolatedSurface:
             seen,
             [faults[number] for number in met],
             [traces[number] for number in met],
-            within,
+            self._within(family),
             ramp,
             self.threads,
         )
@@ -132,9 +133,7 @@ class InterpolatedSurface:
         if surface.points is None:
             return surface
         points = np.asarray(surface.points, np.float64).reshape(-1, 3)
-        rows = sides_of(self.work, points, self.entry.structure.faults, self.threads)
-        own = (keys_of(self.entry.structure, self.number, rows) == family.key).all(axis=1)
-        return replace(surface, points=points[own])
+        return replace(surface, points=points[self._within(family)(points)])
 
     def _as_seen(self, family: Family, sides: tuple[int, ...], other: int) -> Triangulation:
         """Another surface in some compartments. Where faults displace it that this one ignores, each node of
@@ -168,11 +167,8 @@ class InterpolatedSurface:
             return sheet[0][:, 2]
         return heights_at(self.work, sheet, nodes, self.threads)
 
-    def _within(self, family: Family, z: np.ndarray) -> np.ndarray:
-        """(N,) bool: the nodes that lie in the family's compartments at these heights."""
-        at = np.column_stack([self.entry.region[0], np.where(np.isfinite(z), z, 0.0)])
-        rows = sides_of(self.work, at, self.entry.structure.faults, self.threads)
-        return (keys_of(self.entry.structure, self.number, rows) == family.key).all(axis=1)
+    def _within(self, family: Family):
+        return lambda points: are_within(self.work, self.entry, self.number, family, points, self.threads)
 
     def finish(self, sheets: list[Triangulation]) -> None:
         """Puts what interpolating gave into the RockInput: of the compartment with most points, and of the

@@ -12,9 +12,9 @@ from ..errors import InputRefused
 from ..meshers import DEFAULT_MESHER
 from ..planar_mesh import mesh_rings, triangulate_rings
 from ..work import Work, native_module
-from .fitted import convex_hull
-from .triangles import border_loops, edges_of, welded
+from .triangles import border_loops, edges_of, open_edges, welded
 
+LEFT, RIGHT, _BOTH = 1, 2, 3  # on which sides of a fault a triangle has a part
 _AREA = 1e-9  # relative: parts that overlap by less do not
 
 
@@ -30,25 +30,29 @@ class PlanTiling:
     tiles: np.ndarray
     is_mesh: bool
 
+    def heights(self, own: np.ndarray) -> np.ndarray:
+        """(N,) heights at the nodes of some of the mesh's triangles, (T,) bool; NaN elsewhere."""
+        part = np.ascontiguousarray(self.triangles[own])
+        if not self.is_mesh:
+            return self.work.native(native_module().surface_heights, self.vertices, part, self.nodes)
+        known = np.full(len(self.nodes), np.nan)
+        used = np.unique(part)
+        known[used] = self.vertices[used, 2]
+        return known
+
     def around(self, own: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Nodes (N, 2) and triangles (K, 3) int32 that cover all, among them the mesh's triangles `own` (T,)
         bool as they are; and the heights (N,) that these give, NaN elsewhere."""
-        part = self.triangles[own]
         if self.is_mesh:
-            known = np.full(len(self.nodes), np.nan)
-            used = np.unique(part)
-            known[used] = self.vertices[used, 2]
-            return self.nodes, self.tiles, known
-        used, part = np.unique(part, return_inverse=True)
+            return self.nodes, self.tiles, self.heights(own)
+        used, part = np.unique(self.triangles[own], return_inverse=True)
         part = part.reshape(-1, 3).astype(np.int32)
         corners = self.vertices[used]
-        surface_heights = native_module().surface_heights
         middles = np.ascontiguousarray(self.nodes[self.tiles].mean(axis=1))
-        others = self.tiles[np.isnan(self.work.native(surface_heights, corners, part, middles))]
-        on_part = self.work.native(surface_heights, corners, part, np.ascontiguousarray(self.nodes))
+        over = self.work.native(native_module().surface_heights, corners, part, middles)
         nodes = np.concatenate([corners[:, :2], self.nodes])
-        known = np.concatenate([corners[:, 2], on_part])
-        tiles = np.concatenate([part, others + len(corners)])
+        known = np.concatenate([corners[:, 2], self.heights(own)])
+        tiles = np.concatenate([part, self.tiles[np.isnan(over)] + len(corners)])
         kept, tiles = np.unique(tiles, return_inverse=True)
         return (
             np.ascontiguousarray(nodes[kept]),
@@ -57,25 +61,21 @@ class PlanTiling:
         )
 
 
-def plan_tiling(
-    work: Work, vertices: np.ndarray, triangles: np.ndarray, sides: np.ndarray, active: np.ndarray
-) -> PlanTiling:
-    """sides: (V, F) of the vertices, 0 on a fault; active: (F,) bool, the faults that count."""
+def plan_tiling(work: Work, vertices: np.ndarray, triangles: np.ndarray, masks: np.ndarray) -> PlanTiling:
+    """masks: (T, F) on which sides of each fault a triangle has a part: 1, 2, or 3 for both."""
     plan = np.ascontiguousarray(vertices[:, :2])
-    same = welded(plan)
-    joined = same[triangles]
+    joined = welded(plan)[triangles]
     loops = [plan[loop] for loop in border_loops(_one_way_up(plan, joined))]
     box = _around(plan)
     try:
         inside = _area(*triangulate_rings(loops)) if loops else 0.0
         if abs(inside - np.abs(_areas(plan, triangles)).sum()) <= _AREA * max(inside, 1e-300):
-            around = triangulate_rings([box, *loops])
-            gaps = _gaps(plan, sides[:, active], joined, around)
+            gaps = _gaps(plan, joined, masks, triangulate_rings([box, *loops]))
             tiles = np.concatenate([triangles, gaps])
             return PlanTiling(work, vertices, triangles, plan, np.ascontiguousarray(tiles, np.int32), True)
     except InputRefused:
         pass  # parts cross in plan
-    nodes, tiles = _overlay(work, vertices, triangles, sides[:, active], box)
+    nodes, tiles = _overlay(work, vertices, triangles, masks, box)
     return PlanTiling(work, vertices, triangles, nodes, tiles, False)
 
 
@@ -102,33 +102,39 @@ def _one_way_up(plan: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.where((_areas(plan, triangles) < 0)[:, None], triangles[:, ::-1], triangles)
 
 
-def _gaps(plan: np.ndarray, sides: np.ndarray, triangles: np.ndarray, around) -> np.ndarray:
+def _gaps(plan: np.ndarray, triangles: np.ndarray, masks: np.ndarray, around) -> np.ndarray:
     """Of triangles between the borders of a mesh those that bridge a fault: (K, 3) vertices of the mesh.
 
-    They have corners on both sides of a fault; where one has an edge of the mesh that itself passes the
-    fault, the mesh is not open there, and it and those beside it only fill a bay of the outline.
+    They have corners of parts on both sides of it. Where there is an edge of a triangle that itself passes
+    the fault, the mesh is not open: what hangs together with it only fills a bay of the outline.
     """
     places, outer = around
     of_mesh = dict(zip(map(tuple, plan[::-1].tolist()), range(len(plan) - 1, -1, -1), strict=True))
     vertex = np.array([of_mesh.get(tuple(place), -1) for place in places.tolist()])
     outer = vertex[outer]
     outer = outer[(outer >= 0).all(axis=1)]
-    if not len(outer):
-        return np.empty((0, 3), np.int32)
-    # of several vertices at one position each has the same side, or one of them is on the fault
-    side = np.zeros((len(plan), sides.shape[1]), np.int8)
-    same = welded(plan)
-    for row in (sides != 0).any(axis=1).nonzero()[0]:
-        side[same[row]] = np.where(sides[row] != 0, sides[row], side[same[row]])
-    corners = side[outer]
-    bridges = ((corners < 0).any(axis=1) & (corners > 0).any(axis=1)).any(axis=1)
-    outer = outer[bridges]
-    borders = {tuple(sorted(edge)) for edge in edges_of(triangles).tolist()}
-    edges = np.sort(edges_of(outer), axis=1)
-    passing = (side[edges[:, 0]] * side[edges[:, 1]] < 0).any(axis=1)
-    closed = np.array([tuple(edge) in borders for edge in edges.tolist()], bool) & passing
-    bays = _spread(outer, closed.reshape(3, -1).any(axis=0)) if len(outer) else np.zeros(0, bool)
-    return np.ascontiguousarray(outer[~bays], np.int32)
+    outer_edges = list(map(tuple, np.sort(edges_of(outer), axis=1).tolist()))
+    touched, edges = touched_masks(len(plan), triangles, masks), np.sort(edges_of(triangles), axis=1)
+    gaps = np.zeros(len(outer), bool)
+    for fault in range(masks.shape[1]):
+        corners = touched[outer, fault]
+        near = np.bitwise_or.reduce(corners, axis=1) == _BOTH
+        bridges = (corners == LEFT).any(axis=1) & (corners == RIGHT).any(axis=1)
+        if not bridges.any():
+            continue
+        closed = set(map(tuple, edges[np.tile(masks[:, fault] == _BOTH, 3)].tolist()))
+        at_closed = np.array([edge in closed for edge in outer_edges], bool).reshape(3, -1).any(axis=0)
+        bays = _spread(outer[near], at_closed[near])
+        gaps[np.flatnonzero(near)[~bays]] |= bridges[near][~bays]
+    return np.ascontiguousarray(outer[gaps], np.int32)
+
+
+def touched_masks(count: int, triangles: np.ndarray, masks: np.ndarray) -> np.ndarray:
+    """(V, F) on which sides of each fault the triangles at each of so many vertices have a part."""
+    touched = np.zeros((count, masks.shape[1]), np.uint8)
+    for corner in range(3):
+        np.bitwise_or.at(touched, triangles[:, corner], masks)
+    return touched
 
 
 def _spread(triangles: np.ndarray, marked: np.ndarray) -> np.ndarray:
@@ -144,57 +150,23 @@ def _spread(triangles: np.ndarray, marked: np.ndarray) -> np.ndarray:
         marked = wider
 
 
-def _overlay(work: Work, vertices, triangles, sides: np.ndarray, box: np.ndarray):
+def _overlay(work: Work, vertices: np.ndarray, triangles: np.ndarray, masks: np.ndarray, box: np.ndarray):
     """Nodes (N, 2) and triangles (K, 3) of what parts that overlap in plan cover together, with the gaps; all
     their borders are edges."""
     plan = np.ascontiguousarray(vertices[:, :2])
     length = float(np.median(np.linalg.norm(np.diff(plan[edges_of(triangles)], axis=1)[:, 0], axis=1)))
-    lines = [plan[edge] for edge in _part_borders(plan, triangles, sides)]
-    nodes, tiles = mesh_rings(work, [_around(convex_hull(plan))], length, DEFAULT_MESHER, constraints=lines)
-    surface_heights = native_module().surface_heights
+    rows, part = np.unique(masks, axis=0, return_inverse=True)
+    parts = [np.ascontiguousarray(triangles[part.ravel() == number]) for number in range(len(rows))]
+    borders = [open_edges(vertices, each) for each in parts]
+    lines = [plan[edge] for edge in np.unique(np.concatenate(borders), axis=0)]
+    nodes, tiles = mesh_rings(work, [box], length, DEFAULT_MESHER, constraints=lines)
     middles = np.ascontiguousarray(nodes[tiles].mean(axis=1))
-    covered = tiles[~np.isnan(_any_height(work, surface_heights, vertices, triangles, sides, middles))]
-    loops = [nodes[loop] for loop in border_loops(covered)]
-    around = triangulate_rings([box, *loops])
-    side = np.zeros((len(nodes), sides.shape[1]), np.int8)
-    border = np.unique(np.concatenate(border_loops(covered)))
-    nearest = _nearest_vertices(nodes[border], plan)
-    side[border] = sides[nearest]
-    gaps = _gaps(nodes, side, covered, around)
-    return nodes, np.ascontiguousarray(np.concatenate([covered, gaps]), np.int32)
-
-
-def _signature(triangles: np.ndarray, sides: np.ndarray) -> np.ndarray:
-    """(T,) the number of the part that a triangle belongs to, by the sides of its corners."""
-    corners = sides[triangles]
-    rows = np.concatenate([corners.min(axis=1), corners.max(axis=1)], axis=1)
-    return np.unique(rows, axis=0, return_inverse=True)[1].ravel()
-
-
-def _part_borders(plan: np.ndarray, triangles: np.ndarray, sides: np.ndarray) -> np.ndarray:
-    """(E, 2) the edges in which parts of a mesh end."""
-    part = _signature(triangles, sides)
-    found = []
-    for number in range(part.max() + 1):
-        own = triangles[part == number]
-        edges, count = np.unique(np.sort(edges_of(own), axis=1), axis=0, return_counts=True)
-        found.append(edges[count == 1])
-    return np.unique(np.concatenate(found), axis=0)
-
-
-def _any_height(work: Work, surface_heights, vertices, triangles, sides, places) -> np.ndarray:
-    """(N,) a height of any part over each place; NaN where there is none."""
-    part = _signature(triangles, sides)
-    found = np.full(len(places), np.nan)
-    for number in range(part.max() + 1):
-        own = np.ascontiguousarray(triangles[part == number])
-        z = work.native(surface_heights, vertices, own, places)
-        found = np.where(np.isnan(found), z, found)
-    return found
-
-
-def _nearest_vertices(places: np.ndarray, plan: np.ndarray) -> np.ndarray:
-    found = np.empty(len(places), np.int64)
-    for number, place in enumerate(places):
-        found[number] = ((plan - place) ** 2).sum(axis=1).argmin()
-    return found
+    tile_masks = np.zeros((len(tiles), masks.shape[1]), np.uint8)
+    for row, each in zip(rows, parts, strict=True):
+        over = ~np.isnan(work.native(native_module().surface_heights, vertices, each, middles))
+        tile_masks[over] |= row
+    covered = tile_masks.any(axis=1)
+    tiles, tile_masks = tiles[covered], tile_masks[covered]
+    around = triangulate_rings([_around(nodes), *(nodes[loop] for loop in border_loops(tiles))])
+    gaps = _gaps(nodes, tiles, tile_masks, around)
+    return nodes, np.ascontiguousarray(np.concatenate([tiles, gaps]), np.int32)

@@ -10,15 +10,14 @@ import numpy as np
 from ..heights import heights
 from ..methods import checked_options
 from ..work import Work
-from .families import Family
-from .mesh_parts import PlanTiling, plan_tiling
+from .families import Family, are_within
+from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
 from .rock_structure import Triangulation
 from .sides import fault_sides
 from .tips import on_fault, trace_of, with_equal_ends
 from .triangles import meet, welded
 
 _METHOD, _OPTIONS = "natural_neighbour", {"extrapolate": "nearest"}
-_LEFT, _RIGHT = 1, 2
 
 
 class ReadyMesh:
@@ -35,10 +34,7 @@ class ReadyMesh:
         self.settings = checked_options(self.method, options)
         faults = entry.structure.faults
         self.active = faults.active(number)
-        count = len(self.vertices)
-        # 0 where a vertex lies on the fault, or the fault does not displace the surface
-        self.sides = np.zeros((count, len(faults)), np.int8)
-        self.masks = np.full((len(self.triangles), len(faults)), _LEFT | _RIGHT, np.uint8)
+        self.masks = np.full((len(self.triangles), len(faults)), LEFT | RIGHT, np.uint8)
         for fault in np.flatnonzero(self.active):
             self._divide(int(fault), faults.shapes[fault])
         self.tiling: PlanTiling | None = None
@@ -47,15 +43,15 @@ class ReadyMesh:
         """On which sides of a fault each triangle has a part."""
         side = fault_sides(self.work, self.vertices, shape, self.threads)
         on = on_fault(self.vertices, shape)
-        self.sides[:, fault] = np.where(on, 0, side)
-        corners = self.sides[self.triangles, fault]
-        mask = np.where((corners < 0).any(axis=1), _LEFT, 0) | np.where((corners > 0).any(axis=1), _RIGHT, 0)
+        side = np.where(on, 0, side)
+        corners = side[self.triangles]
+        mask = np.where((corners < 0).any(axis=1), LEFT, 0) | np.where((corners > 0).any(axis=1), RIGHT, 0)
         middles = self.vertices[self.triangles].mean(axis=1)
         along = mask == 0  # all its corners lie on the fault
-        mask[along] = np.where(fault_sides(self.work, middles[along], shape, self.threads) > 0, _RIGHT, _LEFT)
-        clear = np.flatnonzero((corners != 0).all(axis=1) & (mask != (_LEFT | _RIGHT)))
+        mask[along] = np.where(fault_sides(self.work, middles[along], shape, self.threads) > 0, RIGHT, LEFT)
+        clear = np.flatnonzero((corners != 0).all(axis=1) & (mask != (LEFT | RIGHT)))
         crossed = meet(self.vertices[self.triangles[clear]], shape[0][shape[1]])
-        mask[clear[crossed]] = _LEFT | _RIGHT
+        mask[clear[crossed]] = LEFT | RIGHT
         self.masks[:, fault] = mask
 
     def own(self, family: Family) -> np.ndarray:
@@ -63,7 +59,7 @@ class ReadyMesh:
         found = np.ones(len(self.triangles), bool)
         for fault, side in enumerate(family.key):
             if side in (-1, 1):
-                found &= (self.masks[:, fault] & (_RIGHT if side > 0 else _LEFT)) > 0
+                found &= (self.masks[:, fault] & (RIGHT if side > 0 else LEFT)) > 0
         return found
 
     def count(self, family: Family) -> int:
@@ -79,12 +75,17 @@ class ReadyMesh:
             whole = self.vertices, self.triangles
             return dict.fromkeys(family.members.values(), whole)
         if self.tiling is None:
-            self.tiling = plan_tiling(self.work, self.vertices, self.triangles, self.sides, self.active)
+            self.tiling = plan_tiling(
+                self.work, self.vertices, self.triangles, np.ascontiguousarray(self.masks[:, self.active])
+            )
         plan, triangles, known = self.tiling.around(own)
         shapes = self.entry.structure.faults.shapes
         common = self._continued(plan, known, triangles)
         faults = [shapes[fault] for fault in family.dying]
-        within = np.ones(len(plan), bool)
+
+        def within(points: np.ndarray) -> np.ndarray:
+            return are_within(self.work, self.entry, self.number, family, points, self.threads)
+
         traces = [
             trace_of(self.work, (np.column_stack([plan, common]), triangles), fault, within, self.threads)
             for fault in faults
@@ -93,16 +94,15 @@ class ReadyMesh:
         if not met:
             sheet = np.column_stack([plan, common]), triangles
             return dict.fromkeys(family.members.values(), sheet)
+        plan, triangles = self.tiling.nodes, self.tiling.tiles
+        beside = {n: traces[n].beside(self.vertices[:, :2])[self.triangles].any(axis=1) for n in met}
         seen = {}
-        sides = np.column_stack(
-            [fault_sides(self.work, self._at(plan, known), each, self.threads) for each in faults]
-        )
         for given in itertools.product((-1, 1), repeat=len(met)):
-            visible = known.copy()
+            hidden = np.zeros(len(self.triangles), bool)
             for number, side in zip(met, given, strict=True):
-                behind = (sides[:, number] == -side) & ~on_fault(self._at(plan, known), faults[number])
-                visible[behind & traces[number].beside(plan)] = np.nan
-            seen[given] = self._continued(plan, visible, triangles)
+                other = LEFT if side > 0 else RIGHT
+                hidden |= (self.masks[:, family.dying[number]] == other) & beside[number]
+            seen[given] = self._continued(plan, self.tiling.heights(own & ~hidden), triangles)
         equal = with_equal_ends(
             self.work,
             plan,
@@ -116,11 +116,6 @@ class ReadyMesh:
         )
         found = {given: (np.column_stack([plan, z]), triangles) for given, z in equal.items()}
         return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
-
-    @staticmethod
-    def _at(plan: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """(N, 3) points, those without a height at the mean of all."""
-        return np.column_stack([plan, np.where(np.isnan(z), np.nanmean(z), z)])
 
     def _continued(self, plan: np.ndarray, known: np.ndarray, triangles: np.ndarray) -> np.ndarray:
         """(N,) heights: those that are known, and where they are NaN what the method makes of them."""

@@ -15,28 +15,15 @@ Triangulation = tuple[np.ndarray, np.ndarray]
 
 @dataclass
 class RockStructure:
-    """compartments: (C, F) int8, the side of each fault, 0 where a branch is not there. seen: (C,) bool,
-    whether a point is known to lie in it; others may hold no rock. names: of the compartments. sheets: of
-    each compartment one triangulation for each surface, the same object where compartments share it; None
-    until it is made. bodies: (number of the project's body, the surface after which it came), in their order.
-    warnings: what there is to tell of some compartments, if they hold rock."""
+    """compartments: (C, F) int8, the side of each fault, 0 where a branch is not there; names: of them.
+    sheets: of each compartment one triangulation for each surface, the same object where compartments share
+    it; None until it is made. warnings: what there is to tell of some compartments, if they hold rock."""
 
     faults: RockFaults
     compartments: np.ndarray
-    seen: np.ndarray
     names: list[str]
     sheets: list[list[Triangulation | None]]
-    bodies: list[tuple[int, int]] = field(default_factory=list)
     warnings: list[tuple[list[int], BuildWarning]] = field(default_factory=list)
-
-    def groups(self, surface: int) -> dict[tuple[int, ...], list[int]]:
-        """The compartments that share a sheet of a surface, by their sides of the faults that displace it (0
-        for the others)."""
-        rows = np.where(self.faults.active(surface), self.compartments, 0)
-        found: dict[tuple[int, ...], list[int]] = {}
-        for number, row in enumerate(rows.tolist()):
-            found.setdefault(tuple(row), []).append(number)
-        return found
 
     def distinct(self, surface: int) -> list[Triangulation]:
         """The different sheets of a surface, in the order of the compartments that they first serve."""
@@ -51,12 +38,11 @@ class RockStructure:
             self.warnings.append((compartments, warning))
 
     def stage(self, m: int) -> RockStructure:
-        """The same with the surfaces up to m, and the bodies that were there then."""
+        """The same with the surfaces up to m."""
         return replace(
             self,
             sheets=[sheets[: m + 1] for sheets in self.sheets],
             faults=replace(self.faults, youngest=[min(each, m) for each in self.faults.youngest]),
-            bodies=[(number, after) for number, after in self.bodies if after <= m],
         )
 
 

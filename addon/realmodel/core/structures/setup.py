@@ -1,63 +1,77 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From the faults and bodies of a project to the compartments of its rock masses."""
+"""From rock masses that are read and meshed, and faults and bodies with arrays, to sheets in compartments."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from ..errors import InputRefused
-from ..project import rock_item
-from ..work import Work
-from .branches import faults_of_rock
-from .compartments import compartment_names, compartments
+from ..project import Project
+from ..work import Work, native_module
+from .branches import require_meeting
 from .entries import Body, Fault
-from .history import body_times
-from .rock_structure import RockStructure
+from .parts import Structures, add_compartments, box_around, divide, structures_of
+from .refusals import refused_structure
+from .sheets import make_sheets
+from .sides import fault_sides
 
-_BEYOND = 0.25  # of the range of heights of the data: how far above and below there may be rock
+_DIVIDED = 0.1  # of the time: until the parts of space are known
+_ROUNDS = 4  # in which sheets may reach beyond what was divided
 
 
-def add_structures(
-    work: Work, project, faults: list[Fault], bodies: list[Body], inputs: list, threads: int = 0
-) -> None:
-    """Gives each rock mass (RockInput, read but not interpolated) with faults or bodies its compartments.
+def make_structures(
+    work: Work,
+    project,
+    faults: list[Fault],
+    bodies: list[Body],
+    inputs: list,
+    threads: int,
+    stage: int | None,
+    start: float,
+    end: float,
+) -> Structures:
+    """Gives each rock mass (RockInput, read and meshed) its compartments and sheets, `entry.structure`, and
+    returns the parts of space. Progress goes from `start` to `end`.
 
     faults, bodies: those of the project, with arrays. Raises InputRefused.
     """
-    for number, entry in enumerate(inputs):
-        here = faults_of_rock(work, project, faults, number, threads)
-        its_bodies = [
-            (body, times[number])
-            for body, times in enumerate(body_times(project, each) for each in bodies)
-            if number in times
-        ]
-        if not len(here) and not its_bodies:
-            continue
-        try:
-            low, high = _box(entry, here)
-            rows, seen = compartments(work, here, low, high, threads)
-        except InputRefused as error:
-            raise error.within(rock_item(entry.rock)) from error
-        names = compartment_names(here, rows)
-        sheets = [[None] * len(entry.surfaces) for _ in rows]
-        entry.structure = RockStructure(here, rows, seen, names, sheets, its_bodies)
+    first = start + _DIVIDED * (end - start)
+    with work.phase(start, first, "dividing by faults and bodies"):
+        faults = [_facing_up(work, fault) for fault in faults]
+        require_meeting(faults)
+        structures = structures_of(project, faults, bodies)
+        box = box_around(inputs, structures)
+        structures = divide(work, structures, box, threads)
+    steps = np.linspace(first, end, len(inputs) + 1).tolist()
+    for _ in range(_ROUNDS):
+        add_compartments(structures, inputs)
+        for entry, begin, finish in zip(inputs, steps[:-1], steps[1:], strict=True):
+            make_sheets(work, entry, begin, finish, threads, stage)
+        wider = box_around(inputs, structures)
+        if (wider[0] >= box[0]).all() and (wider[1] <= box[1]).all():
+            break
+        box = np.array([np.minimum(wider[0], box[0]), np.maximum(wider[1], box[1])])
+        before = structures.sides
+        structures = divide(work, structures, box, threads)
+        if np.array_equal(structures.sides, before):
+            break
+    return structures
 
 
-def _box(entry, faults) -> tuple[np.ndarray, np.ndarray]:
-    """Two corners (3,) of a box around all rock that there may be."""
-    plan, heights = [], []
-    if entry.region is not None:
-        plan.append(entry.region[0])
-    for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True):
-        given = shape[0] if shape is not None else np.asarray(surface.points, np.float64).reshape(-1, 3)
-        heights.append(given[:, 2])
-        if entry.region is None:
-            plan.append(given[:, :2])
-    if entry.rock.base_elevation is not None:
-        heights.append(np.array([entry.rock.base_elevation]))
-    if not any(map(len, heights)):
-        heights = [vertices[:, 2] for vertices, _ in faults.shapes]
-    places, z = np.concatenate(plan), np.concatenate(heights)
-    low, high = (np.append(corner(places, axis=0), corner(z)) for corner in (np.min, np.max))
-    margin = np.array([0.0, 0.0, _BEYOND * (high[2] - low[2])])
-    return low - margin, high + margin
+def _facing_up(work: Work, fault: Fault) -> Fault:
+    """The fault with its triangles turned as the native part has them: on the whole they face up."""
+    corners = fault.vertices[fault.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    largest = int(np.linalg.norm(normals, axis=1).argmax())
+    size = np.linalg.norm(normals[largest])
+    beside = corners[largest].mean(axis=0) + normals[largest] / size * 1e-3 * np.sqrt(size)
+    native = native_module()
+    try:
+        side = fault_sides(work, beside[None], (fault.vertices, fault.triangles))
+    except native.InputError as error:
+        error.surface = 0
+        raise refused_structure(error, structures_of(Project("", []), [fault], [])) from error
+    if side[0] > 0:
+        return fault
+    return replace(fault, triangles=np.ascontiguousarray(fault.triangles[:, ::-1]))

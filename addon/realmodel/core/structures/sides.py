@@ -58,12 +58,11 @@ class RockFaults:
 
 
 def fault_sides(work: Work, points: np.ndarray, shape: Triangulation, threads: int = 0) -> np.ndarray:
-    """(N,) int8: +1 or -1, the side of its nearest triangle on which each point lies; beyond its border a
-    fault goes on along the nearest triangle."""
+    """(N,) int8: +1 above a fault, -1 below it; beyond its border it goes on along the nearest triangle."""
     points = np.ascontiguousarray(points, np.float64)
     if not len(points):
         return np.zeros(0, np.int8)
-    return work.native(native_module().fault_sides, points, *shape, threads=threads)
+    return work.native(native_module().structure_sides, (*shape, False, [], False), points, threads=threads)
 
 
 def sides_of(work: Work, points: np.ndarray, faults: RockFaults, threads: int = 0) -> np.ndarray:

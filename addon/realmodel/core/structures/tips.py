@@ -7,6 +7,7 @@ sheets which differ beside the fault; beyond its ends they are made equal, so th
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,14 +18,18 @@ from .triangles import crossing_pairs, distances_of_pairs, edges_of, segments_hi
 
 _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
 _AT_ONCE = 1 << 21
+_HALVINGS = 30  # a billionth of an edge
+
+Within = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
 class Trace:
-    """Where a sheet meets a fault. points: (M, 2) in plan; is_end: (M,) bool, those where it dies out.
-    beyond: (N,) bool, the nodes of triangles through which the fault would go on beyond its ends."""
+    """Where a sheet meets a fault. points: (M, 2) in plan, heights: (M,); is_end: (M,) bool, where it dies
+    out. beyond: (N,) bool, the nodes of triangles through which the fault would go on beyond its ends."""
 
     points: np.ndarray
+    heights: np.ndarray
     is_end: np.ndarray
     beyond: np.ndarray
 
@@ -36,9 +41,9 @@ class Trace:
 
 
 def trace_of(
-    work: Work, sheet: Triangulation, fault: Triangulation, within: np.ndarray, threads: int = 0
+    work: Work, sheet: Triangulation, fault: Triangulation, within: Within, threads: int = 0
 ) -> Trace:
-    """Where a sheet meets a fault, edge by edge. within: (N,) bool, the nodes in the compartment: a fault
+    """Where a sheet meets a fault, edge by edge. within: which points (K, 3) lie in the compartment; a fault
     that ends elsewhere does not die out."""
     vertices, triangles = sheet
     side = fault_sides(work, vertices, fault, threads)
@@ -51,17 +56,29 @@ def trace_of(
     begin, end = vertices[edges[changing, 0]], vertices[edges[changing, 1]]
     share = _hit_shares(begin, end, fault)
     hits = np.isfinite(share)
-    changes, missed = np.zeros(len(edges), bool), np.zeros(len(edges), bool)
-    changes[changing] = True
-    missed[changing[~hits]] = True
-    goes_on = missed[of_triangle].any(axis=1) & within[triangles].any(axis=1)
+    passed = _where_sides_change(work, begin[~hits], end[~hits], fault, threads)
+    missed = np.zeros(len(edges), bool)
+    missed[changing[~hits][within(passed)]] = True
+    goes_on = missed[of_triangle].any(axis=1)
     beyond = np.zeros(len(vertices), bool)
     beyond[triangles[goes_on]] = True
     at_end = np.zeros(len(edges), bool)
     at_end[of_triangle[goes_on]] = True
-    crossed = begin[hits, :2] + share[hits, None] * (end - begin)[hits, :2]
-    points = np.concatenate([crossed, vertices[on, :2]])
-    return Trace(points, np.concatenate([at_end[changing[hits]], beyond[on]]), beyond)
+    places = np.concatenate([begin[hits] + share[hits, None] * (end - begin)[hits], vertices[on]])
+    return Trace(places[:, :2], places[:, 2], np.concatenate([at_end[changing[hits]], beyond[on]]), beyond)
+
+
+def _where_sides_change(
+    work: Work, begin: np.ndarray, end: np.ndarray, fault: Triangulation, threads: int
+) -> np.ndarray:
+    """(K, 3) a point on each segment at which the side of a fault changes, by bisection."""
+    low, high = np.zeros(len(begin)), np.ones(len(begin))
+    first = fault_sides(work, begin, fault, threads)
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        same = fault_sides(work, begin + middle[:, None] * (end - begin), fault, threads) == first
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return begin + high[:, None] * (end - begin)
 
 
 def on_fault(points: np.ndarray, fault: Triangulation) -> np.ndarray:
@@ -133,7 +150,7 @@ def with_equal_ends(
     heights: dict[tuple[int, ...], np.ndarray],
     faults: list[Triangulation],
     traces: list[Trace],
-    within: np.ndarray,
+    within: Within,
     ramp: float,
     threads: int = 0,
 ) -> dict[tuple[int, ...], np.ndarray]:

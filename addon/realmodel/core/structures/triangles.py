@@ -38,11 +38,10 @@ def open_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
     """The rings of vertices along edges that one triangle alone has, with the triangles on their left."""
     edges = edges_of(triangles)
-    twin = {(int(a), int(b)) for a, b in edges}
+    _, number, count = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
     following: dict[int, list[int]] = {}
-    for a, b in edges.tolist():
-        if (b, a) not in twin:
-            following.setdefault(a, []).append(b)
+    for a, b in edges[count[number.ravel()] == 1].tolist():
+        following.setdefault(a, []).append(b)
     loops = []
     for start in sorted(following):
         while following[start]:
@@ -53,27 +52,6 @@ def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
                     break
             loops.append(np.array(loop[:-1] if loop[-1] == start else loop))
     return [loop for loop in loops if len(loop) > 2]
-
-
-def divided(vertices: np.ndarray, triangles: np.ndarray, longest: float, low=None, high=None) -> np.ndarray:
-    """(K, 3, 3) triangles that cover the same, no edge longer than `longest`; those that lie outside of the
-    box from low to high are left out."""
-    pieces = vertices[triangles]
-    done = []
-    while len(pieces):
-        if low is not None:
-            away = (pieces.max(axis=1) < low).any(axis=1) | (pieces.min(axis=1) > high).any(axis=1)
-            pieces = pieces[~away]
-        sides = np.linalg.norm(pieces[:, [1, 2, 0]] - pieces, axis=2)
-        side = sides.argmax(axis=1)
-        short = sides[np.arange(len(side)), side] <= longest
-        done.append(pieces[short])
-        rows = np.arange(3)
-        order = (side[~short, None] + rows) % 3
-        a, b, c = np.take_along_axis(pieces[~short], order[:, :, None], axis=1).transpose(1, 0, 2)
-        middle = (a + b) / 2
-        pieces = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
-    return np.concatenate(done) if done else np.empty((0, 3, 3))
 
 
 def distances(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -104,16 +82,19 @@ def distances_of_pairs(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 def crossing_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """(K, 2) rows of triangles (N, 3, 3) and (M, 3, 3) whose boxes touch."""
+    if len(first) > len(second):
+        return crossing_pairs(second, first)[:, ::-1]
     low, high = second.min(axis=1), second.max(axis=1)
     order = np.argsort(low[:, 0], kind="stable")
     low, high = low[order], high[order]
     widest = (high[:, 0] - low[:, 0]).max(initial=0.0)
+    lowest, highest = first.min(axis=1), first.max(axis=1)
+    begin = np.searchsorted(low[:, 0], lowest[:, 0] - widest, "left")
+    end = np.searchsorted(low[:, 0], highest[:, 0], "right")
     found = []
-    begin = np.searchsorted(low[:, 0], first.min(axis=1)[:, 0] - widest, "left")
-    end = np.searchsorted(low[:, 0], first.max(axis=1)[:, 0], "right")
-    for number, (lowest, highest) in enumerate(zip(first.min(axis=1), first.max(axis=1), strict=True)):
+    for number in range(len(first)):
         some = slice(begin[number], end[number])
-        near = ((high[some] >= lowest) & (low[some] <= highest)).all(axis=1)
+        near = ((high[some] >= lowest[number]) & (low[some] <= highest[number])).all(axis=1)
         rows = order[some][near]
         found.append(np.column_stack([np.full(len(rows), number), rows]))
     return np.concatenate(found) if found else np.empty((0, 2), np.int64)
@@ -126,12 +107,21 @@ def meet(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     found = np.zeros(len(first), bool)
     for start in range(0, len(pairs), 1 << 16):
         some = pairs[start : start + (1 << 16)]
+        some = some[_straddles(first[some[:, 0]], second[some[:, 1]])]
         one, other = first[some[:, 0]], second[some[:, 1]]
         hit = np.zeros(len(some), bool)
         for (triangle, edges), (i, j) in itertools.product(((one, other), (other, one)), _EDGES):
             hit |= segments_hit(edges[:, i], edges[:, j], triangle)
         found[some[hit, 0]] = True
     return found
+
+
+def _straddles(triangles: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """(K,) bool: whether the first triangle of each pair (K, 3, 3) has corners on both sides of the plane of
+    the second one, or on it."""
+    a, b, c = others.transpose(1, 0, 2)
+    off = np.einsum("kij,kj->ki", triangles - a[:, None], np.cross(b - a, c - a))
+    return (off.min(axis=1) <= 0) & (off.max(axis=1) >= 0)
 
 
 def segments_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> np.ndarray:

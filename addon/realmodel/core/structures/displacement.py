@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Throw and heave: how far the two sides of surfaces have moved along each fault."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..work import Work, run
+from .families import keys_of
+from .rock_structure import Triangulation
+from .sides import sides_of
+from .tips import trace_of
+
+_ALONG = 2.0  # distances between places on a trace: the other side is looked for so far along the fault
+
+
+@dataclass(frozen=True)
+class Displacement:
+    """Of one surface along one fault, at places (N, 3) where its sheet below the fault meets it: throw and
+    heave (N,), model units. Throw is how much lower the upper side lies: positive at a normal fault, negative
+    at a reverse one. Heave is how far its edge is from that of the lower side in plan, across the fault."""
+
+    fault: str
+    rock: str
+    surface: str
+    places: np.ndarray
+    throw: np.ndarray
+    heave: np.ndarray
+
+
+def displacements(model) -> list[Displacement]:
+    """Of each fault of a model, and each surface that it displaces where it meets it."""
+    if model.structures is None:
+        return []
+    return run(lambda work: _displacements(work, model))
+
+
+def _displacements(work: Work, model) -> list[Displacement]:
+    found = []
+    for number, fault in enumerate(model.structures.faults):
+        for entry in model.rock_inputs:
+            structure = entry.structure
+            if number not in structure.faults.numbers:
+                continue
+            at = structure.faults.numbers.index(number)
+            for k in range(min(structure.faults.youngest[at], len(entry.surfaces) - 1) + 1):
+                parts = [
+                    _along(work, model, entry, at, k, below, above)
+                    for below, above in _sheet_pairs(structure, at, k)
+                ]
+                joined = [np.concatenate(each) for each in zip(*parts, strict=True)]
+                if joined and len(joined[0]):
+                    name = entry.rock.surfaces[k].name
+                    found.append(Displacement(fault.name, entry.rock.name, name, *joined))
+    return found
+
+
+def _sheet_pairs(structure, fault: int, surface: int) -> list[tuple[int, int]]:
+    """Compartments on the two sides of a fault that differ in no other fault that displaces a surface."""
+    active = structure.faults.active(surface)
+    others = np.where(active, structure.compartments, 0)
+    others[:, fault] = 0
+    pairs, seen = [], set()
+    for below in np.flatnonzero(structure.compartments[:, fault] < 0):
+        for above in np.flatnonzero(structure.compartments[:, fault] > 0):
+            key = tuple(others[below].tolist())
+            if key not in seen and np.array_equal(others[below], others[above]):
+                seen.add(key)
+                pairs.append((int(below), int(above)))
+    return pairs
+
+
+def _along(work: Work, model, entry, fault: int, surface: int, below: int, above: int):
+    """places (N, 3), throw and heave (N,) of two sheets along a fault."""
+    structure, threads = entry.structure, model.threads
+    shape = structure.faults.shapes[fault]
+
+    def within(points: np.ndarray) -> np.ndarray:
+        keys = keys_of(structure, surface, sides_of(work, points, structure.faults, threads))
+        own = keys_of(structure, surface, structure.compartments[below : below + 1])
+        same = keys == own
+        same[:, fault] = True
+        return same.all(axis=1)
+
+    low, high = (
+        _trace(work, structure.sheets[each][surface], shape, within, threads) for each in (below, above)
+    )
+    nothing = np.empty((0, 3)), np.empty(0), np.empty(0)
+    if len(low) < 2 or len(high) < 2:
+        return nothing
+    normal = _normals(low, shape)
+    level = np.linalg.norm(normal[:, :2], axis=1)
+    steep = level > 1e-9
+    low, normal = low[steep], normal[steep]
+    across = normal[:, :2] / level[steep, None]
+    along = np.column_stack([-across[:, 1], across[:, 0]])
+    places, throw, heave = [], [], []
+    apart = np.diff(high[np.argsort(high @ _main(high))], axis=0)
+    step = _ALONG * float(np.median(np.linalg.norm(apart, axis=1)))
+    for place, direction, sideways in zip(low, along, across, strict=True):
+        away = high - place
+        shift = away[:, :2] @ direction
+        before, after = np.where(shift <= 0, shift, -np.inf), np.where(shift >= 0, shift, np.inf)
+        one, other = int(before.argmax()), int(after.argmin())
+        if before[one] < -step or after[other] > step:
+            continue
+        share = 0.0 if after[other] == before[one] else -before[one] / (after[other] - before[one])
+        there = away[one] + share * (away[other] - away[one])
+        places.append(place)
+        throw.append(-there[2])
+        heave.append(abs(there[:2] @ sideways))
+    return (np.array(places).reshape(-1, 3), np.array(throw), np.array(heave)) if places else nothing
+
+
+def _trace(work: Work, sheet: Triangulation, shape, within, threads: int) -> np.ndarray:
+    """(M, 3) places at which a sheet meets a fault, in the compartment."""
+    trace = trace_of(work, sheet, shape, within, threads)
+    places = np.column_stack([trace.points, trace.heights])
+    return places[within(places)] if len(places) else places
+
+
+def _main(places: np.ndarray) -> np.ndarray:
+    """The direction in which places spread most."""
+    return np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2][0]
+
+
+def _normals(places: np.ndarray, shape: Triangulation) -> np.ndarray:
+    """(N, 3) of length 1: those of the fault's triangles whose middles are nearest."""
+    corners = shape[0][shape[1]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    middles = corners.mean(axis=1)
+    return normals[[int(((middles - place) ** 2).sum(axis=1).argmin()) for place in places]]

@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A model with faults and bodies: the stacks of all parts of space, cut by the structures and joined."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from ..stack_refusals import refused_stack
+from ..work import Work, native_module
+from .part_models import NOTHING, Stack, inside_body, plain_stack
+from .parts import Structures, compartment_of
+from .reach import Reach
+from .refusals import refused_structure
+from .rock_structure import Triangulation
+
+_BUILT = 0.4  # of the time: until the stacks are built; then they are cut and joined
+
+
+def build_joined(
+    work: Work, inputs: list, structures: Structures, cells: str, threads: int, start: float, end: float
+) -> dict:
+    """As _native.build_rock_masses for rock masses (RockInput) with structures.
+
+    Blocks have the numbers of the surfaces above them, and those of bodies the numbers of their structures,
+    counted after all surfaces; so have faces. `cell_part` (C,) int32 is the part of space of each cell.
+    Raises InputRefused.
+    """
+    models, parts, warnings = [], [], {}
+    reach = Reach(work, structures, threads)
+    steps = np.linspace(start, start + _BUILT * (end - start), len(structures.sides) + 1)
+    for part, (begin, finish) in enumerate(itertools.pairwise(steps)):
+        with work.phase(float(begin), float(finish), "intersecting and cutting"):
+            built = _part_model(work, inputs, structures, reach, part, cells, threads)
+        if built is not None and len(built["cell_block"]):
+            warnings |= dict.fromkeys((w[0], w[1], tuple(w[2]), w[3]) for w in built.pop("warnings"))
+            models.append((built, structures.sides[part].tolist()))
+            parts.append(part)
+    if not models:
+        return _nothing(inputs, structures)
+    native = native_module()
+    with work.phase(float(steps[-1]), end, "joining the compartments"):
+        try:
+            joined = work.native(
+                native.join_structured, models, structures.native(), acts(inputs, structures), threads=threads
+            )
+        except native.InputError as error:
+            raise refused_structure(error, structures) from error
+    joined["cell_part"] = np.array(parts, np.int32)[joined["cell_part"]]
+    joined["warnings"] = list(warnings)
+    return joined
+
+
+def _nothing(inputs: list, structures: Structures) -> dict:
+    blocks = _first_surfaces(inputs)[-1] + len(structures)
+    return {
+        "vertices": np.empty((0, 3)),
+        "face_offsets": np.zeros(1, np.int64),
+        "face_vertices": np.empty(0, np.int32),
+        "face_cells": np.empty((0, 2), np.int32),
+        "face_surface": np.empty(0, np.int32),
+        "cell_block": np.empty(0, np.int32),
+        "cell_part": np.empty(0, np.int32),
+        "volumes": np.zeros(blocks),
+        "warnings": [],
+    }
+
+
+def _first_surfaces(inputs: list) -> list[int]:
+    """The number of the first surface of each rock mass, and of all."""
+    return np.cumsum([0, *(len(entry.surfaces) for entry in inputs)]).tolist()
+
+
+def _part_model(
+    work: Work, inputs: list, structures: Structures, reach: Reach, part: int, cells: str, threads: int
+) -> dict | None:
+    """The arrays of all rock masses as they are in one part; None where there is nothing."""
+    first = _first_surfaces(inputs)
+    stacks = [
+        _stack(inputs, structures, part, number, first[number], first[-1]) for number in range(len(inputs))
+    ]
+    columns = reach.columns(part)
+    kept = {id(sheet): reach.over(columns, sheet) for stack in stacks for sheet in stack.sheets}
+    stacks = [stack.without([not kept[id(sheet)].any() for sheet in stack.sheets]) for stack in stacks]
+    taken = [n for n, stack in enumerate(stacks) if stack.sheets]
+    if not taken:
+        return None
+    rows = [np.flatnonzero(kept[id(sheet)]) for n in taken for sheet in stacks[n].sheets]
+    for n in taken:
+        stacks[n].sheets = [_narrowed(sheet, kept[id(sheet)]) for sheet in stacks[n].sheets]
+    rocks = [(stacks[n].sheets, inputs[n].region, stacks[n].base_elevation, stacks[n].rules) for n in taken]
+    surfaces = [first[n] + own if own >= 0 else -1 for n in taken for own in stacks[n].surfaces]
+    native = native_module()
+    try:
+        built = work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)
+    except native.InputError as error:
+        if 0 <= error.surface < len(surfaces):
+            error.items = rows[error.surface][error.items].tolist()
+            error.surface = surfaces[error.surface]
+        raise refused_stack(error, inputs) from error
+    blocks = np.array([block for n in taken for block in stacks[n].blocks], np.int32)
+    # faces keep -1, a wall, and -2, the base; the level surfaces that only fill bodies are no surfaces
+    numbers = np.array([*surfaces, -2, -1], np.int32)
+    model = {
+        "vertices": built["vertices"],
+        "face_offsets": built["face_offsets"],
+        "face_vertices": built["face_vertices"],
+        "face_cells": built["face_cells"],
+        "face_surface": numbers[built["face_surface"]],
+        "cell_block": blocks[built["cell_block"]],
+        "blocks": first[-1] + len(structures),
+        "surfaces": first[-1],
+        "cell_kind": cells,
+    }
+    if cells == "blocks" and len(set(blocks.tolist())) < len(blocks):
+        model |= one_cell_each(model)
+    warnings = [
+        (kind, surfaces[k], rows[k][items].tolist(), text) if k >= 0 else (kind, k, items, text)
+        for kind, k, items, text in built["warnings"]
+    ]
+    return {**model, "warnings": warnings}
+
+
+def _narrowed(sheet: Triangulation, kept: np.ndarray) -> Triangulation:
+    """Some triangles of a sheet, with their vertices alone."""
+    vertices, triangles = sheet
+    if kept.all():
+        return sheet
+    used = np.zeros(len(vertices), bool)
+    used[triangles[kept]] = True
+    number = np.cumsum(used, dtype=np.int64) - 1
+    return np.ascontiguousarray(vertices[used]), number[triangles[kept]].astype(np.int32)
+
+
+def _stack(inputs: list, structures: Structures, part: int, number: int, first: int, surfaces: int) -> Stack:
+    """The stack of one rock mass in one part. surfaces: of all rock masses."""
+    entry = inputs[number]
+    sheets = entry.structure.sheets[compartment_of(structures, entry, part)]
+    rules = [surface.rule for surface in entry.rock.surfaces]
+    stack = plain_stack(sheets, rules, entry.rock.base_elevation, first)
+    count = len(structures.faults)
+    inside = [
+        (times[number], body)
+        for body, times in enumerate(structures.times)
+        if number in times and structures.sides[part, count + body] < 0
+    ]
+    if not inside:
+        return stack
+    top = _above_all(sheets, structures)
+    for after, body in sorted(inside):
+        given = structures.bodies[body]
+        block = NOTHING if given.void else surfaces + count + body
+        stack = inside_body(stack, after, block, top, given)
+    return stack
+
+
+def _above_all(sheets, structures: Structures) -> float:
+    """A height above all sheets and bodies."""
+    shapes = [*(vertices for vertices, _ in sheets), *(body.vertices for body in structures.bodies)]
+    low, high = min(each[:, 2].min() for each in shapes), max(each[:, 2].max() for each in shapes)
+    return float(high + (high - low) + 1.0)
+
+
+def acts(inputs: list, structures: Structures) -> np.ndarray:
+    """(S, B) uint8: whether a structure divides a block. A fault divides what it displaces and the bodies
+    that were there by then; a body what was there before it, and is hidden in later ones."""
+    first = _first_surfaces(inputs)
+    count = len(structures.faults)
+    found = np.zeros((len(structures), first[-1] + len(structures)), np.uint8)
+    ages = [(times, number) for number, times in enumerate(structures.times)]
+    for fault, displaced in enumerate(structures.displaced):
+        for rock, youngest in displaced.items():
+            last = min(youngest, len(inputs[rock].surfaces) - 1)
+            found[fault, first[rock] : first[rock] + last + 1] = 1
+            for times, body in ages:
+                if rock in times and times[rock] <= youngest:
+                    found[fault, first[-1] + count + body] = 1
+    for times, body in ages:
+        for rock, after in times.items():
+            found[count + body, first[rock] : first[rock] + after + 1] = 1
+            for others, other in ages:
+                if rock in others and (others[rock], other) <= (after, body):
+                    found[count + body, first[-1] + count + other] = 1
+    return found
+
+
+def one_cell_each(model: dict) -> dict:
+    """The arrays of a model of blocks with each connected part of a block as one cell: without the faces
+    between cells of one block."""
+    faces, block = model["face_cells"], model["cell_block"]
+    part = native_module().cell_components(faces, block)
+    roots, cell = np.unique(part, return_inverse=True)
+    cells = np.append(cell.ravel(), -1).astype(np.int32)[faces]
+    kept = np.flatnonzero(cells[:, 0] != cells[:, 1])
+    size = np.diff(model["face_offsets"])
+    corner = np.repeat(np.isin(np.arange(len(faces)), kept), size)
+    used, corners = np.unique(model["face_vertices"][corner], return_inverse=True)
+    return {
+        "vertices": np.ascontiguousarray(model["vertices"][used]),
+        "face_offsets": np.concatenate([[0], np.cumsum(size[kept])]).astype(np.int64),
+        "face_vertices": corners.ravel().astype(np.int32),
+        "face_cells": np.ascontiguousarray(cells[kept]),
+        "face_surface": model["face_surface"][kept],
+        "cell_block": np.ascontiguousarray(block[roots]),
+    }

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The parts into which faults and bodies divide the space of a project, and the compartments of its rock
+masses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..work import Work, native_module
+from .entries import Body, Fault
+from .history import body_times, displaced_surfaces
+from .refusals import refused_structure
+from .rock_structure import RockStructure
+from .sides import RockFaults
+
+_BEYOND = 0.25  # of the range of heights of the data: how far above and below there may be rock
+
+
+@dataclass
+class Structures:
+    """faults, bodies: of a project, with arrays; structures are numbered through both. displaced: of each
+    fault its youngest displaced surface, by rock mass; times: of each body the surface after which it came.
+    sides: (P, S) int8 of the parts: 1 above a fault or outside of a body, -1 below or inside, 0 where a
+    branch is not there. low, high: (P, 3) a box around each part. box: (2, 3) corners of what was divided."""
+
+    faults: list[Fault]
+    bodies: list[Body]
+    displaced: list[dict[int, int]]
+    times: list[dict[int, int]]
+    sides: np.ndarray = field(default_factory=lambda: np.zeros((1, 0), np.int8))
+    low: np.ndarray | None = None
+    high: np.ndarray | None = None
+    box: np.ndarray | None = None
+
+    def __len__(self) -> int:
+        return len(self.faults) + len(self.bodies)
+
+    @property
+    def names(self) -> list[str]:
+        return [each.name for each in (*self.faults, *self.bodies)]
+
+    def native(self) -> list[tuple]:
+        """As the native part takes them."""
+        number = {fault.name: n for n, fault in enumerate(self.faults)}
+        given = [
+            (fault.vertices, fault.triangles, False, [number[name] for name in fault.ends_at], fault.dies_out)
+            for fault in self.faults
+        ]
+        return given + [(body.vertices, body.triangles, True, [], False) for body in self.bodies]
+
+    def of_rock(self, rock: int) -> RockFaults:
+        """The faults that act in a rock mass; those that end at others as the parts have it."""
+        numbers = [n for n, displaced in enumerate(self.displaced) if rock in displaced]
+        here = {self.faults[number].name: at for at, number in enumerate(numbers)}
+        ends = []
+        for number in numbers:
+            own = self.sides[self.sides[:, number] != 0]
+            others = [name for name in self.faults[number].ends_at if name in here]
+            kept = [(here[name], int(own[:, numbers[here[name]]].max(initial=-1))) for name in others]
+            ends.append([(other, side) for other, side in kept if side])
+        faults = [self.faults[number] for number in numbers]
+        return RockFaults(
+            [fault.name for fault in faults],
+            [(fault.vertices, fault.triangles) for fault in faults],
+            [self.displaced[number][rock] for number in numbers],
+            [fault.dies_out for fault in faults],
+            numbers,
+            ends,
+        )
+
+    def has_block(self, number: int) -> bool:
+        """Whether a structure has a block: a body that is no void, and is there."""
+        body = number - len(self.faults)
+        return body >= 0 and not self.bodies[body].void and bool(self.times[body])
+
+    def blocks_of_bodies(self) -> list[tuple[int, Body, int]]:
+        """Of each block of a body: the number of its structure, the body, its first rock mass."""
+        count = len(self.faults)
+        return [
+            (count + number, body, min(self.times[number]))
+            for number, body in enumerate(self.bodies)
+            if self.has_block(count + number)
+        ]
+
+    def stage(self, m: int) -> Structures:
+        """The same with the bodies that were there just after surface m."""
+        times = [{rock: after for rock, after in each.items() if after <= m} for each in self.times]
+        return replace(self, times=times)
+
+
+def structures_of(project, faults: list[Fault], bodies: list[Body]) -> Structures:
+    """faults, bodies: those of the project, with arrays."""
+    displaced = [displaced_surfaces(project, fault) for fault in faults]
+    return Structures(faults, bodies, displaced, [body_times(project, body) for body in bodies])
+
+
+def divide(work: Work, structures: Structures, box: np.ndarray, threads: int) -> Structures:
+    """The parts of a box, (2, 3). Raises InputRefused."""
+    native = native_module()
+    try:
+        sides, low, high = work.native(
+            native.structure_parts, _box_complex(*box), structures.native(), threads=threads
+        )
+    except native.InputError as error:
+        raise refused_structure(error, structures) from error
+    return replace(structures, sides=sides, low=low, high=high, box=box)
+
+
+def _box_complex(low: np.ndarray, high: np.ndarray) -> dict:
+    """One cell, as the native part takes a model."""
+    corners = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], np.float64)
+    faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    return {
+        "vertices": np.where(corners == 0, low, high),
+        "face_offsets": np.arange(0, 25, 4, dtype=np.int64),
+        "face_vertices": np.array(faces, np.int32).ravel(),
+        "face_cells": np.array([[0, -1]] * 6, np.int32),
+        "face_surface": np.full(6, -1, np.int32),
+        "cell_block": np.zeros(1, np.int32),
+        "blocks": 1,
+        "surfaces": 0,
+        "cell_kind": "blocks",
+    }
+
+
+def box_around(inputs: list, structures: Structures) -> np.ndarray:
+    """(2, 3) corners of a box around all rock that there may be: around RockInputs and bodies, with a margin
+    for what is not interpolated yet."""
+    plan, heights = [], [body.vertices[:, 2] for body in structures.bodies]
+    for entry in inputs:
+        if entry.region is not None:
+            plan.append(entry.region[0])
+        for surface, shape in zip(entry.rock.surfaces, entry.surfaces, strict=True):
+            given = surface.points if shape is None else shape[0]
+            given = np.asarray(given, np.float64).reshape(-1, 3)
+            heights.append(given[:, 2])
+            if entry.region is None:
+                plan.append(given[:, :2])
+        if entry.rock.base_elevation is not None:
+            heights.append(np.array([entry.rock.base_elevation]))
+    if not any(map(len, heights)):
+        heights = [fault.vertices[:, 2] for fault in structures.faults]
+    places, z = np.concatenate(plan), np.concatenate(heights)
+    low, high = (np.append(corner(places, axis=0), corner(z)) for corner in (np.min, np.max))
+    made = all(shape is not None for entry in inputs for shape in entry.surfaces)
+    margin = np.array([0.0, 0.0, 0.0 if made else _BEYOND * (high[2] - low[2])])
+    margin = margin if low[2] < high[2] else np.array([0.0, 0.0, 1.0])
+    return np.array([low - margin, high + margin])
+
+
+def add_compartments(structures: Structures, inputs: list) -> None:
+    """Gives each rock mass (RockInput) its compartments: the parts by their sides of the faults that act in
+    it."""
+    for number, entry in enumerate(inputs):
+        faults = structures.of_rock(number)
+        rows = np.unique(structures.sides[:, faults.numbers], axis=0)
+        sheets = [[None] * len(entry.surfaces) for _ in rows]
+        entry.structure = RockStructure(faults, rows, compartment_names(faults.names, rows), sheets)
+
+
+def compartment_of(structures: Structures, entry, part: int) -> int:
+    """The compartment of a RockInput that a part lies in."""
+    row = structures.sides[part, entry.structure.faults.numbers]
+    return int(np.flatnonzero((entry.structure.compartments == row).all(axis=1))[0])
+
+
+def compartment_names(names: list[str], rows: np.ndarray) -> list[str]:
+    """A name for each row of sides: "above F1, below F2"; "" for one without."""
+    words = {1: "above", -1: "below"}
+    return [
+        ", ".join(f"{words[side]} {name}" for name, side in zip(names, row, strict=True) if side)
+        for row in rows.tolist()
+    ]

@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Random points of a finished model with structures, compared with the closed form."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from ..errors import place_text
+from ..work import Work
+from .closed_form import AIR, BodyOfRock, ClosedForm, heights_at
+from .located import OUTSIDE, Locator
+from .triangles import distances_of_pairs
+
+_ROUNDING = 64  # units in the last place of the largest coordinate: what is nearer is left undecided
+_LOOKED_AT = 200  # points that do not agree: whether rounding may be the cause
+_SHOWN = 5  # offenders of each test
+_AT_ONCE = 2000  # points between two looks at cancel()
+
+
+def closed_forms(model) -> list[ClosedForm]:
+    """The closed form of each rock mass of a model with structures; blocks have the model's numbers."""
+    structures = model.structures
+    number = {block.surface: n for n, block in enumerate(model.blocks)}
+    count = sum(len(entry.surfaces) for entry in model.rock_inputs)
+    found, first = [], 0
+    for rock, entry in enumerate(model.rock_inputs):
+        own = range(first, first + len(entry.surfaces))
+        bodies = [
+            BodyOfRock(
+                (body.vertices, body.triangles),
+                structures.times[n][rock],
+                number.get(count + len(structures.faults) + n, AIR),
+            )
+            for n, body in enumerate(structures.bodies)
+            if rock in structures.times[n]
+        ]
+        found.append(
+            ClosedForm(
+                [surface.rule for surface in entry.rock.surfaces],
+                entry.structure.faults,
+                entry.structure.compartments,
+                entry.structure.sheets,
+                [number.get(surface, AIR) for surface in own],
+                entry.rock.base_elevation,
+                bodies,
+                entry.region,
+            )
+        )
+        first += len(entry.surfaces)
+    return found
+
+
+def check_points(work: Work, model, places: int, seed: int) -> list[dict]:
+    """The tests "places" and "surfaces" of a model with structures, as the native part gives those of others:
+    about so many points spread in the model, beside its faces, and beside faults and bodies."""
+    random = np.random.default_rng(seed)
+    began = time.perf_counter()
+    points = _points(model, places, random)
+    forms = closed_forms(model)
+    locator = Locator(model)
+    wrong, undecided, looked_at = [], 0, 0
+    for start in range(0, len(points), _AT_ONCE):
+        work.step(start / max(1, len(points)))
+        some = points[start : start + _AT_ONCE]
+        cells = locator.cells(some)
+        is_block = np.where(cells == OUTSIDE, AIR, np.append(model.cell_block, AIR)[cells])
+        said = _said(forms, some)
+        for n in np.flatnonzero(is_block != said):
+            looked_at += 1
+            if looked_at <= _LOOKED_AT and _is_near(model, forms, locator, some[n]):
+                undecided += 1
+            else:
+                wrong.append((some[n], int(cells[n]), int(is_block[n]), int(said[n])))
+    offenders = [_offender(model, *each) for each in wrong[:_SHOWN]]
+    found = [_entry("places", "points", len(points), len(wrong), undecided, began, offenders)]
+    return [*found, _check_faces(model, places, random)]
+
+
+def _said(forms: list[ClosedForm], points: np.ndarray) -> np.ndarray:
+    blocks = np.full(len(points), AIR, np.int64)
+    for form in forms:
+        own = form.blocks_at(points)
+        blocks = np.where(own != AIR, own, blocks)
+    return blocks
+
+
+def _points(model, places: int, random) -> np.ndarray:
+    """(N, 3): a third anywhere in the box of the model, a third near faces, a third near structures."""
+    low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
+    margin = 0.02 * (high - low)
+    third = max(1, places // 3)
+    spread = random.uniform(low - margin, high + margin, (places - 2 * third, 3))
+    first = model.face_offsets[:-1]
+    some = random.integers(0, len(first), third)
+    corner = random.integers(0, np.diff(model.face_offsets)[some] - 1)
+    at = model.face_vertices[first[some]], *(model.face_vertices[first[some] + corner + k] for k in (0, 1))
+    beside = _in_triangles(np.stack([model.vertices[each] for each in at], axis=1), random)
+    shapes = [each.vertices[each.triangles] for each in (*model.structures.faults, *model.structures.bodies)]
+    near = np.empty((0, 3))
+    for shape in shapes:
+        rows = random.integers(0, len(shape), -(-third // len(shapes)))
+        near = np.concatenate([near, _in_triangles(shape[rows], random)])
+    away = 10.0 ** random.uniform(-6, -1, (len(beside) + len(near), 1)) * np.linalg.norm(high - low)
+    direction = random.normal(size=(len(away), 3))
+    direction /= np.linalg.norm(direction, axis=1)[:, None]
+    return np.concatenate([spread, np.concatenate([beside, near]) + away * direction])
+
+
+def _in_triangles(corners: np.ndarray, random) -> np.ndarray:
+    """A random point in each of (N, 3, 3)."""
+    weights = -np.log(random.uniform(1e-300, 1.0, corners.shape[:2]))
+    return (corners * (weights / weights.sum(axis=1)[:, None])[:, :, None]).sum(axis=1)
+
+
+def _is_near(model, forms: list[ClosedForm], locator: Locator, point: np.ndarray) -> bool:
+    """Whether something that divides rock is nearer to a point than rounding may move it."""
+    near = _ROUNDING * np.spacing(np.abs(model.vertices).max())
+    for move in np.vstack([np.eye(3), -np.eye(3)]) * near:
+        moved = (point + move)[None]
+        if _said(forms, moved)[0] != _said(forms, point[None])[0]:
+            return True
+        if (locator.cells(moved) != locator.cells(point[None])).any():
+            return True
+    return False
+
+
+def _offender(model, point: np.ndarray, cell: int, block: int, said: int) -> dict:
+    names = [f"block '{each.name}'" for each in model.blocks]
+    text = f"the model has {names[block] if block >= 0 else 'nothing'}, the closed form "
+    text += f"{names[said] if said >= 0 else 'nothing'} at {place_text(point)}"
+    return {
+        "text": text,
+        "cell": cell,
+        "face": -1,
+        "vertex": -1,
+        "block": block,
+        "place": tuple(point.tolist()),
+    }
+
+
+def _check_faces(model, places: int, random) -> dict:
+    """Whether the middles of some faces lie on the surface, fault or body that the faces name."""
+    began = time.perf_counter()
+    faces = np.flatnonzero(model.face_surface >= 0)
+    faces = np.sort(random.choice(faces, min(len(faces), places), replace=False))
+    first, size = model.face_offsets[faces], np.diff(model.face_offsets)[faces]
+    corner = model.face_vertices[first[:, None] + np.arange(3)[None] * np.maximum(size // 3, 1)[:, None]]
+    points = model.vertices[corner].mean(axis=1)
+    away = np.full(len(faces), np.inf)
+    for number in np.unique(model.face_surface[faces]):
+        own = np.flatnonzero(model.face_surface[faces] == number)
+        vertices, triangles = model.surface(number)
+        if model.surface_kind[number] == 0:
+            for sheet in model.sheet_triangles(number):
+                off = np.abs(heights_at(points[own, :2], vertices, sheet) - points[own, 2])
+                away[own] = np.fmin(away[own], off)
+        else:
+            for n in own:
+                at = np.broadcast_to(points[n], (len(triangles), 3))
+                away[n] = distances_of_pairs(at, vertices[triangles]).min()
+    allowed = _ROUNDING * np.spacing(np.abs(model.vertices).max()) * (1 + _steepness(model))
+    wrong = np.flatnonzero(away > allowed)
+    names = [model.surface_names[number] for number in model.face_surface[faces]]
+    offenders = [
+        {
+            "text": f"face {faces[n]} is {away[n]:.3g} off '{names[n]}'",
+            "cell": -1,
+            "face": int(faces[n]),
+            "vertex": -1,
+            "block": -1,
+            "place": tuple(points[n].tolist()),
+        }
+        for n in wrong[:_SHOWN]
+    ]
+    return _entry("surfaces", "faces", len(faces), len(wrong), 0, began, offenders)
+
+
+def _steepness(model) -> float:
+    """The steepest slope of a sheet: heights are off by so much more than plan coordinates."""
+    steepest = 0.0
+    for number in np.flatnonzero(model.surface_kind == 0):
+        vertices, triangles = model.surface(number)
+        a, b, c = vertices[triangles].transpose(1, 0, 2)
+        normal = np.cross(b - a, c - a)
+        level = np.abs(normal[:, 2])
+        slopes = np.linalg.norm(normal[level > 0, :2], axis=1) / level[level > 0]
+        steepest = max(steepest, float(slopes.max(initial=0.0)))
+    return steepest
+
+
+def _entry(name: str, unit: str, examined: int, failed: int, undecided: int, began: float, offenders) -> dict:
+    return {
+        "name": name,
+        "unit": unit,
+        "examined": examined,
+        "failed": failed,
+        "undecided": undecided,
+        "seconds": time.perf_counter() - began,
+        "offenders": offenders,
+    }

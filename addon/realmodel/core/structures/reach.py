@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where in plan each part of space may have rock: the cells of a part are made only there."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from ..work import Work
+from .parts import Structures
+from .sides import Triangulation, fault_sides
+from .triangles import edges_of, welded
+
+_CELLS = (64, 64, 16)  # of the grid, at most
+_BELOW, _ABOVE, _BOTH = 1, 2, 3  # on which sides of a fault a cell may have points
+
+
+class Reach:
+    """Answers which triangles may lie over or under some part.
+
+    The box of all rock is divided into cells. A cell that a fault may pass, or go on through beyond its
+    border, has points on both sides of it; what hangs together without passing such a cell is on one side. So
+    a cell is never left out that a part has a point in.
+    """
+
+    def __init__(self, work: Work, structures: Structures, threads: int):
+        self.structures = structures
+        self.low, self.size = structures.box[0], structures.box[1] - structures.box[0]
+        step = self.size[:2].max() / _CELLS[0]
+        self.cells = np.maximum(1, np.minimum(_CELLS, np.ceil(self.size / step))).astype(int)
+        self.step = self.size / self.cells
+        self.masks = [
+            self._sides(work, (fault.vertices, fault.triangles), threads) for fault in structures.faults
+        ]
+
+    def columns(self, part: int) -> np.ndarray:
+        """(nx, ny) bool: over which cells in plan a part may have points."""
+        possible = np.ones(self.cells, bool)
+        for mask, side in zip(self.masks, self.structures.sides[part].tolist(), strict=False):
+            if side:
+                possible &= (mask & (_ABOVE if side > 0 else _BELOW)) > 0
+        first, last = self._range(self.structures.low[part][None], self.structures.high[part][None])
+        inside = np.zeros(self.cells, bool)
+        inside[tuple(slice(a, b + 1) for a, b in zip(first[0], last[0], strict=True))] = True
+        return (possible & inside).any(axis=2)
+
+    def over(self, columns: np.ndarray, sheet: Triangulation) -> np.ndarray:
+        """(T,) bool: the triangles of a sheet whose boxes in plan meet some of these columns."""
+        corners = sheet[0][sheet[1], :2]
+        first, last = self._range(corners.min(axis=1), corners.max(axis=1))
+        total = np.zeros(np.array(columns.shape) + 1, np.int64)
+        total[1:, 1:] = columns.cumsum(axis=0).cumsum(axis=1)
+        (x0, y0), (x1, y1) = first.T, last.T + 1
+        return total[x1, y1] - total[x0, y1] - total[x1, y0] + total[x0, y0] > 0
+
+    def _range(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The first and the last cells of boxes; what is only beside a cell counts as in it."""
+        n = low.shape[1]
+        near = 1e-6 * self.step[:n]
+        first = np.floor((low - near - self.low[:n]) / self.step[:n])
+        last = np.floor((high + near - self.low[:n]) / self.step[:n])
+        limit = self.cells[:n] - 1
+        return np.clip(first, 0, limit).astype(int), np.clip(last, 0, limit).astype(int)
+
+    def _sides(self, work: Work, fault: Triangulation, threads: int) -> np.ndarray:
+        own, beyond = self._passed(fault[0][fault[1]]), self._passed(self._continuation(fault))
+        part = _hanging_together(~(own | beyond))
+        middles = self._middles()
+        side = fault_sides(work, middles.reshape(-1, 3), fault, threads).reshape(self.cells)
+        beside = _wider(own) & (part >= 0)
+        found = np.full(self.cells, _BOTH, np.uint8)
+        for number in np.unique(part[beside]):
+            seen = side[beside & (part == number)]
+            if (seen == seen[0]).all():
+                found[part == number] = _ABOVE if seen[0] > 0 else _BELOW
+        return found
+
+    def _middles(self) -> np.ndarray:
+        axes = [self.low[k] + self.step[k] * (np.arange(self.cells[k]) + 0.5) for k in range(3)]
+        return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+
+    def _continuation(self, fault: Triangulation) -> np.ndarray:
+        """(K, 3, 3) triangles beyond the border of a fault, where the native part may continue it: in the
+        plane of its border triangles, and straight up or down; with all that lies between neighbors."""
+        vertices, triangles = fault
+        same = welded(vertices)[triangles]
+        edges = edges_of(same)
+        corner = np.concatenate([same[:, 2], same[:, 0], same[:, 1]])
+        _, number, count = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
+        border = count[number.ravel()] == 1
+        edges, corner = edges[border], corner[border]
+        a, b, c = vertices[edges[:, 0]], vertices[edges[:, 1]], vertices[corner]
+        along = b - a
+        share = ((c - a) * along).sum(axis=1) / (along * along).sum(axis=1)
+        away = a + share[:, None] * along - c
+        away /= np.linalg.norm(away, axis=1)[:, None]
+        length = 4 * np.linalg.norm(np.ptp(np.concatenate([vertices, self.structures.box]), axis=0))
+        straight = np.where(away[:, 2:] > 0, [[0.0, 0, 1]], [[0.0, 0, -1]])
+        found, ways = [], {}
+        for way in (away, straight):
+            far_a, far_b = a + length * way, b + length * way
+            found += [np.stack([a, b, far_b], axis=1), np.stack([a, far_b, far_a], axis=1)]
+            for vertex, direction in zip(edges.ravel().tolist(), np.repeat(way, 2, axis=0), strict=True):
+                ways.setdefault(vertex, []).append(direction)
+        for vertex, directions in ways.items():
+            at = vertices[vertex]
+            for one, other in itertools.combinations(np.unique(directions, axis=0), 2):
+                found.append(np.stack([at, at + length * one, at + length * other])[None])
+        return np.concatenate(found)
+
+    def _passed(self, corners: np.ndarray) -> np.ndarray:
+        """(nx, ny, nz) bool: the cells that triangles (K, 3, 3) pass, or come near."""
+        passed = np.zeros(self.cells, bool)
+        pieces = _divided(corners, float(self.step.max()), self.low, self.low + self.size)
+        if len(pieces):
+            first, last = self._range(pieces.min(axis=1), pieces.max(axis=1))
+            for move in itertools.product(*(range(int(most) + 1) for most in (last - first).max(axis=0))):
+                at = first + move
+                passed[tuple(at[(at <= last).all(axis=1)].T)] = True
+        return passed
+
+
+def _divided(pieces: np.ndarray, longest: float, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """(K, 3, 3) triangles that cover what others cover of a box, no edge longer than `longest`."""
+    done = [np.empty((0, 3, 3))]
+    while len(pieces):
+        away = (pieces.max(axis=1) < low).any(axis=1) | (pieces.min(axis=1) > high).any(axis=1)
+        pieces = pieces[~away]
+        sides = np.linalg.norm(pieces[:, [1, 2, 0]] - pieces, axis=2)
+        side = sides.argmax(axis=1)
+        short = sides[np.arange(len(side)), side] <= longest
+        done.append(pieces[short])
+        order = (side[~short, None] + np.arange(3)) % 3
+        a, b, c = np.take_along_axis(pieces[~short], order[:, :, None], axis=1).transpose(1, 0, 2)
+        middle = (a + b) / 2
+        pieces = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    return np.concatenate(done)
+
+
+def _part(axis: int, part: slice) -> tuple:
+    return tuple(part if k == axis else slice(None) for k in range(3))
+
+
+def _wider(cells: np.ndarray) -> np.ndarray:
+    """Cells with all that touch them, over corners too."""
+    for axis in range(3):
+        one, other = _part(axis, slice(None, -1)), _part(axis, slice(1, None))
+        wider = cells.copy()
+        wider[one] |= cells[other]
+        wider[other] |= cells[one]
+        cells = wider
+    return cells
+
+
+def _hanging_together(cells: np.ndarray) -> np.ndarray:
+    """For each of some cells the least number of a cell that can be reached over faces; -1 for the others."""
+    nothing = cells.size
+    number = np.where(cells, np.arange(cells.size).reshape(cells.shape), nothing)
+    while True:
+        before = number.copy()
+        for axis, turn in itertools.product(range(3), (1, -1)):
+            # along a line of cells the least number so far goes on, until a cell that is none
+            view = np.moveaxis(number, axis, 0)[::turn]
+            for k in range(1, len(view)):
+                view[k] = np.where(view[k] < nothing, np.minimum(view[k], view[k - 1]), nothing)
+        if np.array_equal(before, number):
+            return np.where(cells, number, -1)

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the native part refuses of faults and bodies, said in the user's names."""
+
+from __future__ import annotations
+
+from ..errors import InputRefused, number_list, place_text
+from .entries import body_item, fault_item
+
+_ADVICE = {
+    "not_closed": "close its surface: each edge must belong to two triangles",
+    "is_closed": "a closed surface is a body: write [[body]]",
+    "one_sided": "cut it open where it returns to itself",
+    "branching": "make a fault of its own of each branch, and set 'ends_at'",
+    "does_not_meet": "extend it to that fault, or take it out of 'ends_at'",
+    "ends_inside": "extend it beyond the rock, set 'dies_out' or 'ends_at', or choose an older 'youngest'",
+}
+
+
+def refused_structure(error, structures) -> InputRefused:
+    """The refusal for a native InputError about structures; the caller raises it."""
+    place = tuple(error.place) if error.place is not None else None
+    near = f" near {place_text(place)}" if place else ""
+    advice = _ADVICE.get(error.kind)
+    if not 0 <= error.surface < len(structures):
+        return InputRefused(f"{error}{near}", advice=advice, place=place)
+    count = len(structures.faults)
+    is_fault = error.surface < count
+    entry = structures.faults[error.surface] if is_fault else structures.bodies[error.surface - count]
+    file, line = entry.shape_source()
+    what, items = str(error), [int(item) for item in error.items]
+    if error.kind == "does_not_meet" and items:
+        what = f"it ends at fault '{structures.faults[items[0]].name}', but does not meet it"
+    elif error.kind == "ends_inside":
+        what = "it ends inside the rock that it displaces"
+    elif items:
+        what = f"{what} (triangle{'s' if len(items) > 1 else ''} {number_list(items)})"
+    item = fault_item(entry) if is_fault else body_item(entry)
+    return InputRefused(what + near, file=file, line=line, item=item, advice=advice, place=place)

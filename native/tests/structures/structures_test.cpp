@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/structures/structures.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "../strata/complex_checks.hpp"
+#include "cutting/polygons.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::structures {
+namespace {
+
+using strata::CellComplex;
+using strata::grid;
+using strata::OwnedSurface;
+
+cutting::TriangleView view(const OwnedSurface& s) {
+    return {s.vertices, s.triangles};
+}
+
+/// Layers over the square from (0, 0) to (4, 4), each given by the height of its top.
+CellComplex layers(const std::vector<double>& heights, int n = 4) {
+    std::vector<OwnedSurface> surfaces;
+    for (const double z : heights)
+        surfaces.push_back(grid(n, n, 0, 0, 4, 4, [z](double, double) { return z; }));
+    return strata::build(surfaces);
+}
+
+/// A view of a model that counts structures after its surfaces.
+ComplexView with(const CellComplex& model, std::size_t structures) {
+    ComplexView all = model;
+    all.blocks += structures;
+    return all;
+}
+
+/// The rectangle x = at + slant z, y from south to north, z from low to high.
+OwnedSurface sheet(double at, double slant, double south = -9, double north = 9, double low = -9,
+                   double high = 9) {
+    OwnedSurface s;
+    for (const double z : {low, high}) {
+        for (const double y : {south, north})
+            s.vertex(at + slant * z, y, z);
+    }
+    s.triangle(0, 1, 3);
+    s.triangle(0, 3, 2);
+    return s;
+}
+
+OwnedSurface box(std::array<double, 3> low, std::array<double, 3> high) {
+    OwnedSurface s;
+    for (int i = 0; i < 8; ++i) {
+        s.vertex((i & 4) != 0 ? high[0] : low[0], (i & 2) != 0 ? high[1] : low[1],
+                 (i & 1) != 0 ? high[2] : low[2]);
+    }
+    for (const auto& q : std::vector<std::array<int, 4>>{
+             {0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
+        s.triangle(q[0], q[1], q[2]);
+        s.triangle(q[0], q[2], q[3]);
+    }
+    return s;
+}
+
+Structure fault(const OwnedSurface& s) {
+    return {view(s), false, {}, false};
+}
+Structure body(const OwnedSurface& s) {
+    return {view(s), true, {}, false};
+}
+
+std::vector<Sides> sides_of(const std::vector<Part>& parts) {
+    std::vector<Sides> sides;
+    for (const Part& part : parts)
+        sides.push_back(part.sides);
+    return sides;
+}
+
+std::size_t faces_on(const CellComplex& c, std::int32_t surface) {
+    return static_cast<std::size_t>(std::ranges::count(c.face_surface, surface));
+}
+
+Joined joined(std::span<const PartModel> models, std::span<const Structure> structures,
+              std::span<const std::uint8_t> acts) {
+    Joined one = join_models(models, structures, acts, 1, nullptr);
+    strata::expect_valid(one.complex, false);
+    const Joined two = join_models(models, structures, acts, 3, nullptr);
+    EXPECT_TRUE(std::ranges::equal(one.complex.vertices, two.complex.vertices));
+    EXPECT_TRUE(std::ranges::equal(one.complex.face_vertices, two.complex.face_vertices));
+    EXPECT_TRUE(std::ranges::equal(one.complex.face_cells, two.complex.face_cells));
+    return one;
+}
+
+std::string refusal(const auto& work) {
+    try {
+        work();
+    } catch (const InputError& error) {
+        return error.kind;
+    }
+    return "";
+}
+
+const std::vector<std::uint8_t> kAllAct(64, 1);
+
+TEST(PartsOf, AFaultLeavesTwoBesideIt) {
+    const CellComplex rock = layers({0, 3});
+    const OwnedSurface upright = sheet(1, 0);
+    const auto parts = parts_of(with(rock, 1), std::array{fault(upright)}, 1, nullptr);
+    ASSERT_EQ(parts.size(), 2U);
+    EXPECT_EQ(parts[0].sides, Sides{-1});
+    // the box of either part ends at the fault
+    EXPECT_EQ(std::max(parts[0].low[0], parts[1].low[0]), 1);
+    EXPECT_EQ(std::min(parts[0].high[0], parts[1].high[0]), 1);
+}
+
+TEST(PartsOf, FaultsThatCrossLeaveFour) {
+    const CellComplex rock = layers({0, 3});
+    const OwnedSurface one = sheet(1, 0.1);
+    OwnedSurface other;
+    for (const auto& [x, z] :
+         std::array<std::array<double, 2>, 4>{{{-9, -9}, {9, -9}, {9, 9}, {-9, 9}}})
+        other.vertex(x, 2 + z / 8, z);
+    other.triangle(0, 1, 2);
+    other.triangle(0, 2, 3);
+    const auto parts = parts_of(with(rock, 2), std::array{fault(one), fault(other)}, 1, nullptr);
+    EXPECT_EQ(sides_of(parts), (std::vector<Sides>{{-1, -1}, {-1, 1}, {1, -1}, {1, 1}}));
+}
+
+TEST(PartsOf, ABranchEndsAtTheOtherFault) {
+    const CellComplex rock = layers({0, 3});
+    const OwnedSurface trunk = sheet(2, 0.25);
+    OwnedSurface branch;  // crosses the trunk; the larger part is where x is great
+    for (const auto& [x, z] :
+         std::array<std::array<double, 2>, 4>{{{0, -9}, {9, -9}, {9, 9}, {0, 9}}})
+        branch.vertex(x, 2 + z / 8, z);
+    branch.triangle(0, 1, 2);
+    branch.triangle(0, 2, 3);
+    Structure ends = fault(branch);
+    ends.ends_at = {0};
+    const auto parts = parts_of(with(rock, 2), std::array{fault(trunk), ends}, 1, nullptr);
+    ASSERT_EQ(parts.size(), 3U);
+    EXPECT_EQ(std::ranges::count_if(parts, [](const Part& p) { return p.sides[1] == 0; }), 1);
+    const auto whole = std::ranges::find_if(parts, [](const Part& p) { return p.sides[1] == 0; });
+    EXPECT_EQ(whole->low[0], 0);  // what the branch does not reach is on the other side
+}
+
+TEST(PartsOf, OneThatMissesTheFaultThatItIsToEndAtIsRefused) {
+    const CellComplex rock = layers({0, 3});
+    const OwnedSurface trunk = sheet(1, 0), far = sheet(3, 0);
+    Structure ends = fault(far);
+    ends.ends_at = {0};
+    EXPECT_EQ(refusal([&] {
+                  parts_of(with(rock, 2), std::array{fault(trunk), ends}, 1, nullptr);
+              }),
+              "does_not_meet");
+}
+
+TEST(PartsOf, ABodyHasAnInside) {
+    const CellComplex rock = layers({0, 3});
+    const OwnedSurface chest = box({1, 1, 1}, {2, 2, 2});
+    const auto parts = parts_of(with(rock, 1), std::array{body(chest)}, 1, nullptr);
+    ASSERT_EQ(parts.size(), 2U);
+    EXPECT_EQ(parts[0].sides, Sides{-1});
+    EXPECT_EQ(parts[0].low, (std::array<double, 3>{1, 1, 1}));
+    EXPECT_EQ(parts[0].high, (std::array<double, 3>{2, 2, 2}));
+}
+
+TEST(PartsOf, ABodyThatIsNotClosedIsRefusedWithThePlace) {
+    const CellComplex rock = layers({0, 3});
+    OwnedSurface chest = box({1, 1, 1}, {2, 2, 2});
+    chest.triangles.resize(chest.triangles.size() - 3);
+    try {
+        parts_of(with(rock, 1), std::array{body(chest)}, 1, nullptr);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.kind, "not_closed");
+        EXPECT_EQ(error.surface, 0);
+        ASSERT_TRUE(error.place);
+        EXPECT_EQ((*error.place)[1], 2);  // the triangle that was taken away is on y = 2
+    }
+}
+
+TEST(JoinModels, LayersAreDisplacedAlongAnUprightFault) {
+    const CellComplex west = layers({0, 1, 2}), east = layers({0.5, 1.5, 2.5});
+    const OwnedSurface upright = sheet(1, 0);
+    const std::array structures{fault(upright)};
+    const std::int8_t east_side =
+        sides_of_points(structures[0], std::array{3.0, 2.0, 1.0}, 1, nullptr)[0];
+    const auto west_side = static_cast<std::int8_t>(-east_side);
+    const Joined j = joined(
+        std::array<PartModel, 2>{{{with(west, 1), {west_side}}, {with(east, 1), {east_side}}}},
+        structures, kAllAct);
+    EXPECT_DOUBLE_EQ(j.complex.volumes[1], 16);
+    EXPECT_DOUBLE_EQ(j.complex.volumes[2], 16);
+    EXPECT_GT(faces_on(j.complex, 3), 0U);
+    double area = 0;
+    for (std::size_t f = 0; f < j.complex.face_surface.size(); ++f) {
+        if (j.complex.face_surface[f] != 3) continue;
+        std::vector<cutting::Position> corners;
+        const ComplexView all = j.complex;
+        for (const std::int32_t v : all.face(f))
+            corners.push_back(all.vertex(v));
+        const auto normal = cutting::polygon_normal(corners);
+        area += std::abs(normal[0]) / 2;
+    }
+    EXPECT_NEAR(area, 4 * 2.5, 1e-12);  // from 0 to 2.5 on one side or the other
+    for (std::size_t f = 0; f < j.complex.face_cells.size(); ++f) {  // none leads through the fault
+        const auto [a, b] = j.complex.face_cells[f];
+        if (b >= 0 && j.complex.face_surface[f] != 3) {
+            EXPECT_EQ(j.cell_part[index(a)], j.cell_part[index(b)]);
+        }
+    }
+}
+
+TEST(JoinModels, AReverseFaultHasASurfaceTwiceAtOnePlace) {
+    const CellComplex low = layers({0, 1}), high = layers({1.5, 2.5});
+    const OwnedSurface inclined = sheet(0.5, 1);  // 45 degrees
+    const std::array structures{fault(inclined)};
+    const std::int8_t above =
+        sides_of_points(structures[0], std::array{0.0, 2.0, 2.0}, 1, nullptr)[0];
+    EXPECT_EQ(above, 1);
+    const Joined j = joined(std::array<PartModel, 2>{{{with(high, 1), {1}}, {with(low, 1), {-1}}}},
+                            structures, kAllAct);
+    // above the fault, x < 0.5 + z, between 1.5 and 2.5; below it, x > 0.5 + z, between 0 and 1
+    EXPECT_NEAR(j.complex.volumes[1], 4 * (2.5 + 3), 1e-12);
+}
+
+TEST(JoinModels, AFaultLeavesRockThatIsYoungerAlone) {
+    const CellComplex west = layers({0, 1, 3}), east = layers({0, 2, 3});
+    const OwnedSurface inclined = sheet(1.3, 0.3);
+    const std::array structures{fault(inclined)};
+    std::vector<std::uint8_t> acts{1, 1, 0, 0};  // on the two older blocks
+    const Joined j = joined(std::array<PartModel, 2>{{{with(west, 1), {1}}, {with(east, 1), {-1}}}},
+                            structures, acts);
+    const ComplexView all = j.complex;
+    for (std::size_t f = 0; f < all.face_count(); ++f) {
+        if (all.face_surface[f] != 3) continue;
+        EXPECT_TRUE(all.block(all.cell(f, 0)) < 2 || all.block(all.cell(f, 1)) < 2);
+    }
+    // the cells of the youngest block are whole: as many as triangles above it
+    EXPECT_EQ(std::ranges::count(all.cell_block, 2), 32);
+}
+
+TEST(JoinModels, AFaultThatEndsInRockThatDiffersIsRefusedWithThePlace) {
+    const CellComplex west = layers({0, 1, 3}), east = layers({0, 2, 3});
+    const OwnedSurface half = sheet(1.3, 0.3, -9, 2);
+    for (const bool dies_out : {false, true}) {
+        Structure ends = fault(half);
+        ends.dies_out = dies_out;
+        try {
+            join_models(std::array<PartModel, 2>{{{with(west, 1), {1}}, {with(east, 1), {-1}}}},
+                        std::array{ends}, kAllAct, 1, nullptr);
+            FAIL();
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.kind, "ends_inside");
+            ASSERT_TRUE(error.place);
+            EXPECT_GT((*error.place)[1], 2);
+        }
+    }
+}
+
+TEST(JoinModels, AFaultThatDiesOutIsASlit) {
+    // displaced where y < 2 alone
+    std::vector<CellComplex> models;
+    for (const double throw_ : {0.0, 0.5}) {
+        std::vector<OwnedSurface> surfaces;
+        for (const double z : {0.0, 1.0}) {
+            surfaces.push_back(grid(4, 4, 0, 0, 4, 4, [&](double, double y) {
+                return z + throw_ * std::max(0.0, 1 - y);
+            }));
+        }
+        models.push_back(strata::build(surfaces));
+    }
+    const OwnedSurface half = sheet(2, 0, -9, 2);
+    Structure dies = fault(half);
+    dies.dies_out = true;
+    const Joined j =
+        joined(std::array<PartModel, 2>{{{with(models[0], 1), {1}}, {with(models[1], 1), {-1}}}},
+               std::array{dies}, kAllAct);
+    const ComplexView all = j.complex;
+    EXPECT_GT(faces_on(j.complex, 2), 0U);
+    for (std::size_t f = 0; f < all.face_count(); ++f) {
+        if (all.face_surface[f] != 2) continue;
+        for (const std::int32_t v : all.face(f))
+            EXPECT_LE(all.vertex(v)[1], 2);
+    }
+}
+
+TEST(JoinModels, ABodyTakesThePlaceOfRock) {
+    const CellComplex rock = layers({0, 1, 2}), inside = layers({-5, 9});
+    CellComplex filled = inside;
+    for (auto& block : filled.cell_block)
+        block = 3;
+    const OwnedSurface chest = box({1.25, 1.25, 0.5}, {2.75, 2.75, 1.5});
+    const Joined j =
+        joined(std::array<PartModel, 2>{{{with(rock, 1), {1}}, {with(filled, 2), {-1}}}},
+               std::array{body(chest)}, kAllAct);
+    EXPECT_NEAR(j.complex.volumes[3], 2.25, 1e-12);
+    EXPECT_NEAR(j.complex.volumes[1], 16 - 1.125, 1e-12);
+    EXPECT_NEAR(j.complex.volumes[2], 16 - 1.125, 1e-12);
+}
+
+TEST(JoinModels, AVoidBodyLeavesNothing) {
+    const CellComplex rock = layers({0, 1, 2});
+    const OwnedSurface tunnel = box({1.25, -1, 0.5}, {2.75, 5, 1.5});
+    const Joined j =
+        joined(std::array<PartModel, 1>{{{with(rock, 1), {1}}}}, std::array{body(tunnel)}, kAllAct);
+    EXPECT_NEAR(j.complex.volumes[1], 16 - 3, 1e-12);
+    EXPECT_NEAR(j.complex.volumes[2], 16 - 3, 1e-12);
+    const ComplexView all = j.complex;
+    for (std::size_t f = 0; f < all.face_count(); ++f) {
+        if (all.face_surface[f] == 3) {
+            EXPECT_EQ(all.cell(f, 1), -1);
+        }
+    }
+}
+
+TEST(SidesOfPoints, AreThoseOfTheNearestTriangle) {
+    const OwnedSurface inclined = sheet(0, 1);
+    const auto sides = sides_of_points(
+        fault(inclined), std::array{-1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0}, 1, nullptr);
+    EXPECT_EQ(sides, (std::vector<std::int8_t>{1, -1, 1}));  // the last lies on it
+    const OwnedSurface chest = box({0, 0, 0}, {1, 1, 1});
+    EXPECT_EQ(sides_of_points(body(chest), std::array{0.5, 0.5, 0.5, 0.5, 0.5, 1.5}, 2, nullptr),
+              (std::vector<std::int8_t>{-1, 1}));
+}
+
+}  // namespace
+}  // namespace realmodel::structures

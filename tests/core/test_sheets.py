@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sheets of surfaces that are interpolated from points in compartments."""
+
+import numpy as np
+import pytest
+from realmodel.core import Fault, InputRefused, Project, Rock, Surface
+from realmodel.core.structures.closed_form import heights_at, nearest_side
+from realmodel.core.structures.rock_structure import joined
+from structure_cases import SQUARE, closed_form_of, plane_fault, prepared
+
+
+def side_of(shape, *points):
+    return nearest_side(np.array(points, float), *shape)
+
+
+def points_of(height, seed=1, count=300):
+    plan = np.random.default_rng(seed).uniform(0.0, 10.0, (count, 2))
+    return np.column_stack([plan, height(*plan.T)])
+
+
+def rock(*surfaces, edge_length=1.0, **more):
+    return Rock("r", list(surfaces), region=SQUARE, edge_length=edge_length, **more)
+
+
+def by_side(entry, surface, fault=0):
+    """The sheet of a surface on the sides -1 and +1 of a fault."""
+    structure = entry.structure
+    return {
+        int(row[fault]): sheets[surface]
+        for row, sheets in zip(structure.compartments, structure.sheets, strict=True)
+    }
+
+
+@pytest.mark.parametrize("lean", [0.0, 0.5, -0.5])
+def test_points_count_in_their_compartment(lean):
+    """Throw 2 at a plane that may be vertical, normal or reverse; each sheet is its own plane everywhere."""
+    shape = plane_fault(lean=lean)
+
+    left = int(side_of(shape, [-9, 5, 0])[0])
+    low, high = points_of(lambda x, y: 0.1 * x - 1.0), points_of(lambda x, y: 0.1 * x + 1.0, 2)
+    points = np.concatenate([low[side_of(shape, *low) == left], high[side_of(shape, *high) != left]])
+    surface = Surface("S", points=points, method="universal_kriging", property=1)
+    (entry,) = prepared(Project("p", [rock(surface)], faults=[Fault("F", *shape)]))
+    sheets = by_side(entry, 0)
+    left = int(side_of(entry.structure.faults.shapes[0], [-9, 5, 0])[0])
+    for side, shift in ((left, -1.0), (-left, 1.0)):
+        vertices, triangles = sheets[side]
+        assert np.array_equal(triangles, entry.region[1])
+        assert np.abs(vertices[:, 2] - 0.1 * vertices[:, 0] - shift).max() < 1e-6
+    assert np.array_equal(entry.surfaces[0][0], joined(entry.structure.distinct(0))[0])
+    assert len(entry.told[0]["distance"]) == len(entry.surfaces[0][0])
+    assert entry.interpolations[0].method == "universal_kriging"
+
+
+def test_younger_surfaces_ignore_the_fault():
+    shape = plane_fault()
+    surfaces = [
+        Surface("S0", points=points_of(lambda x, y: np.where(x < 5, -2.0, 0.0))),
+        Surface("S1", points=points_of(lambda x, y: np.where(x < 5, -1.0, 1.0), 2)),
+        Surface("S2", points=points_of(lambda x, y: 3 + 0.1 * x, 3)),
+    ]
+    (entry,) = prepared(Project("p", [rock(*surfaces)], faults=[Fault("F", *shape, youngest="S1")]))
+    one, other = entry.structure.sheets
+    assert one[2] is other[2] and one[1] is not other[1]
+    assert entry.surfaces[2] is one[2]
+    closed = closed_form_of(entry)
+    points = np.array([[x, 5.1, z] for x in (2, 8) for z in (-3, -1.5, -0.5, 0.5, 2)])
+    assert closed.blocks_at(points).tolist() == [-1, 1, 2, 2, 2, -1, -1, -1, 1, 2]
+
+
+def test_a_compartment_without_points_goes_on_as_its_neighbor():
+    shapes = [plane_fault(x=3.0), plane_fault(x=7.0)]
+    points = points_of(lambda x, y: np.where(x > 7, 5.0, 1.0))
+    points = points[(points[:, 0] < 3) | (points[:, 0] > 7)]
+    points = points[(points[:, 0] < 3) | (np.arange(len(points)) % 3 == 0)]  # fewer on the right
+    project = Project(
+        "p",
+        [rock(Surface("S", points=points))],
+        faults=[Fault(n, *s) for n, s in zip("FG", shapes, strict=True)],
+    )
+    (entry,) = prepared(project)
+    closed = closed_form_of(entry)
+    middle = int(closed.compartments_of(np.array([[5.0, 5, 0]]))[0])
+    left = int(closed.compartments_of(np.array([[1.0, 5, 0]]))[0])
+    assert entry.structure.sheets[middle][0] is entry.structure.sheets[left][0]
+    told = [text.text for members, text in entry.structure.warnings if middle in members]
+    assert len(told) == 1 and told[0].startswith(
+        f"it has no points in compartment '{entry.structure.names[middle]}'"
+    )
+
+
+def test_points_that_lie_in_no_compartment():
+    """All beyond a fault that passes the region by."""
+    points = points_of(lambda x, y: 0 * x) + np.array([20.0, 0, 0])
+    project = Project("p", [rock(Surface("S", points=points))], faults=[Fault("F", *plane_fault(x=15.0))])
+    with pytest.raises(InputRefused, match="rock 'r', surface 'S': its points lie in no compartment"):
+        prepared(project)
+
+
+def test_a_method_without_points_needs_none():
+    surfaces = [Surface("S", method="constant", options={"value": 2.0})]
+    surfaces.append(Surface("P", method="parallel", options={"to": "S", "thickness": 1.5}))
+    (entry,) = prepared(Project("p", [rock(*surfaces)], faults=[Fault("F", *plane_fault())]))
+    for sheets in entry.structure.sheets:
+        assert (sheets[0][0][:, 2] == 2.0).all() and (sheets[1][0][:, 2] == 3.5).all()
+
+
+def test_surfaces_made_from_others_in_their_compartment():
+    """Parallel to a displaced surface: displaced with it. With a minimum thickness: above its own side."""
+    lower = Surface("S0", points=points_of(lambda x, y: np.where(x < 5, -2.0, 2.0)))
+    parallel = Surface("S1", method="parallel", options={"to": "S0", "thickness": 1.0})
+    thick = Surface("S2", points=points_of(lambda x, y: np.full(len(x), 0.5)), minimum_thickness=0.25)
+    (entry,) = prepared(Project("p", [rock(lower, parallel, thick)], faults=[Fault("F", *plane_fault())]))
+    for sheets in entry.structure.sheets:
+        bottom, middle, top = (sheet[0][:, 2] for sheet in sheets)
+        assert np.allclose(middle, bottom + 1.0)
+        assert np.allclose(top, np.maximum(0.5, middle + 0.25))
+    assert any("stay 0.25 above 'S1'" in told.text for _, told in entry.structure.warnings)
+
+
+def test_a_younger_surface_parallel_to_a_displaced_one():
+    """It takes the height of the side on which each node is."""
+    lower = Surface("S0", points=points_of(lambda x, y: np.where(x < 5, -2.0, 2.0)))
+    upper = Surface("S1", method="parallel", options={"to": "S0", "thickness": 4.0})
+    faults = [Fault("F", *plane_fault(), youngest="S0")]
+    (entry,) = prepared(Project("p", [rock(lower, upper)], faults=faults))
+    vertices, _ = entry.structure.sheets[0][1]
+    assert np.allclose(vertices[:, 2], np.where(vertices[:, 0] < 5, 2.0, 6.0))
+
+
+def test_same_sheets_for_any_number_of_threads():
+    surface = Surface("S", points=points_of(lambda x, y: np.where(x < 5, np.sin(x), 3 + y / 9)))
+    project = Project("p", [rock(surface)], faults=[Fault("F", *plane_fault(lean=0.3))])
+    first, second = (prepared(project, threads)[0] for threads in (1, 2))
+    assert np.array_equal(first.surfaces[0][0], second.surfaces[0][0])
+
+
+# ---- faults that die out
+
+
+def dying_height(x, y):
+    """A displacement of up to 1 on either side of x = 5, vanishing at y = 6."""
+    throw = np.sqrt(np.clip(6.0 - y, 0.0, None) / 6.0) * np.exp(-np.abs(x - 5.0) / 4.0)
+    return np.where(x < 5, -throw, throw)
+
+
+def beyond(sheet, tip):
+    """The nodes of triangles through which the fault x = 5 would go on beyond y = tip."""
+    nodes, triangles = sheet
+    found = set()
+    for triangle in triangles:
+        for a, b in (triangle[:2], triangle[1:], triangle[::2]):
+            x, y = nodes[[a, b], 0] - 5, nodes[[a, b], 1]
+            if x[0] * x[1] < 0 and y[0] + (y[1] - y[0]) * x[0] / (x[0] - x[1]) > tip:
+                found.update(triangle.tolist())
+    return sorted(found)
+
+
+@pytest.mark.parametrize("method", ["kriging", "dsi", "natural_neighbour"])
+def test_a_fault_that_dies_out(method):
+    shape = plane_fault(y=(-5.0, 6.0))
+    surface = Surface("S", points=points_of(dying_height, count=1500), method=method)
+    project = Project("p", [rock(surface, edge_length=0.4)], faults=[Fault("F", *shape, dies_out=True)])
+    (entry,) = prepared(project)
+    sheets = by_side(entry, 0)
+    equal = beyond(sheets[1], 6.0)
+    assert len(equal) > 10
+    assert np.array_equal(sheets[-1][0][equal, 2], sheets[1][0][equal, 2])
+    shape = entry.structure.faults.shapes[0]
+    left = int(side_of(shape, [0, 1, 0])[0])
+    plan = np.array([[4.95, y] for y in (0.5, 1.0, 2.0, 3.0)])
+    low, high = heights_at(plan, *sheets[left]), heights_at(plan, *sheets[-left])
+    throw = 2 * np.sqrt((6 - plan[:, 1]) / 6)
+    assert np.abs(high - low - throw).max() < 0.15
+    for side, sheet in sheets.items():
+        own = (side_of(shape, *surface.points) == side) & (
+            np.hypot(*(surface.points[:, :2] - [5, 6]).T) > 2.5
+        )
+        error = heights_at(surface.points[own, :2], *sheet) - surface.points[own, 2]
+        assert np.abs(error).max() < 0.2 and np.sqrt(np.mean(error**2)) < 0.02
+
+
+def test_a_fault_that_dies_out_upward_does_not_displace_what_is_above():
+    shape = plane_fault(z=(-20.0, 0.5))
+    surfaces = [
+        Surface("S0", points=points_of(lambda x, y: np.where(x < 5, -1.2, -0.8), count=800)),
+        Surface("S1", points=points_of(lambda x, y: 2 + 0.05 * x, 2)),
+    ]
+    project = Project("p", [rock(*surfaces)], faults=[Fault("F", *shape, dies_out=True)])
+    (entry,) = prepared(project)
+    one, other = entry.structure.sheets
+    assert one[1] is other[1] and one[0] is not other[0]
+
+
+def test_a_fault_that_dies_out_between_others():
+    """It ends at a fault on one side, where it does displace, and dies out on the other."""
+    main, short = plane_fault(x=2.0), plane_fault(turn=90.0, y=(-20.0, 15.0))
+    short[0][:, 0] = np.clip(short[0][:, 0], 2.0, 7.0)
+
+    def height(x, y):
+        throw = np.sqrt(np.clip(7.0 - x, 0, None) / 5.0) * np.exp(-np.abs(y - 5) / 4)
+        return np.where(x < 2, 0.0, np.where(y > 5, throw, -throw))
+
+    surface = Surface("S", points=points_of(height, count=1500))
+    faults = [Fault("M", *main), Fault("B", *short, ends_at=("M",), dies_out=True)]
+    (entry,) = prepared(Project("p", [rock(surface, edge_length=0.4)], faults=faults))
+    rows, sheets = entry.structure.compartments, [each[0] for each in entry.structure.sheets]
+    assert len(rows) == 3
+    one, other = (sheets[n] for n in np.flatnonzero(rows[:, 1]))
+    plan = np.array([[2.1, 5.0], [3.0, 5.0]])
+    assert (np.abs(heights_at(plan, *one) - heights_at(plan, *other)) > 1.2).all()
+    nodes = one[0]
+    far = (nodes[:, 0] > 7.5) & (np.abs(nodes[:, 1] - 5) < 0.3)
+    assert far.sum() > 3 and np.array_equal(nodes[far, 2], other[0][far, 2])
