@@ -321,6 +321,13 @@ def test_eroded_volumes_with_faults_and_bodies():
     assert erosion.volume[2, 1] == pytest.approx(100 - erosion.volume[2, 3] + cap_above(whole, 2.0), rel=1e-6)
 
 
+def test_what_a_body_takes_is_no_erosion():
+    tunnel = Body("tunnel", *box_body([-1, 4, -0.5], [11, 6, 0.5]), void=True)
+    erosion = build(Project("p", [rock(surfaces(level(-2), level(2), level(1)))], bodies=[tunnel])).eroded()
+    assert erosion.total == pytest.approx(100.0)
+    assert erosion.remaining[1] == pytest.approx(300 - 20.0, rel=1e-6)
+
+
 def cap_above(model, z):
     """The volume of the ore above a height."""
     half = model.cut_by_plane((0, 0, z), (0, 0, 1)).above
