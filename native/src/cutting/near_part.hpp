@@ -30,7 +30,7 @@ public:
 private:
     void add_piece(const Polygons& polygons, std::size_t p, Piece piece, Pieces& pieces) const;
 
-    const ComplexView& model_;
+    ComplexView model_;
     std::vector<std::int32_t> number_;  ///< of the model's cells, -1 none of the part's
     std::vector<Position> vertices_;
     std::vector<std::int64_t> face_offsets_{0};
