@@ -17,7 +17,7 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import preferences, props_rock, props_stage, props_surface, props_view
+from . import preferences, props_rock, props_stage, props_structure, props_surface, props_view
 from .bl import changes, data_objects, display, quality, results, units
 from .core.units import MODEL_UNIT
 
@@ -70,6 +70,7 @@ class RealModelBlock(bpy.types.PropertyGroup):
     name: StringProperty(name="Block")
     rock: StringProperty(name="Rock Mass")
     surface: StringProperty(name="Surface", description="The surface at the top of the block")
+    is_body: BoolProperty(options={"HIDDEN"})  # and `surface` is its name
     property_id: IntProperty(name="Property", options=set())
     volume: FloatProperty(name="Volume", subtype="NONE", options=set())
     volume_exact: StringProperty(options={"HIDDEN"})
@@ -125,6 +126,28 @@ class RealModelSettings(bpy.types.PropertyGroup):
     active_rock: IntProperty(
         name="Active Rock Mass", description="The rock mass whose surfaces are shown", options=set()
     )
+    faults: CollectionProperty(type=props_structure.RealModelFault)
+    bodies: CollectionProperty(type=props_structure.RealModelBody)
+    structure_kind: EnumProperty(
+        name="Kind",
+        description="Which of them the list shows",
+        items=(
+            ("FAULT", "Faults", "Open surfaces in any position that displace the rock"),
+            (
+                "BODY",
+                "Bodies",
+                "Closed surfaces around another rock, or none: intrusions, domes, tunnels",
+            ),
+        ),
+        options=set(),
+    )
+    active_fault: IntProperty(
+        name="Active Fault", description="The fault whose settings are shown", options=set()
+    )
+    active_body: IntProperty(
+        name="Active Body", description="The body whose settings are shown", options=set()
+    )
+    structures: PointerProperty(type=bpy.types.Collection, options={"HIDDEN"})
     library: CollectionProperty(type=RealModelProperty)
     library_path: StringProperty(options={"HIDDEN"})
     active_property: IntProperty(
@@ -171,6 +194,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
             ("Z", "Upward", "The younger a block, the higher it is lifted"),
             ("CENTRE", "From Center", "Each block moves away from the center of the model"),
             ("BLOCK", "Side by Side", "The blocks stand side by side, the oldest first"),
+            ("COMPARTMENT", "Compartments", "The parts that faults leave move away from each other"),
         ),
         update=lambda self, _context: display.explode_changed(self.id_data),
     )
@@ -189,6 +213,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
             ),
             ("ELEVATION", "Elevation", "Elevation in the coordinates of the model"),
             ("THICKNESS", "Thickness", "Vertical thickness of the layer"),
+            ("COMPARTMENT", "Compartment", "A color for each of the parts that faults leave"),
         ),
         update=lambda self, _context: display.colors_changed(self.id_data),
     )
@@ -243,6 +268,7 @@ class RealModelActivity(bpy.types.PropertyGroup):
 _CLASSES = (
     *props_surface.CLASSES,
     *props_rock.CLASSES,
+    *props_structure.CLASSES,
     *props_view.CLASSES,
     *props_stage.CLASSES,
     RealModelProperty,

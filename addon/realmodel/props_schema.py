@@ -6,7 +6,13 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, St
 from .bl import changes, choices
 from .core.setting import property_name, switch_name
 
-_SEARCH = {"surface": choices.surfaces, "column": choices.columns, "layer": choices.layers}
+_SEARCH = {
+    "surface": choices.surfaces,
+    "any_surface": choices.all_surfaces,
+    "rock_mass": choices.rocks,
+    "column": choices.columns,
+    "layer": choices.layers,
+}
 
 
 def settings_of(settings, update=changes.setting, **updates):
@@ -41,6 +47,8 @@ def _property(setting, update):
         if setting.kind in _SEARCH:
             given["search"] = _SEARCH[setting.kind]
         return StringProperty(**given)
+    if setting.kind == "truth":
+        return BoolProperty(**given, default=setting.default)
     given |= {key: bound for key, bound in (("min", setting.low), ("max", setting.high)) if bound is not None}
     if setting.kind == "whole":
         return IntProperty(**given, default=int(setting.start))

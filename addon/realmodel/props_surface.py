@@ -23,6 +23,27 @@ SOURCES = (
 )
 
 
+def interface_properties():
+    """The properties by which a row knows the object that shows its shape, and keeps what its file had."""
+    return {
+        "hide": BoolProperty(
+            name="Hide",
+            description="Hide this interface in the viewport; it is still built",
+            update=changes.view,
+            options=set(),
+        ),
+        "interface": PointerProperty(type=bpy.types.Object, options={"HIDDEN"}),
+        "interface_digest": StringProperty(options={"HIDDEN"}),
+        "stored_stamp": StringProperty(options={"HIDDEN"}),
+        "stored_mesh": StringProperty(options={"HIDDEN"}),
+        "exact": StringProperty(options={"HIDDEN"}),
+        "figures": StringProperty(options={"HIDDEN"}),
+    }
+
+
+_Interface = type("Interface", (), {"__module__": __name__, "__annotations__": interface_properties()})
+
+
 class RealModelStructure(settings_of(STRUCTURE), bpy.types.PropertyGroup):
     """A structure of a nested variogram, added to the nugget and the other structures."""
 
@@ -49,7 +70,9 @@ class RealModelFilter(bpy.types.PropertyGroup):
 _OWN = {key: setting for key, setting in SURFACE.items() if key not in READING}
 
 
-class RealModelSurface(settings_of(_OWN), settings_of(READING, changes.reading), bpy.types.PropertyGroup):
+class RealModelSurface(
+    settings_of(_OWN), settings_of(READING, changes.reading), _Interface, bpy.types.PropertyGroup
+):
     """A surface: the source of its shape, its rule, and the block beneath it."""
 
     source: EnumProperty(
@@ -82,19 +105,7 @@ class RealModelSurface(settings_of(_OWN), settings_of(READING, changes.reading),
         options=set(),
     )
     structures: CollectionProperty(type=RealModelStructure)
-    hide: BoolProperty(
-        name="Hide",
-        description="Hide this interface in the viewport; it is still built",
-        update=changes.view,
-        options=set(),
-    )
-    interface: PointerProperty(type=bpy.types.Object, options={"HIDDEN"})
-    interface_digest: StringProperty(options={"HIDDEN"})
     stored: StringProperty(options={"HIDDEN"})
-    stored_stamp: StringProperty(options={"HIDDEN"})
-    stored_mesh: StringProperty(options={"HIDDEN"})
-    exact: StringProperty(options={"HIDDEN"})
-    figures: StringProperty(options={"HIDDEN"})
     other_options: StringProperty(options={"HIDDEN"})  # JSON: heights that stand in a project file
     reading: StringProperty(options={"HIDDEN"})  # of versions 0 to 3
 

@@ -107,6 +107,7 @@ class RealModelView(bpy.types.PropertyGroup):
         options=set(),
         update=changes.overlay,
     )
+    compartments: StringProperty(options={"HIDDEN"})  # JSON of what a build told of compartments and faults
     shade_limits: FloatVectorProperty(size=2, options={"HIDDEN"})  # values at the ends of the color scale
     cut: StringProperty(options={"HIDDEN"})  # JSON of the plane that the bodies of kind "cut" were made with
     cells_of: StringProperty(options={"HIDDEN"})  # JSON of what the bodies of kind "cells" were made of

@@ -49,7 +49,11 @@ def _from_3(scene):
                 surface.reading = ""
 
 
-_STEPS = (_from_0, _from_1, _from_2, _from_3)  # step n makes version n + 1 of version n
+def _from_4(_scene):
+    """There were no faults and bodies."""
+
+
+_STEPS = (_from_0, _from_1, _from_2, _from_3, _from_4)  # step n makes version n + 1 of version n
 
 
 def needs_migration(scene):

@@ -223,6 +223,10 @@ class States(PanelCase):
         if not len(self.model.results):
             ops.build()
         ops.section_plane()
+        ops.fault_body_add(empty=True, kind="FAULT")
+        ops.fault_list_add(of="ENDS_AT")
+        drawn |= self.draw().operators
+        ops.fault_body_add(empty=True, kind="BODY")
         activity.problem, activity.problem_object = "a problem", "field"
         drawn |= self.draw().operators
         quality.start(self.scene)

@@ -10,7 +10,8 @@ from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet
 from realmodel.bl import choices, plan_mesh, project_settings, reading_text
 from realmodel.core import InputRefused, load_project
 from realmodel.core.rock_input import read_rocks
-from realmodel.core.schema import ROCK, SURFACE
+from realmodel.core.schema import BODY, FAULT, READING, ROCK, SURFACE
+from realmodel.core.structures.reading import read_structures
 from realmodel.core.work import run
 
 EVERY_KEY = """
@@ -148,8 +149,47 @@ points = "plain.csv"
 """
 
 
+FAULTS = """
+[[fault]]
+name = "F1"
+points = "sticks.csv"
+stick = "s"
+extend = 2.25
+z_axis = "down"
+youngest = "top"
+dies_out = true
+rocks = ["by points"]
+
+[[fault]]
+name = "F2"
+mesh = "fault.off"
+units = { xy = "ft", z = "m" }
+ends_at = ["F1"]
+"""
+
+BODIES = """
+[[body]]
+name = "salt"
+mesh = "salt.off"
+units = "m"
+after = "trend"
+property = 4
+rock = "first"
+
+[[body]]
+name = "tunnel"
+mesh = "salt.off"
+void = true
+"""
+
+
 def write_files(folder: Path):
-    (folder / "project.toml").write_text(EVERY_KEY)
+    (folder / "project.toml").write_text(EVERY_KEY + FAULTS + BODIES)
+    sticks = [(450 + z / 9, y, z, y) for y in (0, 40, 80) for z in (-90, 0, 90)]
+    (folder / "sticks.csv").write_text("x,y,z,s\n" + "".join(f"{x!r},{y},{z},{y}\n" for x, y, z, _ in sticks))
+    (folder / "fault.off").write_text("OFF\n3 1 0\n450 0 -9\n450 80 -9\n480.1 40 99\n3 0 1 2\n")
+    corners = "5 5 5\n10.3 5 5\n5 10 5\n5 5 10\n"
+    (folder / "salt.off").write_text(f"OFF\n4 4 0\n{corners}3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n")
     (folder / "library.toml").write_text(
         '[[property]]\nid = 4\nname = "Clay"\nrock = "clay"\nage = "Eocene"\nstructure = "bedded"\n'
         'color = "#102030"\ndensity = 2123.4\ndescription = "grün"\n'
@@ -195,12 +235,21 @@ def write_contours(path):
 def said(project):
     """All that a project says, with arrays in the place of files, and equal where it means the same."""
     rocks = [entry.rock for entry in run(lambda work: read_rocks(work, project))]
+    faults, bodies, _ = run(lambda work: read_structures(work, project))
     return {
         "name": project.name,
         "units": project.units,
         "library": [vars(entry) for entry in project.library or ()],
         "rocks": [_rock(rock) for rock in rocks],
+        "structures": [_structure(entry) for entry in (*faults, *bodies)],
     }
+
+
+def _structure(entry):
+    shape = {key: getattr(entry, key).tolist() for key in ("vertices", "triangles")}
+    keys = ("youngest", "dies_out", "ends_at", "rocks", "after", "property", "void", "rock")
+    said = {key: getattr(entry, key) for key in keys if hasattr(entry, key)}
+    return {"name": entry.name, **shape, **said}
 
 
 def _rock(rock):
@@ -260,6 +309,8 @@ class RoundTrip(PanelCase):
         self.assertEqual(
             [key for key in (*ROCK, *SURFACE) if f"\n{key} =" not in EVERY_KEY], [], "not in EVERY_KEY above"
         )
+        for table, text in ((FAULT, FAULTS), (BODY, BODIES)):
+            self.assertEqual([key for key in table if key not in READING and f"\n{key} =" not in text], [])
         write_files(self.folder)
         self.assert_says_the_same(self.folder / "project.toml")
 

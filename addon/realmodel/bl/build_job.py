@@ -105,11 +105,14 @@ class BuildJob:
 
 
 def refused_surface(current, error):
-    """The row of the surface that a refusal speaks of, or None."""
+    """The row of the surface, fault or body that a refusal speaks of, or None."""
     if not isinstance(error, InputRefused) or not error.item:
         return None
     for rock, row in settings.surface_rows(current):
         if surface_item(rock, row) == error.item:
+            return row
+    for (kind, _), row in settings.structure_rows(current):
+        if f"{kind} '{row.name}'" == error.item:
             return row
     return None
 

@@ -20,6 +20,7 @@ from ..core.units import length_text
 from . import (
     block_shapes,
     built_models,
+    compartments,
     data_objects,
     display,
     exaggeration,
@@ -32,6 +33,7 @@ from . import (
     scene,
     settings,
     shapes,
+    structure_settings,
     surface_figures,
     uncertainty,
     viewports,
@@ -45,11 +47,11 @@ from .origin import choose_origin, far_from, offsets_from
 class Prepared:
     """A model as Blender takes it: all that can be made without touching Blender.
 
-    interfaces: by (rock, surface) numbers (PolygonMesh, digest). blocks: for each block of the model its
-    PolygonMesh or None; bounds: of them all. stored: by (rock, surface or None
-    for the region) the text that its row is to keep of its file, and the stamp of the file. figures: for each
-    surface what surface_figures says of it. told: by (rock, surface) numbers what is known of an interface's
-    vertices (Model.surface_attributes). stage: what `shown_models.remember_stage` takes, or None.
+    interfaces: by place (settings.row_at) (PolygonMesh, digest). blocks: for each block of the model its
+    PolygonMesh or None; bounds: of them all. stored: by place the text that its row is to keep of its file,
+    and the stamp of the file. figures: for each surface what surface_figures says of it. told: by place what
+    is known of an interface's vertices (Model.surface_attributes). compartments: what `compartments` keeps.
+    stage: what `shown_models.remember_stage` takes, or None.
     """
 
     model: object
@@ -60,6 +62,7 @@ class Prepared:
     stored: dict = field(default_factory=dict)
     figures: list = field(default_factory=list)
     told: dict = field(default_factory=dict)
+    compartments: str = ""
     stage: tuple | None = None
 
 
@@ -72,34 +75,43 @@ def prepare(model, composed, stage=None, threads=0):
     elif (away := far_from(origin, model.surface_vertices)) is not None:
         origin = _other_origin(model, composed, away)
     prepared = Prepared(model, origin)
-    surface = 0
-    for r, rock in enumerate(model.project.rocks):
-        for s in range(len(rock.surfaces)):
-            if not composed.from_object(r, s):
-                vertices, triangles = model.surface(surface)
-                given = offsets_from(origin, vertices)
-                triangles = meshes.without_repeated_corners(triangles)
-                digest = shapes.digest(given, triangles)
-                shape = polygon_mesh.of_triangles(given, triangles, smooth=True)
-                prepared.interfaces[r, s] = (shape, digest)
-                prepared.told[r, s] = model.surface_attributes(surface)
-            surface += 1
+    for surface, place in enumerate(_places(model.project)):
+        if not composed.from_object(place):
+            vertices, triangles = model.surface(surface)
+            given = offsets_from(origin, vertices)
+            triangles = meshes.without_repeated_corners(triangles)
+            digest = shapes.digest(given, triangles)
+            is_surface = model.surface_kind[surface] == 0
+            shape = polygon_mesh.of_triangles(given, triangles, smooth=bool(is_surface))
+            prepared.interfaces[place] = (shape, digest)
+            if is_surface:
+                prepared.told[place] = model.surface_attributes(surface)
     prepared.blocks = polygon_mesh.of_blocks(model, origin, threads)
     prepared.bounds = block_shapes.bounds([s.coordinates for s in prepared.blocks if s is not None])
-    for (r, s), stamp in composed.read.items():
-        rock = model.project.rocks[r]
-        text = (
-            project_settings.packed_region(rock) if s is None else project_settings.packed(rock.surfaces[s])
-        )
-        prepared.stored[r, s] = (text, stamp)
-    for r, s in composed.edited:  # the digits that Blender's 32 bits do not have
-        prepared.stored[r, s] = (project_settings.packed(model.project.rocks[r].surfaces[s]), "")
+    for place, stamp in composed.read.items():
+        if place[1] is None:
+            text = project_settings.packed_region(model.project.rocks[place[0]])
+        else:
+            text = project_settings.packed(project_settings.entry_at(model.project, place))
+        prepared.stored[place] = (text, stamp)
+    for place in composed.edited:  # the digits that Blender's 32 bits do not have
+        entry = project_settings.entry_at(model.project, place)
+        prepared.stored[place] = (project_settings.packed(entry), "")
     prepared.figures = surface_figures.of_model(model)
+    prepared.compartments = compartments.of_model(model)
     if stage is not None:
         at_stage = build_stage(model, stage, cells="blocks")
-        found = block_shapes.by_name(at_stage, polygon_mesh.of_blocks(at_stage, origin, threads))
+        made = polygon_mesh.of_blocks(at_stage, origin, threads, compartments=model.compartment_names)
+        found = block_shapes.by_name(at_stage, made)
         prepared.stage = (stage, at_stage, found)
     return prepared
+
+
+def _places(project):
+    """The places of all surfaces, faults and bodies, in the model's order."""
+    yield from ((r, s) for r, rock in enumerate(project.rocks) for s in range(len(rock.surfaces)))
+    yield from (("fault", n) for n in range(len(project.faults)))
+    yield from (("body", n) for n in range(len(project.bodies)))
 
 
 def _other_origin(model, composed, away):
@@ -118,11 +130,10 @@ def _other_origin(model, composed, away):
 
 def shapes_to_come(current, prepared, composed):
     """(name, PolygonMesh) of each mesh that `put` will make, as the scene stands."""
-    for r, rock in enumerate(current.realmodel.rocks):
-        for s, row in enumerate(rock.surfaces):
-            shape, digest = prepared.interfaces.get((r, s), (None, ""))
-            if shape is not None and (_interface(row) is None or digest != row.interface_digest):
-                yield row.name, shape
+    for place, row in settings.interface_rows(current):
+        shape, digest = prepared.interfaces.get(place, (None, ""))
+        if shape is not None and (_interface(row) is None or digest != row.interface_digest):
+            yield row.name, shape
     for block, shape in zip(prepared.model.blocks, prepared.blocks, strict=True):
         if shape is not None:
             yield block.name, shape
@@ -132,7 +143,7 @@ def check_rows(current, project):
     """Raises BuildFailed where the lists of a scene are no longer those that a project was made from."""
     now = [(row.name, [s.name for s in row.surfaces]) for row in current.realmodel.rocks]
     then = [(rock.name, [s.name for s in rock.surfaces]) for rock in project.rocks]
-    if now != then:
+    if (now, structure_settings.names_in(current)) != (then, structure_settings.names_of(project)):
         raise BuildFailed("the lists were changed while it was being built; build again")
 
 
@@ -146,8 +157,8 @@ def check_modes(current, prepared=None):
                 f"block '{item.name}' is in {_mode_name(item)}, and a build replaces the meshes of blocks; "
                 "leave the mode (Tab), then build again"
             )
-    for (r, s), (_, digest) in prepared.interfaces.items() if prepared is not None else ():
-        row = current.realmodel.rocks[r].surfaces[s]
+    for place, (_, digest) in prepared.interfaces.items() if prepared is not None else ():
+        row = settings.row_at(current, place)
         item = _interface(row)
         if item is not None and item.mode != "OBJECT" and digest != row.interface_digest:
             raise BuildFailed(
@@ -229,14 +240,13 @@ def move_helpers(current, moved):
 
 def _keep(current, prepared):
     """What was read from files stays in the rows, and the figures of each surface with it."""
-    for (r, s), (text, stamp) in prepared.stored.items():
-        row = current.realmodel.rocks[r]
-        if s is None:
+    for place, (text, stamp) in prepared.stored.items():
+        row = settings.row_at(current, place)
+        if place[1] is None:
             row.region_stored, row.region_stamp = text, stamp
         else:
-            surface = row.surfaces[s]
-            setattr(surface, "stored" if surface.source == "POINTS_FILE" else "stored_mesh", text)
-            surface.stored_stamp = stamp
+            project_settings.keep_shape(row, text, stamp)
+    current.realmodel.view.compartments = prepared.compartments
     rows = [row for _, row in settings.surface_rows(current)]
     for row, figures in zip(rows, prepared.figures, strict=True):
         row.figures = figures
@@ -261,32 +271,32 @@ def _interface(row):
 
 
 def _new_interfaces(current, prepared, composed, created):
-    """By (rock, surface) the object that is to be the interface, with another mesh where it needs one:
+    """By place the object that is to be the interface, with another mesh where it needs one:
     (object, mesh or None, digest)."""
     found = {}
-    for r, rock in enumerate(current.realmodel.rocks):
-        for s, row in enumerate(rock.surfaces):
-            own = _interface(row)
-            if composed.from_object(r, s):
-                found[r, s] = (own, None, "")
-                continue
-            shape, digest = prepared.interfaces[r, s]
-            mesh = None
-            if own is None or digest != row.interface_digest:
-                mesh = meshes.new_mesh(row.name, shape)
-                created.append(mesh)
-                uncertainty.add_attributes(mesh, prepared.told[r, s])
-            if own is None:
-                own = bpy.data.objects.new(row.name, mesh)
-                created.append(own)
-            found[r, s] = (own, mesh, digest)
+    for place, row in settings.interface_rows(current):
+        own = _interface(row)
+        if composed.from_object(place):
+            found[place] = (own, None, "")
+            continue
+        shape, digest = prepared.interfaces[place]
+        mesh = None
+        if own is None or digest != row.interface_digest:
+            mesh = meshes.new_mesh(row.name, shape)
+            created.append(mesh)
+            if place in prepared.told:
+                uncertainty.add_attributes(mesh, prepared.told[place])
+        if own is None:
+            own = bpy.data.objects.new(row.name, mesh)
+            created.append(own)
+        found[place] = (own, mesh, digest)
     return found
 
 
 def _settle_edited(current, composed):
     """Interfaces changed by hand count as they are from now on."""
-    for r, s in composed.edited:
-        row = current.realmodel.rocks[r].surfaces[s]
+    for place in composed.edited:
+        row = settings.row_at(current, place)
         row.object = row.interface
         row.source = "MESH_OBJECT"
         row.interface_digest = ""
@@ -317,16 +327,18 @@ def _new_blocks(current, prepared, created, in_place):
 
 def _tree(current, project):
     """The model's collections, linked where they were taken out, new where there are none: for each rock mass
-    (interfaces, blocks)."""
+    (interfaces, blocks), and that of the faults and bodies under None."""
     group = current.realmodel
     top = _collection(current, current.collection, group, "collection", project.name, "project")
-    rocks = []
-    for row in group.rocks:
+    rocks = {}
+    for number, row in enumerate(group.rocks):
         parent = _collection(current, top, row, "collection", row.name, "rock", row.name)
         pair = []
         for kind in ("interfaces", "blocks"):
             pair.append(_collection(current, parent, row, kind, f"{row.name} {kind}", kind, row.name))
-        rocks.append(tuple(pair))
+        rocks[number] = tuple(pair)
+    if len(group.faults) or len(group.bodies):
+        rocks[None] = _collection(current, top, group, "structures", "faults and bodies", "structures")
     return rocks
 
 
@@ -334,7 +346,7 @@ def _collection(current, parent, row, pointer, name, kind, rock_name=None):
     collection = getattr(row, pointer)
     if collection is None or collection.library is not None:
         collection = bpy.data.collections.new(name)
-        collection.hide_render = kind == "interfaces"
+        collection.hide_render = kind in ("interfaces", "structures")
         setattr(row, pointer, collection)
     collection[scene.TAG] = kind
     if rock_name is not None:
@@ -347,18 +359,21 @@ def _collection(current, parent, row, pointer, name, kind, rock_name=None):
 
 
 def _place_interfaces(current, tree, interfaces):
-    for (r, s), (item, mesh, digest) in interfaces.items():
-        rock = current.realmodel.rocks[r]
-        row = rock.surfaces[s]
+    for place, (item, mesh, digest) in interfaces.items():
+        row, kind = settings.row_at(current, place), place[0]
         if mesh is not None and item.data != mesh:
             _change_mesh(item, mesh)
-        adopted = item.get(scene.TAG) == "interface"
+        of_surface = not isinstance(kind, str)
+        wanted = {scene.TAG: "interface" if of_surface else kind, scene.SURFACE: row.name}
+        if of_surface:
+            wanted[scene.ROCK] = current.realmodel.rocks[kind].name
+        if kind != "fault":
+            wanted[scene.PROPERTY] = row.property_id
+        adopted = item.get(scene.TAG) == wanted[scene.TAG]
         if item.library is None:
-            item[scene.TAG] = "interface"
-            item[scene.ROCK] = rock.name
-            item[scene.SURFACE] = row.name
-            item[scene.PROPERTY] = row.property_id
-        _link(current, tree[r][0], item, move=not adopted)
+            for key, value in wanted.items():
+                item[key] = value
+        _link(current, tree[kind][0] if of_surface else tree[None], item, move=not adopted)
         if item.library is None and not scene.is_name_of(item.name, row.name):
             scene.give_name(bpy.data.objects, item, row.name)
         row.interface = item
@@ -431,6 +446,7 @@ def fill_results(current, model, objects):
         row = group.results.add()
         row.name, row.rock = block.name, model.project.rocks[block.rock].name
         row.surface = str(model.surface_names[block.surface])
+        row.is_body = bool(model.surface_kind[block.surface] == 2)
         row.property_id = int(block.property)
         row.volume, row.volume_exact = block.volume, repr(block.volume)
         row.share = 100.0 * block.volume / total if total else 0.0
@@ -451,6 +467,7 @@ def _clear(current):
         current.realmodel.results.clear()
         current.realmodel.built_stamp = ""
         current.realmodel.warnings = ""
+        current.realmodel.view.compartments = ""
     scene.remove_objects(objects)
     display.cleared(current)
 
@@ -465,22 +482,21 @@ def remove_model(current):
 def _remove_model(current):
     _clear(current)
     group = current.realmodel
-    for row in group.rocks:
-        for surface in row.surfaces:
-            item = surface.interface
-            if item is None:
-                continue
-            if surface.interface_digest:
-                surface.interface = surface.object = None
-                scene.remove_objects([item])
-            else:
-                _release(current, item)
+    for _, row in settings.interface_rows(current):
+        item = row.interface
+        if item is None:
+            continue
+        if row.interface_digest:
+            row.interface = row.object = None
+            scene.remove_objects([item])
+        else:
+            _release(current, item)
     collections = [(row.interfaces, row.blocks, row.collection) for row in group.rocks]
-    top = group.collection
-    for key in ("rocks", "results", "library"):
+    last = [group.structures, group.collection]
+    for key in ("rocks", "faults", "bodies", "results", "library"):
         getattr(group, key).clear()
-    group.collection = None
-    for collection in [c for three in collections for c in three] + [top]:
+    group.structures = group.collection = None
+    for collection in [c for three in collections for c in three] + last:
         scene.release_collection(collection)
     if ORIGIN_KEY in current:
         del current[ORIGIN_KEY]
@@ -495,7 +511,7 @@ def _release(current, item):
         if key in item:
             del item[key]
     for collection in list(item.users_collection):
-        if collection.get(scene.TAG) == "interfaces":
+        if collection.get(scene.TAG) in ("interfaces", "structures"):
             collection.objects.unlink(item)
     if current not in item.users_scene:
         current.collection.objects.link(item)
@@ -521,8 +537,8 @@ def remove_rock(current, row):
 
 
 def release_surface(current, row):
-    """What belongs to a surface that leaves the list: its interface goes where it was made for it, an object
-    of the user's stays."""
+    """What belongs to a surface, fault or body that leaves the list: its interface goes where it was made for
+    it, an object of the user's stays."""
     item = row.interface
     row.interface = None
     if item is None:

@@ -8,6 +8,7 @@ from . import (
     library_rows,
     live,
     method_settings,
+    project_settings,
     reading_text,
     region_size,
     settings,
@@ -89,6 +90,8 @@ def source(surface, context):
         reading_text.fill(surface, {})
     if surface.source != "MESH_OBJECT":
         surface.stored_stamp = ""
+        if surface.filepath and settings.kind_of(surface) != "surface":
+            project_settings.forget_shape(surface)
     data_objects.update(surface.id_data)
     setting(surface, context)
 
@@ -100,9 +103,14 @@ def reading(row, context):
     surface = settings.surface_of(row)
     surface.interface_digest = ""
     if surface.filepath:
-        surface.stored = surface.stored_stamp = ""
+        project_settings.forget_shape(surface)
     data_objects.update(surface.id_data)
     setting(surface, context)
+
+
+def fitted(fault, context):
+    """A setting that the surface through the points of a fault depends on."""
+    (reading if fault.source == "POINTS_FILE" else setting)(fault, context)
 
 
 def fit_variogram(surface, context):

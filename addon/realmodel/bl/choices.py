@@ -15,6 +15,23 @@ def surfaces(row, _context, _text):
     return [other.name for other in settings.rock_of(row).surfaces if other != row]
 
 
+def all_surfaces(row, _context, _text):
+    """The surfaces of all rock masses, the youngest first, as in the list."""
+    rocks = row.id_data.realmodel.rocks
+    return list(dict.fromkeys(surface.name for rock in rocks for surface in reversed(rock.surfaces)))
+
+
+def rocks(row, _context, _text):
+    return [rock.name for rock in row.id_data.realmodel.rocks]
+
+
+def faults(row, _context, _text):
+    """The other faults, but for those at which this one ends already."""
+    fault = row.id_data.path_resolve(row.path_from_id().rpartition(".ends_at[")[0])
+    taken = {fault.name, *(each.name for each in fault.ends_at if each != row)}
+    return [other.name for other in row.id_data.realmodel.faults if other.name not in taken]
+
+
 def columns(row, _context, _text):
     surface = settings.surface_of(row)
     return [

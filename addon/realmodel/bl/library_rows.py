@@ -72,9 +72,9 @@ def for_surface(scene, name):
 
 
 def remove_made(scene, surface):
-    """A surface leaves the list: the entry that was added for it goes, where nothing was made of it."""
+    """A surface or a body leaves the list: the entry added for it goes, where nothing was made of it."""
     row = find(scene, surface.property_id)
-    users = sum(other.property_id == surface.property_id for _, other in settings.surface_rows(scene))
+    users = sum(other.property_id == surface.property_id for other in settings.property_rows(scene))
     if row is None or users > 1 or row.name != surface.name or row.density or any(map(row.get, _TEXTS)):
         return
     group = scene.realmodel
@@ -107,9 +107,9 @@ def take_id(row):
         row.known_id = row.id
         for material in scene_materials(scene, old):
             material[materials.KEY] = row.id
-        for _, surface in settings.surface_rows(scene):
-            if surface.property_id == old:
-                surface.property_id = row.id
+        for source in settings.property_rows(scene):
+            if source.property_id == old:
+                source.property_id = row.id
         for block in scene.realmodel.results:
             if block.property_id == old:
                 block.property_id = row.id

@@ -13,7 +13,7 @@ import bpy
 
 from .. import preferences
 from ..core import Cancelled
-from . import build_job, built_scene, caches, plan_mesh, problems, region_size, viewports
+from . import build_job, built_scene, caches, plan_mesh, problems, region_size, settings, viewports
 from .debounce import DebouncedJob
 
 _SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
@@ -55,13 +55,13 @@ def changed(scene, depsgraph):
             touch(scene)
         if any(_names(item) & edited for item in plan_mesh.objects(rock)):
             touch(scene)
-        for surface in rock.surfaces:
-            made = surface.interface if surface.interface_digest else None
-            if made is not None and _names(made) & edited:
-                touch(scene)
-            source = surface.object if surface.source in ("MESH_OBJECT", "POINTS_OBJECT") else None
-            if source is not None and _names(source) & edited:
-                touch(scene)
+    for _, row in settings.interface_rows(scene):
+        made = row.interface if row.interface_digest else None
+        if made is not None and _names(made) & edited:
+            touch(scene)
+        source = row.object if row.source in ("MESH_OBJECT", "POINTS_OBJECT") else None
+        if source is not None and _names(source) & edited:
+            touch(scene)
 
 
 def _counts(update):

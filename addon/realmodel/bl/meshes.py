@@ -9,12 +9,14 @@ from . import meshes_ahead, versions
 
 # Face attribute: global index of the surface a face lies on; -1 a vertical wall, -2 the flat base
 FACE_SURFACE = "realmodel_surface"
+# Face attribute of blocks that faults divide: the number of the compartment that a face bounds
+FACE_COMPARTMENT = "realmodel_compartment"
 
 
 def new_mesh(name, shape):
     """A new mesh datablock, bpy.types.Mesh, of a realmodel.core.polygon_mesh.PolygonMesh, whose coordinates
     are offsets from the model origin. The surface that each polygon lies on becomes the face attribute
-    `realmodel_surface`.
+    `realmodel_surface`, the compartment that it bounds `realmodel_compartment`.
 
     Arrays go to Blender as they are: a million quads, with their edges, in less than a tenth of a second.
     A mesh that was made ahead is there already.
@@ -73,16 +75,28 @@ def holds(mesh, shape):
     """Whether a mesh has these vertices and corners of polygons already."""
     if len(mesh.vertices) != len(shape.coordinates) or len(mesh.loops) != len(shape.corners):
         return False
-    return np.array_equal(mesh_coordinates(mesh), shape.coordinates) and np.array_equal(
-        versions.corner_vertices(mesh), shape.corners
+    return (
+        np.array_equal(mesh_coordinates(mesh), shape.coordinates)
+        and np.array_equal(versions.corner_vertices(mesh), shape.corners)
+        and _holds_compartments(mesh, shape.face_compartment)
     )
+
+
+def _holds_compartments(mesh, wanted):
+    attribute = mesh.attributes.get(FACE_COMPARTMENT)
+    if wanted is None or attribute is None:
+        return wanted is None and attribute is None
+    values = np.empty(len(attribute.data), np.int32)
+    attribute.data.foreach_get("value", values)
+    return np.array_equal(values, wanted)
 
 
 def _fill(mesh, shape):
     versions.fill_mesh(mesh, shape)
-    if shape.face_surface is not None:
-        attribute = mesh.attributes.new(FACE_SURFACE, "INT", "FACE")
-        attribute.data.foreach_set("value", shape.face_surface)
+    for name, values in ((FACE_SURFACE, shape.face_surface), (FACE_COMPARTMENT, shape.face_compartment)):
+        if values is not None and len(values):
+            attribute = mesh.attributes.new(name, "INT", "FACE")
+            attribute.data.foreach_set("value", values)
 
 
 def mesh_coordinates(mesh):

@@ -9,7 +9,7 @@ import numpy as np
 from mathutils import Vector
 
 from ..core import InputRefused
-from . import build_job, project_settings, shapes, viewports
+from . import build_job, exaggeration, project_settings, shapes, viewports
 from .display import visible
 
 _FRAMED = 0.05  # of the object's size, at least, around a bad place
@@ -26,7 +26,7 @@ def remember(scene, error):
     activity.problem = build_job.message(error)
     row = build_job.refused_surface(scene, error)
     item = None if row is None else (row.object if row.source == "MESH_OBJECT" else row.interface)
-    if project_settings.in_use(item) and error.triangles:
+    if project_settings.in_use(item) and (error.triangles or error.place is not None):
         activity.problem_object = item.name
         activity.problem_triangles = json.dumps([int(t) for t in error.triangles])
     if isinstance(error, InputRefused) and error.place is not None:
@@ -38,7 +38,8 @@ def has_place(context):
 
 
 def show(context):
-    """Selects the bad triangles of the last refusal in edit mode, and turns the viewport to them.
+    """Selects the bad triangles of the last refusal in edit mode, or the object that it speaks of with the 3D
+    cursor at its place, and turns the viewport there.
 
     Raises InputRefused where they are not there any more.
     """
@@ -51,6 +52,9 @@ def show(context):
         bpy.ops.object.mode_set(mode="OBJECT")
     visible.show(context.scene, item, True)
     _open_eyes(context.view_layer.layer_collection, item)
+    if not triangles:
+        _show_place(context, item, json.loads(activity.problem_place))
+        return
     depsgraph = context.evaluated_depsgraph_get()
     with shapes.evaluated_mesh(item, depsgraph) as mesh:
         corners, polygons = shapes.mesh_triangles(mesh), shapes.triangle_polygons(mesh)
@@ -58,12 +62,27 @@ def show(context):
         places = shapes.offsets(item, mesh)[np.unique(corners[bad])]
         same = len(mesh.polygons) == len(item.data.polygons)
         chosen = set(np.unique(polygons[bad]).tolist()) if same else set()
-    for other in context.view_layer.objects:
-        other.select_set(other == item)
-    context.view_layer.objects.active = item
+    _select(context, item)
     bpy.ops.object.mode_set(mode="EDIT")
     _select_faces(context, item, chosen)
     _frame(context, places, max(item.dimensions) * _FRAMED)
+
+
+def _select(context, item):
+    for other in context.view_layer.objects:
+        other.select_set(other == item)
+    context.view_layer.objects.active = item
+
+
+def _show_place(context, item, place):
+    """place: (x, y, z), or (x, y) at the height of the object, in model coordinates."""
+    offset = np.asarray(place, np.float64) - project_settings.model_origin(context.scene)[: len(place)]
+    if len(offset) < 3:
+        offset = np.append(offset, shapes.points(item, context.evaluated_depsgraph_get())[:, 2].mean())
+    at = exaggeration.matrix(context.scene) @ np.append(offset, 1.0)
+    context.scene.cursor.location = at[:3]
+    _select(context, item)
+    _frame(context, at[None, :3], max(item.dimensions) * _FRAMED)
 
 
 def _open_eyes(layer, item):

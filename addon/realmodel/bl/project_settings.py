@@ -14,6 +14,7 @@ from ..core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
 from ..core.project import rock_item, surface_item
 from ..core.rock_input import read_rocks
 from ..core.schema import MESH_READING, READING, ROCK, SURFACE
+from ..core.structures.reading import read_structures
 from ..core.work import run
 from . import (
     borehole_picks,
@@ -25,6 +26,7 @@ from . import (
     settings,
     shapes,
     stored_arrays,
+    structure_settings,
     units,
 )
 from .origin import KEY as ORIGIN_KEY
@@ -32,11 +34,10 @@ from .origin import KEY as ORIGIN_KEY
 
 @dataclass
 class Composed:
-    """A project as the scene has it. read: by (rock number, surface number or None for the region) the stamp
-    of the file that it is yet to be read from. origin_is_free: no object of the user says where the model
-    stands. has_origin: the origin was chosen before. edited:
-    (rock, surface) numbers of the interfaces that were changed by hand since they were made, and therefore
-    count as they are."""
+    """A project as the scene has it. read: by place (settings.row_at) the stamp of the file that it is yet to
+    be read from. origin_is_free: no object of the user says where the model stands. has_origin: the origin
+    was chosen before. edited: the places of the interfaces that were changed by hand since they were made,
+    and therefore count as they are."""
 
     project: Project
     origin: np.ndarray
@@ -46,9 +47,9 @@ class Composed:
     edited: list = field(default_factory=list)
     objects: set = field(default_factory=set)
 
-    def from_object(self, rock, surface):
-        """Whether a surface is a mesh object of the scene just as it stands."""
-        return (rock, surface) in self.objects
+    def from_object(self, place):
+        """Whether a shape is a mesh object of the scene just as it stands."""
+        return place in self.objects
 
 
 def model_origin(scene):
@@ -62,7 +63,7 @@ def user_objects(scene):
     found += [item for row in scene.realmodel.rocks for item in plan_mesh.objects(row)]
     found += [
         row.object
-        for _, row in settings.surface_rows(scene)
+        for _, row in settings.interface_rows(scene)
         if row.source in ("POINTS_OBJECT", "MESH_OBJECT")
     ]
     return [item for item in found if item is not None]
@@ -101,6 +102,13 @@ def compose(scene, depsgraph, whole=True):
             rock.surfaces.append(surface)
         if not rock.interpolates:  # nothing is meshed that they could shape
             rock.constraints, rock.size = [], []
+    for place, row in settings.structure_rows(scene):
+        entry = structure_settings.entry_of(place, row)
+        try:
+            _shape(scene, composed, place, entry, row, depsgraph, whole)
+        except InputRefused as error:
+            raise error.within(structure_settings.item_of(entry)) from error
+        (project.faults if place[0] == "fault" else project.bodies).append(entry)
     composed.origin_is_free = composed.origin_is_free and not composed.edited
     return composed
 
@@ -168,10 +176,7 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
             return
     path, stored = absolute(row.filepath), stored_shape(row)
     if path is not None and (not stored or (whole and _changed(path, row.stored_stamp))):
-        if row.source == "POINTS_FILE":
-            surface.points = PointFile(path, **reading_text.options(row))
-        else:
-            surface.mesh = MeshFile(path, *(method_settings.value(row, key, READING) for key in MESH_READING))
+        name_file(surface, row, path)
         composed.read[place] = stored_arrays.file_stamp(path)
     elif stored:
         _take_stored(surface, stored)
@@ -180,9 +185,34 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
         raise InputRefused(f"no file with its {kind} is chosen", advice="choose its file, or another source")
 
 
+def name_file(entry, row, path):
+    """Has a surface, fault or body be read from a file as its row says."""
+    if row.source == "POINTS_FILE":
+        entry.points = PointFile(path, **reading_text.options(row))
+    else:
+        entry.mesh = MeshFile(path, *(method_settings.value(row, key, READING) for key in MESH_READING))
+
+
+def _stored_key(row):
+    """What a row keeps its file's shape in: of faults the surface through the points, not the points."""
+    return "stored" if row.source == "POINTS_FILE" and hasattr(row, "stored") else "stored_mesh"
+
+
 def stored_shape(row):
-    """The text in which the .blend keeps what a surface's file had; "" where it keeps nothing."""
-    return row.stored if row.source == "POINTS_FILE" else row.stored_mesh
+    """The text in which the .blend keeps what a row's file had; "" where it keeps nothing."""
+    return getattr(row, _stored_key(row))
+
+
+def keep_shape(row, text, stamp):
+    """Has the .blend keep the shape of a row, and the stamp of the file that it was read from."""
+    setattr(row, _stored_key(row), text)
+    row.stored_stamp = stamp
+
+
+def forget_shape(row):
+    """What was read of a row's file is worth nothing."""
+    setattr(row, "stored" if hasattr(row, "stored") else "stored_mesh", "")
+    row.stored_stamp = ""
 
 
 def _take_stored(surface, text):
@@ -206,7 +236,7 @@ def _from_object(composed, place, surface, row, depsgraph):
         if not len(surface.points):
             raise InputRefused(f"object '{row.object.name}' has no vertices", advice="choose another object")
         return
-    if not row.object.modifiers:
+    if settings.kind_of(row) == "surface" and not row.object.modifiers:
         shapes.require_open(row.object)
     given, triangles = shapes.triangulation(row.object, depsgraph)
     composed.objects.add(place)
@@ -219,18 +249,20 @@ def _made_of(scene, place, row):
     if row.source == "MESH_FILE" and row.stored_mesh:
         return stored_arrays.unpack(row.stored_mesh)
     model = built_models.current(scene)
-    if model is None or len(model.surface_names) != sum(1 for _ in settings.surface_rows(scene)):
+    places = [place for place, _ in settings.interface_rows(scene)]
+    if model is None or len(model.surface_names) != len(places):
         return {}
-    before = sum(len(rock.surfaces) for rock in list(scene.realmodel.rocks)[: place[0]])
-    vertices, triangles = model.surface(before + place[1])
+    vertices, triangles = model.surface(places.index(place))
     return {"vertices": vertices, "triangles": triangles}
 
 
 def _take_mesh(composed, surface, item, given, triangles, base):
     if not len(triangles):
         raise InputRefused(f"object '{item.name}' has no faces", advice="choose a mesh that has faces")
-    surface.points, surface.method, surface.options = None, None, {}
-    surface.minimum_thickness = None
+    if isinstance(surface, Surface):
+        surface.method, surface.options, surface.minimum_thickness = None, {}, None
+    if hasattr(surface, "points"):
+        surface.points = None
     surface.vertices = shapes.with_full_digits(
         given, triangles, composed.origin, base.get("vertices"), base.get("triangles")
     )
@@ -254,7 +286,8 @@ def read_project(composed):
     if not composed.read:
         return given
     inputs = run(lambda work: read_rocks(work, given))
-    return replace(given, rocks=[entry.rock for entry in inputs])
+    faults, bodies, _ = run(lambda work: read_structures(work, given))
+    return replace(given, rocks=[entry.rock for entry in inputs], faults=faults, bodies=bodies)
 
 
 def in_use(item):
@@ -263,13 +296,19 @@ def in_use(item):
     return item is not None and len(item.users_scene) > 0
 
 
+def entry_at(project, place):
+    """The realmodel.core.Surface, Fault or Body of a place."""
+    first, number = place
+    if isinstance(first, str):
+        return (project.faults if first == "fault" else project.bodies)[number]
+    return project.rocks[first].surfaces[number]
+
+
 def packed(surface):
-    """The text that a row keeps of the shape of a realmodel.core.Surface with arrays."""
-    if surface.points is not None:
+    """The text that a row keeps of the shape of a realmodel.core.Surface, Fault or Body with arrays."""
+    if getattr(surface, "points", None) is not None:
         return stored_arrays.pack(points=np.asarray(surface.points, np.float64))
-    return stored_arrays.pack(
-        vertices=np.asarray(surface.vertices, np.float64), triangles=np.asarray(surface.triangles, np.int32)
-    )
+    return stored_arrays.pack_mesh(surface.vertices, surface.triangles)
 
 
 def packed_region(rock):
@@ -295,6 +334,7 @@ def fill(scene, project):
         group.library_path = str(project.library.path or "") if project.library else ""
         for rock in project.rocks:
             add_rock(group, rock)
+        structure_settings.fill(scene, project)
         group.stage = settings.last_stage(scene)
     units.set_up(scene, project.units)
     library_rows.fill(scene, project.library)

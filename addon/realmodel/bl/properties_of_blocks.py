@@ -5,28 +5,29 @@ from . import display, library_rows, materials, scene, settings
 
 
 def assign(current, rows, property_id):
-    """Gives a property to blocks (rows of the results), and to the surfaces that they lie beneath."""
+    """Gives a property to blocks (rows of the results), and to the surfaces that they lie beneath, or the
+    bodies that they are."""
     with settings.filling():
         for row in rows:
-            for rock, surface in settings.surface_rows(current):
-                if (rock.name, surface.name) == (row.rock, row.surface):
-                    surface.property_id = property_id
+            source = settings.row_of_block(current, row)
+            if source is not None:
+                source.property_id = property_id
     follow_surfaces(current)
 
 
 def follow_surfaces(current):
     """The blocks take the properties that their surfaces have now."""
-    wanted = {(r.name, s.name): s.property_id for r, s in settings.surface_rows(current)}
     for row in current.realmodel.results:
-        property_id = wanted.get((row.rock, row.surface), row.property_id)
-        if property_id == row.property_id:
+        source = settings.row_of_block(current, row)
+        if source is None or source.property_id == row.property_id:
             continue
+        property_id = source.property_id
         row.property_id = property_id
         if row.object is not None:
             row.object[scene.PROPERTY] = property_id
             materials.give(row.object, library_rows.material_of(current, property_id))
-    for _, surface in settings.surface_rows(current):
-        if surface.interface is not None and surface.interface.library is None:
-            surface.interface[scene.PROPERTY] = surface.property_id
+    for row in settings.property_rows(current):
+        if row.interface is not None and row.interface.library is None:
+            row.interface[scene.PROPERTY] = row.property_id
     display.colors_changed(current)
     scene.remove_unused_materials()

@@ -4,7 +4,7 @@
 import re
 
 from ..core import InputRefused
-from ..core.schema import READING
+from ..core.schema import MESH_READING, READING
 from . import method_settings
 
 _SEPARATORS = {"tab": "\t", "blank": " "}
@@ -31,7 +31,14 @@ def options(row):
 
 
 def fill(row, given):
-    """Sets a surface's row from the keyword arguments of a PointFile or MeshFile; what they lack is unset."""
+    """Sets a row from the keyword arguments of a PointFile or MeshFile; what they lack is unset."""
+    units = given.get("units")
+    units = units if isinstance(units, dict) else {"xy": units, "z": units}
+    given = {**given, "units": {"xy": None, "z": None} | units}
+    for key in MESH_READING:
+        method_settings.set_value(row, key, READING, given.get(key))
+    if not hasattr(row, "filters"):
+        return  # a body: it is no points
     for axis, name in zip("xyz", given.get("columns") or ("", "", ""), strict=True):
         setattr(row, f"column_{axis}", column_text(name))
     row.filters.clear()
@@ -43,12 +50,7 @@ def fill(row, given):
     row.separator = next((word for word, sign in _SEPARATORS.items() if sign == separator), separator)
     nodata = given.get("nodata", ())
     row.nodata = ", ".join(map(value_text, nodata if isinstance(nodata, (list, tuple)) else [nodata]))
-    units = given.get("units")
-    units = units if isinstance(units, dict) else {"xy": units, "z": units}
-    given = {**given, "units": {"xy": None, "z": None} | units}
-    for key in ("decimal", "units", "z_axis"):
-        part = given.get(key)
-        method_settings.set_value(row, key, READING, part)
+    method_settings.set_value(row, "decimal", READING, given.get("decimal"))
     row.height_attribute, row.layer = given.get("height") or "", given.get("layer") or ""
 
 

@@ -22,7 +22,7 @@ ROCK = "realmodel_rock"
 SURFACE = "realmodel_surface"
 BLOCK = "realmodel_block"
 PROPERTY = "realmodel_property"
-OBJECT_KINDS = ("interface", "block")
+OBJECT_KINDS = ("interface", "fault", "body", "block")
 
 
 def is_name_of(name, wanted):
@@ -43,15 +43,15 @@ def model_collection(scene):
 
 
 def model_objects(scene, kind=None):
-    """The model's objects in a scene, interfaces and blocks or only one kind, oldest first."""
+    """The model's objects in a scene: interfaces, faults and bodies among them, and blocks, or only one kind;
+    those of a kind oldest first."""
     project = model_collection(scene)
     if project is None:
         return []
     kinds = OBJECT_KINDS if kind is None else (kind,)
     found = []
-    for rock in project.children:
-        for collection in rock.children:
-            found += [o for o in collection.objects if o.get(TAG) in kinds]
+    for collection in project.children_recursive:
+        found += [o for o in collection.objects if o.get(TAG) in kinds]
     return found
 
 

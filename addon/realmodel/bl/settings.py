@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import preferences
 
-VERSION = 4  # of the settings; versioning.py brings older ones up to it
+VERSION = 5  # of the settings; versioning.py brings older ones up to it
 
 DATA = "realmodel_data"  # on an object: it shows data of a model, and is no input of one
 
@@ -79,6 +79,75 @@ def surface_rows(scene):
     for rock in scene.realmodel.rocks:
         for surface in rock.surfaces:
             yield rock, surface
+
+
+def structure_rows(scene):
+    """(place, row) of every fault, then of every body: places are ("fault", n) and ("body", n)."""
+    for kind in ("fault", "body"):
+        for number, row in enumerate(structures_of(scene, kind)):
+            yield (kind, number), row
+
+
+def structures_of(scene, kind):
+    """The rows of the faults, or of the bodies."""
+    return scene.realmodel.faults if kind == "fault" else scene.realmodel.bodies
+
+
+def interface_rows(scene):
+    """(place, row) of all that has an interface: surfaces, whose places are (rock, surface) numbers, then
+    faults and bodies."""
+    for r, rock in enumerate(scene.realmodel.rocks):
+        for s, surface in enumerate(rock.surfaces):
+            yield (r, s), surface
+    yield from structure_rows(scene)
+
+
+def row_at(scene, place):
+    """The row of a place; of (rock, None) the rock mass."""
+    first, number = place
+    if isinstance(first, str):
+        return structures_of(scene, first)[number]
+    rock = scene.realmodel.rocks[first]
+    return rock if number is None else rock.surfaces[number]
+
+
+def kind_of(row):
+    """ "surface", "fault" or "body"."""
+    path = row.path_from_id()
+    return "fault" if ".faults[" in path else "body" if ".bodies[" in path else "surface"
+
+
+def active_structure(scene):
+    """The active row of the list of faults and bodies that is shown; None where it is empty."""
+    group = scene.realmodel
+    rows = structures_of(scene, group.structure_kind.lower())
+    number = getattr(group, f"active_{group.structure_kind.lower()}")
+    return rows[min(max(number, 0), len(rows) - 1)] if len(rows) else None
+
+
+def row_of_block(scene, block):
+    """The row of the surface that a block (a row of the results) lies beneath, or of the body that it is;
+    None where it is gone."""
+    if block.is_body:
+        return next((body for body in scene.realmodel.bodies if body.name == block.surface), None)
+    rows = (row for rock, row in surface_rows(scene) if (rock.name, row.name) == (block.rock, block.surface))
+    return next(rows, None)
+
+
+def time_of_block(scene, block):
+    """The number, from the oldest, of the surface with which a block came."""
+    names = next(([s.name for s in r.surfaces] for r in scene.realmodel.rocks if r.name == block.rock), [])
+    name = block.surface
+    if block.is_body:
+        body = row_of_block(scene, block)
+        name = (names[-1] if names else "") if body is None or not body.after else body.after
+    return names.index(name) if name in names else 0
+
+
+def property_rows(scene):
+    """The rows that have a property: surfaces, then bodies."""
+    yield from (row for _, row in surface_rows(scene))
+    yield from scene.realmodel.bodies
 
 
 def last_stage(scene):

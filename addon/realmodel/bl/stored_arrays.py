@@ -30,6 +30,11 @@ def pack(**arrays):
     return base64.b64encode(file.getvalue()).decode("ascii")
 
 
+def pack_mesh(vertices, triangles):
+    """A triangulation as `pack` has it."""
+    return pack(vertices=np.asarray(vertices, np.float64), triangles=np.asarray(triangles, np.int32))
+
+
 def unpack(text):
     """The arrays of `pack` by name; they cannot be written to. Raises InputRefused for damaged text."""
     key = hashlib.blake2b(text.encode("ascii", "replace"), digest_size=16).digest()

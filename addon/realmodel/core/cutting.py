@@ -311,6 +311,7 @@ def _half(work: Work, model: Model, arrays: dict, touches: bool) -> Model:
         warnings=list(model.warnings),
         timings={},
         cell_compartment=model.cell_compartment[arrays["cells"]],
+        compartment_names=model.compartment_names,
     )
     half.cell_component = component
     return half

@@ -4,7 +4,8 @@ them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,7 @@ class PolygonMesh:
     (F,) int32, the global index of the surface that each polygon lies on (-1 a wall, -2 the flat base), or
     None. edges: (E, 2) int32, each once, and corner_edges: (C,) int32, for each corner the edge from it to
     the next; both None where whoever takes the mesh is to find them. smooth: shaded without breaks.
+    face_compartment: (F,) int32, the compartment that each polygon bounds, or None for models of one.
     """
 
     coordinates: np.ndarray
@@ -34,6 +36,7 @@ class PolygonMesh:
     edges: np.ndarray | None = None
     corner_edges: np.ndarray | None = None
     smooth: bool = False
+    face_compartment: np.ndarray | None = None
 
     @property
     def polygons(self) -> int:
@@ -82,25 +85,105 @@ def _seen_from_below(model: Model, faces: np.ndarray) -> np.ndarray:
 
 
 def of_blocks(
-    model: Model, origin: np.ndarray, threads: int = 0, cancel: Cancel | None = None
+    model: Model,
+    origin: np.ndarray,
+    threads: int = 0,
+    cancel: Cancel | None = None,
+    compartments: Sequence[str] | None = None,
 ) -> list[PolygonMesh | None]:
     """For each block of a model its closed boundary, all its parts together; None where it has no cells.
 
     origin: (3,) float64, taken off the coordinates before they are rounded to 32 bits. cancel: as for
-    `build`. Raises Cancelled, BuildFailed.
+    `build`. compartments: names by which face_compartment counts; None: the model's own. Of a stage those of
+    the whole model are wanted; what these lack is counted on. Raises Cancelled, BuildFailed.
     """
-    return _shells(model, origin, None, threads, cancel)
+    shapes = _shells(model, origin, None, threads, cancel, model.cell_block, len(model.blocks))
+    numbers = _numbers(model, compartments)
+    if numbers is None:
+        return [None if found is None else found[0] for found in shapes]
+    made = []
+    for block, found in enumerate(shapes):
+        if found is None:
+            made.append(None)
+            continue
+        shape, faces = found
+        cells = model.face_cells[faces]
+        inside = np.append(model.cell_block, np.int32(-1))[cells] == block
+        cell = np.where(inside[:, 0], cells[:, 0], cells[:, 1])
+        made.append(replace(shape, face_compartment=numbers[model.cell_compartment[cell]]))
+    return made
 
 
 def of_cells(
-    model: Model, origin: np.ndarray, shrink: float, threads: int = 0, cancel: Cancel | None = None
+    model: Model,
+    origin: np.ndarray,
+    shrink: float | None,
+    threads: int = 0,
+    cancel: Cancel | None = None,
+    compartments: Sequence[str] | None = None,
 ) -> list[PolygonMesh | None]:
     """For each block of a model all its cells, each by itself with vertices of its own that are drawn towards
-    their mean by the factor `shrink`. Otherwise as `of_blocks`."""
-    return _shells(model, origin, shrink, threads, cancel)
+    their mean by the factor `shrink`; where that is None the parts of the block in each compartment, each
+    closed by itself. Otherwise as `of_blocks`."""
+    numbers = _numbers(model, compartments)
+    if numbers is None:
+        shapes = _shells(model, origin, shrink, threads, cancel, model.cell_block, len(model.blocks))
+        return [None if found is None else found[0] for found in shapes]
+    count = int(model.cell_compartment.max()) + 1
+    label = (model.cell_block * count + model.cell_compartment).astype(np.int32)
+    shapes = _shells(model, origin, shrink, threads, cancel, label, len(model.blocks) * count)
+    parts = [None if found is None else found[0] for found in shapes]
+    return [
+        _joined(parts[begin : begin + count], numbers) for begin in range(0, len(model.blocks) * count, count)
+    ]
 
 
-def _shells(model, origin, shrink, threads, cancel) -> list[PolygonMesh | None]:
+def moved_apart(shape: PolygonMesh, shifts: np.ndarray) -> PolygonMesh:
+    """A mesh of `of_cells` with each compartment moved; shifts: (N, 3)."""
+    if shape.face_compartment is None:
+        return shape
+    of_vertex = np.zeros(len(shape.coordinates), np.int32)
+    of_vertex[shape.corners] = np.repeat(shape.face_compartment, np.diff(shape.offsets))
+    shifts = np.asarray(shifts, np.float32)[np.minimum(of_vertex, len(shifts) - 1)]
+    return replace(shape, coordinates=shape.coordinates + shifts)
+
+
+def _numbers(model: Model, names: Sequence[str] | None) -> np.ndarray | None:
+    """By what number each compartment of a model is called; None where it has but one."""
+    own = model.compartment_names
+    names = list(own if names is None else names)
+    if max(len(own), len(names)) < 2:
+        return None
+    names += [name for name in own if name not in names]
+    return np.array([names.index(name) for name in own], np.int32)
+
+
+def _joined(parts: list[PolygonMesh | None], numbers: np.ndarray) -> PolygonMesh | None:
+    """The parts of a block in each compartment as one mesh."""
+    given = [(part, number) for part, number in zip(parts, numbers, strict=False) if part is not None]
+    if not given:
+        return None
+    vertices, edges, corners = 0, 0, 0
+    found: dict[str, list] = {key: [] for key in ("offsets", "corners", "edges", "corner_edges")}
+    for part, _ in given:
+        found["offsets"].append(part.offsets[:-1] + corners)
+        found["corners"].append(part.corners + vertices)
+        found["edges"].append(part.edges + vertices)
+        found["corner_edges"].append(part.corner_edges + edges)
+        vertices, edges = vertices + len(part.coordinates), edges + len(part.edges)
+        corners += len(part.corners)
+    found["offsets"].append(np.array([corners]))
+    return PolygonMesh(
+        coordinates=np.concatenate([part.coordinates for part, _ in given]),
+        **{key: np.concatenate(arrays).astype(np.int32) for key, arrays in found.items()},
+        face_surface=np.concatenate([part.face_surface for part, _ in given]),
+        face_compartment=np.concatenate([np.full(part.polygons, number, np.int32) for part, number in given]),
+    )
+
+
+def _shells(model, origin, shrink, threads, cancel, label, count) -> list:
+    """The mesh around the cells of each label, and of each polygon the face of the model."""
+
     def task(work):
         return work.native(
             native_module().complex_shells,
@@ -108,8 +191,8 @@ def _shells(model, origin, shrink, threads, cancel) -> list[PolygonMesh | None]:
             model.face_offsets,
             model.face_vertices,
             model.face_cells,
-            model.cell_block,
-            len(model.blocks),
+            label,
+            count,
             tuple(float(value) for value in origin),
             shrink,
             threads,
@@ -122,5 +205,5 @@ def _shells(model, origin, shrink, threads, cancel) -> list[PolygonMesh | None]:
             continue
         coordinates, offsets, corners, faces, edges, corner_edges = arrays
         surface = model.face_surface[faces]
-        found.append(PolygonMesh(coordinates, offsets, corners, surface, edges, corner_edges))
+        found.append((PolygonMesh(coordinates, offsets, corners, surface, edges, corner_edges), faces))
     return found

@@ -228,7 +228,7 @@ FAULT = {
         more="Default 0",
     ),
     "youngest": Setting(
-        kind="text",
+        kind="any_surface",
         label="Youngest",
         tip="Youngest surface that the fault displaces; empty: all surfaces",
         more="Younger surfaces ignore the fault",
@@ -249,7 +249,7 @@ BODY = {
     "mesh": _OTHER,
     **{key: READING[key] for key in MESH_READING},
     "after": Setting(
-        kind="text",
+        kind="any_surface",
         label="After",
         tip="Surface after which the body came; empty: the youngest",
         more="Younger surfaces erode and bury the body",
@@ -270,7 +270,7 @@ BODY = {
         more="Default `false`",
     ),
     "rock": Setting(
-        kind="text",
+        kind="rock_mass",
         label="Rock Mass",
         tip="Rock mass that the body is in; empty: all",
         more="Default: all that have the surface `after`",

@@ -72,7 +72,7 @@ def _a_bad_place(context):
 
 
 class REALMODEL_OT_show_problem(Reporting, bpy.types.Operator):
-    """Select the triangles of the refused surface in Edit Mode, and frame them"""
+    """Select the triangles of the refused surface in Edit Mode, or move the 3D cursor there, and zoom in"""
 
     bl_idname = "realmodel.show_problem"
     bl_label = "Zoom to Error"

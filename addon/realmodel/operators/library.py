@@ -43,9 +43,9 @@ class REALMODEL_OT_library_remove(Reporting, bpy.types.Operator):
             group.library.remove(number)
             group.active_property = max(0, min(number, len(group.library) - 1))
             if library_rows.find(context.scene, gone) is None:
-                for _, surface in settings.surface_rows(context.scene):
-                    if surface.property_id == gone:
-                        surface.property_id = 0
+                for row in settings.property_rows(context.scene):
+                    if row.property_id == gone:
+                        row.property_id = 0
         properties_of_blocks.follow_surfaces(context.scene)
         live.touch(context.scene)
 

@@ -25,7 +25,7 @@ class REALMODEL_OT_move_to_zero(Reporting, bpy.types.Operator):
         context.view_layer.update()
         mine = list(dict.fromkeys(project_settings.user_objects(current)))
         made = [row.object for row in current.realmodel.results if row.object is not None]
-        rows = [row for _, row in settings.surface_rows(current)]
+        rows = [row for _, row in settings.interface_rows(current)]
         interfaces = [row for row in rows if row.interface is not None and row.interface not in mine]
         made += [row.interface for row in interfaces]
         items = [*mine, *made, *data_objects.objects(current)]

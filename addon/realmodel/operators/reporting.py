@@ -54,6 +54,23 @@ def a_surface(context):
     return "there is no surface; add one first (Surfaces, +)" if row is None else None
 
 
+def a_structure(context):
+    row = settings.active_structure(context.scene)
+    return "the list is empty; add a fault or a body first" if row is None else None
+
+
+def a_fault(context):
+    row = settings.active_structure(context.scene)
+    there = row is not None and settings.kind_of(row) == "fault"
+    return None if there else "no fault is active; choose one in the list"
+
+
+def a_body(context):
+    row = settings.active_structure(context.scene)
+    there = row is not None and settings.kind_of(row) == "body"
+    return None if there else "no body is active; choose one in the list"
+
+
 def any_surface(context):
     return (
         None if settings.has_rows(context.scene) else "the model has no surface; add one first (Surfaces, +)"

@@ -95,7 +95,8 @@ class REALMODEL_OT_surface_hide(Reporting, bpy.types.Operator):
 _property_items = []  # Blender does not keep the texts of dynamic enums itself
 
 
-def _library_items(_operator, context):
+def library_items(_operator, context):
+    """The entries of the library as items of an enum, and that there is none."""
     rows = context.scene.realmodel.library if context else ()
     _property_items[:] = [("0", "None", "No property", 0)]
     _property_items.extend(
@@ -111,7 +112,7 @@ class REALMODEL_OT_surface_property(Reporting, bpy.types.Operator):
     bl_label = "Property of the Surface"
     needs = (a_surface,)
 
-    property_id: EnumProperty(name="Property", description="The entry of the library", items=_library_items)
+    property_id: EnumProperty(name="Property", description="The entry of the library", items=library_items)
 
     def act(self, context):
         settings.active_surface(context.scene).property_id = int(self.property_id)

@@ -2,9 +2,11 @@
 """Rows of a surface: the structures of a nested variogram, the filters of its file."""
 
 import bpy
+from bpy.props import BoolProperty
 
 from ..bl import changes, live, settings
-from .reporting import Reporting, a_surface, remove_row, row_number
+from ..core import InputRefused
+from .reporting import Reporting, a_fault, a_surface, remove_row, row_number
 
 
 class REALMODEL_OT_structure_add(Reporting, bpy.types.Operator):
@@ -49,28 +51,46 @@ class REALMODEL_OT_structure_remove(Reporting, bpy.types.Operator):
         live.touch(context.scene)
 
 
+_OF_FAULT = BoolProperty(name="Of Fault", description="Of the active fault", options={"SKIP_SAVE"})
+
+
+def _a_file(context):
+    return a_surface(context) and a_fault(context)
+
+
+def _filtered(context, of_fault):
+    """The row whose file the filters are of. Raises InputRefused where there is none."""
+    reason = (a_fault if of_fault else a_surface)(context)
+    if reason:
+        raise InputRefused(reason)
+    return (settings.active_structure if of_fault else settings.active_surface)(context.scene)
+
+
 class REALMODEL_OT_filter_add(Reporting, bpy.types.Operator):
     """Read only the rows of the file that have a value in a column; values of one column are alternatives"""
 
     bl_idname = "realmodel.filter_add"
     bl_label = "Add Filter"
-    needs = (a_surface,)
+    needs = (_a_file,)
+
+    of_fault: _OF_FAULT
 
     def act(self, context):
-        settings.active_surface(context.scene).filters.add()
+        _filtered(context, self.of_fault).filters.add()
 
 
 class REALMODEL_OT_filter_remove(Reporting, bpy.types.Operator):
-    """Remove a filter from the active surface"""
+    """Remove a filter from the active surface, or fault"""
 
     bl_idname = "realmodel.filter_remove"
     bl_label = "Remove Filter"
-    needs = (a_surface,)
+    needs = (_a_file,)
 
     index: row_number()
+    of_fault: _OF_FAULT
 
     def act(self, context):
-        surface = settings.active_surface(context.scene)
+        surface = _filtered(context, self.of_fault)
         remove_row(surface.filters, self.index, "filter")
         changes.reading(surface, context)
 

@@ -2,9 +2,9 @@
 """The tab "RealModel" of the 3D viewport's sidebar: one module for each of its panels, in their order."""
 
 from ..registration import register_modules, unregister_modules
-from . import booleans, build, judge, library, lists, menu, results, rocks, start, surfaces, view
+from . import booleans, build, judge, library, lists, menu, results, rocks, start, structures, surfaces, view
 
-_MODULES = (lists, start, rocks, surfaces, judge, build, view, library, results, booleans, menu)
+_MODULES = (lists, start, rocks, surfaces, structures, judge, build, view, library, results, booleans, menu)
 
 
 def register():

@@ -17,7 +17,7 @@ _ICONS = {
 class REALMODEL_PT_booleans(TabPanel, bpy.types.Panel):
     bl_label = "Booleans"
     bl_idname = "REALMODEL_PT_booleans"
-    bl_order = 7
+    bl_order = 8
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, _group):

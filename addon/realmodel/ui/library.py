@@ -9,7 +9,7 @@ from .panel import TabPanel, hint
 class REALMODEL_PT_library(TabPanel, bpy.types.Panel):
     bl_label = "Library"
     bl_idname = "REALMODEL_PT_library"
-    bl_order = 6
+    bl_order = 7
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, _context, group):

@@ -16,6 +16,7 @@ _EXPORT = (
 _IMPORT = (
     ("open_project", "RealModel Project (.toml)", {}),
     ("surface_add", "RealModel Surfaces (points, meshes, grids, maps)", {}),
+    ("fault_body_add", "RealModel Faults and Bodies (meshes, fault sticks)", {}),
     ("boreholes_read", "RealModel Boreholes (.csv/.txt)", {}),
 )
 
@@ -63,6 +64,7 @@ class REALMODEL_MT_object(_Menu, bpy.types.Menu):
         yield None
         yield "from_selected", None, {}
         yield _SURFACE_OF_OBJECT
+        yield "fault_body_from_selected", "Faults and Bodies from Selected", {}
         yield "constraint_add", "Constraint from Active Object", {}
         yield "size_add", "Refinement at Active Object", {}
         yield None

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..bl import quality, units
+from ..bl import compartments, quality, units
 from .lists import result_columns
 from .panel import OfABuiltModel, TabPanel
 
@@ -48,4 +48,44 @@ def _block_lines(scene, row):
         yield f"{parts:,} part{'s' * (parts != 1)}{small}, {cells}"
 
 
-CLASSES = (REALMODEL_PT_results,)
+class REALMODEL_PT_results_compartments(TabPanel, bpy.types.Panel):
+    bl_label = "Compartments"
+    bl_idname = "REALMODEL_PT_results_compartments"
+    bl_parent_id = "REALMODEL_PT_results"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        found = compartments.read(context.scene)
+        return found is not None and bool(found["faults"] or len(found["names"]) > 1)
+
+    def draw_in(self, layout, context, group):
+        scene, found = context.scene, compartments.read(context.scene)
+        if len(found["names"]) > 1:
+            chosen = group.results[min(group.active_result, len(group.results) - 1)]
+            own = found["volumes"].get(chosen.name, [0.0] * len(found["names"]))
+            total = [sum(volumes) for volumes in zip(*found["volumes"].values(), strict=True)]
+            column = layout.column(align=True)
+            _three(column, "", chosen.name, "All")
+            for number, name in enumerate(found["names"]):
+                texts = (units.volume_amount_text(scene, volumes[number]) for volumes in (own, total))
+                _three(column, name, *texts)
+        if found["faults"]:
+            column = layout.column(align=True)
+            _three(column, "Mean of", "Throw", "Heave")
+            for fault, surface, throw, heave in found["faults"]:
+                texts = (units.length_text(scene, value) for value in (throw, heave))
+                _three(column, f"{fault}, {surface}", *texts)
+
+
+def _three(column, name, *values):
+    """A row of a table: a name and two values."""
+    row = column.split(factor=0.4)
+    row.label(text=name)
+    for value in values:
+        cell = row.row()
+        cell.alignment = "RIGHT"
+        cell.label(text=value)
+
+
+CLASSES = (REALMODEL_PT_results, REALMODEL_PT_results_compartments)

@@ -12,7 +12,7 @@ from .panel import OfAModel, TabPanel, file_field, hint
 class REALMODEL_PT_rocks(OfAModel, TabPanel, bpy.types.Panel):
     bl_label = "Rock Masses"
     bl_idname = "REALMODEL_PT_rocks"
-    bl_order = 5
+    bl_order = 6
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_in(self, layout, context, group):

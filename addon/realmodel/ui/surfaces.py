@@ -61,21 +61,20 @@ def _draw_surface(layout, context, surface):
         layout.prop(surface, "method")
         setting_rows.draw(layout, surface, "minimum_thickness", SURFACE)
     layout.prop(surface, "rule")
-    entry = library_rows.find(context.scene, surface.property_id)
-    known = (
-        f"{entry.name} ({entry.id})"
-        if entry
-        else "None"
-        if not surface.property_id
-        else str(surface.property_id)
-    )
-    row = layout.split(factor=0.4)
-    label = row.row()
-    label.alignment = "RIGHT"
-    label.label(text="Property")
-    row.operator_menu_enum("realmodel.surface_property", "property_id", text=known)
+    draw_property(layout, context, surface, "realmodel.surface_property")
     layout.prop(surface, "block")
     _draw_figures(layout, context, surface)
+
+
+def draw_property(layout, context, row, operator):
+    """The property of a surface or a body, and the menu to choose another one."""
+    entry = library_rows.find(context.scene, row.property_id)
+    known = f"{entry.name} ({entry.id})" if entry else "None" if not row.property_id else str(row.property_id)
+    split = layout.split(factor=0.4)
+    label = split.row()
+    label.alignment = "RIGHT"
+    label.label(text="Property")
+    split.operator_menu_enum(operator, "property_id", text=known)
 
 
 def _draw_figures(layout, context, surface):
@@ -197,19 +196,21 @@ class REALMODEL_PT_surface_reading(_OfASurface, TabPanel, bpy.types.Panel):
         hint(layout, "Most files need no options.")
         for key in READING if surface.source == "POINTS_FILE" else MESH_READING:
             if key == "where":
-                _draw_filters(layout, surface)
+                draw_filters(layout, surface)
             else:
                 setting_rows.draw(layout, surface, key, READING)
 
 
-def _draw_filters(layout, surface):
+def draw_filters(layout, surface, of_fault=False):
+    """The filters of a surface's or a fault's file."""
     for number, entry in enumerate(surface.filters):
         row = layout.row(align=True)
         row.use_property_split = False
         row.prop(entry, "column", text="")
         row.prop(entry, "value", text="")
-        row.operator("realmodel.filter_remove", text="", icon="X").index = number
-    layout.operator("realmodel.filter_add", icon="ADD")
+        made = row.operator("realmodel.filter_remove", text="", icon="X")
+        made.index, made.of_fault = number, of_fault
+    layout.operator("realmodel.filter_add", icon="ADD").of_fault = of_fault
 
 
 CLASSES = (

@@ -4,7 +4,7 @@
 import bpy
 
 from .. import props_stage
-from ..bl import library_rows, settings, units
+from ..bl import compartments, library_rows, settings, units
 from ..bl.display import coordinates, cuts, modes, preparing, residuals
 from .panel import OfABuiltModel, TabPanel, hint, wrapped
 
@@ -33,6 +33,11 @@ class REALMODEL_PT_view(OfABuiltModel, TabPanel, bpy.types.Panel):
         column.prop(group, "explode", slider=True)
         if group.explode > 0.0:
             column.prop(group, "explode_direction", text="Direction")
+        if len(compartments.names(context.scene)) < 2 and "COMPARTMENT" in (
+            group.color_by,
+            group.explode_direction if group.explode > 0.0 else "",
+        ):
+            hint(layout, "No fault divides the model into compartments.")
         row = layout.row()
         row.use_property_split = False
         row.prop(group.view, "exaggeration")

@@ -157,7 +157,7 @@ def built(scene, bounds, stage=None):
     its blocks, (3,) each. stage: the stage that is shown, where it was made with the model: (number, model,
     shapes)."""
     made = [row.object for row in scene.realmodel.results]
-    made += [surface.interface for _, surface in settings.surface_rows(scene)]
+    made += [surface.interface for _, surface in settings.interface_rows(scene)]
     for layer in scene.view_layers:
         if any(item is not None and item.name not in layer.objects for item in made):
             layer.update()  # or it would show all new objects when it learns of them
@@ -285,13 +285,15 @@ def _show(scene, has_shapes=False, **wanted):
     except RealModelError as error:
         group.view.message = str(error)
         return
-    if "explode" in wanted or "explode_direction" in wanted or "stage" in wanted:
+    moved = "explode" in wanted or "explode_direction" in wanted or "stage" in wanted
+    apart = now["explode"] if now["explode_direction"] == "COMPARTMENT" else 0.0
+    if moved:
         explosion.apply(scene, now["explode"], now["explode_direction"])
-    if "display" in wanted or "stage" in wanted:
-        modes.apply(scene, now["display"], now["stage"])
+    if "display" in wanted or "stage" in wanted or (moved and (apart or group.view.cells_of)):
+        modes.apply(scene, now["display"], now["stage"], apart)
         if replacing.is_rendering():
             render_marks.put(scene, now["display"])
-    if "color_by" in wanted or "stage" in wanted or now["color_by"] in shades.TITLES:
+    if "color_by" in wanted or "stage" in wanted or (moved and apart) or now["color_by"] in shades.IN_MESH:
         colors.apply(scene)
         colors.shade_viewports(now["color_by"], _applied(scene))
     if not replacing.is_rendering():

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The polyhedral cells of blocks as meshes in which each stands by itself, drawn a little smaller."""
+"""The polyhedral cells of blocks as meshes in which each stands by itself, drawn a little smaller; or the
+parts of the blocks in each compartment, which can move apart."""
 
 import json
 
 from ...core import polygon_mesh
-from .. import block_shapes, caches, project_settings
+from .. import block_shapes, caches, compartments, project_settings
 from ..threads import threads
 from . import cuts, shown_models
 
@@ -12,24 +13,26 @@ SHRINK = 0.88  # of a cell's size: the gaps let each be seen
 _kept = caches.new(most=1)  # by what the cells are of: {(rock mass, block): PolygonMesh}
 
 
-def made_of(scene, stage):
-    """What the cells of a scene at a stage are made of, as text."""
+def made_of(scene, stage, apart=False):
+    """What the cells of a scene at a stage are made of, as text. apart: of the parts in compartments."""
     cut = scene.realmodel.view.cut if cuts.is_shown(scene) else ""
-    return json.dumps([scene.realmodel.built_stamp, stage, cut])
+    return json.dumps([scene.realmodel.built_stamp, stage, cut] + ["apart"] * bool(apart))
 
 
 class Recipe:
     """How the meshes of cells are made: those of the model at a stage, or of its half where the cut is shown.
     Used as `shown_models.Recipe` is. Raises InputRefused."""
 
-    def __init__(self, scene, stage):
-        self.made_of = made_of(scene, stage)
+    def __init__(self, scene, stage, apart=False):
+        self.made_of = made_of(scene, stage, apart)
+        self._shrink, kind = (None, None) if apart else (SHRINK, "columns")
+        self._compartments = compartments.names(scene) or None
         self.shapes = _kept.get(self.made_of)
         self._half = self._plane = None
         if cuts.is_shown(scene):
-            self._half = cuts.known_half(scene.realmodel.view.cut, "columns")
+            self._half = cuts.known_half(scene.realmodel.view.cut, kind)
             self._plane = json.loads(scene.realmodel.view.cut)[:2]
-        self._model = shown_models.Recipe(scene, stage, "columns") if self._half is None else None
+        self._model = shown_models.Recipe(scene, stage, kind) if self._half is None else None
         self._origin = project_settings.model_origin(scene)
 
     @property
@@ -44,7 +47,9 @@ class Recipe:
                 model = self._model.make()
                 if self._plane is not None:
                     model = model.cut_by_plane(*self._plane).below
-            shapes = polygon_mesh.of_cells(model, self._origin, SHRINK, threads())
+            shapes = polygon_mesh.of_cells(
+                model, self._origin, self._shrink, threads(), compartments=self._compartments
+            )
             self.shapes = block_shapes.by_name(model, shapes)
         return self.shapes
 
@@ -55,9 +60,9 @@ class Recipe:
             self._model.keep()
 
 
-def of_scene(scene, stage):
+def of_scene(scene, stage, apart=False):
     """The meshes of the cells, made in this thread if they are not at hand. Raises RealModelError."""
-    recipe = Recipe(scene, stage)
+    recipe = Recipe(scene, stage, apart)
     shapes = recipe.make()
     recipe.keep()
     return shapes

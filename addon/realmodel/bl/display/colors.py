@@ -13,37 +13,39 @@ import numpy as np
 
 from ...core import layer_values
 from ...core.drawing.overlay import ColorKey
-from .. import library_rows, materials, settings, viewports
+from .. import compartments, library_rows, materials, settings, viewports
 from . import bodies, modes, shades, stages
 
 KEY = "realmodel_colour"  # on a material: what it stands for; .blend files hold this name
 _GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
+_FAULTS = "#c8504a"
 _OLD, _YOUNG = (0.72, 0.62, 0.55), (0.13, 0.55, 0.95)  # hue, saturation, value at the ends of the ages
 
 
 def apply(scene):
     """Gives all blocks and interfaces the colors that the settings ask for."""
     by = scene.realmodel.color_by
-    places = _places(scene)
     shades.apply(scene, by)
-    common = shades.material() if by in shades.TITLES else None
+    common = shades.material() if by in shades.IN_MESH else None
     for row in scene.realmodel.results:
         if _can_take(row.object):
-            plain = None if by == "PROPERTY" or common else plain_material(*_entry(scene, by, row, places))
+            plain = None if by == "PROPERTY" or common else plain_material(*_entry(scene, by, row))
             _put_into_slot(row.object, common or plain)
-    blocks = {(row.rock, row.surface): row for row in scene.realmodel.results}
-    for rock, surface in settings.surface_rows(scene):
-        item, row = surface.interface, blocks.get((rock.name, surface.name))
+    blocks = {settings.row_of_block(scene, row): row for row in scene.realmodel.results}
+    for place, surface in settings.interface_rows(scene):
+        item, row = surface.interface, blocks.get(surface)
         if not _can_take(item) or not len(scene.realmodel.results):
             continue
         if any(m is not None for m in item.data.materials):
             continue  # the user's own
         if common is not None:
             material = common
+        elif place[0] == "fault":
+            material = plain_material("Faults", _FAULTS)
         elif by == "PROPERTY" or row is None:
             material = of_property(scene, surface.property_id)
         else:
-            material = plain_material(*_entry(scene, by, row, places))
+            material = plain_material(*_entry(scene, by, row))
         if not len(item.data.materials):
             item.data.materials.append(None)
         _put_into_slot(item, material)
@@ -53,7 +55,7 @@ def apply(scene):
 
 def take_off(scene):
     """Takes the colors off the interfaces. `apply` puts them on again."""
-    for _, surface in settings.surface_rows(scene):
+    for _, surface in settings.interface_rows(scene):
         if _can_take(surface.interface):
             _put_into_slot(surface.interface, None)
 
@@ -66,7 +68,11 @@ def key(scene):
         colors = layer_values.colors(np.linspace(0.0, 1.0, 64), (0.0, 1.0))
         title = f"{shades.TITLES[by]} ({group.units})"
         return ColorKey(title, limits=(low, high), colors=colors) if high > low else None
-    places, entries, library = _places(scene), {}, library_rows.library_of(scene)
+    if by == shades.COMPARTMENT:
+        names = compartments.names(scene)
+        rows = [(name, shades.compartment_color(number)) for number, name in enumerate(names)]
+        return ColorKey("Compartment", rows) if len(rows) > 1 else None
+    entries, library = {}, library_rows.library_of(scene)
     for row in reversed(group.results):
         item = modes.body_of(scene, row)
         if item is None or not stages.present(row) or modes.is_hidden(scene, row):
@@ -75,7 +81,7 @@ def key(scene):
             name, _ = materials.name_and_color(library, row.property_id)
             entries.setdefault(name, shown_color(item))
         else:
-            _, color = _entry(scene, by, row, places)
+            _, color = _entry(scene, by, row)
             name = {"ROCK": row.rock, "BLOCK": row.name, "AGE": row.surface}[by]
             entries.setdefault(name, tuple(int(color[k : k + 2], 16) / 255.0 for k in (1, 3, 5)))
     titles = {"PROPERTY": "Property", "ROCK": "Rock Mass", "BLOCK": "Block", "AGE": "Age"}
@@ -85,7 +91,7 @@ def key(scene):
 def shade_viewports(by, before):
     """The viewport in use shows the colors of vertices in solid shading while these are what is to be seen;
     all show those of materials again afterwards. before: the settings that were shown before."""
-    wanted, was = by in shades.TITLES, before.get("color_by") in shades.TITLES
+    wanted, was = by in shades.IN_MESH, before.get("color_by") in shades.IN_MESH
     if wanted == was:
         return
     old, new = ("MATERIAL", "VERTEX") if wanted else ("VERTEX", "MATERIAL")
@@ -121,7 +127,7 @@ def shown_linear(item):
 
 def _colored(scene):
     items = [row.object for row in scene.realmodel.results]
-    items += [surface.interface for _, surface in settings.surface_rows(scene)]
+    items += [surface.interface for _, surface in settings.interface_rows(scene)]
     return [item for item in items if _can_take(item) and len(item.material_slots)]
 
 
@@ -129,16 +135,7 @@ def _can_take(item):
     return item is not None and item.type == "MESH" and item.library is None and item.data.library is None
 
 
-def _places(scene):
-    """{(rock mass, surface): its number in the rock mass, from the oldest}."""
-    return {
-        (rock.name, surface.name): number
-        for rock in scene.realmodel.rocks
-        for number, surface in enumerate(rock.surfaces)
-    }
-
-
-def _entry(scene, by, row, places):
+def _entry(scene, by, row):
     """(name, "#rrggbb") of what a block is colored by."""
     if by == "ROCK":
         number = [rock.name for rock in scene.realmodel.rocks].index(row.rock) if _has_rock(scene, row) else 0
@@ -146,8 +143,7 @@ def _entry(scene, by, row, places):
     if by == "BLOCK":
         number = next(n for n, other in enumerate(scene.realmodel.results) if other == row)
         return f"Block {row.name}", _hue(number)
-    place = places.get((row.rock, row.surface), 0)
-    last = max(places.values(), default=0)
+    place, last = settings.time_of_block(scene, row), settings.last_stage(scene)
     at = place / last if last else 0.0
     hsv = [old + at * (young - old) for old, young in zip(_OLD, _YOUNG, strict=True)]
     return f"Age {place}", library_rows.hex_color(colorsys.hsv_to_rgb(*hsv))

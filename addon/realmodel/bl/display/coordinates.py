@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from .. import caches, exaggeration, library_rows, meshes, project_settings, shapes
+from .. import caches, compartments, exaggeration, library_rows, meshes, project_settings, shapes
 from . import modes, stages
 
 _soups = caches.new(most=64)  # by the name of a mesh: its triangles, (T, 3, 3) float32
@@ -49,14 +49,29 @@ def under_ray(scene, start, direction):
         matrix = np.array(exaggeration.world_matrix(item), np.float64)
         turn = np.linalg.pinv(matrix[:3, :3])
         begin, along = turn @ (start - matrix[:3, 3]), turn @ direction
-        hits = _hits(_soup(item.data), begin, along)
-        if len(hits) and (nearest is None or hits[0] < nearest[0]):
-            nearest = (hits[0], row, begin + hits[0] * along, along / np.linalg.norm(along))
+        for soup, shift in _pieces(scene, item):
+            hits = _hits(soup, begin, along)
+            if len(hits) and (nearest is None or hits[0] < nearest[0]):
+                place = begin + hits[0] * along - shift
+                nearest = (hits[0], row, place, along / np.linalg.norm(along))
     if nearest is None:
         return None
     _, row, local, along = nearest
     span = _span(row.object, local + _rounding(_soup(row.object.data), local) * along)  # not beside a wall
     return _place(scene, row, local, span or _span(row.object, local))
+
+
+def _pieces(scene, item):
+    """(triangles, by how much they were moved) of a body; compartments may have been moved apart."""
+    soup, apart = _soup(item.data), modes.apart_shown(scene)
+    if not apart:
+        return [(soup, np.zeros(3))]
+    mesh = item.data
+    number = np.empty(len(mesh.polygons), np.int32)
+    mesh.attributes[meshes.FACE_COMPARTMENT].data.foreach_get("value", number)
+    number = number[shapes.triangle_polygons(mesh)]
+    shifts = compartments.shifts(scene, apart)
+    return [(soup[number == n], shifts[min(n, len(shifts) - 1)]) for n in np.unique(number)]
 
 
 def at_point(scene, location):
@@ -87,23 +102,38 @@ def _place(scene, row, local, span):
 
 
 def _span(item, local):
-    """(lowest, highest) height of a block on the vertical through a point, or None where it is not there. A
-    block is one interval of each vertical, since its bounds are single-valued."""
+    """(lowest, highest) height of a block on the vertical through a point, of its intervals there the one
+    that is nearest to the point; None where it is not there. Bodies and reverse faults leave several."""
     soup = _soup(item.data)
     start = np.array([local[0], local[1], float(soup[:, :, 2].min()) - 1.0])
-    heights = start[2] + _hits(soup, start, np.array([0.0, 0.0, 1.0]))
-    return (heights[0], heights[-1]) if len(heights) else None
+    distances, leaves = _crossings(soup, start, np.array([0.0, 0.0, 1.0]))
+    if not len(distances):
+        return None
+    # On an edge both of its triangles are met: of several in a row that enter the first counts, else the last
+    begins = ~leaves & np.append(True, leaves[:-1])
+    ends = leaves & np.append(~leaves[1:], True)
+    low, high = start[2] + distances[begins], start[2] + distances[ends]
+    if len(low) != len(high):  # met where it is upright
+        return start[2] + distances[0], start[2] + distances[-1]
+    nearest = np.maximum(low - local[2], local[2] - high).argmin()
+    return low[nearest], high[nearest]
 
 
 def _hits(soup, start, direction):
-    """Where a ray meets triangles, (N,) float64 in rising order, in lengths of the direction.
+    """Where a ray meets triangles, (N,) float64 in rising order, in lengths of the direction."""
+    return _crossings(soup, start, direction)[0]
+
+
+def _crossings(soup, start, direction):
+    """Where a ray meets triangles, (N,) float64 in rising order, in lengths of the direction, and whether it
+    leaves what they bound, (N,) bool.
 
     soup: (T, 3, 3). Seen along the ray the start is a point, which lies in the triangles whose three edges
     it is on one side of.
     """
     length = np.linalg.norm(direction)
     if not length > 0.0 or not len(soup):
-        return np.empty(0)
+        return np.empty(0), np.empty(0, bool)
     along = direction / length
     side = np.cross(along, np.eye(3)[np.abs(along).argmin()])
     side /= np.linalg.norm(side)
@@ -116,8 +146,11 @@ def _hits(soup, start, direction):
     weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)])
     inside = ((weights >= 0.0).all(axis=0) | (weights <= 0.0).all(axis=0)) & (weights.sum(axis=0) != 0.0)
     weights, depths = weights[:, inside], corners[inside][:, :, 2].T
-    found = (weights * depths).sum(axis=0) / weights.sum(axis=0)
-    return np.sort(found[found >= 0.0]) / length
+    total = weights.sum(axis=0)
+    found = (weights * depths).sum(axis=0) / total
+    ahead = np.flatnonzero(found >= 0.0)
+    ahead = ahead[np.argsort(found[ahead], kind="stable")]
+    return found[ahead] / length, total[ahead] > 0.0
 
 
 def _rounding(soup, point):

@@ -12,7 +12,17 @@ import numpy as np
 
 from ...core import Cancelled, InputRefused, RealModelError, polygon_mesh, work
 from ...core.polygon_mesh import PolygonMesh
-from .. import block_shapes, caches, exaggeration, meshes, project_settings, scene, settings, viewports
+from .. import (
+    block_shapes,
+    caches,
+    compartments,
+    exaggeration,
+    meshes,
+    project_settings,
+    scene,
+    settings,
+    viewports,
+)
 from ..debounce import DebouncedJob
 from ..threads import threads
 from . import bodies, explosion, replacing, shown_models
@@ -158,13 +168,15 @@ def _begun(current, state):
     """A job that makes a cut; its result is what `_take` takes. Raises InputRefused."""
     point, normal, stage, _ = json.loads(state)
     recipe = shown_models.Recipe(current, stage, _wanted_cells(current))
+    names = compartments.names(current) or None
     half, origin = known_half(state, _wanted_cells(current)), project_settings.model_origin(current)
 
     def task(_):
         model = half
         if model is None:
             model = recipe.make().cut_by_plane(point, normal, threads()).below
-        shapes = block_shapes.by_name(model, polygon_mesh.of_blocks(model, origin, threads()))
+        made = polygon_mesh.of_blocks(model, origin, threads(), compartments=names)
+        shapes = block_shapes.by_name(model, made)
         return state, model, shapes, recipe
 
     return work.start(task)

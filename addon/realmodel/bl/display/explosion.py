@@ -16,17 +16,17 @@ def apply(scene, amount, direction):
 
     amount: 0 leaves them in place; at 1 the youngest is lifted by the model's height or a quarter of its
     width ("Z"), the blocks are as far from the middle again as they were ("CENTRE"), or stand one beside the
-    other ("BLOCK").
+    other ("BLOCK"). "COMPARTMENT" leaves the blocks in place: `modes` shows their parts in their stead.
     """
     rows = [row for row in scene.realmodel.results if row.object is not None]
     low, high = bounds(scene)
     extent = high - low
-    places, last = _places(scene)
+    last = settings.last_stage(scene)
     for row in rows:
-        if amount <= 0.0:
+        if amount <= 0.0 or direction == "COMPARTMENT":  # these are bodies of their own: `cells`
             move(row.object, (0.0, 0.0, 0.0))
             continue
-        rank = places.get((row.rock, row.surface), 0)
+        rank = settings.time_of_block(scene, row)
         if direction == "Z":
             reach = max(extent[2], _LEAST_STEP * extent[:2].max())
             shift = (0.0, 0.0, amount * reach * rank / max(last, 1))
@@ -78,12 +78,3 @@ def _center(item):
     if not len(found):
         return np.zeros(3)
     return (found.min(axis=0).astype(np.float64) + found.max(axis=0)) / 2
-
-
-def _places(scene):
-    found = {
-        (rock.name, surface.name): number
-        for rock in scene.realmodel.rocks
-        for number, surface in enumerate(rock.surfaces)
-    }
-    return found, settings.last_stage(scene)

@@ -13,7 +13,7 @@ BLOCKS      the blocks, or their cut halves                Blender
 import json
 
 from ...core import RealModelError, polygon_mesh
-from .. import project_settings, settings
+from .. import compartments, project_settings, settings
 from . import bodies, cells, cuts, shown_models, stages
 from .visible import WANTED, want
 
@@ -23,13 +23,15 @@ DRAWN = ("POINTS", "LINES")
 _WITH_SUBJECT = ("POINTS", "LINES", "AREAS")
 
 
-def apply(scene, mode, stage):
-    """Shows a scene's model, which is at a stage, in a display mode."""
+def apply(scene, mode, stage, apart=0.0):
+    """Shows a scene's model, which is at a stage, in a display mode. apart: how far its compartments are to
+    be moved apart."""
     view = scene.realmodel.view
     subject = view.subject
-    if mode == "POLYHEDRA":
+    apart = apart if has_parts(scene, mode, apart) else 0.0
+    if mode == "POLYHEDRA" or apart:
         try:
-            _make_cells(scene, stage)
+            _make_cells(scene, stage, mode, apart)
         except RealModelError as error:
             view.message = str(error)
     else:
@@ -52,15 +54,18 @@ def apply(scene, mode, stage):
     for row in scene.realmodel.results:
         here = stages.present(row) and not is_hidden(scene, row)
         rendered = here and with_blocks and solid
-        want(scene, row.object, here and with_blocks and solid and not cut, rendered and not cut)
-        half = halves.get(row.object)
-        want(scene, half, here and with_blocks and solid and cut, rendered and cut)
-        want(scene, cell_bodies.get(row.object), here, here)
-        for item in (row.object, half):
+        shown = here and with_blocks and solid
+        part, half = cell_bodies.get(row.object), halves.get(row.object)
+        whole = shown and not cut and not (apart and part)
+        want(scene, row.object, whole, rendered and whole)
+        halved = shown and cut and not (apart and part)
+        want(scene, half, halved, rendered and halved)
+        want(scene, part, here if mode == "POLYHEDRA" else shown, here if mode == "POLYHEDRA" else shown)
+        for item in (row.object, half, part):
             _wires(item, mode == "AREAS")
     shown = with_interfaces and mode not in DRAWN and view.surviving_of == ""
     _interfaces(scene, shown, mode == "AREAS", with_blocks)
-    for _, surface in settings.surface_rows(scene):
+    for _, surface in settings.interface_rows(scene):
         want(scene, surviving.get(surface.interface), not surface.hide, not surface.hide)
 
 
@@ -76,7 +81,7 @@ def shows_something(scene):
     blocks, interfaces = shown_kinds(scene.realmodel.display, scene.realmodel.view.subject)
     rows = [row for row in scene.realmodel.results if stages.present(row) and not is_hidden(scene, row)]
     surfaces = [
-        surface for _, surface in settings.surface_rows(scene) if not surface.hide and surface.interface
+        surface for _, surface in settings.interface_rows(scene) if not surface.hide and surface.interface
     ]
     return bool((blocks and rows) or (interfaces and surfaces))
 
@@ -92,17 +97,29 @@ def drawn(scene, mode=None):
     found = []
     if with_blocks:
         halves = bodies.of_kind(scene, bodies.CUT) if cuts.is_shown(scene) else None
+        halves = bodies.of_kind(scene, bodies.CELLS) or halves  # parts that were moved apart
         for row in group.results:
             if stages.present(row) and not is_hidden(scene, row):
                 found.append(row.object if halves is None else halves.get(row.object))
     if with_interfaces:
-        rows = settings.surface_rows(scene)
+        rows = settings.interface_rows(scene)
         found += [surface.interface for _, surface in rows if not surface.hide]
     return [item for item in found if item is not None and item.type == "MESH"]
 
 
+def apart_shown(scene):
+    """By how much compartments are moved apart in what is to be seen; 0 where they are not."""
+    group = scene.realmodel
+    apart = group.explode if group.explode_direction == "COMPARTMENT" else 0.0
+    shown = has_parts(scene, group.display, apart) and bodies.of_kind(scene, bodies.CELLS)
+    return apart if shown else 0.0
+
+
 def body_of(scene, row):
-    """The object that a block is to be seen as: itself, or its cut half (None: it was taken off)."""
+    """The object that a block is to be seen as: itself, its cut half, or its parts moved apart (None: it was
+    taken off)."""
+    if apart_shown(scene):
+        return bodies.of_kind(scene, bodies.CELLS).get(row.object)
     return bodies.of_kind(scene, bodies.CUT).get(row.object) if cuts.is_shown(scene) else row.object
 
 
@@ -121,15 +138,14 @@ def _see_through(item, wanted):
 
 
 def _interfaces(scene, shown, wires, beside_blocks):
-    for rock in scene.realmodel.rocks:
-        if rock.interfaces is not None and rock.interfaces.library is None:
-            hidden = not shown
-            if rock.interfaces.hide_render != hidden:
-                rock.interfaces.hide_render = hidden
-        for surface in rock.surfaces:
-            want(scene, surface.interface, shown and not surface.hide, not surface.hide)
-            _wires(surface.interface, wires)
-            _see_through(surface.interface, beside_blocks)
+    group = scene.realmodel
+    for collection in (*(rock.interfaces for rock in group.rocks), group.structures):
+        if collection is not None and collection.library is None and collection.hide_render == shown:
+            collection.hide_render = not shown
+    for _, row in settings.interface_rows(scene):
+        want(scene, row.interface, shown and not row.hide, not row.hide)
+        _wires(row.interface, wires)
+        _see_through(row.interface, beside_blocks)
 
 
 def _wires(item, wanted):
@@ -143,17 +159,27 @@ def _wires(item, wanted):
         del item[WIRE]
 
 
-def _make_cells(scene, stage):
-    """A body for each block's cells, or for those of its half."""
+def has_parts(scene, mode, apart):
+    """Whether the parts of blocks in compartments are shown, moved apart, in the place of the blocks."""
+    blocks, _ = shown_kinds(mode, scene.realmodel.view.subject)
+    return apart > 0.0 and mode != "POLYHEDRA" and blocks and len(compartments.names(scene)) > 1
+
+
+def _make_cells(scene, stage, mode, apart):
+    """A body for each block's cells, or for those of its half; or for its parts in compartments."""
     group = scene.realmodel
-    made_of = cells.made_of(scene, stage)
+    made_of = f"{cells.made_of(scene, stage, apart)}{apart or ''}"
     if group.view.cells_of == made_of and bodies.of_kind(scene, bodies.CELLS):
         return
-    shapes = cells.of_scene(scene, stage)
+    shapes = cells.of_scene(scene, stage, apart)
     rows = {(row.rock, row.name): row.object for row in group.results}
+    if apart:
+        shifts = compartments.shifts(scene, apart)
+        shapes = {key: polygon_mesh.moved_apart(shape, shifts) for key, shape in shapes.items()}
     bodies.put(scene, bodies.CELLS, [(rows[key], shape) for key, shape in shapes.items() if rows.get(key)])
     group.view.cells_of = made_of
-    cells.forget()
+    if not apart:
+        cells.forget()
 
 
 def _make_surviving(scene, stage):
@@ -164,11 +190,11 @@ def _make_surviving(scene, stage):
         half = cuts.known_half(view.cut) if cuts.is_shown(scene) else None
         model = half or shown_models.at_stage(scene, stage)
         shapes = polygon_mesh.of_surfaces(model, project_settings.model_origin(scene))
-        names = [(rock.name, surface.name) for rock in model.project.rocks for surface in rock.surfaces]
-        named = dict(zip(names, shapes, strict=False))  # a stage has fewer surfaces
-        pairs = [
-            (row.interface, named.get((rock.name, row.name))) for rock, row in settings.surface_rows(scene)
-        ]
+        places = [(r, s) for r, rock in enumerate(model.project.rocks) for s in range(len(rock.surfaces))]
+        for kind in ("fault", "body"):
+            places += [place for place, _ in settings.structure_rows(scene) if place[0] == kind]
+        named = dict(zip(places, shapes, strict=False))  # a stage has fewer surfaces
+        pairs = [(row.interface, named.get(place)) for place, row in settings.interface_rows(scene)]
         bodies.put(scene, bodies.SURVIVING, [pair for pair in pairs if None not in pair])
         view.surviving_of = made_of
     return bodies.of_kind(scene, bodies.SURVIVING)
@@ -176,7 +202,7 @@ def _make_surviving(scene, stage):
 
 def without_blocks(scene):
     """Shows the interfaces alone, as ordinary objects: the blocks are gone."""
-    for _, surface in settings.surface_rows(scene):
+    for _, surface in settings.interface_rows(scene):
         item = surface.interface
         if item is not None and item.library is None:
             item.pop(WANTED, None)
@@ -193,7 +219,7 @@ def let_go(item):
 def needs_cells(scene, mode, stage):
     """Whether a display mode shows cells that are not in the scene yet."""
     if mode != "POLYHEDRA":
-        return False
+        return False  # parts in compartments are made as fast as the blocks
     is_there = scene.realmodel.view.cells_of == cells.made_of(scene, stage)
     return not (is_there and bodies.of_kind(scene, bodies.CELLS))
 

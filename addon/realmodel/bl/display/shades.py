@@ -5,22 +5,32 @@ They are a color attribute, as Blender's solid shading shows no other colors wit
 same attribute by the material `material()`. All objects have one scale, which the legend shows.
 """
 
+import colorsys
+
 import bpy
 import numpy as np
 
 from ...core import layer_values
-from .. import materials, meshes, project_settings, settings, shapes, uncertainty
+from .. import materials, meshes, project_settings, settings, shapes, uncertainty, versions
 from . import bodies
 
 ATTRIBUTE = "realmodel_shade"
+_GOLDEN = 0.618034  # of the circle of hues: no two of the first dozens come near each other
 TITLES = {"ELEVATION": "Elevation", "THICKNESS": "Thickness", "UNCERTAINTY": "Standard Deviation"}
+COMPARTMENT = "COMPARTMENT"  # a color for each: of the corners of faces, as neighbors differ
+IN_MESH = (*TITLES, COMPARTMENT)  # ways of coloring that are an attribute of meshes
 _FROM_ZERO = ("THICKNESS", "UNCERTAINTY")
 
 
 def apply(scene, by):
-    """Gives the meshes of blocks and interfaces, and what stands for them, their colors. by: a key of
-    TITLES; any other takes the colors out of the meshes."""
+    """Gives the meshes of blocks and interfaces, and what stands for them, their colors. by: one of IN_MESH;
+    any other takes the colors out of the meshes."""
     shown = list(_shown(scene))
+    if by == COMPARTMENT:
+        for item, _ in shown:
+            if _takes(item):
+                _write_compartments(item.data)
+        return
     if by not in TITLES:
         for item, _ in shown:
             remove(item)
@@ -79,10 +89,13 @@ def _shown(scene):
             for block, body in bodies.of_kind(scene, kind).items()
             if block in of_blocks
         )
-    for rock, surface in settings.surface_rows(scene):
-        items = [surface.interface, bodies.of_kind(scene, bodies.SURVIVING).get(surface.interface)]
+    surviving = bodies.of_kind(scene, bodies.SURVIVING)
+    for place, row in settings.interface_rows(scene):
+        rock = "" if isinstance(place[0], str) else scene.realmodel.rocks[place[0]].name
         yield from (
-            (item, (rock.name, surface.name)) for item in items if item is not None and item.type == "MESH"
+            (item, (rock, row.name))
+            for item in (row.interface, surviving.get(row.interface))
+            if item is not None and item.type == "MESH"
         )
 
 
@@ -119,13 +132,38 @@ def _value_of(scene, by):
     return value
 
 
-def write(mesh, colors):
-    """Gives the vertices of a mesh colors, (V, 4) sRGB."""
+def compartment_color(number):
+    """(red, green, blue), sRGB, of a compartment; any two of the first dozens differ."""
+    hue, brightness = (0.58 + number * _GOLDEN) % 1.0, (0.92, 0.72)[number % 2]
+    return colorsys.hsv_to_rgb(hue, 0.55, brightness)
+
+
+def _write_compartments(mesh):
+    """Colors by the face attribute of compartments; gray where a mesh has none, as a fault."""
+    if not len(mesh.polygons):
+        return
+    kept = mesh.attributes.get(meshes.FACE_COMPARTMENT)
+    if kept is None:
+        colors = np.full((len(mesh.loops), 4), 0.7)
+    else:
+        number = np.empty(len(kept.data), np.int32)
+        kept.data.foreach_get("value", number)
+        table = np.array([(*compartment_color(n), 1.0) for n in range(int(number.max()) + 1)])
+        starts = np.append(versions.polygon_starts(mesh), len(mesh.loops))
+        colors = np.repeat(table[number], np.diff(starts), axis=0)
+    write(mesh, colors, "CORNER")
+
+
+def write(mesh, colors, domain="POINT"):
+    """Gives the vertices, or the corners of the faces of a mesh colors, (V, 4) sRGB."""
     if not len(colors):
         return
     attribute = mesh.color_attributes.get(ATTRIBUTE)
+    if attribute is not None and attribute.domain != domain:
+        mesh.color_attributes.remove(attribute)
+        attribute = None
     if attribute is None:
-        attribute = mesh.color_attributes.new(ATTRIBUTE, "BYTE_COLOR", "POINT")
+        attribute = mesh.color_attributes.new(ATTRIBUTE, "BYTE_COLOR", domain)
     attribute.data.foreach_set("color_srgb", colors.ravel())
     mesh.color_attributes.active_color = mesh.color_attributes[ATTRIBUTE]
     mesh.update()

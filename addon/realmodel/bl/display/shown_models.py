@@ -7,7 +7,7 @@ only the blocks that differ go to Blender.
 
 from ...core import build, polygon_mesh
 from ...core.assembly import build_stage
-from .. import block_shapes, built_models, caches, project_settings, settings, viewports
+from .. import block_shapes, built_models, caches, compartments, project_settings, settings, viewports
 from ..threads import threads
 
 _MOST_CORNERS = 20_000_000  # of the faces of all stages that are kept: about 0.6 GB with their shapes
@@ -33,6 +33,7 @@ class Recipe:
         self._base = None if self.model else built_models.current(scene)
         self._project = None if self.model or self._base else _composed(scene)
         self._is_new = self.model is None
+        self._compartments = compartments.names(scene)
 
     def _known(self, scene):
         if self.is_whole:
@@ -57,7 +58,10 @@ class Recipe:
         found = _shapes.get((self.stamp, self.stage))
         if found is None:
             model = self.make()
-            found = block_shapes.by_name(model, polygon_mesh.of_blocks(model, self.origin, threads()))
+            made = polygon_mesh.of_blocks(
+                model, self.origin, threads(), compartments=self._compartments or None
+            )
+            found = block_shapes.by_name(model, made)
         return found
 
     def keep(self, shapes=None):

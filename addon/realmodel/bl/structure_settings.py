@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faults and bodies between the rows of a scene and realmodel.core."""
+
+from ..core import Body, Fault, Project, work
+from ..core.schema import BODY, FAULT
+from ..core.structures.entries import body_item, fault_item
+from ..core.structures.reading import read_structures
+from . import method_settings, reading_text, settings, stored_arrays
+
+_FAULT_KEYS = ("youngest", "dies_out", "extend")
+_BODY_KEYS = ("after", "property", "void", "rock")
+
+
+def entry_of(place, row):
+    """A realmodel.core.Fault or Body with everything but its shape."""
+    if place[0] == "body":
+        body = Body(row.name, **{key: method_settings.value(row, key, BODY) for key in _BODY_KEYS})
+        if body.void:
+            body.property = 0
+        return body
+    fault = Fault(row.name, **{key: method_settings.value(row, key, FAULT) for key in _FAULT_KEYS})
+    fault.ends_at = tuple(each.name for each in row.ends_at if each.name)
+    fault.rocks = tuple(each.name for each in row.rocks if each.name)
+    if row.source == "POINTS_FILE" and row.stick.strip():
+        fault.stick = reading_text.column(row.stick)
+    return fault
+
+
+def item_of(entry):
+    """What messages call a fault or a body."""
+    return fault_item(entry) if isinstance(entry, Fault) else body_item(entry)
+
+
+def fill(scene, project):
+    """Rows for the faults and bodies of a project, in place of those that are there."""
+    group = scene.realmodel
+    group.faults.clear()
+    group.bodies.clear()
+    group.active_fault = group.active_body = 0
+    group.structure_kind = "BODY" if project.bodies and not project.faults else "FAULT"
+    for fault in project.faults:
+        row = group.faults.add()
+        row.name = fault.name
+        for key in _FAULT_KEYS:
+            method_settings.set_value(row, key, FAULT, getattr(fault, key))
+        for key in ("ends_at", "rocks"):
+            for name in getattr(fault, key):
+                getattr(row, key).add().name = name
+        row.stick = "" if fault.stick is None else reading_text.column_text(fault.stick)
+        _fill_shape(row, fault, project.units)
+    for body in project.bodies:
+        row = group.bodies.add()
+        row.name = body.name
+        for key in _BODY_KEYS:
+            method_settings.set_value(row, key, BODY, getattr(body, key))
+        _fill_shape(row, body, project.units)
+
+
+def _fill_shape(row, entry, units):
+    row.source = "MESH_FILE"
+    if entry.input_file is not None:
+        points = getattr(entry, "point_file", None)
+        row.source = "MESH_FILE" if points is None else "POINTS_FILE"
+        row.filepath = str(entry.input_file)
+        reading_text.fill(row, vars(points or entry.mesh_file))
+        return
+    if entry.vertices is None:  # points that a script gave
+        entry = work.run(lambda task: _read_fault(task, entry, units))
+    row.stored_mesh = stored_arrays.pack_mesh(entry.vertices, entry.triangles)
+
+
+def _read_fault(task, fault, units):
+    return read_structures(task, Project("points", [], units=units, faults=[fault]))[0][0]
+
+
+def names_of(project):
+    """The names of the faults and of the bodies of a project."""
+    return [fault.name for fault in project.faults], [body.name for body in project.bodies]
+
+
+def names_in(scene):
+    """Those of the rows of a scene."""
+    return tuple([row.name for row in settings.structures_of(scene, kind)] for kind in ("fault", "body"))

@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The lists of faults and of bodies."""
+
+import os
+
+import bpy
+import numpy as np
+from bpy.props import BoolProperty, CollectionProperty, EnumProperty, StringProperty
+from bpy_extras.io_utils import ImportHelper
+
+from ..bl import built_scene, data_objects, library_rows, live, project_settings, settings, shapes
+from ..core import InputRefused, MeshFile
+from ..core.point_file import PointFile
+from ..core.readers import MAP_ENDINGS, MESH_ENDINGS, TABLE_ENDINGS, read_mesh
+from ..core.readers.fault_sticks import read_fault_points
+from ..core.structures.triangles import open_edges
+from .reporting import (
+    Reporting,
+    a_body,
+    a_fault,
+    a_structure,
+    remove_row,
+    require_file,
+    row_number,
+    selected_meshes,
+)
+from .surfaces import library_items
+
+_KINDS = (
+    ("AUTO", "By Shape", "A closed mesh is a body, an open one a fault, and so are points"),
+    ("FAULT", "Faults", "All are faults"),
+    ("BODY", "Bodies", "All are bodies"),
+)
+_STICK_ENDINGS = (".pol",)
+
+
+def _is_surface(scene, item):
+    """Whether an object is a surface of the model already, or of its structures."""
+    return any(item in (row.object, row.interface) for _, row in settings.interface_rows(scene))
+
+
+def _add(scene, kind, name, source):
+    """A row for a fault or a body, which becomes the active one."""
+    rows = settings.structures_of(scene, kind)
+    with settings.filling():
+        if not scene.realmodel.exists:
+            settings.begin(scene.realmodel)
+        row = rows.add()
+        row.name = settings.free_name(rows, name, own=row)
+        row.source = source
+        if kind == "body":
+            row.property_id = library_rows.for_surface(scene, row.name)
+        scene.realmodel.structure_kind = kind.upper()
+        setattr(scene.realmodel, f"active_{kind}", len(rows) - 1)
+    return row
+
+
+def _kind_of_shape(wanted, vertices, triangles):
+    if wanted != "AUTO":
+        return wanted.lower()
+    return "fault" if len(open_edges(vertices, triangles)) else "body"
+
+
+def _told(kinds):
+    """What was added, in words."""
+    counts = [(kinds.count("fault"), "fault", "faults"), (kinds.count("body"), "body", "bodies")]
+    return ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in counts if count)
+
+
+class REALMODEL_OT_fault_body_from_selected(Reporting, bpy.types.Operator):
+    """Add the selected mesh objects: a closed mesh as a body, an open one as a fault"""
+
+    bl_idname = "realmodel.fault_body_from_selected"
+    bl_label = "From Selected Meshes"
+    needs = (selected_meshes,)
+
+    kind: EnumProperty(name="Kind", description="What they are", items=_KINDS, options={"SKIP_SAVE"})
+
+    def act(self, context):
+        scene, depsgraph = context.scene, context.evaluated_depsgraph_get()
+        chosen = [
+            item
+            for item in context.selected_objects
+            if settings.is_mesh_object(None, item) and not _is_surface(scene, item)
+        ]
+        if not chosen:
+            raise InputRefused(
+                "the selected meshes are in the model already", advice="select other mesh objects"
+            )
+        kinds = []
+        for item in chosen:
+            vertices, triangles = shapes.triangulation(item, depsgraph)
+            if not len(triangles):
+                raise InputRefused(f"object '{item.name}' has no faces", advice="select meshes with faces")
+            kinds.append(_kind_of_shape(self.kind, vertices, triangles))
+        for item, kind in zip(chosen, kinds, strict=True):
+            row = _add(scene, kind, item.name, "MESH_OBJECT")
+            with settings.filling():
+                row.object = item
+        live.touch(scene)
+        self.report({"INFO"}, f"Added {_told(kinds)}")
+
+
+class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
+    """Add faults and bodies from files: meshes (TSurf, OFF, OBJ, ...), or fault sticks and points, through
+    which a surface is fitted"""
+
+    bl_idname = "realmodel.fault_body_add"
+    bl_label = "Import Faults and Bodies"
+
+    filepath: StringProperty(
+        name="File",
+        description="File with the mesh, the fault sticks, or the points",
+        subtype="FILE_PATH",
+        options={"SKIP_SAVE"},
+    )
+    directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
+    kind: EnumProperty(name="Kind", description="What they are", items=_KINDS, options={"SKIP_SAVE"})
+    empty: BoolProperty(
+        name="Empty", description="Choose the source afterwards", options={"SKIP_SAVE", "HIDDEN"}
+    )
+    filter_glob: StringProperty(
+        default=";".join(f"*{e}" for e in (*MESH_ENDINGS, *_STICK_ENDINGS, *TABLE_ENDINGS, *MAP_ENDINGS)),
+        options={"HIDDEN"},
+    )
+    filename_ext = ""
+
+    def invoke(self, context, event):
+        return self.execute(context) if self.empty else ImportHelper.invoke(self, context, event)
+
+    def check(self, _context):
+        return True
+
+    def act(self, context):
+        scene = context.scene
+        if self.empty:
+            kind = scene.realmodel.structure_kind.lower() if self.kind == "AUTO" else self.kind.lower()
+            _add(scene, kind, kind, "MESH_OBJECT")
+            return
+        found = [self._looked_at(path, scene.realmodel.units) for path in self._paths()]
+        if not found:
+            raise InputRefused("no file was given", advice="choose a file")
+        for kind, source, path, places in found:
+            data_objects.begin(scene, places)
+            row = _add(scene, kind, path.stem, source)
+            with settings.filling():
+                row.filepath = str(path)
+        live.touch(scene)
+        self.report({"INFO"}, f"Added {_told([kind for kind, *_ in found])}")
+
+    def _paths(self):
+        names = [file.name for file in self.files if file.name]
+        if names and self.directory:
+            return [project_settings.absolute(os.path.join(self.directory, name)) for name in names]
+        path = project_settings.absolute(self.filepath)
+        return [] if path is None else [path]
+
+    def _looked_at(self, path, units):
+        """(kind, source, path, vertices or points) of a file. Raises InputRefused."""
+        require_file(path)
+        if path.suffix.lower() not in MESH_ENDINGS:
+            if self.kind == "BODY":
+                raise InputRefused(f"{path.name} has no triangles", advice="give a closed mesh for a body")
+            points, _ = read_fault_points(PointFile(path), None, units)
+            whole = points if isinstance(points, np.ndarray) else np.concatenate(points)
+            return "fault", "POINTS_FILE", path, whole
+        mesh, scale = read_mesh(path), MeshFile(path).scale(units)
+        vertices = mesh.vertices * (scale[0], scale[0], scale[1])
+        return _kind_of_shape(self.kind, vertices, mesh.triangles), "MESH_FILE", path, vertices
+
+
+class REALMODEL_OT_fault_body_remove(Reporting, bpy.types.Operator):
+    """Remove the active fault or body; a mesh that you brought stays in the scene"""
+
+    bl_idname = "realmodel.fault_body_remove"
+    bl_label = "Remove Fault or Body"
+    needs = (a_structure,)
+
+    def act(self, context):
+        scene, row = context.scene, settings.active_structure(context.scene)
+        kind = settings.kind_of(row)
+        rows = settings.structures_of(scene, kind)
+        number = list(rows).index(row)
+        with settings.filling():
+            if kind == "body":
+                library_rows.remove_made(scene, row)
+            else:
+                for other in rows:
+                    for at in reversed([n for n, end in enumerate(other.ends_at) if end.name == row.name]):
+                        other.ends_at.remove(at)
+            built_scene.release_surface(scene, row)
+            rows.remove(number)
+            setattr(scene.realmodel, f"active_{kind}", max(0, min(number, len(rows) - 1)))
+        live.touch(scene)
+
+
+class REALMODEL_OT_fault_body_move(Reporting, bpy.types.Operator):
+    """Move the active fault or body in its list; of bodies that overlap the later one counts"""
+
+    bl_idname = "realmodel.fault_body_move"
+    bl_label = "Move Fault or Body"
+    needs = (a_structure,)
+
+    direction: EnumProperty(
+        name="Direction",
+        description="Which way it moves in the list",
+        items=(("UP", "Up", "Up in the list"), ("DOWN", "Down", "Down in the list")),
+    )
+
+    def act(self, context):
+        scene, row = context.scene, settings.active_structure(context.scene)
+        kind = settings.kind_of(row)
+        rows = settings.structures_of(scene, kind)
+        number = list(rows).index(row)
+        target = number + (-1 if self.direction == "UP" else 1)
+        if not 0 <= target < len(rows):
+            return {"CANCELLED"}
+        rows.move(number, target)
+        setattr(scene.realmodel, f"active_{kind}", target)
+        live.touch(scene)
+        return {"FINISHED"}
+
+
+class REALMODEL_OT_body_property(Reporting, bpy.types.Operator):
+    """Choose from the library what the active body is made of"""
+
+    bl_idname = "realmodel.body_property"
+    bl_label = "Property of the Body"
+    needs = (a_body,)
+
+    property_id: EnumProperty(name="Property", description="The entry of the library", items=library_items)
+
+    def act(self, context):
+        settings.active_structure(context.scene).property_id = int(self.property_id)
+
+
+_LISTS = (
+    ("ENDS_AT", "Faults", "The faults at which it ends"),
+    ("ROCKS", "Rock Masses", "The rock masses that it displaces"),
+)
+
+
+class REALMODEL_OT_fault_list_add(Reporting, bpy.types.Operator):
+    """Add a row for a fault at which the active one ends, or for a rock mass that it displaces"""
+
+    bl_idname = "realmodel.fault_list_add"
+    bl_label = "Add"
+    needs = (a_fault,)
+
+    of: EnumProperty(name="List", description="Which list", items=_LISTS)
+
+    def act(self, context):
+        getattr(settings.active_structure(context.scene), self.of.lower()).add()
+
+
+class REALMODEL_OT_fault_list_remove(Reporting, bpy.types.Operator):
+    """Remove a row from the faults at which the active one ends, or from its rock masses"""
+
+    bl_idname = "realmodel.fault_list_remove"
+    bl_label = "Remove"
+    needs = (a_fault,)
+
+    of: EnumProperty(name="List", description="Which list", items=_LISTS)
+    index: row_number()
+
+    def act(self, context):
+        rows = getattr(settings.active_structure(context.scene), self.of.lower())
+        remove_row(rows, self.index, "row")
+        live.touch(context.scene)
+
+
+CLASSES = (
+    REALMODEL_OT_fault_body_from_selected,
+    REALMODEL_OT_fault_body_add,
+    REALMODEL_OT_fault_body_remove,
+    REALMODEL_OT_fault_body_move,
+    REALMODEL_OT_body_property,
+    REALMODEL_OT_fault_list_add,
+    REALMODEL_OT_fault_list_remove,
+)

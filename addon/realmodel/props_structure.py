@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of one fault and of one body; most come from their declarations in core/schema.py."""
+
+import bpy
+from bpy.props import CollectionProperty, EnumProperty, PointerProperty, StringProperty
+
+from .bl import changes, choices, settings
+from .core.readers.mesh_file import MESH_FORMATS
+from .core.schema import BODY, FAULT, READING
+from .props_schema import settings_of
+from .props_surface import RealModelFilter, interface_properties
+
+_FORMATS = ", ".join(known.name for known in MESH_FORMATS)
+_MESH_SOURCES = (
+    ("MESH_OBJECT", "Mesh Object", "A mesh object, with its modifiers"),
+    ("MESH_FILE", "Mesh File", f"File with its triangles ({_FORMATS})"),
+)
+_POINTS_SOURCE = (
+    "POINTS_FILE",
+    "Points File",
+    "File with fault sticks or scattered points; a surface is fitted through them",
+)
+
+
+def _shape_properties(sources):
+    """A base of a property group with where the shape comes from, and with the object that shows it."""
+    properties = {
+        "source": EnumProperty(
+            name="Source",
+            description="Source of the shape",
+            items=sources,
+            default="MESH_OBJECT",
+            update=changes.source,
+            options=set(),
+        ),
+        "filepath": StringProperty(
+            name="File", description="File with the shape", subtype="FILE_PATH", update=changes.source
+        ),
+        "object": PointerProperty(
+            name="Object",
+            type=bpy.types.Object,
+            poll=settings.is_mesh_object,
+            description="Mesh object that is the shape, with its modifiers",
+            update=changes.source,
+        ),
+        **interface_properties(),
+    }
+    return type("Shape", (), {"__module__": __name__, "__annotations__": properties})
+
+
+class RealModelFaultEnd(bpy.types.PropertyGroup):
+    """A fault at which another one ends."""
+
+    name: StringProperty(
+        name="Ends At",
+        description="Fault at which this one ends; the smaller part of this one beyond is dropped",
+        search=choices.faults,
+        update=changes.setting,
+    )
+
+
+class RealModelFaultRock(bpy.types.PropertyGroup):
+    """A rock mass that a fault displaces."""
+
+    name: StringProperty(
+        name="Rock Mass",
+        description="Rock mass that the fault displaces",
+        search=choices.rocks,
+        update=changes.setting,
+    )
+
+
+_FITTED = ("stick", "extend", "dies_out")  # what the surface through points depends on
+_FAULT = {key: setting for key, setting in FAULT.items() if key not in READING}
+_BODY = {key: setting for key, setting in BODY.items() if key not in READING}
+_MESH_READING = {key: setting for key, setting in BODY.items() if key in READING}
+
+
+class RealModelFault(
+    settings_of(_FAULT, **dict.fromkeys(_FITTED, changes.fitted)),
+    settings_of(READING, changes.reading),
+    _shape_properties((*_MESH_SOURCES, _POINTS_SOURCE)),
+    bpy.types.PropertyGroup,
+):
+    """A fault: where its surface comes from, and what it displaces."""
+
+    filters: CollectionProperty(type=RealModelFilter)
+    ends_at: CollectionProperty(type=RealModelFaultEnd)
+    rocks: CollectionProperty(type=RealModelFaultRock)
+
+
+class RealModelBody(
+    settings_of(_BODY),
+    settings_of(_MESH_READING, changes.reading),
+    _shape_properties(_MESH_SOURCES),
+    bpy.types.PropertyGroup,
+):
+    """A body: where its closed surface comes from, and what is in it."""
+
+
+CLASSES = (RealModelFaultEnd, RealModelFaultRock, RealModelFault, RealModelBody)

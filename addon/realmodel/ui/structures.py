@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The lists of faults and of bodies, and the settings of the active one."""
+
+import bpy
+
+from ..bl import settings
+from ..core.schema import BODY, FAULT, MESH_READING, READING
+from . import setting_rows
+from .panel import OfAModel, TabPanel, file_field, hint
+from .surfaces import draw_filters, draw_property
+
+_EMPTY = {
+    "FAULT": "Faults displace the layers. Select open meshes, or import meshes or fault sticks.",
+    "BODY": "Bodies are another rock in the layers, or a void: intrusions, domes, tunnels. "
+    "Select closed meshes, or import them.",
+}
+
+
+class REALMODEL_PT_structures(OfAModel, TabPanel, bpy.types.Panel):
+    bl_label = "Faults and Bodies"
+    bl_idname = "REALMODEL_PT_structures"
+    bl_order = 5
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_in(self, layout, context, group):
+        kind = group.structure_kind
+        row = layout.row(align=True)
+        row.use_property_split = False
+        row.prop(group, "structure_kind", expand=True)
+        rows, name = ("faults", "faults") if kind == "FAULT" else ("bodies", "bodies")
+        row = layout.row()
+        active = f"active_{kind.lower()}"
+        row.template_list("REALMODEL_UL_structures", name, group, rows, group, active, rows=3)
+        buttons = row.column(align=True)
+        buttons.operator("realmodel.fault_body_add", text="", icon="ADD").empty = True
+        buttons.operator("realmodel.fault_body_remove", text="", icon="REMOVE")
+        buttons.operator("realmodel.fault_body_move", text="", icon="TRIA_UP").direction = "UP"
+        buttons.operator("realmodel.fault_body_move", text="", icon="TRIA_DOWN").direction = "DOWN"
+        entry = settings.active_structure(context.scene)
+        if entry is None:
+            hint(layout, _EMPTY[kind])
+        column = layout.column(align=True)
+        column.operator("realmodel.fault_body_from_selected", icon="OBJECT_DATA")
+        column.operator("realmodel.fault_body_add", text="Import...", icon="IMPORT").empty = False
+        if entry is None:
+            return
+        layout.separator()
+        layout.prop(entry, "source")
+        if entry.source == "MESH_OBJECT":
+            layout.prop(entry, "object")
+        else:
+            file_field(layout, entry, "filepath")
+            if entry.stored_mesh and not entry.filepath:
+                hint(layout, "The shape is stored in the .blend.")
+        if kind == "FAULT":
+            _draw_fault(layout, entry)
+        else:
+            _draw_body(layout, context, entry)
+
+
+def _draw_fault(layout, fault):
+    setting_rows.draw(layout, fault, "youngest", FAULT)
+    setting_rows.draw(layout, fault, "dies_out", FAULT)
+    _draw_names(layout, fault, "ends_at", "Ends At")
+    _draw_names(layout, fault, "rocks", "Rock Masses")
+
+
+def _draw_names(layout, fault, key, label):
+    """A list of names, each chosen by search."""
+    rows = getattr(fault, key)
+    column = layout.column(align=True)
+    for number, entry in enumerate(rows):
+        row = column.row(align=True)
+        row.prop(entry, "name", text=label if number == 0 else " ")
+        made = row.operator("realmodel.fault_list_remove", text="", icon="X")
+        made.of, made.index = key.upper(), number
+    column.operator("realmodel.fault_list_add", text=f"Add to {label}", icon="ADD").of = key.upper()
+
+
+def _draw_body(layout, context, body):
+    setting_rows.draw(layout, body, "after", BODY)
+    setting_rows.draw(layout, body, "void", BODY)
+    if not body.void:
+        draw_property(layout, context, body, "realmodel.body_property")
+    setting_rows.draw(layout, body, "rock", BODY)
+
+
+class REALMODEL_PT_structure_reading(TabPanel, bpy.types.Panel):
+    bl_label = "Import Options"
+    bl_idname = "REALMODEL_PT_structure_reading"
+    bl_parent_id = "REALMODEL_PT_structures"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        entry = settings.active_structure(context.scene)
+        return entry is not None and entry.source != "MESH_OBJECT" and bool(entry.filepath)
+
+    def draw_in(self, layout, context, _group):
+        entry = settings.active_structure(context.scene)
+        hint(layout, "Most files need no options.")
+        if entry.source == "MESH_FILE":
+            for key in MESH_READING:
+                setting_rows.draw(layout, entry, key, READING)
+            return
+        for key in ("extend", "stick"):
+            setting_rows.draw(layout, entry, key, FAULT)
+        for key in READING:
+            if key == "where":
+                draw_filters(layout, entry, of_fault=True)
+            else:
+                setting_rows.draw(layout, entry, key, READING)
+
+
+class REALMODEL_UL_structures(bpy.types.UIList):
+    """Faults, or bodies."""
+
+    def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name):
+        row = layout.row(align=True)
+        row.prop(item, "name", text="", emboss=False)
+        said = row.row()
+        said.alignment = "RIGHT"
+        said.label(text=_said(item))
+        row.prop(item, "hide", text="", emboss=False, icon="HIDE_ON" if item.hide else "HIDE_OFF")
+
+
+def _said(item):
+    """What is special about a fault or a body, in two words."""
+    if settings.kind_of(item) == "body":
+        return "void" if item.void else ""
+    return "dies out" if item.dies_out else ""
+
+
+CLASSES = (REALMODEL_UL_structures, REALMODEL_PT_structures, REALMODEL_PT_structure_reading)

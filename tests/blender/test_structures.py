@@ -1,0 +1,480 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faults and bodies: their lists, settings, objects, and the ways to look at a model that has them."""
+
+import math
+
+import blender_state
+import bpy
+import numpy as np
+from mathutils import Matrix
+from panel_case import PanelCase, ops, raise_by, select, sheet
+from realmodel.bl import choices, compartments, meshes, project_settings, settings, viewports
+from realmodel.bl import scene as model_tree
+from realmodel.bl.display import bodies, colors, coordinates, modes, sections
+from realmodel.core import load_project
+
+THROW = 4.0
+
+
+def mesh_object(name, vertices, triangles):
+    """A mesh object of the scene."""
+    mesh = meshes.triangle_mesh(name, np.asarray(vertices, np.float32), np.asarray(triangles))
+    item = bpy.data.objects.new(name, mesh)
+    bpy.context.collection.objects.link(item)
+    return item
+
+
+def wall(name="F1", x=50.0, z=(-60.0, 60.0), y=(-20.0, 120.0), lean=0.0):
+    """A plane along y through (x, 0, 0), which leans to the east going down."""
+    corners = [(x - lean * h, at, h) for h, at in ((z[0], y[0]), (z[0], y[1]), (z[1], y[1]), (z[1], y[0]))]
+    return mesh_object(name, corners, [[0, 1, 2], [0, 2, 3]])
+
+
+def box(name, low, high):
+    """A closed box."""
+    bpy.ops.mesh.primitive_cube_add(size=1.0)
+    item = bpy.context.object
+    item.name = name
+    low, high = np.array(low), np.array(high)
+    item.data.transform(Matrix.LocRotScale((low + high) / 2, None, tuple(high - low)))
+    return item
+
+
+def stepped(name, height, x=50.0, throw=THROW):
+    """A level sheet, in two parts that a fault at x has moved apart: the east lies lower."""
+    parts = [(0.0, x, height), (x, 100.0, height - throw)]
+    vertices = [
+        (a, y, z) for west, east, z in parts for a, y in ((west, 0), (east, 0), (east, 100), (west, 100))
+    ]
+    return mesh_object(name, vertices, [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]])
+
+
+class StructureCase(PanelCase):
+    def faulted(self, *more, build=True, throw=THROW):
+        """Three level surfaces over a base, displaced by F1; more: further objects."""
+        items = [stepped(f"S{n}", 10.0 * n, throw=throw) for n in range(3)]
+        select(*items)
+        ops.from_selected(add_base=True)
+        settings.active_rock(self.scene).base_elevation = -20.0
+        select(wall(), *more)
+        ops.fault_body_from_selected()
+        if build:
+            ops.build()
+        return items
+
+    def objects(self, kind):
+        return [item for item in self.scene.objects if item.get("realmodel") == kind]
+
+
+class Lists(StructureCase):
+    def test_closed_meshes_become_bodies_open_ones_faults(self):
+        self.faulted(box("tunnel", (20, -10, 2), (30, 110, 6)), build=False)
+        self.assertEqual([row.name for row in self.model.faults], ["F1"])
+        self.assertEqual([row.name for row in self.model.bodies], ["tunnel"])
+        self.assertEqual(self.model.faults[0].object.name, "F1")
+        self.refused(ops.fault_body_from_selected, "in the model already")
+        select(sheet("other", 3.0))
+        ops.fault_body_from_selected(kind="BODY")
+        self.assertEqual([row.name for row in self.model.bodies], ["tunnel", "other"])
+        self.refused(ops.build, "body 'other'.*not closed.*edge must belong to two triangles")
+
+    def test_rows_are_moved_and_removed(self):
+        self.faulted(wall("F2", 80.0), build=False)
+        self.assertEqual({row.name for row in self.model.faults}, {"F1", "F2"})
+        first, second = self.model.faults
+        first.ends_at.add().name = second.name
+        names = [row.name for row in self.model.faults]
+        self.assertEqual(self.model.active_fault, 1)
+        ops.fault_body_move(direction="UP")
+        self.assertEqual([row.name for row in self.model.faults], names[::-1])
+        self.assertEqual(self.model.active_fault, 0)
+        self.assertEqual(ops.fault_body_move(direction="UP"), {"CANCELLED"})
+        ops.fault_body_remove()
+        self.assertEqual([row.name for row in self.model.faults], names[:1])
+        self.assertEqual(len(self.model.faults[0].ends_at), 0)  # that fault is gone
+        self.assertIn(names[1], bpy.data.objects)
+
+    def test_lists_of_a_fault(self):
+        self.faulted(build=False)
+        ops.fault_list_add(of="ENDS_AT")
+        ops.fault_list_add(of="ROCKS")
+        fault = self.model.faults[0]
+        self.assertEqual((len(fault.ends_at), len(fault.rocks)), (1, 1))
+        ops.fault_list_remove(of="ROCKS", index=0)
+        self.refused(ops.fault_list_remove, "there is no row 3", of="ENDS_AT", index=3)
+        self.assertEqual((len(fault.ends_at), len(fault.rocks)), (1, 0))
+        self.refused(ops.body_property, "no body is active", property_id="0")
+
+    def test_search(self):
+        self.faulted(wall("F2", 80.0), box("salt", (1, 1, 1), (2, 2, 2)), build=False)
+        first, second = self.model.faults
+        end = first.ends_at.add()
+        self.assertEqual(choices.faults(end, None, ""), [second.name])
+        self.assertEqual(choices.all_surfaces(first, None, ""), ["S2", "S1", "S0"])
+        self.assertEqual(choices.rocks(self.model.bodies[0], None, ""), ["rock mass"])
+
+    def test_files(self):
+        off = self.folder / "wall.off"
+        off.write_text("OFF\n4 2 0\n50 -9 -60\n50 109 -60\n50 109 60\n50 -9 60\n3 0 1 2\n3 0 2 3\n")
+        ts = self.folder / "salt.ts"
+        ts.write_text(
+            "GOCAD TSurf 1\nHEADER {\nname: salt\n}\nTFACE\nVRTX 1 10 10 2\nVRTX 2 20 10 2\nVRTX 3 10 20 2\n"
+            "VRTX 4 10 10 8\nTRGL 1 3 2\nTRGL 1 2 4\nTRGL 2 3 4\nTRGL 3 1 4\nEND\n"
+        )
+        pol = self.folder / "sticks.pol"
+        sticks = [[(75 + h / 60, y, h) for h in (60, 0, -60)] for y in (-10, 50, 110)]
+        pol.write_text("".join("".join(f"{x} {y} {z}\n" for x, y, z in s) + "999 999 999\n" for s in sticks))
+        items = [sheet(f"S{n}", 10.0 * n) for n in range(2)]
+        select(*items)
+        ops.from_selected()
+        for path in (off, ts, pol):
+            ops.fault_body_add(filepath=str(path))
+        self.assertEqual([row.name for row in self.model.faults], ["wall", "sticks"])
+        self.assertEqual([row.source for row in self.model.faults], ["MESH_FILE", "POINTS_FILE"])
+        self.assertEqual([row.name for row in self.model.bodies], ["salt"])
+        self.refused(ops.fault_body_add, "no triangles", filepath=str(pol), kind="BODY")
+        self.refused(ops.fault_body_add, "file not found", filepath="/none.off")
+        ops.build()
+        self.assertAlmostEqual(self.volumes()["salt"], 100.0, places=9)
+        self.assertEqual(len(compartments.names(self.scene)), 3)
+        self.assertEqual({item.name for item in self.objects("fault")}, {"wall", "sticks"})
+        off.unlink(), ts.unlink(), pol.unlink()
+        before = self.volumes()
+        self.save_and_open()
+        ops.build()
+        self.assertEqual(self.volumes(), before)
+        self.model.structure_kind, self.model.active_fault = "FAULT", 1
+        self.model.faults[1].extend = 5.0  # another surface through points whose file is gone
+        self.refused(ops.build, "file not found")
+
+    def test_reading_of_a_file(self):
+        table = self.folder / "points.csv"
+        rows = [(75, y, h) for y in (-10, 50, 110) for h in (-60, 0, 60)]
+        table.write_text("a,b,c,s\n" + "\n".join(f"{x},{y},{-h},{y}" for x, y, h in rows))
+        select(*(sheet(f"S{n}", 10.0 * n) for n in range(2)))
+        ops.from_selected()
+        ops.fault_body_add(filepath=str(table))
+        fault = self.model.faults[0]
+        fault.stick, fault.z_axis, fault.plan_unit = "s", "down", "m"
+        ops.filter_add(of_fault=True)
+        fault.filters[0].column, fault.filters[0].value = "a", "75"
+        composed = project_settings.compose(self.scene, viewports.updated_layer(self.scene).depsgraph)
+        entry = composed.project.faults[0]
+        self.assertEqual((entry.stick, entry.point_file.z_axis), ("s", "down"))
+        self.assertEqual(entry.point_file.where, {"a": 75})
+        ops.filter_remove(of_fault=True, index=0)
+        self.assertEqual(len(fault.filters), 0)
+        ops.build()
+        self.assertEqual(len(compartments.names(self.scene)), 2)
+
+
+class Built(StructureCase):
+    def test_volumes_and_objects(self):
+        self.faulted(box("tunnel", (20, -10, 2), (30, 110, 6)), box("ore", (60, 20, -2), (70, 30, 2)))
+        tunnel, ore = (next(b for b in self.model.bodies if b.name == n) for n in ("tunnel", "ore"))
+        tunnel.void, ore.property_id = True, 0
+        ops.build()
+        volumes = self.volumes()
+        self.assertEqual(set(volumes), {"base block", "S1 block", "S2 block", "ore"})
+        ores = 10 * 10 * 4.0
+        self.assertAlmostEqual(volumes["ore"], ores, places=6)
+        self.assertAlmostEqual(volumes["S1 block"], 1e5 - 100 * 10 * 4 - ores, places=6)
+        for name, kind in (("F1", "fault"), ("tunnel", "body"), ("ore", "body")):
+            item = bpy.data.objects[name]
+            self.assertEqual((item["realmodel"], item["realmodel_surface"]), (kind, name))
+            self.assertEqual([c.get("realmodel") for c in item.users_collection], ["structures"])
+        self.assertEqual([o.name for o in model_tree.model_objects(self.scene, "fault")], ["F1"])
+        block = bpy.data.objects["ore"] if "ore.001" not in bpy.data.objects else bpy.data.objects["ore.001"]
+        blocks = {item["realmodel_block"]: item for item in self.objects("block")}
+        self.assertEqual(set(blocks), set(volumes))
+        self.assertEqual(block["realmodel"], "block")
+        for name, item in blocks.items():
+            self.assertEqual(blender_state.open_edges(item.data), 0)
+            self.assertAlmostEqual(blender_state.volume(item.data), volumes[name], delta=1e-5 * volumes[name])
+
+    def test_the_compartment_of_faces(self):
+        self.faulted()
+        names = compartments.names(self.scene)
+        self.assertEqual(len(names), 2)
+        item = next(row.object for row in self.model.results if row.name == "S1 block")
+        attribute = item.data.attributes["realmodel_compartment"]
+        self.assertEqual((attribute.domain, attribute.data_type), ("FACE", "INT"))
+        west = {attribute.data[p.index].value for p in item.data.polygons if p.center.x < 49.0}
+        east = {attribute.data[p.index].value for p in item.data.polygons if p.center.x > 51.0}
+        self.assertEqual((len(west), len(east), len(west | east)), (1, 1, 2))
+        found = compartments.read(self.scene)
+        self.assertEqual([round(v, 6) for v in found["volumes"]["S1 block"]], [5e4, 5e4])
+        for fault, _, throw, heave in found["faults"]:
+            self.assertEqual(fault, "F1")
+            self.assertAlmostEqual(abs(throw), THROW, places=9)
+            self.assertAlmostEqual(heave, 0.0, places=9)
+
+    def test_without_faults_nothing_is_added(self):
+        select(*(sheet(f"S{n}", 10.0 * n) for n in range(2)))
+        ops.from_selected()
+        ops.build()
+        mesh = self.model.results[0].object.data
+        self.assertNotIn("realmodel_compartment", mesh.attributes)
+        self.assertEqual(compartments.names(self.scene), [])
+
+    def test_properties_of_bodies(self):
+        self.faulted(box("ore", (60, 20, -2), (70, 30, 2)))
+        row = next(row for row in self.model.results if row.name == "ore")
+        self.assertEqual(self.model.library.get("ore").id, row.property_id)
+        self.model.structure_kind = "BODY"
+        other = self.model.library[0].id
+        ops.body_property(property_id=str(other))
+        self.assertEqual(self.model.bodies[0].property_id, other)
+        self.model.active_property = list(self.model.library.keys()).index("ore")
+        select(row.object)
+        ops.assign_property()
+        self.assertEqual(self.model.bodies[0].property_id, self.model.library["ore"].id)
+        ops.fault_body_remove()
+        ops.build()
+        self.assertNotIn("ore", self.volumes())
+        self.assertNotIn("ore", self.model.library)
+
+    def test_refusals_leave_all_and_show_the_place(self):
+        self.faulted()
+        before, volumes = blender_state.inventory(), self.volumes()
+        short = bpy.data.objects["F1"]
+        for vertex in short.data.vertices:
+            vertex.co.y = min(vertex.co.y, 60.0)
+        self.refused(ops.build, "fault 'F1'.*ends inside the rock.*dies_out")
+        self.assertEqual(self.volumes(), volumes)
+        after = blender_state.inventory()
+        for state in (before, after):
+            state.pop(("mesh", short.data.name))
+        self.assertEqual(after, before)
+        self.model.live = True
+        self.live_is_done()
+        ops.show_problem()
+        self.model.live = False
+        self.assertEqual(bpy.context.view_layer.objects.active, short)
+        x, y, _ = self.scene.cursor.location
+        self.assertAlmostEqual(x, 50.0, delta=0.1)
+        self.assertTrue(0.0 <= y <= 100.0, y)
+        for vertex in short.data.vertices:
+            vertex.co.y = 120.0 if vertex.co.y > 0.0 else vertex.co.y
+        ops.build()
+        self.assertEqual(self.volumes(), volumes)
+
+    def test_a_fault_that_dies_out(self):
+        self.faulted(throw=0.0, build=False)
+        for vertex in bpy.data.objects["F1"].data.vertices:
+            vertex.co.y = min(vertex.co.y, 60.0)
+        self.model.faults[0].dies_out = True
+        ops.build()
+        self.assertEqual(compartments.names(self.scene), ["rock mass"])
+
+    def test_saved_reopened_undone(self):
+        self.faulted(box("ore", (60, 20, -2), (70, 30, 2)))
+        before, told = self.volumes(), self.model.view.compartments
+        self.save_and_open()
+        self.assertEqual((self.volumes(), self.model.view.compartments), (before, told))
+        ops.build()
+        self.assertEqual((self.volumes(), self.model.view.compartments), (before, told))
+        ops.new()
+        self.assertEqual((len(self.model.faults), len(self.model.bodies)), (0, 0))
+        self.assertIn("F1", bpy.data.objects)
+        self.assertNotIn("realmodel", bpy.data.objects["F1"])
+        self.assertIsNone(self.model.structures)
+
+    def test_project_file(self):
+        self.faulted(wall("F2", 80.0, z=(-60, 12.0)), box("ore", (60, 20, -2), (70, 30, 2)), build=False)
+        first, second = sorted(self.model.faults, key=lambda row: row.name)
+        second.youngest = "S0"
+        first.rocks.add().name = "rock mass"
+        body = self.model.bodies[0]
+        body.after, body.rock = "S1", "rock mass"
+        ops.build()
+        path = self.folder / "p.toml"
+        ops.save_project(filepath=str(path))
+        project, volumes = load_project(path), self.volumes()
+        again = {fault.name: fault for fault in project.faults}
+        self.assertEqual((again["F2"].youngest, tuple(again["F1"].rocks)), ("S0", ("rock mass",)))
+        self.assertEqual((project.bodies[0].after, project.bodies[0].rock), ("S1", "rock mass"))
+        ops.open_project(filepath=str(path))
+        self.assertEqual(self.model.faults[0].source, "MESH_FILE")
+        ops.build()
+        for name, volume in self.volumes().items():
+            self.assertAlmostEqual(volume, volumes[name], delta=1e-9 * max(volume, 1.0))
+        made = self.model.faults[0].interface
+        self.assertEqual(made["realmodel"], "fault")
+        name, self.model.structure_kind, self.model.active_fault = made.name, "FAULT", 0
+        ops.fault_body_remove()
+        self.assertNotIn(name, bpy.data.objects)  # which was made for it
+
+    def test_interfaces_of_files_count_when_edited(self):
+        self.faulted(build=True)
+        path = self.folder / "p.toml"
+        ops.save_project(filepath=str(path))
+        ops.open_project(filepath=str(path))
+        ops.build()
+        fault = self.model.faults[0].interface
+        self.assertEqual((fault["realmodel"], self.model.faults[0].source), ("fault", "MESH_FILE"))
+        for vertex in fault.data.vertices:
+            vertex.co.x += 10.0
+        fault.data.update()
+        ops.build()
+        self.assertEqual(self.model.faults[0].source, "MESH_OBJECT")
+        found = compartments.read(self.scene)["volumes"]["S2 block"]
+        self.assertNotAlmostEqual(found[0], found[1], places=3)
+
+
+class Live(StructureCase):
+    def test_a_moved_fault_and_body(self):
+        self.faulted(box("ore", (60, 20, -2), (70, 30, 2)))
+        ore, fault = (bpy.data.objects[name] for name in ("ore", "F1"))
+        ore = next(item for item in self.objects("body"))
+        self.model.live = True
+        self.live_is_done()
+        before = self.volumes()
+        ore.location.z += 1.0  # 3 of 4 of its height come to lie above S0 (-4)
+        bpy.context.view_layer.update()
+        self.live_is_done()
+        self.assertEqual(bpy.context.window_manager.realmodel.problem, "")
+        self.assertAlmostEqual(self.volumes()["ore"], before["ore"], places=6)
+        ore.scale = (1.0, 1.0, 0.5)
+        bpy.context.view_layer.update()
+        self.live_is_done()
+        self.assertNotAlmostEqual(self.volumes()["ore"], before["ore"], places=3)
+        raise_by(fault, -200.0)
+        self.live_is_done()
+        self.assertIn("F1", bpy.context.window_manager.realmodel.problem)
+        raise_by(fault, 200.0)
+        self.live_is_done()
+        self.assertEqual(bpy.context.window_manager.realmodel.problem, "")
+        self.model.bodies[0].void = True
+        self.live_is_done()
+        self.assertNotIn("ore", self.volumes())
+
+    def test_stages(self):
+        self.faulted(box("ore", (60, 20, -2), (70, 30, 2)))
+        self.model.bodies[0].after = "S1"
+        ops.build()
+        ore = next(row.object for row in self.model.results if row.name == "ore")
+        whole = len(ore.data.polygons)
+        self.model.stage = 0
+        self.assertEqual(len(ore.data.polygons), 0)
+        self.model.stage = 1
+        self.assertGreater(len(ore.data.polygons), 0)
+        base = next(row.object for row in self.model.results if row.name == "base block")
+        self.assertIn("realmodel_compartment", base.data.attributes)
+        self.model.stage = 2
+        self.assertEqual(len(ore.data.polygons), whole)
+
+
+class Views(StructureCase):
+    def setUp(self):
+        super().setUp()
+        self.faulted(box("ore", (60, 20, -2), (70, 30, 2)), box("tunnel", (20, -10, 2), (30, 110, 6)))
+        next(body for body in self.model.bodies if body.name == "tunnel").void = True
+        ops.build()
+
+    def test_display_modes(self):
+        for mode in ("POINTS", "LINES", "AREAS", "SURFACES", "POLYHEDRA", "BLOCKS"):
+            for subject in ("BLOCKS", "INTERFACES", "BOTH"):
+                self.model.view.subject = subject
+                self.model.display = mode
+                self.assertEqual(self.model.view.message, "", mode)
+        self.model.display = "SURFACES"
+        fault = bpy.data.objects["F1"]
+        self.assertFalse(fault.hide_get())
+        self.assertFalse(self.model.structures.hide_render)
+        self.model.faults[0].hide = True
+        self.assertTrue(fault.hide_get())
+        self.model.faults[0].hide = False
+        self.model.view.surfaces = "SURVIVING"
+        self.assertEqual(self.model.view.message, "")
+        left = bodies.of_kind(self.scene, bodies.SURVIVING)
+        self.assertIn(fault, left)
+        self.assertEqual({round(v.co.x, 4) for v in left[fault].data.vertices}, {50.0})
+        self.model.display = "BLOCKS"
+        self.assertTrue(fault.hide_get())
+
+    def test_colors_by_compartment(self):
+        for by in ("PROPERTY", "BLOCK", "ROCK", "AGE", "ELEVATION", "THICKNESS", "UNCERTAINTY"):
+            self.model.color_by = by
+            self.assertEqual(self.model.view.message, "", by)
+        self.model.color_by = "COMPARTMENT"
+        key = colors.key(self.scene)
+        self.assertEqual([name for name, _ in key.entries], compartments.names(self.scene))
+        item = next(row.object for row in self.model.results if row.name == "S2 block")
+        attribute = item.data.color_attributes["realmodel_shade"]
+        self.assertEqual(attribute.domain, "CORNER")
+        found = {
+            tuple(round(255 * c) for c in attribute.data[i].color_srgb[:3])
+            for polygon in item.data.polygons
+            for i in polygon.loop_indices
+        }
+        self.assertEqual(found, {tuple(round(255 * c) for c in color) for _, color in key.entries})
+        self.model.stage = 1
+        self.model.stage = 2
+        self.model.color_by = "PROPERTY"
+        self.assertNotIn("realmodel_shade", item.data.color_attributes)
+
+    def test_exploded_by_compartment(self):
+        self.model.explode_direction = "COMPARTMENT"
+        self.model.explode = 1.0
+        parts = bodies.of_kind(self.scene, bodies.CELLS)
+        rows = {row.name: row for row in self.model.results}
+        item = rows["S1 block"].object
+        self.assertTrue(item.hide_get())
+        part = parts[item]
+        self.assertFalse(part.hide_get())
+        self.assertEqual(blender_state.open_edges(part.data), 0)
+        self.assertAlmostEqual(blender_state.volume(part.data), self.volumes()["S1 block"], delta=1.0)
+        x = blender_state.coordinates(part.data)[:, 0]
+        self.assertAlmostEqual(x.min(), -25.0, places=3)
+        self.assertAlmostEqual(x.max(), 125.0, places=3)
+        self.assertFalse(((x > 26.0) & (x < 74.0)).any())
+        self.assertEqual(tuple(item.delta_location), (0.0, 0.0, 0.0))
+        place = coordinates.under_ray(self.scene, (-15.0, 50.0, 100.0), (0.0, 0.0, -1.0))
+        self.assertAlmostEqual(place.x, 10.0, places=3)
+        self.assertEqual(place.block, "S2 block")
+        for mode in ("AREAS", "LINES", "POINTS", "POLYHEDRA", "SURFACES", "BLOCKS"):
+            self.model.display = mode
+            self.assertEqual(self.model.view.message, "", mode)
+        self.model.color_by = "COMPARTMENT"
+        self.assertIn("realmodel_shade", bodies.of_kind(self.scene, bodies.CELLS)[item].data.color_attributes)
+        self.model.stage = 1
+        self.assertEqual(modes.apart_shown(self.scene), 1.0)
+        ops.build()
+        self.assertTrue(bodies.of_kind(self.scene, bodies.CELLS))
+        self.model.explode = 0.0
+        self.assertFalse(bodies.of_kind(self.scene, bodies.CELLS))
+        self.assertFalse(item.hide_get())
+
+    def test_sections_and_cuts(self):
+        found = sections.by_plane(self.scene, (0.0, 50.0, 0.0), (0.0, 1.0, 0.0))
+        self.assertGreater(len(found), 0)
+        ops.section(location=(0.0, 50.0, 0.0), normal=(0.0, 1.0, 0.0))
+        ops.section_plane(axis="Y")
+        self.model.view.use_section = True
+        self.assertEqual(self.model.view.message, "")
+        halves = bodies.of_kind(self.scene, bodies.CUT)
+        item = next(row.object for row in self.model.results if row.name == "S1 block")
+        self.assertEqual(blender_state.open_edges(halves[item].data), 0)
+        self.assertIn("realmodel_compartment", halves[item].data.attributes)
+        self.model.explode_direction = "COMPARTMENT"
+        self.model.explode = 1.0
+        self.assertEqual(self.model.view.message, "")
+        part = bodies.of_kind(self.scene, bodies.CELLS)[item]
+        self.assertLess(abs(blender_state.volume(part.data)), self.volumes()["S1 block"] * 0.6)
+        line = bpy.data.curves.new("line", "CURVE")
+        line.dimensions = "3D"
+        spline = line.splines.new("POLY")
+        spline.points.add(1)
+        for point, at in zip(spline.points, ((10, 50), (90, 60)), strict=True):
+            point.co = (*at, 0.0, 1.0)
+        curve = bpy.data.objects.new("line", line)
+        self.scene.collection.objects.link(curve)
+        select(curve)
+        ops.fence()
+
+    def test_coordinates_in_and_over_a_tunnel(self):
+        self.assertEqual(coordinates.at_point(self.scene, (25.0, 50.0, 8.0)).block, "S1 block")
+        self.assertIsNone(coordinates.at_point(self.scene, (25.0, 50.0, 4.0)))
+        over = coordinates.at_point(self.scene, (25.0, 50.0, 9.0))
+        self.assertTrue(math.isclose(over.thickness, 4.0, rel_tol=1e-5), over.thickness)
