@@ -36,6 +36,11 @@ public:
                                   std::int32_t /*high*/) const {
         return -1;
     }
+    /// Whether where a cell ends at a region of the surface it ends at the outer face there, if the
+    /// model has one.
+    virtual bool ends_at_outer_face(std::size_t /*region*/, std::int32_t /*cell*/) const {
+        return true;
+    }
     /// Whether a cell reaches the surface, so that it may be divided.
     bool reaches(std::int32_t cell) const { return reaches_[index(cell)] != 0; }
 

@@ -208,7 +208,10 @@ void SurfaceParts::write_caps() {
         };
         for (const auto& pair : caps.across) {
             const bool reversed = pair[1] < 0 && slots_[index(pair[0])].sign < 0;
-            add(reversed, pair[1] >= 0 || outer < 0 ? cap(pair) : outer, pair, true);
+            const bool is_outer =
+                pair[1] < 0 && outer >= 0 &&
+                sides_.ends_at_outer_face(index(caps.region), slots_[index(pair[0])].cell);
+            add(reversed, is_outer ? outer : cap(pair), pair, true);
         }
         for (const auto& pair : caps.beside)
             add(false, cap(pair), pair, false);

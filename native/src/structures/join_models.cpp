@@ -252,8 +252,11 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
 
 std::vector<std::int8_t> sides_of_points(const Structure& structure, std::span<const double> points,
                                          int threads, const Progress* progress) {
-    const cutting::CutterSurface surface = checked_surface(structure, 0);
-    const cutting::NearestSide nearest(surface);
+    Box box;
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3)
+        box.include(Position{points[i], points[i + 1], points[i + 2]});
+    const StructureSurface surface = structure_surface(std::span(&structure, 1), box);
+    const cutting::NearestSide nearest(surface.single[0]);
     std::vector<std::int8_t> sides(points.size() / 3);
     parallel_ranges(sides.size(), 1 << 8, threads, progress,
                     [&](std::size_t begin, std::size_t end) {

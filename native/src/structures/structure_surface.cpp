@@ -55,26 +55,28 @@ std::vector<BorderEdge> border_of(const CutterSurface& surface) {
     return border;
 }
 
-/// Continues one fault beyond its border.
+/// Continues one fault beyond its border. What is nearest reaches out of the rock; what follows
+/// goes on until no triangle of any structure that is in the rock, or of what is nearest, goes
+/// farther: where they cross, they cross all through.
 class Continuation {
 public:
-    Continuation(const CutterSurface& fault, bool in_its_plane, const Box& rock)
-        : fault_(fault), in_its_plane_(in_its_plane), rock_(rock) {
-        Box box = rock;
-        for (const Position& p : fault.vertices)
-            box.include(p);
-        const Position size = minus(box.high, box.low);
-        length_ = 4 * std::sqrt(dot(size, size));
-    }
+    /// @param size  of a box around the rock and all structures
+    Continuation(const CutterSurface& fault, bool in_its_plane, double size)
+        : fault_(fault), in_its_plane_(in_its_plane), lengths_{1.25 * size, 8 * size} {}
 
     std::vector<std::array<Position, 3>> triangles() {
         std::map<NodeId, std::vector<std::pair<NodeId, Position>>> arriving, leaving;
         for (const BorderEdge& edge : border_of(fault_)) {
             const Position way = direction(edge);
-            const Position a = at(edge.from), b = at(edge.to);
-            const Position far_a = beyond(a, way, length_), far_b = beyond(b, way, length_);
-            add({b, a, far_a});
-            add({b, far_a, far_b});
+            Position a = at(edge.from), b = at(edge.to);
+            for (const double length : lengths_) {
+                const Position far_a = beyond(at(edge.from), way, length);
+                const Position far_b = beyond(at(edge.to), way, length);
+                triangles_.push_back({b, a, far_a});
+                triangles_.push_back({b, far_a, far_b});
+                a = far_a;
+                b = far_b;
+            }
             arriving[edge.to].push_back({edge.from, way});
             leaving[edge.from].push_back({edge.to, way});
         }
@@ -120,20 +122,16 @@ private:
                 return;
             }
         }
-        add({p, beyond(p, from, length_), beyond(p, to, length_)});
-    }
-
-    void add(const std::array<Position, 3>& triangle) {
-        Box box;
-        for (const Position& p : triangle)
-            box.include(p);
-        if (box.meets(rock_)) triangles_.push_back(triangle);
+        const Position a = beyond(p, from, lengths_[0]), b = beyond(p, to, lengths_[0]);
+        const Position far_a = beyond(p, from, lengths_[1]), far_b = beyond(p, to, lengths_[1]);
+        triangles_.push_back({p, a, b});
+        triangles_.push_back({b, a, far_a});
+        triangles_.push_back({b, far_a, far_b});
     }
 
     const CutterSurface& fault_;
     bool in_its_plane_;
-    const Box& rock_;
-    double length_;
+    std::array<double, 2> lengths_;
     std::vector<std::array<Position, 3>> triangles_;
 };
 
@@ -158,6 +156,15 @@ CutterSurface checked_surface(const Structure& structure, std::int32_t number) {
 }
 
 StructureSurface structure_surface(std::span<const Structure> structures, const Box& rock) {
+    std::vector<CutterSurface> given;
+    Box whole = rock;
+    for (std::int32_t s = 0; index(s) < structures.size(); ++s) {
+        given.push_back(checked_surface(structures[index(s)], s));
+        for (const Position& p : given.back().vertices)
+            whole.include(p);
+    }
+    const Position extent = minus(whole.high, whole.low);
+    const double size = std::sqrt(dot(extent, extent));
     StructureSurface all;
     std::map<Position, NodeId> number;
     const auto node = [&](const Position& p) {
@@ -167,7 +174,7 @@ StructureSurface structure_surface(std::span<const Structure> structures, const 
         return found->second;
     };
     for (std::int32_t s = 0; index(s) < structures.size(); ++s) {
-        const CutterSurface own = checked_surface(structures[index(s)], s);
+        const CutterSurface& own = given[index(s)];
         const auto add = [&](const std::array<Position, 3>& corners, bool is_continuation) {
             const std::array<NodeId, 3> t{node(corners[0]), node(corners[1]), node(corners[2])};
             if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return;
@@ -180,7 +187,7 @@ StructureSurface structure_surface(std::span<const Structure> structures, const 
             add({own.vertices[index(t[0])], own.vertices[index(t[1])], own.vertices[index(t[2])]},
                 false);
         if (!structures[index(s)].is_body) {
-            for (const auto& t : Continuation(own, structures[index(s)].dies_out, rock).triangles())
+            for (const auto& t : Continuation(own, structures[index(s)].dies_out, size).triangles())
                 add(t, true);
         }
         CutterSurface& single = all.single.emplace_back();

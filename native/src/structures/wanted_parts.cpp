@@ -83,6 +83,10 @@ bool WantedParts::separates(std::size_t /*region*/, std::int32_t low, std::int32
     return !same_.contains({low, high});
 }
 
+bool WantedParts::ends_at_outer_face(std::size_t region, std::int32_t cell) const {
+    return acting(region, cell, -1) < 0;
+}
+
 /// Where nothing acts, in slivers that rounding left, there is a wall between cells of one block,
 /// and between blocks the surface that they meet at.
 std::int32_t WantedParts::cap_face(std::size_t region, std::int32_t low, std::int32_t high) const {
@@ -122,6 +126,20 @@ bool WantedParts::is_sliver(std::size_t region) const {
     return area <= kSliver * rounding * length;
 }
 
+/// Refuses a fault that is continued through rock that it displaces, unless it says that it dies
+/// out there.
+void WantedParts::refuse_unsaid_end(std::size_t region, std::int32_t cell) const {
+    const Sides& below = sides_.sides(sides_.part_at(region, 0));
+    const Sides& above = sides_.sides(sides_.part_at(region, 1));
+    for (const RegionOf& of : sides_.structures_at(region)) {
+        const auto s = index(of.structure);
+        if (!of.is_own && below[s] != above[s] && !sides_.dies_out(of.structure) &&
+            does_act(of.structure, cell))
+            sides_.refuse("ends_inside", "the fault ends in rock that it displaces", of.structure,
+                          region);
+    }
+}
+
 /// Cells of one block that meet where nothing acts are one. Where nothing acts but the rock differs
 /// by more than slivers, a fault ends in it.
 void WantedParts::find_same(std::size_t region) {
@@ -129,6 +147,7 @@ void WantedParts::find_same(std::size_t region) {
     if ((low < 0 && high < 0) || acting(region, low, high) >= 0 || is_sliver(region)) return;
     const ComplexView& model = overlay_.model();
     if (model.block(low) == model.block(high)) {
+        refuse_unsaid_end(region, low);
         same_.insert({low, high});
         return;
     }

@@ -24,6 +24,7 @@ public:
     std::int8_t of_face(std::size_t face) const override;
     std::int8_t of_cap(std::size_t region, std::size_t side, std::int32_t cell) const override;
     bool separates(std::size_t region, std::int32_t low, std::int32_t high) const override;
+    bool ends_at_outer_face(std::size_t region, std::int32_t cell) const override;
     std::int32_t cap_face(std::size_t region, std::int32_t low, std::int32_t high) const override;
 
     /// The number of a face's surface from that of a piece (cap_face).
@@ -34,6 +35,7 @@ private:
     std::int32_t acting(std::size_t region, std::int32_t low, std::int32_t high) const;
     bool does_act(std::int32_t structure, std::int32_t cell) const;
     bool is_sliver(std::size_t region) const;
+    void refuse_unsaid_end(std::size_t region, std::int32_t cell) const;
     void find_same(std::size_t region);
     std::int32_t wanted_at(std::size_t region, std::size_t side) const;
 

@@ -259,6 +259,37 @@ TEST(JoinModels, AFaultThatEndsInRockThatDiffersIsRefusedWithThePlace) {
     }
 }
 
+TEST(JoinModels, AFaultThatEndsInTheRockMustSayThatItDiesOut) {
+    const CellComplex rock = layers({0, 1, 3});
+    const OwnedSurface half = sheet(1.3, 0.3, -9, 2);
+    Structure ends = fault(half);
+    const std::array<PartModel, 2> models{{{with(rock, 1), {1}}, {with(rock, 1), {-1}}}};
+    EXPECT_EQ(refusal([&] { join_models(models, std::array{ends}, kAllAct, 1, nullptr); }),
+              "ends_inside");
+    ends.dies_out = true;
+    EXPECT_NO_THROW(join_models(models, std::array{ends}, kAllAct, 1, nullptr));
+}
+
+TEST(PartsOf, AFaultThatIsContinuedAcrossAnotherIsCrossedAllThrough) {
+    const CellComplex rock = layers({0, 3});
+    OwnedSurface slanted;  // its northern border leans, and is continued in its plane
+    slanted.vertex(-2, -9, -9);
+    slanted.vertex(2, -9, 9);
+    slanted.vertex(2.5, 3, 9);
+    slanted.vertex(-1.5, 1, -9);
+    slanted.triangle(0, 1, 2);
+    slanted.triangle(0, 2, 3);
+    OwnedSurface small;  // ends close around the rock
+    for (const auto& [x, z] :
+         std::array<std::array<double, 2>, 4>{{{-0.5, -0.5}, {4.5, -0.5}, {4.5, 3.5}, {-0.5, 3.5}}})
+        small.vertex(x, 3.5 + x / 16, z);
+    small.triangle(0, 1, 2);
+    small.triangle(0, 2, 3);
+    Structure dies = fault(small);
+    dies.dies_out = true;
+    EXPECT_EQ(parts_of(with(rock, 2), std::array{fault(slanted), dies}, 1, nullptr).size(), 4U);
+}
+
 TEST(JoinModels, AFaultThatDiesOutIsASlit) {
     // displaced where y < 2 alone
     std::vector<CellComplex> models;
@@ -313,6 +344,13 @@ TEST(JoinModels, AVoidBodyLeavesNothing) {
             EXPECT_EQ(all.cell(f, 1), -1);
         }
     }
+}
+
+TEST(SidesOfPoints, AboveAFaultsBorderAreThoseOfWhatIsStraightAboveIt) {
+    const OwnedSurface inclined = sheet(0, 1, -9, 9, -1, 1);  // 45 degrees, from x = -1 to 1
+    EXPECT_EQ(
+        sides_of_points(fault(inclined), std::array{0.5, 0.0, 3.0, 1.5, 0.0, 3.0}, 1, nullptr),
+        (std::vector<std::int8_t>{1, -1}));
 }
 
 TEST(SidesOfPoints, AreThoseOfTheNearestTriangle) {
