@@ -490,7 +490,7 @@ def structures(walk):
     graben()
     yield from build(walk)
     group = bpy.context.scene.realmodel
-    group.explode_direction, group.explode = "COMPARTMENT", 0.6
+    group.explode_direction, group.explode = "COMPARTMENT", 0.4
     frame(walk)
     yield from settled(walk)
     yield from keep(walk, "structures", "WINDOW")
