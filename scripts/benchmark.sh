@@ -5,7 +5,7 @@
 #
 #   scripts/benchmark.sh              all sizes; writes the page
 #   scripts/benchmark.sh --quick      small sizes, each once, as a look; the page is left as it is
-#   scripts/benchmark.sh --only stacks|watch|blender|memory|heights|meshing, --memory GB, --write F.md, --help
+#   scripts/benchmark.sh --only stacks|watch|blender|memory|heights|meshing|booleans, --memory GB, --write F.md, --help
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 python=/usr/bin/python3
@@ -46,6 +46,14 @@ elif "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/
     export REALMODEL_MESHING_PYTHON=$peers/bin/python
 else
     echo "benchmark.sh: Triangle, Gmsh and earcut could not be installed; measuring without them" >&2
+fi
+peers=$root/build/booleans_environment
+if ! wanted booleans; then
+    :
+elif "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/benchmark_booleans.txt" "$python"; then
+    export REALMODEL_BOOLEANS_PYTHON=$peers/bin/python
+else
+    echo "benchmark.sh: trueform could not be installed; measuring without it" >&2
 fi
 if wanted blender memory &&
     ! { "$root/scripts/install_dependencies.sh" bpy &&

@@ -3,12 +3,13 @@
 # Hunts for stacks of surfaces that the builder gets wrong, for as long as asked. Findings are made
 # small and lie in build/findings; copied to tests/data/stacks, the tests judge them from then on.
 #
-#   scripts/fuzz.sh SECONDS [SEED] [--coverage | --python]
+#   scripts/fuzz.sh SECONDS [SEED] [--coverage | --python | --booleans]
 #     SEED         a whole number; the stacks of a seed are always the same (default: the time)
 #     --coverage   guided by what the stacks reach in the code: clang++'s libFuzzer, under
 #                  AddressSanitizer and UndefinedBehaviorSanitizer
 #     --python     the tests' own generators and judge, which also asks the closed form at places
 #                  taken at random; slower
+#     --booleans   pairs of surfaces that are intersected; findings belong in tests/data/booleans
 # The exit status is 1 where something was found.
 #
 # shellcheck disable=SC2317  # functions are called by name
@@ -17,13 +18,13 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 
 usage() {
-    echo "usage: fuzz.sh SECONDS [SEED] [--coverage | --python]" >&2
+    echo "usage: fuzz.sh SECONDS [SEED] [--coverage | --python | --booleans]" >&2
     exit 2
 }
 way=native numbers=()
 while (($# > 0)); do
     case $1 in
-        --coverage | --python) way=${1#--} ;;
+        --coverage | --python | --booleans) way=${1#--} ;;
         *[!0-9]* | '') usage ;;
         *) numbers+=("$1") ;;
     esac
@@ -52,6 +53,11 @@ native() { # SEED
         --corpus tests/data/stacks --into "$findings"
 }
 
+booleans() { # SEED
+    build/release/native/boolean_fuzzer --seconds "$seconds" --seed "$1" \
+        --corpus tests/data/booleans --into "$findings"
+}
+
 python() { # SEED
     PYTHONPATH=addon build/venv/bin/python -m tests.core.stacks.hunt "$seconds" "$1" --into "$findings"
 }
@@ -65,10 +71,10 @@ coverage() { # SEED
 }
 
 case $way in
-    native)
+    native | booleans)
         scripts/install_dependencies.sh build
         cmake --preset release --log-level=WARNING
-        cmake --build build/release --target stack_fuzzer -j 2
+        cmake --build build/release --target stack_fuzzer boolean_fuzzer -j 2
         ;;
     python)
         scripts/build.sh /usr/bin/python3

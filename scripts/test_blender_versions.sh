@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Installs the zip as a user does in every Blender that can be had here, makes a model with it, runs the
-# tests of tests/blender on what was in the zip, and writes the table in docs/reference/compatibility.md.
+# tests of tests/blender on what was in the zip, and those of tests/gui where this Blender has a window (under
+# Xvfb), and writes the table in docs/reference/compatibility.md.
 #
 #   Blender 3.4    Debian 12's own
 #   Blender 4.3    Debian 13's, in a folder entered with chroot
@@ -46,6 +47,7 @@ wants() { [[ " ${versions[*]} " == *" $1 "* ]]; }
 
 groups=()
 wants 3.4 && groups+=(blender)
+{ wants 3.4 || wants 4.3 || wants 5.2; } && groups+=(gui)
 { wants 4.5 || wants 5.0; } && groups+=(bpy)
 { wants 4.3 || wants 5.2; } && groups+=(versions)
 "$root/scripts/install_dependencies.sh" build "${groups[@]}" || exit 1
@@ -58,7 +60,7 @@ fi
 stage=$(mktemp -d)
 trap 'rm -rf "$stage"' EXIT
 mkdir -p "$stage/tree/addon" "$stage/users/nobody"
-(cd "$root" && cp -R --parents VERSION build_model.py blend_samples tests/blender tests/package tests/data "$stage/tree")
+(cd "$root" && cp -R --parents VERSION build_model.py blend_samples tests/blender tests/gui tests/package tests/data "$stage/tree")
 /usr/bin/python3 -m zipfile -e "$zip" "$stage/tree/addon" || exit 1
 find "$stage/tree" -name __pycache__ -prune -exec rm -rf {} +
 cp "$zip" "$stage/realmodel.zip"
@@ -88,7 +90,7 @@ background() { # VERSION USER SCRIPT ARGUMENT...: a script in this Blender, as t
 }
 
 prepare() { # VERSION
-    local packages=(blender python3-numpy libegl1 libgl1-mesa-dri)
+    local packages=(blender python3-numpy libegl1 libgl1 libglx-mesa0 libgl1-mesa-dri)
     case $1 in
         3.4) [[ $(blender --version) == "Blender 3.4"* ]] || echo "SKIPPED this system's Blender is another" ;;
         4.3) "$root/scripts/debian_chroot.sh" make trixie "$cache/debian-trixie" "${packages[@]}" ;;
@@ -119,6 +121,23 @@ install_zip() { # VERSION
 walk() { background "$1" "$1" tests/package/as_user/walk.py "/stage/users/$1/walk"; } # VERSION
 
 suite() { background "$1" nobody tests/blender/run.py; } # VERSION: by a user who has not installed it
+
+window() { # VERSION: what a person does in its window, under Xvfb, drawn by the processor
+    local version=$1 home=/stage/users/nobody folder=$stage/users/$1/window
+    local blender=(blender --factory-startup --enable-event-simulate --window-geometry 0 0 1280 800)
+    [[ $version != 5.2 ]] || blender+=(--gpu-backend opengl)
+    blender+=(-P /stage/tree/tests/gui/run.py -- "/stage/users/$version/window")
+    mkdir -p "$folder"
+    local entered=("$root/scripts/debian_chroot.sh" run "$cache/debian-trixie" --bind "$stage:/stage")
+    case $version in
+        3.4) entered=() home=$stage/users/nobody blender=("${blender[@]//\/stage\//$stage/}") ;;
+        5.2) entered[2]=$cache/debian-sid ;;
+    esac
+    # shellcheck disable=SC2016  # it is the shell of xvfb-run that knows the display
+    xvfb-run -a -s "-screen 0 1280x800x24 -ac -fbdir $folder" bash -c 'n=$1 && shift
+        exec "${@:1:n}" env DISPLAY="$DISPLAY" "${@:n + 1}"' window "${#entered[@]}" "${entered[@]}" \
+        HOME="$home" XDG_RUNTIME_DIR=/tmp LIBGL_ALWAYS_SOFTWARE=1 timeout --kill-after=10 30m "${blender[@]}"
+}
 
 without_native() { # VERSION
     find "$stage/users/$1" -path '*/realmodel/_native*' -delete
@@ -172,6 +191,10 @@ for version in "${versions[@]}"; do
         step "$version" without_native without_native
     fi
     step "$version" suite suite
+    if [[ $version == 3.4 || $version == 4.3 || $version == 5.2 ]]; then
+        step "$version" window window
+        cp "$stage/users/$version/window/contact_sheet.png" "$results/$version/" 2>/dev/null
+    fi
     if [[ $version == 5.2 && -n $native ]]; then step "$version" compile compile; fi
 done
 /usr/bin/python3 "$root/scripts/packaging/compatibility_page.py" "$results" "$root/docs/reference/compatibility.md" || exit 1

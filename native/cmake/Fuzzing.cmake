@@ -37,10 +37,11 @@ set(fuzz_findings "${CMAKE_CURRENT_BINARY_DIR}/fuzz_findings")
 add_test(NAME StackFuzzer.Corpus COMMAND stack_fuzzer --into ${fuzz_findings} ${stack_files})
 add_test(NAME StackFuzzer.Cases
     COMMAND stack_fuzzer --cases ${fuzz_cases} --seed 1 --corpus ${stacks} --into ${fuzz_findings})
-# The same of pairs of surfaces.
+# The same of pairs of surfaces, whose judge takes longer.
+math(EXPR pair_cases "${fuzz_cases} / 10")
 set(pairs "${PROJECT_SOURCE_DIR}/tests/data/booleans")
 file(GLOB pair_files CONFIGURE_DEPENDS "${pairs}/*.json")
 add_test(NAME BooleanFuzzer.Corpus COMMAND boolean_fuzzer --into ${fuzz_findings} ${pair_files})
 add_test(NAME BooleanFuzzer.Cases
-    COMMAND boolean_fuzzer --cases ${fuzz_cases} --seed 1 --corpus ${pairs} --into ${fuzz_findings})
+    COMMAND boolean_fuzzer --cases ${pair_cases} --seed 1 --corpus ${pairs} --into ${fuzz_findings})
 set_tests_properties(StackFuzzer.Corpus StackFuzzer.Cases BooleanFuzzer.Corpus BooleanFuzzer.Cases PROPERTIES ${test_properties})

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from . import (
     blender_table,
+    booleans_table,
     display_table,
     heights_table,
     memory_table,
@@ -21,7 +22,7 @@ from . import (
 from .process import ROOT
 from .stacks_table import Limits, Row, StackRows
 
-PARTS = ("stacks", "watch", "blender", "memory", "heights", "meshing")
+PARTS = ("stacks", "watch", "blender", "memory", "heights", "meshing", "booleans")
 _QUICK_TRIANGLES, _ALL_TRIANGLES = 800_000, 10_000_000
 
 
@@ -71,6 +72,9 @@ def main() -> int:
             page.table(meshing_table.OUTLINES, outlines, 3),
             page.table(meshing_table.POLYGONS, polygons),
         ]
+    if "booleans" in parts:
+        rows = booleans_table.measure(given.quick, memory, _say)
+        tables["booleans"] = [page.table(booleans_table.BOOLEANS, rows, 2)]
     if given.write:
         for name, of_part in tables.items():
             lines = [machine, *(line for table in of_part for line in ("", *table))]

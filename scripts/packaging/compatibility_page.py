@@ -62,6 +62,7 @@ def row(version, folder):
         status(folder, "walk") or "**no**",
         status(folder, "without_native") or "**no**",
         tests(folder),
+        status(folder, "window") or "-",
     ]
 
 
@@ -83,7 +84,7 @@ def compiled(folder):
 
 def main(results, page):
     head = ["Blender", "from", "Python", "NumPy", "glibc", "zip valid"]
-    head += ["installed", "first use", "without module", "tests"]
+    head += ["installed", "first use", "without module", "tests", "window"]
     folders = {version: Path(results) / version for version in SOURCES}
     rows = [row(version, folder) for version, folder in folders.items() if folder.is_dir()]
     lines = ["| " + " | ".join(cells) + " |" for cells in [head, ["---"] * len(head), *rows]]

@@ -388,6 +388,49 @@ class Layers(Case):
         np.testing.assert_allclose(uvs[filled], at[filled, 1:], atol=1e-6)
 
 
+class AsBlender(Case):
+    """Blender's own modifier is the measure: the same volumes, and areas by material and by UV map."""
+
+    def pair(self):
+        a, b = ball("A"), cube("B", (0.4, 0.3, 0.2), 1.5)
+        for item, index in ((a, 0), (b, 1)):
+            for name in ("red", "blue"):
+                item.data.materials.append(bpy.data.materials.get(name) or material(name))
+            at = coordinates(item.data)[versions.corner_vertices(item.data)]
+            item.data.uv_layers.new(name="UVMap").data.foreach_set("uv", at[:, :2].astype(np.float32).ravel())
+            item.data.polygons.foreach_set(
+                "material_index", np.full(len(item.data.polygons), index, np.int32)
+            )
+        return a, b
+
+    def measures(self, mesh):
+        """Volume, area of each material, and areas in the UV map."""
+        areas, uv_areas = np.zeros(2), 0.0
+        uvs = corner_uvs(mesh).astype(float)
+        for polygon in mesh.polygons:
+            areas[polygon.material_index] += polygon.area
+            first, *others = (uvs[k] for k in polygon.loop_indices)
+            turns = [
+                (q - first)[0] * (r - first)[1] - (q - first)[1] * (r - first)[0] for q, r in pairwise(others)
+            ]
+            uv_areas += abs(sum(turns)) / 2
+        return [volume(mesh), *areas.tolist(), uv_areas]
+
+    def test_the_same(self):
+        for operation in ("UNION", "INTERSECT", "DIFFERENCE"):
+            a, b = self.pair()
+            modifier = a.modifiers.new("Boolean", "BOOLEAN")
+            modifier.operation, modifier.object, modifier.solver = operation, b, "EXACT"
+            bpy.context.view_layer.update()
+            theirs = bpy.data.meshes.new_from_object(a.evaluated_get(bpy.context.evaluated_depsgraph_get()))
+            a.modifiers.clear()
+            ours = self.run_boolean(a, b, operation).data
+            self.assertEqual([m.name for m in ours.materials], [m.name for m in theirs.materials])
+            np.testing.assert_allclose(self.measures(ours), self.measures(theirs), rtol=1e-5)
+            for item in (a, b):
+                bpy.data.objects.remove(item)
+
+
 class Divide(Case):
     def test_a_sheet_and_a_ball(self):
         plane, globe = sheet("Sheet", 0.25, 1, 4.0, (-2.0, -2.0)), ball("Ball")

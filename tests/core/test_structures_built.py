@@ -6,10 +6,24 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from realmodel.core import Body, Fault, InputRefused, Project, Rock, Surface, build
+from realmodel.core import (
+    Body,
+    Fault,
+    InputRefused,
+    NotEnoughMemory,
+    Project,
+    Rock,
+    Surface,
+    build,
+    build_surfaces,
+    estimate,
+)
+from realmodel.core.exporters.report import model_report
+from realmodel.core.residuals import residuals
 from realmodel.core.rules import RULES
-from realmodel.core.structures.located import OUTSIDE, cells_at
+from realmodel.core.structures.located import OUTSIDE, Locator
 from realmodel.core.structures.proof import closed_forms
+from realmodel.core.volume_uncertainty import volume_deviations
 from structure_cases import SQUARE, ball, box_body, plane_fault
 
 CHECK = Path(__file__).resolve().parents[3] / "shared" / "check"
@@ -57,7 +71,7 @@ def assert_blocks(model, count=4000, seed=5):
     random = np.random.default_rng(seed)
     low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
     points = random.uniform(low - 0.05 * (high - low), high + 0.05 * (high - low), (count, 3))
-    cells = cells_at(model, points)
+    cells = Locator(model).cells(points)
     blocks = np.where(cells == OUTSIDE, -1, np.append(model.cell_block, -1)[cells])
     expected = np.full(count, -1)
     for form in closed_forms(model):
@@ -248,3 +262,88 @@ def test_the_same_bytes_for_any_number_of_threads(tmp_path):
     for threads in (1, 2):
         build(project, threads=threads).save(tmp_path / f"{threads}.npz")
     assert (tmp_path / "1.npz").read_bytes() == (tmp_path / "2.npz").read_bytes()
+
+
+def test_the_report_has_compartments_throw_and_heave():
+    """A normal fault that leans by 0.5: 2 down, so 1 sideways."""
+    random = np.random.default_rng(8)
+    given = []
+    for k, (low, high) in enumerate(((-1.0, 1.0), (0.0, 2.0))):  # lower right of the fault, as it leans there
+        x = np.concatenate([random.uniform(0, 5 - high / 2, 150), random.uniform(5 - low / 2, 10, 150)])
+        z = np.repeat([high, low], 150)
+        given.append(Surface(f"S{k}", points=np.column_stack([x, random.uniform(0, 10, 300), z])))
+    given.append(Surface("S2", points=points_of(level(4))))
+    project = Project("p", [rock(given)], faults=[Fault("F", *plane_fault(lean=0.5), youngest="S1")])
+    model = build(project)
+    report = model_report(model)
+    assert sum(entry["volume"] for entry in report["compartments"]) == pytest.approx(model.volume)
+    by_block = {}
+    for compartment in report["compartments"]:
+        for block in compartment["blocks"]:
+            by_block[block["block"]] = by_block.get(block["block"], 0.0) + block["volume"]
+    assert by_block == pytest.approx({block.name: block.volume for block in model.blocks})
+    (fault,) = report["faults"]
+    assert [entry["surface"] for entry in fault["surfaces"]] == ["S0", "S1"]
+    for entry in fault["surfaces"]:
+        assert entry["throw"] == pytest.approx({"mean": 2.0, "max": 2.0})
+        assert entry["heave"] == pytest.approx({"mean": 1.0, "max": 1.0})
+    assert report["counts"]["surfaces"] == 3 and report["validation"]["passed"]
+
+
+def test_the_proof_finds_what_is_wrong():
+    model = build(
+        Project("p", [rock(surfaces(*FAULTED))], faults=[Fault("F", *plane_fault(), youngest="S1")])
+    )
+    assert model.validate(6000).passed
+    model.cell_block = np.where(model.cell_block == 1, 0, model.cell_block).astype(np.int32)
+    tests = {test.name: test for test in model.validate(6000).tests}
+    assert (
+        tests["places"].failed > 50
+        and "the closed form block 'S1 block'" in tests["places"].offenders[0].text
+    )
+    model = build(
+        Project("p", [rock(surfaces(*FAULTED))], faults=[Fault("F", *plane_fault(), youngest="S1")])
+    )
+    model.face_surface = np.where(model.face_surface == 3, 0, model.face_surface).astype(np.int32)
+    tests = {test.name: test for test in model.validate(6000).tests}
+    assert tests["surfaces"].failed > 10 and tests["surfaces"].passed is False
+
+
+def test_eroded_volumes_with_faults_and_bodies():
+    given = surfaces(level(-1), level(2), level(1))
+    fault, ore = (
+        Fault("F", *plane_fault(lean=0.3), youngest="S1"),
+        Body("ore", *ball([5, 5, 1], 2), after="S1"),
+    )
+    erosion = build(Project("p", [rock(given)], faults=[fault], bodies=[ore])).eroded()
+    whole = build(Project("p", [rock(given[:2])], bodies=[ore]))
+    assert erosion.remaining[3] + erosion.volume[2, 3] == pytest.approx(whole.blocks[2].volume)
+    assert erosion.volume[2, 1] == pytest.approx(100 - erosion.volume[2, 3] + cap_above(whole, 2.0), rel=1e-6)
+
+
+def test_what_a_body_takes_is_no_erosion():
+    tunnel = Body("tunnel", *box_body([-1, 4, -0.5], [11, 6, 0.5]), void=True)
+    erosion = build(Project("p", [rock(surfaces(level(-2), level(2), level(1)))], bodies=[tunnel])).eroded()
+    assert erosion.total == pytest.approx(100.0)
+    assert erosion.remaining[1] == pytest.approx(300 - 20.0, rel=1e-6)
+
+
+def cap_above(model, z):
+    """The volume of the ore above a height."""
+    half = model.cut_by_plane((0, 0, z), (0, 0, 1)).above
+    return half.blocks[2].volume
+
+
+def test_what_else_takes_a_project_with_faults():
+    project = Project("p", [rock(surfaces(*FAULTED))], faults=[Fault("F", *plane_fault(), youngest="S1")])
+    plain = Project("p", project.rocks)
+    made = build_surfaces(project)
+    assert len(made.surface(0)[0]) == 2 * len(made.surface(2)[0])
+    assert estimate(project).memory == 5 * estimate(plain).memory
+    with pytest.raises(NotEnoughMemory):
+        build(project, memory=estimate(plain).memory)
+    model = build(project)
+    assert max(abs(each.values).max() for each in residuals(model)) < 1e-2  # across the fault it would be 2
+    cut = model.cut_by_plane((0, 5, 0), (0, 1, 0))
+    assert set(cut.above.cell_compartment) == set(model.cell_compartment)
+    assert volume_deviations(model)[0] >= 0

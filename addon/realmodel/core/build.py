@@ -81,7 +81,7 @@ def _build(
     def taken() -> list[RockInput]:
         return inputs if stage is None else [entry.stage(stage) for entry in inputs]
 
-    require_memory(taken(), cells, memory)
+    require_memory(taken(), cells, memory, len(faults) + len(bodies))
     structures = None
     with timed("interpolate"):
         if faults or bodies:

@@ -63,8 +63,10 @@ def _eroded(work: Work, model, threads: int) -> Erosion:
         with work.phase(done / total, (done + m + 1) / total, f"building stage {m}"):
             before = _stage_volumes(work, model, m, threads)
         done += m + 1
+        # what bodies took that came after the surface is no erosion
+        left = _stage_volumes(work, model, m + 1, threads, m) if _body_came(model, m + 1) else after
         for surface, older in _cut_at(model, m + 1):
-            removed = before[older] - after[older]
+            removed = before[older] - left[older]
             volume[surface, older] = np.where(removed > _rounding(model, before[older]), removed, 0.0)
         # from here back to the next stage nothing cuts, so that these are its volumes just after, too
         after = np.where(np.isnan(before), after, before)
@@ -105,8 +107,16 @@ def _bodies_before(model, rock: int, k: int) -> list[int]:
     ]
 
 
-def _stage_volumes(work: Work, model, m: int, threads: int) -> np.ndarray:
-    """(B,) volumes of the blocks just after surface m; NaN for those that come later."""
+def _body_came(model, k: int) -> bool:
+    """Whether there is a body that came after surface k."""
+    if model.structures is None:
+        return False
+    return any(after >= k for times in model.structures.times for after in times.values())
+
+
+def _stage_volumes(work: Work, model, m: int, threads: int, bodies_until: int | None = None) -> np.ndarray:
+    """(B,) volumes of the blocks just after surface m; NaN for those that come later. bodies_until: without
+    bodies that came after this surface."""
     first = _first_surfaces(model)
     kept = [min(len(rock.surfaces), m + 1) for rock in model.project.rocks]
     first_kept = np.cumsum([0, *kept])
@@ -117,7 +127,7 @@ def _stage_volumes(work: Work, model, m: int, threads: int) -> np.ndarray:
         )
         bodies = None
     else:
-        bodies = model.structures.stage(m)
+        bodies = model.structures.stage(m if bodies_until is None else bodies_until)
         inputs = [entry.stage(m) for entry in model.rock_inputs]
         built = build_joined(work, inputs, bodies, "blocks", threads, *work.stretch)
     for b, block in enumerate(model.blocks):

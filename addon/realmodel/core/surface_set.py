@@ -16,6 +16,8 @@ from .heights import Interpolation
 from .method_options import check_threads
 from .project import Project, check_project
 from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
+from .structures.reading import read_structures
+from .structures.setup import make_structures
 from .work import Cancel, Progress, Work, native_module, run
 
 _READ, _MESHED = 0.2, 0.4  # shares of the time
@@ -24,8 +26,9 @@ _READ, _MESHED = 0.2, 0.4  # shares of the time
 @dataclass(eq=False)
 class SurfaceSet:
     """Surfaces as the model would take them: interpolated ones on the mesh of their region, ready meshes as
-    they are, unclipped. `surface_names` and all numbers go through the rock masses in order, oldest first.
-    `project` holds the arrays in the place of files.
+    they are, unclipped; of surfaces that faults displace all sheets, one after another. `surface_names` and
+    all numbers go through the rock masses in order, oldest first. `project` holds the arrays in the place of
+    files.
     """
 
     project: Project
@@ -93,14 +96,19 @@ def build_surfaces(
 def _build(work: Work, project: Project, threads: int, stage: int | None) -> SurfaceSet:
     with work.phase(0.0, _READ, "reading"):
         inputs = read_rocks(work, project)
+        faults, bodies, told = read_structures(work, project, threads)
+        inputs[0].warnings += told
     count = len(inputs)
     for number, entry in enumerate(inputs):
         begin, end = (_READ + (_MESHED - _READ) * k / count for k in (number, number + 1))
         with work.phase(begin, end, f"meshing the region of {entry.rock.name}"):
             mesh_rock(work, entry)
-    for number, entry in enumerate(inputs):
-        begin, end = (_MESHED + (1.0 - _MESHED) * k / count for k in (number, number + 1))
-        interpolate_rock(work, entry, begin, end, threads, stage)
+    if faults:
+        make_structures(work, project, faults, bodies, inputs, threads, stage, _MESHED, 1.0)
+    else:
+        for number, entry in enumerate(inputs):
+            begin, end = (_MESHED + (1.0 - _MESHED) * k / count for k in (number, number + 1))
+            interpolate_rock(work, entry, begin, end, threads, stage)
     if stage is not None:
         inputs = [entry.stage(stage) for entry in inputs]
     return SurfaceSet(

@@ -18,6 +18,8 @@ using spatial::Box;
 
 namespace {
 
+constexpr std::size_t kFewRays = 16;
+
 /// A side of a facet: 0 below it, 1 above. Sides that see each other are joined.
 std::int32_t side_number(std::int32_t facet, std::size_t side) {
     return 2 * facet + static_cast<std::int32_t>(side);
@@ -43,7 +45,8 @@ public:
 private:
     void join_around_edges();
     void join_along_rays();
-    bool cast(std::int32_t facet, int attempt, const spatial::BoxTree& tree, const Box& whole);
+    template <class Find>
+    bool cast(std::int32_t facet, int attempt, const Find& find, const Box& whole);
     SpaceCells number_cells();
     std::array<SpacePointId, 3> corners(SpacePoints& points, std::int32_t facet) const {
         std::array<SpacePointId, 3> result;
@@ -108,7 +111,6 @@ void CellFinder::join_along_rays() {
             boxes[f].include(vertices_[index(v)]);
         whole.include(boxes[f]);
     }
-    const spatial::BoxTree tree(std::move(boxes));
     // facets of each part, of which one after another is tried
     std::vector<std::vector<std::int32_t>> parts;
     std::vector<std::int32_t> part_of(count, -1);
@@ -122,19 +124,28 @@ void CellFinder::join_along_rays() {
         auto& own = parts[index(part_of[root])];
         if (own.size() < kTried) own.push_back(static_cast<std::int32_t>(f));
     }
+    // for a few rays a tree is not worth its while
+    std::optional<spatial::BoxTree> tree;
+    if (parts.size() > kFewRays) tree.emplace(boxes);
+    const auto find = [&](const Box& ray, std::vector<std::int32_t>& near) {
+        if (tree) return tree->find(ray, [&](std::int32_t other) { near.push_back(other); });
+        for (std::size_t f = 0; f < count; ++f) {
+            if (boxes[f].meets(ray)) near.push_back(static_cast<std::int32_t>(f));
+        }
+    };
     for (const auto& facets : parts) {
         if (progress_ != nullptr) progress_->check();
         bool found = false;
         for (int attempt = 0; !found; ++attempt)
-            found = cast(facets[static_cast<std::size_t>(attempt) % facets.size()], attempt, tree,
+            found = cast(facets[static_cast<std::size_t>(attempt) % facets.size()], attempt, find,
                          whole);
     }
 }
 
 /// From a point within a facet along an axis to the outside. False where it passes two facets in
 /// one point: another point is to be tried.
-bool CellFinder::cast(std::int32_t facet, int attempt, const spatial::BoxTree& tree,
-                      const Box& whole) {
+template <class Find>
+bool CellFinder::cast(std::int32_t facet, int attempt, const Find& find, const Box& whole) {
     SpacePoints points;
     const auto start = corners(points, facet);
     std::size_t axis = 0;
@@ -160,7 +171,7 @@ bool CellFinder::cast(std::int32_t facet, int attempt, const spatial::BoxTree& t
         ray.high[k] += off;
     }
     std::vector<std::int32_t> near;
-    tree.find(ray, [&](std::int32_t other) { near.push_back(other); });
+    find(ray, near);
     std::sort(near.begin(), near.end());
     for (const std::int32_t other : near) {
         const auto tips = corners(points, other);

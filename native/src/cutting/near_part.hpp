@@ -4,7 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "cutting/polygons.hpp"
+#include "cutting/cutter_surface.hpp"
+#include "cutting/pieces.hpp"
 #include "realmodel/complex.hpp"
 
 namespace realmodel::cutting {
@@ -17,20 +18,37 @@ public:
     NearPart(const ComplexView& model, std::span<const std::uint8_t> is_near);
 
     ComplexView view() const;
-    /// The model's cell, vertex, face that one of the part is. Faces that lie between a cell of the
-    /// part and another may turn the other way round.
+    /// The model's cell that one of the part is.
     std::int32_t cell(std::int32_t own) const { return cells_[index(own)]; }
-    std::int32_t vertex(NodeId own) const { return vertices_of_[index(own)]; }
-    std::size_t face(std::size_t own) const { return index(faces_[own]); }
-    /// The model's cell beyond a face of the part, -1 none: it is none of the part's.
-    std::int32_t beyond(std::size_t own) const { return beyond_[own]; }
+    /// Makes pieces of the part's faces, and parts of its cells, those of the whole model, in the
+    /// order of its faces and cells: the other cells and faces are added.
+    /// @param sides  of the model's cells that are none of the part's: kOn leaves them out
+    /// @return false where rounding did not leave a face alone that lies beside another cell
+    bool put_back(Pieces& pieces, std::vector<HalfCell>& half_cells,
+                  std::span<const std::int8_t> sides) const;
 
 private:
-    const ComplexView& model_;
+    void add_piece(const Polygons& polygons, std::size_t p, Piece piece, Pieces& pieces) const;
+
+    ComplexView model_;
+    std::vector<std::int32_t> number_;  ///< of the model's cells, -1 none of the part's
     std::vector<Position> vertices_;
     std::vector<std::int64_t> face_offsets_{0};
     std::vector<std::int32_t> face_vertices_, face_cells_, face_surface_, cell_block_;
-    std::vector<std::int32_t> cells_, vertices_of_, faces_, beyond_;
+    std::vector<std::int32_t> cells_, vertices_of_, faces_;
+    /// Of faces: the model's cell beyond, where that is none of the part's; else -1.
+    std::vector<std::int32_t> beyond_;
 };
+
+/// Of cells: 1 where they come near a surface, farther than SurfaceOverlay takes to be near.
+std::vector<std::uint8_t> cells_near(const ComplexView& model, const CutterSurface& surface,
+                                     int threads, const Progress* progress);
+
+/// Of cells that are not near a surface, the side of it that they are on; kOn of the others. What
+/// is connected beside the surface is on one side.
+/// @param is_near  of cells, not 0: near, or not asked for
+std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const CutterSurface& surface,
+                                            std::span<const std::uint8_t> is_near,
+                                            const Progress* progress);
 
 }  // namespace realmodel::cutting

@@ -2,9 +2,11 @@
 // A model cut by a surface or a block: what meets what, what lies where, the parts of cells,
 // halves.
 #include <algorithm>
+#include <optional>
 
 #include "base/parallel.hpp"
 #include "cutting/model_check.hpp"
+#include "cutting/near_part.hpp"
 #include "cutting/part_rounding.hpp"
 #include "cutting/surface_parts.hpp"
 #include "realmodel/base/errors.hpp"
@@ -13,21 +15,34 @@ namespace realmodel::cutting {
 
 namespace {
 
-Cut cut(const ComplexView& model, const CutterSurface& surface, int threads, Progress* progress) {
-    SurfaceOverlay overlay(model, surface, threads, progress);
+/// The cut where only the cells that are near take part; nothing where rounding went beyond them.
+std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface,
+                       std::span<const std::uint8_t> is_near, int threads, Progress* progress) {
+    const auto sides_beside = sides_of_far_cells(model, surface, is_near, progress);
+    const NearPart part(model, is_near);
+    const ComplexView near = part.view();
+    SurfaceOverlay overlay(near, surface, threads, progress);
     if (progress != nullptr) progress->begin(0.3, 0.5, "finding what the surface goes through");
     const CutterWinding winding(overlay, progress);
     const CutterSides sides(overlay, winding, progress);
     if (progress != nullptr) progress->begin(0.5, 0.68, "finding the parts of cells");
     SurfaceParts made(overlay, winding, sides, progress);
     if (progress != nullptr) progress->begin(0.85, 0.92, "rounding what was cut");
-    PartRounding(model, overlay.new_positions(), made.pieces, made.half_cells, made.touches).run();
+    PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches).run();
+    if (!part.put_back(made.pieces, made.half_cells, sides_beside)) return std::nullopt;
     if (progress != nullptr) progress->begin(0.95, 1.0, "putting the halves together");
     Cut halves = assemble_halves(model, overlay.new_positions(), made.pieces, made.half_cells,
                                  threads, progress);
     halves.below_touches = made.touches[0];
     halves.above_touches = made.touches[1];
     return halves;
+}
+
+Cut cut(const ComplexView& model, const CutterSurface& surface, int threads, Progress* progress) {
+    std::vector<std::uint8_t> is_near = cells_near(model, surface, threads, progress);
+    if (auto halves = cut(model, surface, is_near, threads, progress)) return *std::move(halves);
+    is_near.assign(is_near.size(), 1);
+    return *cut(model, surface, is_near, threads, progress);
 }
 
 bool is_same(const ComplexView& one, const ComplexView& other) {

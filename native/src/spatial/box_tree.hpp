@@ -53,12 +53,21 @@ struct Box {
     }
 };
 
-/// Finds the boxes that meet a given one: a binary tree that halves them along their longest side.
+/// Finds the boxes that meet a given one: a binary tree that halves them along the
+/// longest side of their middles.
 class BoxTree {
 public:
-    explicit BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
-        std::iota(order_.begin(), order_.end(), 0);
-        if (!boxes_.empty()) build(0, order_.size());
+    explicit BoxTree(std::vector<Box> boxes) {
+        // the boxes and their middles lie together while they are put in order
+        std::vector<Item> items(boxes.size());
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            for (std::size_t k = 0; k < 3; ++k)
+                items[i].twice_middle[k] = boxes[i].low[k] + boxes[i].high[k];
+            items[i].number = static_cast<std::int32_t>(i);
+        }
+        order_.resize(boxes.size());
+        boxes_.resize(boxes.size());
+        if (!boxes.empty()) build(items, boxes, 0, items.size());
     }
 
     /// Calls visit(number) for each, in no particular but always the same order.
@@ -86,30 +95,45 @@ private:
         std::size_t second = 0;  ///< the first child follows; 0: a leaf
     };
 
-    std::size_t build(std::size_t begin, std::size_t end) {
+    struct Item {
+        Box::Position twice_middle;
+        std::int32_t number;
+    };
+
+    std::size_t build(std::vector<Item>& items, const std::vector<Box>& boxes, std::size_t begin,
+                      std::size_t end) {
         const std::size_t number = nodes_.size();
         nodes_.push_back({{}, begin, end});
-        Box whole;
+        if (end - begin <= kLeaf) {
+            Box whole;
+            for (std::size_t i = begin; i < end; ++i) {
+                order_[i] = items[i].number;
+                boxes_[i] = boxes[index(items[i].number)];
+                whole.include(boxes_[i]);
+            }
+            nodes_[number].box = whole;
+            return number;
+        }
+        Box middles;
         for (std::size_t i = begin; i < end; ++i)
-            whole.include(boxes_[index(order_[i])]);
-        nodes_[number].box = whole;
-        if (end - begin <= kLeaf) return number;
+            middles.include(items[i].twice_middle);
         std::size_t axis = 0;
         for (std::size_t k = 1; k < 3; ++k) {
-            if (whole.high[k] - whole.low[k] > whole.high[axis] - whole.low[axis]) axis = k;
+            if (middles.high[k] - middles.low[k] > middles.high[axis] - middles.low[axis]) axis = k;
         }
         const std::size_t middle = (begin + end) / 2;
-        const auto at = [this](std::size_t i) {
-            return order_.begin() + static_cast<std::ptrdiff_t>(i);
+        const auto at = [&items](std::size_t i) {
+            return items.begin() + static_cast<std::ptrdiff_t>(i);
         };
-        std::nth_element(at(begin), at(middle), at(end), [&](std::int32_t a, std::int32_t b) {
-            const Box &p = boxes_[index(a)], &q = boxes_[index(b)];
-            return std::pair(p.low[axis] + p.high[axis], a) <
-                   std::pair(q.low[axis] + q.high[axis], b);
+        std::nth_element(at(begin), at(middle), at(end), [axis](const Item& a, const Item& b) {
+            const double p = a.twice_middle[axis], q = b.twice_middle[axis];
+            return p != q ? p < q : a.number < b.number;
         });
-        build(begin, middle);
-        const std::size_t second = build(middle, end);
+        build(items, boxes, begin, middle);
+        const std::size_t second = build(items, boxes, middle, end);
         nodes_[number].second = second;
+        nodes_[number].box = nodes_[number + 1].box;
+        nodes_[number].box.include(nodes_[second].box);
         return number;
     }
     static double squared_distance(const Box& box, const Box::Position& p) {
@@ -126,7 +150,7 @@ private:
         const Node& node = nodes_[number];
         if (node.second == 0) {
             for (std::size_t i = node.begin; i < node.end; ++i) {
-                if (squared_distance(boxes_[index(order_[i])], p) <= bound()) visit(order_[i]);
+                if (squared_distance(boxes_[i], p) <= bound()) visit(order_[i]);
             }
             return;
         }
@@ -147,7 +171,7 @@ private:
         if (!node.box.meets(box)) return;
         if (node.second == 0) {
             for (std::size_t i = node.begin; i < node.end; ++i) {
-                if (boxes_[index(order_[i])].meets(box)) visit(order_[i]);
+                if (boxes_[i].meets(box)) visit(order_[i]);
             }
             return;
         }
@@ -155,8 +179,8 @@ private:
         find(node.second, box, visit);
     }
 
-    std::vector<Box> boxes_;
-    std::vector<std::int32_t> order_;
+    std::vector<Box> boxes_;           ///< in the order of the leaves
+    std::vector<std::int32_t> order_;  ///< their numbers
     std::vector<Node> nodes_;
 };
 

@@ -2,7 +2,7 @@
 // Models of the parts that structures leave, cut and joined.
 #include <algorithm>
 #include <map>
-#include <stdexcept>
+#include <optional>
 
 #include "base/parallel.hpp"
 #include "base/parallel_sort.hpp"
@@ -43,7 +43,7 @@ struct Together {
     std::int32_t surfaces = 0;
     CellKind cell_kind = CellKind::kColumns;
 
-    void add(const ComplexView& model, std::int32_t number, std::span<const std::uint8_t> places);
+    void add(const ComplexView& model, std::int32_t number, std::span<const Place> places);
     void share_vertices(int threads, const Progress* progress);
     ComplexView view() const {
         return {.vertices = {reinterpret_cast<const double*>(vertices.data()), 3 * vertices.size()},
@@ -58,17 +58,16 @@ struct Together {
     }
 };
 
-void Together::add(const ComplexView& model, std::int32_t number,
-                   std::span<const std::uint8_t> places) {
+void Together::add(const ComplexView& model, std::int32_t number, std::span<const Place> places) {
     const auto first_vertex = checked_number(vertices.size() + model.vertex_count(), "vertices") -
                               static_cast<std::int32_t>(model.vertex_count());
     std::vector<std::int32_t> cell(model.cell_count(), -1);
     for (std::size_t c = 0; c < cell.size(); ++c) {
-        if (places[c] == NearCells::kElsewhere) continue;
+        if (places[c] == Place::kElsewhere) continue;
         cell[c] = checked_number(cell_block.size(), "cells");
         cell_block.push_back(model.cell_block[c]);
         model_of_cell.push_back(number);
-        is_near.push_back(places[c] == NearCells::kNear ? 1 : 0);
+        is_near.push_back(places[c] == Place::kNear ? 1 : 0);
     }
     for (std::size_t v = 0; v < model.vertex_count(); ++v)
         vertices.push_back(model.vertex(static_cast<std::int32_t>(v)));
@@ -121,111 +120,78 @@ void begin(Progress* progress, double from, double to, const char* what) {
     if (progress != nullptr) progress->begin(from, to, what);
 }
 
-/// What is left of the cells near structures, and the others.
-class Assembly {
-public:
-    Assembly(const Together& together, const cutting::NearPart& part,
-             const std::vector<Position>& new_positions, const cutting::Pieces& pieces,
-             std::span<const cutting::HalfCell> cells)
-        : all_(together.view()),
-          together_(together),
-          part_(part),
-          new_positions_(new_positions),
-          pieces_(pieces),
-          number_(all_.vertex_count() + new_positions.size(), -1),
-          cell_(all_.cell_count(), -1) {
-        joined_.complex.cell_kind = together.cell_kind;
-        joined_.complex.face_offsets.push_back(0);
-        for (const cutting::HalfCell& own : cells)
-            add_cell(part.cell(own.cell));
-        for (std::int32_t c = 0; index(c) < cell_.size(); ++c) {
-            if (together.is_near[index(c)] != 0) continue;
-            cell_[index(c)] = static_cast<std::int32_t>(joined_.cell_part.size());
-            add_cell(c);
-        }
-    }
-
-    Joined run(const Progress* progress) && {
-        for (std::size_t p = 0; p < pieces_.size(); ++p) {
-            poll(progress, p);
-            add_piece(p);
-        }
-        for (std::size_t f = 0; f < all_.face_count(); ++f) {
-            poll(progress, f);
-            const std::array<std::int32_t, 2> cells{all_.cell(f, 0), all_.cell(f, 1)};
-            const auto is_far = [&](std::int32_t c) {
-                return c < 0 || together_.is_near[index(c)] == 0;
-            };
-            if (!is_far(cells[0]) || !is_far(cells[1])) continue;
-            for (const NodeId v : all_.face(f))
-                add_corner(index(v));
-            close_face({cell_[index(cells[0])], cells[1] < 0 ? -1 : cell_[index(cells[1])]},
-                       all_.face_surface[f]);
-        }
-        return std::move(joined_);
-    }
-
-private:
-    void add_cell(std::int32_t of_all) {
-        checked_number(joined_.cell_part.size(), "cells");
-        joined_.complex.cell_block.push_back(together_.cell_block[index(of_all)]);
-        joined_.cell_part.push_back(together_.model_of_cell[index(of_all)]);
-    }
-
-    void add_corner(std::size_t node) {
-        auto& number = number_[node];
-        if (number < 0) {
-            number = static_cast<std::int32_t>(joined_.complex.vertices.size());
-            const std::size_t own = all_.vertex_count();
-            joined_.complex.vertices.push_back(node < own ? together_.vertices[node]
-                                                          : new_positions_[node - own]);
-        }
-        joined_.complex.face_vertices.push_back(number);
-    }
-
-    void close_face(const std::array<std::int32_t, 2>& cells, std::int32_t surface) {
-        CellComplex& complex = joined_.complex;
-        complex.face_offsets.push_back(static_cast<std::int64_t>(complex.face_vertices.size()));
-        complex.face_cells.push_back(cells);
-        complex.face_surface.push_back(surface);
-    }
-
-    void add_piece(std::size_t p) {
-        const cutting::Piece& piece = pieces_[p];
-        if (piece.parts[0] < 0 && piece.parts[1] < 0) return;
+/// The faces of what is left of the cells.
+CellComplex assemble(const Together& together, const std::vector<Position>& new_positions,
+                     const cutting::Pieces& pieces, std::span<const cutting::HalfCell> cells,
+                     const Progress* progress) {
+    CellComplex complex;
+    complex.cell_kind = together.cell_kind;
+    for (const cutting::HalfCell& cell : cells)
+        complex.cell_block.push_back(together.cell_block[index(cell.cell)]);
+    const std::size_t own = together.vertices.size();
+    std::vector<std::int32_t> number(own + new_positions.size(), -1);
+    complex.face_offsets.push_back(0);
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+        poll(progress, p);
+        const cutting::Piece& piece = pieces[p];
+        if (piece.parts[0] < 0 && piece.parts[1] < 0) continue;
         const bool reversed = piece.parts[0] < 0;
-        const auto nodes = pieces_.polygons[p];
-        const ComplexView near = part_.view();
-        std::array<std::int32_t, 2> cells{piece.parts[reversed ? 1 : 0],
-                                          reversed ? -1 : piece.parts[1]};
-        std::int32_t surface = WantedParts::surface_of_cap(piece.face);
-        if (piece.face >= 0) {
-            const auto face = index(piece.face);
-            surface = near.face_surface[face];
-            if (part_.beyond(face) >= 0) {
-                if (cells[1] >= 0 || !std::ranges::equal(nodes, near.face(face)))
-                    throw std::logic_error("a face beside a cell that is not near was divided");
-                cells[1] = cell_[index(part_.beyond(face))];
-            }
-        }
+        const auto nodes = pieces.polygons[p];
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             const auto node = index(nodes[reversed ? nodes.size() - 1 - i : i]);
-            const std::size_t own = near.vertex_count();
-            add_corner(node < own ? index(part_.vertex(static_cast<NodeId>(node)))
-                                  : all_.vertex_count() + node - own);
+            if (number[node] < 0) {
+                number[node] = static_cast<std::int32_t>(complex.vertices.size());
+                complex.vertices.push_back(node < own ? together.vertices[node]
+                                                      : new_positions[node - own]);
+            }
+            complex.face_vertices.push_back(number[node]);
         }
-        close_face(cells, surface);
+        complex.face_offsets.push_back(static_cast<std::int64_t>(complex.face_vertices.size()));
+        complex.face_cells.push_back(reversed ? std::array{piece.parts[1], -1} : piece.parts);
+        complex.face_surface.push_back(piece.face < 0 ? WantedParts::surface_of_cap(piece.face)
+                                                      : together.face_surface[index(piece.face)]);
     }
+    return complex;
+}
 
-    ComplexView all_;
-    const Together& together_;
-    const cutting::NearPart& part_;
-    const std::vector<Position>& new_positions_;
-    const cutting::Pieces& pieces_;
-    std::vector<std::int32_t> number_;  ///< of vertices and new nodes
-    std::vector<std::int32_t> cell_;    ///< of cells that are not near
-    Joined joined_;
-};
+/// Joins the models where only the cells that are near structures take part in cutting; nothing
+/// where rounding went beyond them.
+std::optional<Joined> join(const Together& together, const StructureSurface& surface,
+                           std::span<const PartModel> models, std::span<const Structure> structures,
+                           std::span<const std::uint8_t> acts, int threads, Progress* progress) {
+    const ComplexView all = together.view();
+    const cutting::NearPart part(all, together.is_near);
+    const ComplexView near = part.view();
+    std::vector<std::int32_t> model_of_cell;
+    for (std::int32_t c = 0; index(c) < near.cell_count(); ++c)
+        model_of_cell.push_back(together.model_of_cell[index(part.cell(c))]);
+    begin(progress, 0.1, 0.15, "finding faces near structures");
+    SurfaceOverlay overlay(near, surface.surface, threads, progress);
+    begin(progress, 0.3, 0.5, "finding what structures go through");
+    const CutterWinding winding(overlay, progress);
+    const StructureSides sides(overlay, winding, surface, structures, progress);
+    std::vector<Sides> model_sides;
+    for (const PartModel& own : models)
+        model_sides.push_back(own.sides);
+    const WantedParts wanted(overlay, winding, sides, model_of_cell, model_sides, acts);
+    begin(progress, 0.5, 0.68, "finding the parts of cells");
+    cutting::SurfaceParts made(overlay, winding, wanted, progress);
+    begin(progress, 0.85, 0.92, "rounding what was cut");
+    cutting::PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
+                          true)
+        .run();
+    const std::vector<std::int8_t> sides_beside(all.cell_count(), kAbove);
+    if (!part.put_back(made.pieces, made.half_cells, sides_beside)) return std::nullopt;
+    begin(progress, 0.95, 1.0, "putting the parts together");
+    Joined joined;
+    joined.complex =
+        assemble(together, overlay.new_positions(), made.pieces, made.half_cells, progress);
+    for (const cutting::HalfCell& cell : made.half_cells)
+        joined.cell_part.push_back(together.model_of_cell[index(cell.cell)]);
+    joined.complex.volumes =
+        strata::block_volumes(joined.complex, together.blocks, threads, progress);
+    return joined;
+}
 
 }  // namespace
 
@@ -273,41 +239,15 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
     }
     const StructureSurface surface = structure_surface(structures, rock);
     begin(progress, 0, 0.1, "leaving out what is in other parts");
-    {
-        const NearCells near(surface, threads);
-        for (std::size_t m = 0; m < models.size(); ++m) {
-            together.add(models[m].model, static_cast<std::int32_t>(m),
-                         near.places_of(models[m].model, models[m].sides, progress));
-        }
+    for (std::size_t m = 0; m < models.size(); ++m) {
+        together.add(models[m].model, static_cast<std::int32_t>(m),
+                     places_of_cells(models[m].model, models[m].sides, surface, threads, progress));
     }
     together.share_vertices(threads, progress);
-    const ComplexView all = together.view();
-    const cutting::NearPart part(all, together.is_near);
-    const ComplexView near = part.view();
-    std::vector<std::int32_t> model_of_cell;
-    for (std::int32_t c = 0; index(c) < near.cell_count(); ++c)
-        model_of_cell.push_back(together.model_of_cell[index(part.cell(c))]);
-    begin(progress, 0.1, 0.15, "finding faces near structures");
-    SurfaceOverlay overlay(near, surface.surface, threads, progress);
-    begin(progress, 0.3, 0.5, "finding what structures go through");
-    const CutterWinding winding(overlay, progress);
-    const StructureSides sides(overlay, winding, surface, structures, progress);
-    std::vector<Sides> model_sides;
-    for (const PartModel& own : models)
-        model_sides.push_back(own.sides);
-    const WantedParts wanted(overlay, winding, sides, model_of_cell, model_sides, acts);
-    begin(progress, 0.5, 0.68, "finding the parts of cells");
-    cutting::SurfaceParts made(overlay, winding, wanted, progress);
-    begin(progress, 0.85, 0.92, "rounding what was cut");
-    cutting::PartRounding(near, overlay.new_positions(), made.pieces, made.half_cells, made.touches,
-                          true)
-        .run();
-    begin(progress, 0.95, 1.0, "putting the parts together");
-    Joined joined = Assembly(together, part, overlay.new_positions(), made.pieces, made.half_cells)
-                        .run(progress);
-    joined.complex.volumes =
-        strata::block_volumes(joined.complex, together.blocks, threads, progress);
-    return joined;
+    if (auto joined = join(together, surface, models, structures, acts, threads, progress))
+        return *std::move(joined);
+    together.is_near.assign(together.is_near.size(), 1);
+    return *join(together, surface, models, structures, acts, threads, progress);
 }
 
 std::vector<std::int8_t> sides_of_points(const Structure& structure, std::span<const double> points,

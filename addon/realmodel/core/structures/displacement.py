@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..work import Work, run
-from .families import keys_of
 from .rock_structure import Triangulation
-from .sides import sides_of
+from .sides import fault_sides
 from .tips import trace_of
 
 _ALONG = 2.0  # distances between places on a trace: the other side is looked for so far along the fault
@@ -58,31 +57,33 @@ def _displacements(work: Work, model) -> list[Displacement]:
 
 
 def _sheet_pairs(structure, fault: int, surface: int) -> list[tuple[int, int]]:
-    """Compartments on the two sides of a fault that differ in no other fault that displaces a surface."""
-    active = structure.faults.active(surface)
-    others = np.where(active, structure.compartments, 0)
-    others[:, fault] = 0
-    pairs, seen = [], set()
-    for below in np.flatnonzero(structure.compartments[:, fault] < 0):
-        for above in np.flatnonzero(structure.compartments[:, fault] > 0):
-            key = tuple(others[below].tolist())
-            if key not in seen and np.array_equal(others[below], others[above]):
-                seen.add(key)
-                pairs.append((int(below), int(above)))
-    return pairs
+    """Compartments on the two sides of a fault, and on one side of each other that is on both sides of it;
+    once for each two sheets of a surface."""
+    rows = np.where(structure.faults.active(surface), structure.compartments, 0)
+    pairs = {}
+    for below in np.flatnonzero(rows[:, fault] < 0):
+        for above in np.flatnonzero(rows[:, fault] > 0):
+            same = (rows[below] == rows[above]) | (rows[below] == 0) | (rows[above] == 0)
+            same[fault] = True
+            if same.all():
+                sheets = tuple(id(structure.sheets[each][surface]) for each in (below, above))
+                pairs.setdefault(sheets, (int(below), int(above)))
+    return list(pairs.values())
 
 
 def _along(work: Work, model, entry, fault: int, surface: int, below: int, above: int):
     """places (N, 3), throw and heave (N,) of two sheets along a fault."""
     structure, threads = entry.structure, model.threads
     shape = structure.faults.shapes[fault]
+    rows = np.where(structure.faults.active(surface), structure.compartments[[below, above]], 0)
+    wanted = np.where(rows[0] != 0, rows[0], rows[1])
+    wanted[fault] = 0
 
     def within(points: np.ndarray) -> np.ndarray:
-        keys = keys_of(structure, surface, sides_of(work, points, structure.faults, threads))
-        own = keys_of(structure, surface, structure.compartments[below : below + 1])
-        same = keys == own
-        same[:, fault] = True
-        return same.all(axis=1)
+        found = np.ones(len(points), bool)
+        for other in np.flatnonzero(wanted):
+            found &= fault_sides(work, points, structure.faults.shapes[other], threads) == wanted[other]
+        return found
 
     low, high = (
         _trace(work, structure.sheets[each][surface], shape, within, threads) for each in (below, above)

@@ -10,10 +10,11 @@ import numpy as np
 from ..errors import place_text
 from ..work import Work
 from .closed_form import AIR, BodyOfRock, ClosedForm, heights_at
-from .located import OUTSIDE, cells_at
+from .located import OUTSIDE, Locator
 from .triangles import distances_of_pairs
 
 _ROUNDING = 64  # units in the last place of the largest coordinate: what is nearer is left undecided
+_LOOKED_AT = 200  # points that do not agree: whether rounding may be the cause
 _SHOWN = 5  # offenders of each test
 _AT_ONCE = 2000  # points between two looks at cancel()
 
@@ -58,15 +59,17 @@ def check_points(work: Work, model, places: int, seed: int) -> list[dict]:
     began = time.perf_counter()
     points = _points(model, places, random)
     forms = closed_forms(model)
-    wrong, undecided = [], 0
+    locator = Locator(model)
+    wrong, undecided, looked_at = [], 0, 0
     for start in range(0, len(points), _AT_ONCE):
         work.step(start / max(1, len(points)))
         some = points[start : start + _AT_ONCE]
-        cells = cells_at(model, some)
+        cells = locator.cells(some)
         is_block = np.where(cells == OUTSIDE, AIR, np.append(model.cell_block, AIR)[cells])
         said = _said(forms, some)
         for n in np.flatnonzero(is_block != said):
-            if _is_near(model, forms, some[n]):
+            looked_at += 1
+            if looked_at <= _LOOKED_AT and _is_near(model, forms, locator, some[n]):
                 undecided += 1
             else:
                 wrong.append((some[n], int(cells[n]), int(is_block[n]), int(said[n])))
@@ -111,14 +114,14 @@ def _in_triangles(corners: np.ndarray, random) -> np.ndarray:
     return (corners * (weights / weights.sum(axis=1)[:, None])[:, :, None]).sum(axis=1)
 
 
-def _is_near(model, forms: list[ClosedForm], point: np.ndarray) -> bool:
+def _is_near(model, forms: list[ClosedForm], locator: Locator, point: np.ndarray) -> bool:
     """Whether something that divides rock is nearer to a point than rounding may move it."""
     near = _ROUNDING * np.spacing(np.abs(model.vertices).max())
     for move in np.vstack([np.eye(3), -np.eye(3)]) * near:
         moved = (point + move)[None]
         if _said(forms, moved)[0] != _said(forms, point[None])[0]:
             return True
-        if (cells_at(model, moved) != cells_at(model, point[None])).any():
+        if (locator.cells(moved) != locator.cells(point[None])).any():
             return True
     return False
 

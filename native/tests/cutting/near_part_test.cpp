@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cutting/near_part.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "../strata/complex_checks.hpp"
+
+namespace realmodel::cutting {
+namespace {
+
+using strata::CellComplex;
+using strata::grid;
+using strata::OwnedSurface;
+
+/// One layer of 4 x 1 squares, two columns each, from x = 0 to 4.
+CellComplex row() {
+    std::vector<OwnedSurface> surfaces;
+    for (const double z : {0.0, 1.0})
+        surfaces.push_back(grid(4, 1, 0, 0, 4, 1, [z](double, double) { return z; }));
+    return strata::build(surfaces);
+}
+
+/// Upright, at one x; its upper side is where x is less.
+CutterSurface upright(double x) {
+    return {{{x, -1, -1}, {x, 2, -1}, {x, 2, 2}, {x, -1, 2}}, {{0, 2, 1}, {0, 3, 2}}};
+}
+
+double middle_of(const CellComplex& model, std::int32_t cell) {
+    const ComplexView view = model;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (std::size_t f = 0; f < view.face_count(); ++f) {
+        if (view.cell(f, 0) != cell && view.cell(f, 1) != cell) continue;
+        for (const NodeId v : view.face(f)) {
+            low = std::min(low, view.vertex(v)[0]);
+            high = std::max(high, view.vertex(v)[0]);
+        }
+    }
+    return (low + high) / 2;
+}
+
+TEST(NearPart, CellsThatTheSurfaceCrossesOrTouchesAreNear) {
+    const CellComplex model = row();
+    const auto inside = cells_near(model, upright(1.5), 1, nullptr);
+    const auto between = cells_near(model, upright(2), 2, nullptr);
+    for (std::int32_t c = 0; c < 8; ++c) {
+        const double x = middle_of(model, c);
+        EXPECT_EQ(inside[index(c)] != 0, x == 1.5);
+        EXPECT_EQ(between[index(c)] != 0, x == 1.5 || x == 2.5);
+    }
+}
+
+TEST(NearPart, TheOthersAreOnOneSideEach) {
+    const CellComplex model = row();
+    const CutterSurface surface = upright(1.5);
+    const auto sides =
+        sides_of_far_cells(model, surface, cells_near(model, surface, 1, nullptr), nullptr);
+    for (std::int32_t c = 0; c < 8; ++c) {
+        const double x = middle_of(model, c);
+        EXPECT_EQ(sides[index(c)], x < 1 ? kAbove : x < 2 ? kOn : kBelow);
+    }
+}
+
+TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
+    const CellComplex model = row();
+    const ComplexView all = model;
+    const auto is_near = cells_near(model, upright(1.5), 1, nullptr);
+    const NearPart part(model, is_near);
+    const ComplexView near = part.view();
+    ASSERT_EQ(near.cell_count(), 2U);
+    Pieces pieces;
+    std::vector<HalfCell> cells;
+    for (std::int32_t c = 0; index(c) < near.cell_count(); ++c)
+        cells.push_back({c, kAbove});
+    for (std::size_t f = 0; f < near.face_count(); ++f) {
+        const std::array own{near.cell(f, 0), near.cell(f, 1)};
+        pieces.add(
+            near.face(f),
+            {static_cast<std::int32_t>(f), own, {kAbove, own[1] < 0 ? kOn : kAbove}, false, own});
+    }
+    const std::vector<std::int8_t> sides(all.cell_count(), kAbove);
+    ASSERT_TRUE(part.put_back(pieces, cells, sides));
+    ASSERT_EQ(cells.size(), all.cell_count());
+    for (std::int32_t c = 0; index(c) < cells.size(); ++c)
+        EXPECT_EQ(cells[index(c)].cell, c);
+    ASSERT_EQ(pieces.size(), all.face_count());
+    for (std::size_t f = 0; f < pieces.size(); ++f) {
+        std::vector<NodeId> own(pieces.polygons[f].begin(), pieces.polygons[f].end());
+        std::array parts = pieces[f].parts;
+        if (parts[0] != all.cell(f, 0)) {  // it was turned over
+            std::swap(parts[0], parts[1]);
+            std::ranges::reverse(own);
+        }
+        EXPECT_EQ(parts, (std::array{all.cell(f, 0), all.cell(f, 1)}));
+        EXPECT_TRUE(std::ranges::equal(own, all.face(f)));
+    }
+}
+
+TEST(NearPart, AFaceBesideAnotherCellThatWasChangedIsTold) {
+    const CellComplex model = row();
+    const auto is_near = cells_near(model, upright(1.5), 1, nullptr);
+    const NearPart part(model, is_near);
+    Pieces pieces;  // none of the part's faces is left
+    std::vector<HalfCell> cells;
+    const std::vector<std::int8_t> sides(model.cell_block.size(), kAbove);
+    EXPECT_FALSE(part.put_back(pieces, cells, sides));
+}
+
+}  // namespace
+}  // namespace realmodel::cutting
