@@ -20,7 +20,7 @@ constexpr std::size_t kChunk = 1 << 10;
 /// What is nearer than so many units in the last place comes together, twice as many with every
 /// time that rounding makes pieces cross.
 constexpr double kNearest = 64;
-constexpr double kGrowth = 8;
+constexpr double kGrowth = 32;
 constexpr int kExactRounds = 4;
 constexpr int kMostRounds = 40;
 
