@@ -8,6 +8,7 @@ Each function in PICTURES is one chapter: it sets up a scene with the operators 
 keeps pictures. docs/images/walk.png is the contact sheet that scripts/test.sh --only gui left, if any.
 """
 
+import math
 import os
 import subprocess
 import sys
@@ -477,7 +478,108 @@ def quarry(walk):
     yield from keep(walk, "quarry", panels=["surfaces", "results"])
 
 
-CHAPTERS = (start, tour, modes, csv, quality, sculpt, section, quarry)
+# -- a graben between two faults, and a dome
+
+
+def structures(walk):
+    """The compartments of a graben moved apart."""
+    import bpy
+
+    yield from show_panels(walk, ["start"])
+    walk.area.spaces.active.show_region_ui = False
+    graben()
+    yield from build(walk)
+    group = bpy.context.scene.realmodel
+    group.explode_direction, group.explode = "COMPARTMENT", 0.4
+    frame(walk)
+    yield from settled(walk)
+    yield from keep(walk, "structures", "WINDOW")
+
+
+_FAULTS = {"West fault": (300.0, 0.22, 0.1), "East fault": (720.0, -0.2, -0.06)}
+_LAYERS = {"Basement": -420.0, "Sandstone": -300.0, "Marl": -200.0, "Limestone": -110.0}
+
+
+def _across(fault, y, z):
+    """x of a listric fault."""
+    x, lean, turn = _FAULTS[fault]
+    down = 150.0 - z
+    return x + turn * (y - 350.0) + lean * down * (0.5 + down / 1600.0)
+
+
+def _displaced(base, x, y):
+    """The height of a layer where the graben has sunk; None where the layer is missing beside a fault."""
+    z = base + 0.06 * x + 9.0 * math.sin(x / 250.0) * math.cos(y / 230.0)
+    if x < _across("West fault", y, z):
+        return z
+    if x > _across("East fault", y, z + 15.0):
+        return z + 15.0
+    sunk = z - 90.0
+    is_between = _across("West fault", y, sunk) < x < _across("East fault", y, sunk)
+    return sunk if is_between else None
+
+
+def graben():
+    """A model of points, two faults and a dome in the scene, not built yet."""
+    import bpy
+    import numpy as np
+    from realmodel.bl import library_rows, meshes
+
+    def added(name, places, triangles=()):
+        if len(triangles):
+            mesh = meshes.triangle_mesh(name, np.array(places, np.float32), np.array(triangles))
+        else:
+            mesh = bpy.data.meshes.new(name)
+            mesh.from_pydata(places, [], [])
+        item = bpy.data.objects.new(name, mesh)
+        bpy.context.scene.collection.objects.link(item)
+        return item
+
+    scene, random = bpy.context.scene, np.random.default_rng(3)
+    bpy.ops.realmodel.new()
+    bpy.ops.realmodel.rock_add()
+    rock = scene.realmodel.rocks[0]
+    for name, base in _LAYERS.items():
+        plan = random.uniform((2.0, 2.0), (998.0, 698.0), (260, 2)).tolist()
+        places = [(x, y, _displaced(base, x, y)) for x, y in plan]
+        bpy.ops.realmodel.surface_add(name=name, empty=True)
+        row = rock.surfaces[-1]
+        row.source, row.method = "POINTS_OBJECT", "kriging"
+        row.object = added(name, [place for place in places if place[2] is not None])
+        row.object.hide_set(True)
+    bpy.ops.realmodel.surface_add(name="Cover", empty=True)
+    cover = rock.surfaces[-1]
+    cover.source, cover.method, cover.value = "NONE", "constant", 0.0
+    for row in rock.surfaces:
+        row.property_id = library_rows.for_surface(scene, row.name)
+    corners = [(0.0, 0.0, 0.0), (1000.0, 0.0, 0.0), (1000.0, 700.0, 0.0), (0.0, 700.0, 0.0)]
+    rock.region = added("region", corners, [[0, 1, 2], [0, 2, 3]])
+    rock.region.hide_set(True)
+    rock.edge_length, rock.use_base, rock.base_elevation = 30.0, True, -640.0
+    heights, along = np.linspace(-650.0, 150.0, 9), np.linspace(-150.0, 850.0, 6)
+    n = len(heights)
+    quads = [j * n + i for j in range(len(along) - 1) for i in range(n - 1)]
+    triangles = [t for a in quads for t in ((a, a + 1, a + n + 1), (a, a + n + 1, a + n))]
+    chosen = [
+        added(name, [(_across(name, y, z), y, z) for y in along for z in heights], triangles)
+        for name in _FAULTS
+    ]
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=40, ring_count=24)
+    dome = bpy.context.object
+    dome.name = "Salt"
+    for vertex in dome.data.vertices:
+        x, y, z = vertex.co
+        wide = 95.0 * (1.25 - 0.35 * z)
+        vertex.co = (860.0 + x * wide, 500.0 + y * wide, -400.0 + 330.0 * z)
+    for item in bpy.context.view_layer.objects:
+        item.select_set(item in (*chosen, dome))
+    bpy.ops.realmodel.fault_body_from_selected()
+    for row in scene.realmodel.faults:
+        row.youngest = "Limestone"
+    scene.realmodel.bodies[0].after = "Limestone"
+
+
+CHAPTERS = (start, tour, modes, csv, quality, sculpt, section, quarry, structures)
 
 if __name__ == "__main__":
     if "bpy" in sys.modules:

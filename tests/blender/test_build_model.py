@@ -8,8 +8,9 @@ import unittest
 from pathlib import Path
 
 import bpy
+import realmodel
 from blender_state import empty_file, open_edges, pixels
-from realmodel.bl import scene
+from realmodel.bl import compartments, scene
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / "blend_samples" / "two_layers" / "project.toml"
@@ -54,6 +55,44 @@ class BuildModel(unittest.TestCase):
         blocks = scene.model_objects(bpy.context.scene, "block")
         self.assertEqual([block.name for block in blocks][-1], "Sand")
         self.assertEqual([open_edges(block.data) for block in blocks], [0, 0])
+
+    def test_faults_and_bodies(self):
+        """Rendered and written as any other; the .blend builds again what it has."""
+        square = "0 0 {z}\n10 0 {z}\n10 10 {z}\n0 10 {z}\n"
+        for name, z in (("low", 0), ("high", 4)):
+            text = "OFF\n4 2 0\n" + square.format(z=z) + "3 0 1 2\n3 0 2 3\n"
+            (self.folder / f"{name}.off").write_text(text)
+        wall = "OFF\n4 2 0\n6 -1 -9\n6 11 -9\n6 11 9\n6 -1 9\n3 0 1 2\n3 0 2 3\n"
+        (self.folder / "wall.off").write_text(wall)
+        corners = "1 1 1\n3 1 1\n1 3 1\n1 1 3\n"
+        (self.folder / "ore.off").write_text(f"OFF\n4 4 0\n{corners}3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n")
+        project = self.folder / "p.toml"
+        project.write_text(
+            'format = 1\nname = "x"\n[[rock]]\nname = "r"\n[[rock.surface]]\nname = "low"\nmesh = "low.off"\n'
+            '[[rock.surface]]\nname = "high"\nmesh = "high.off"\n[[fault]]\nname = "F"\nmesh = "wall.off"\n'
+            '[[body]]\nname = "ore"\nmesh = "ore.off"\n'
+        )
+        blend, picture = self.folder / "m.blend", self.folder / "m.png"
+        done = build_model(project, "--blend", blend, "--render", picture)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(pixels(picture).shape, (1000, 1600, 3))
+        empty_file()
+        realmodel.register()
+        self.addCleanup(realmodel.unregister)
+        bpy.ops.wm.open_mainfile(filepath=str(blend))
+        current = bpy.context.scene
+        kinds = {item["realmodel_surface"]: item["realmodel"] for item in scene.model_objects(current)}
+        self.assertEqual({kinds["F"], kinds["low"]}, {"fault", "interface"})
+        self.assertEqual(len(scene.model_objects(current, "body")), 1)
+        self.assertEqual(len(compartments.names(current)), 2)
+        volumes = {row.name: float(row.volume_exact) for row in current.realmodel.results}
+        self.assertAlmostEqual(volumes["ore"], 8 / 6, places=9)
+        self.assertAlmostEqual(sum(volumes.values()), 400.0, places=9)
+        for path in self.folder.glob("*.off"):
+            path.unlink()
+        bpy.ops.realmodel.build()
+        again = {row.name: float(row.volume_exact) for row in current.realmodel.results}
+        self.assertEqual(again, volumes)
 
     def test_refused(self):
         project = self.folder / "p.toml"

@@ -10,7 +10,7 @@ from mathutils import Matrix
 from panel_case import PanelCase, ops, raise_by, select, sheet
 from realmodel.bl import choices, compartments, meshes, project_settings, settings, viewports
 from realmodel.bl import scene as model_tree
-from realmodel.bl.display import bodies, colors, coordinates, modes, sections
+from realmodel.bl.display import bodies, colors, coordinates, modes, sections, viewpoints
 from realmodel.core import load_project
 
 THROW = 4.0
@@ -430,6 +430,9 @@ class Views(StructureCase):
         self.assertAlmostEqual(x.max(), 125.0, places=3)
         self.assertFalse(((x > 26.0) & (x < 74.0)).any())
         self.assertEqual(tuple(item.delta_location), (0.0, 0.0, 0.0))
+        points = viewpoints.model_points(self.scene)
+        self.assertLess(points[:, 0].min(), -24.0)  # the frame has room for them
+        self.assertLess(points[:, 1].max(), 101.0)  # and none for what reaches beyond the rock
         place = coordinates.under_ray(self.scene, (-15.0, 50.0, 100.0), (0.0, 0.0, -1.0))
         self.assertAlmostEqual(place.x, 10.0, places=3)
         self.assertEqual(place.block, "S2 block")

@@ -77,8 +77,9 @@ def still_open(remembered):
 
 
 def frame(current, shown):
-    """Turns viewports to the model of a scene, and lets them see that far."""
-    frame_items(scene.model_objects(current), shown)
+    """Turns viewports to the model of a scene, and lets them see that far; faults and bodies may reach far
+    beyond it."""
+    frame_items(scene.model_objects(current, "interface") + scene.model_objects(current, "block"), shown)
 
 
 def frame_items(items, shown):

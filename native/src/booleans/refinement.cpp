@@ -20,7 +20,7 @@ constexpr std::size_t kChunk = 1 << 10;
 /// What is nearer than so many units in the last place comes together, twice as many with every
 /// time that rounding makes pieces cross.
 constexpr double kNearest = 64;
-constexpr double kGrowth = 8;
+constexpr double kGrowth = 32;
 constexpr int kExactRounds = 4;
 constexpr int kMostRounds = 40;
 
@@ -161,6 +161,17 @@ bool Refiner::round() {
     if (is_first_) {
         is_first_ = false;
         division.divide(meetings);
+        // a corner that touches a triangle within divides nothing: the next round gives it to that
+        for (const auto& met : meetings) {
+            if (met.in_one_plane || met.ends[0].to != kNone || met.ends[1].to != kNone ||
+                met.ends[0].from != met.ends[1].from)
+                continue;
+            for (const std::int32_t triangle : {met.one, met.other}) {
+                const std::int32_t input = division.piece(triangle).input;
+                for (std::size_t k = 0; k < pieces_.of(input).size(); ++k)
+                    pieces_[{input, static_cast<std::int32_t>(k)}].is_fresh = true;
+            }
+        }
         find_fresh(touched);
         return true;
     }

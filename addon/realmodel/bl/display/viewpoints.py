@@ -12,7 +12,7 @@ from mathutils import Quaternion, Vector
 
 from ...core import InputRefused
 from .. import caches, exaggeration, meshes, viewports
-from . import bodies
+from . import bodies, modes
 
 _H = 0.5**0.5
 DIRECTIONS = {  # as Blender's own axis views
@@ -106,7 +106,7 @@ def _remember(space):
 def model_points(scene):
     """(N, 3) float64: corners of the boxes around all blocks, or interfaces before a build, in the world."""
     group = scene.realmodel
-    items = [row.object for row in group.results]
+    items = [_framed(scene, row) for row in group.results]
     if not len(items):
         items = [surface.interface for rock in group.rocks for surface in rock.surfaces]
     items += list(bodies.of_kind(scene, bodies.SECTION).values())
@@ -122,6 +122,11 @@ def model_points(scene):
         matrix = np.array(exaggeration.world_matrix(item), np.float64)
         found.append(box @ matrix[:3, :3].T + matrix[:3, 3])
     return np.concatenate(found) if found else np.empty((0, 3))
+
+
+def _framed(scene, row):
+    """A block, or its parts where compartments are moved apart."""
+    return modes.body_of(scene, row) or row.object if modes.apart_shown(scene) else row.object
 
 
 def _frame(scene, space):

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A fault and a body from selected meshes, and the compartments moved apart, as seen in the window."""
+
+import bpy
+import numpy as np
+from realmodel.bl import compartments, meshes
+from realmodel.bl.display import bodies, shades
+from steps_1_panel import idle
+from steps_2_view import in_the_viewport
+from steps_3_import import invoked
+
+_WALL = ([(50, -20, -60), (50, 120, -60), (50, 120, 60), (50, -20, 60)], [[0, 1, 2], [0, 2, 3]])
+
+
+def _sheet(height):
+    parts = [(0, 50, height), (50, 100, height - 12)]
+    corners = [
+        (x, y, z) for west, east, z in parts for x, y in ((west, 0), (east, 0), (east, 100), (west, 100))
+    ]
+    return corners, [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]
+
+
+def _object(name, vertices, triangles):
+    item = bpy.data.objects.new(name, meshes.triangle_mesh(name, np.array(vertices, np.float32), triangles))
+    bpy.context.scene.collection.objects.link(item)
+    return item
+
+
+def _select(items):
+    bpy.context.view_layer.update()
+    for item in bpy.context.view_layer.objects:
+        item.select_set(item in items)
+    bpy.context.view_layer.objects.active = items[-1]
+
+
+def compartments_apart(walk):
+    """Both colors of the compartments are seen, with the background between them."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    yield walk.redrawn(2)
+    for item in list(bpy.data.objects):
+        bpy.data.objects.remove(item)
+    with in_the_viewport(walk):
+        _select([_object(f"S{n}", *_sheet(30.0 * n)) for n in range(2)])
+        bpy.ops.realmodel.from_selected()
+        _select([_object("Fault", *_WALL)])
+        bpy.ops.realmodel.fault_body_from_selected()
+    walk.over_viewport()
+    invoked(walk, bpy.ops.realmodel.build)
+    yield lambda: idle() and len(bpy.context.scene.realmodel.results) > 0
+    group = bpy.context.scene.realmodel
+    assert len(compartments.names(bpy.context.scene)) == 2
+    group.color_by = "COMPARTMENT"
+    group.explode_direction, group.explode = "COMPARTMENT", 1.0
+    with in_the_viewport(walk):
+        bpy.ops.realmodel.view_all()
+    yield walk.redrawn(3)
+    assert bodies.of_kind(bpy.context.scene, bodies.CELLS)
+    shown = walk.shot("compartments")
+    for number in range(2):
+        red, green, blue = shades.compartment_color(number)
+        ratio = shown[..., :3] / np.maximum(shown[..., :3].max(axis=2, keepdims=True), 1e-3)
+        wanted = np.array([red, green, blue]) / max(red, green, blue)
+        assert (np.abs(ratio - wanted).max(axis=2) < 0.06).sum() > 500, number
+
+
+STEPS = (compartments_apart,)
