@@ -159,6 +159,21 @@ def test_a_fault_that_ends_inside_is_refused():
         build(Project("p", [rock(surfaces(*FAULTED))], faults=[fault]))
 
 
+def torn(z):
+    """Two level sheets that meet nowhere: x below 5 at z, beyond it 0.4 higher."""
+    corners = [[0, 0], [5, 0], [5, 10], [0, 10], [5, 0], [10, 0], [10, 10], [5, 10]]
+    heights = [z] * 4 + [z + 0.4] * 4
+    triangles = np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]], np.int32)
+    return np.column_stack([np.array(corners, float), heights]), triangles
+
+
+def test_a_fault_that_dies_out_in_torn_surfaces_is_refused_for_them():
+    given = [Surface(f"S{k}", *torn(k)) for k in range(3)]
+    fault = Fault("F", *plane_fault(y=(-5.0, 6.0)), dies_out=True)
+    with pytest.raises(InputRefused, match=r"beyond its tip the surfaces differ .*data beyond the tip"):
+        build(Project("p", [rock(given)], faults=[fault]))
+
+
 def level(z):
     return lambda x, y: np.full(len(x), float(z))
 

@@ -20,7 +20,7 @@ def refused_structure(error, structures) -> InputRefused:
     """The refusal for a native InputError about structures; the caller raises it."""
     place = tuple(error.place) if error.place is not None else None
     near = f" near {place_text(place)}" if place else ""
-    advice = _ADVICE.get(error.kind)
+    advice: str | None = _ADVICE.get(error.kind)
     if not 0 <= error.surface < len(structures):
         return InputRefused(f"{error}{near}", advice=advice, place=place)
     count = len(structures.faults)
@@ -30,6 +30,9 @@ def refused_structure(error, structures) -> InputRefused:
     what, items = str(error), [int(item) for item in error.items]
     if error.kind == "does_not_meet" and items:
         what = f"it ends at fault '{structures.faults[items[0]].name}', but does not meet it"
+    elif error.kind == "ends_inside" and is_fault and entry.dies_out:
+        what = "beyond its tip the surfaces differ on its two sides"
+        advice = "extend it, or give data beyond the tip that agree"
     elif error.kind == "ends_inside":
         what = "it ends inside the rock that it displaces"
     elif items:
