@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
+from hypothesis.internal.conjecture import providers
 
 ROOT = Path(__file__).resolve().parents[2]
 for folder in (ROOT / "addon", Path(__file__).parent):
@@ -14,7 +15,10 @@ for folder in (ROOT / "addon", Path(__file__).parent):
         sys.path.insert(0, str(folder))
 
 # Hypothesis draws the same in each run, whatever the load of the machine; looking further is what stacks.hunt
-# and stacks.cut_hunt are for
+# and stacks.cut_hunt are for. It would also draw numbers that it finds in the source of what is imported:
+# then each change of the program, and each choice of tests, had examples of its own.
+assert callable(providers._get_local_constants), "this version of Hypothesis has another name for it"
+providers._get_local_constants = providers.Constants
 settings.register_profile(
     "same examples",
     derandomize=True,

@@ -5,6 +5,8 @@ The same stacks on every run. To look further than these, and to make a failing 
 python -m tests.core.stacks.hunt SECONDS SEED [--stack FILE]
 """
 
+from random import Random
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, assume, given, settings
@@ -69,6 +71,11 @@ def test_order_and_orientation_do_not_matter(family, rng):
     changed = built(other)["volumes"]
     allowed = volume_allowance(stack, volumes)
     assert (np.abs(volumes - changed) <= allowed).all(), (volumes, changed)
+
+
+def test_a_surface_without_triangles_stays_one_when_it_is_disordered():
+    vertices, triangles = disordered(Random(1), np.zeros((3, 3)), np.empty((0, 3), np.int32))
+    assert vertices.shape[1] == 3 and triangles.shape == (0, 3)
 
 
 @settings(usual, max_examples=100)

@@ -139,7 +139,8 @@ def disordered(rng, vertices, triangles):
     rows = list(range(len(triangles)))
     rng.shuffle(rows)
     turned = [t[::-1] if rng.random() < 0.5 else t for t in triangles[rows]]
-    return vertices, np.array([np.roll(t, rng.randrange(3)) for t in turned], np.int32)
+    rolled = [np.roll(t, rng.randrange(3)) for t in turned]
+    return vertices, np.array(rolled, np.int32).reshape(-1, 3)
 
 
 def with_flat_triangles(rng, vertices, triangles):
