@@ -17,7 +17,7 @@ CutterSides::CutterSides(SurfaceOverlay& overlay, const CutterWinding& winding, 
       sides_(2 * (overlay.size() + overlay.model().face_count())) {
     checked_number(2 * (overlay.size() + overlay.model().face_count()), "faces and their parts");
     refuse_borders();
-    join_beside_surface(overlay, winding, *this, progress,
+    join_beside_surface(overlay, winding, cells_reaching(), progress,
                         [this](std::int32_t a, std::int32_t b) { join(a, b, false); });
     for (std::size_t e = 0; e < winding.edge_count(); ++e) {
         poll(progress, e);
@@ -47,7 +47,7 @@ std::vector<std::uint8_t> cells_near_surface(const SurfaceOverlay& overlay,
 }
 
 void join_beside_surface(SurfaceOverlay& overlay, const CutterWinding& winding,
-                         const PartSides& sides, const Progress* progress,
+                         std::span<const std::uint8_t> reaches, const Progress* progress,
                          const std::function<void(std::int32_t, std::int32_t)>& join) {
     const ComplexView& model = overlay.model();
     std::vector<std::int32_t> first(model.cell_block.size(), -1);
@@ -57,7 +57,7 @@ void join_beside_surface(SurfaceOverlay& overlay, const CutterWinding& winding,
         for (std::size_t k = 0; k < 2; ++k) {
             const std::int32_t cell = model.cell(face, k);
             if (cell < 0) continue;
-            if (sides.reaches(cell)) {
+            if (reaches[index(cell)] != 0) {
                 reached = true;
                 continue;
             }

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
@@ -45,7 +46,9 @@ public:
     bool reaches(std::int32_t cell) const { return reaches_[index(cell)] != 0; }
 
 protected:
+    /// @param reaches  of cells (cells_near_surface)
     explicit PartSides(std::vector<std::uint8_t> reaches) : reaches_(std::move(reaches)) {}
+    std::span<const std::uint8_t> cells_reaching() const { return reaches_; }
 
 private:
     std::vector<std::uint8_t> reaches_;
@@ -60,8 +63,9 @@ std::vector<std::uint8_t> cells_near_surface(const SurfaceOverlay& overlay,
 /// Calls join(one, other) for items that are on the same side: those around a cell that does not
 /// reach the surface, and those that meet at an edge that is none of the surface's. An item is a
 /// region of a face, or, counted after all regions, a face that has none.
+/// @param reaches  of cells (cells_near_surface)
 void join_beside_surface(SurfaceOverlay& overlay, const CutterWinding& winding,
-                         const PartSides& sides, const Progress* progress,
+                         std::span<const std::uint8_t> reaches, const Progress* progress,
                          const std::function<void(std::int32_t, std::int32_t)>& join);
 
 /// On which side of a surface everything is. Going round its edges, the side changes with every

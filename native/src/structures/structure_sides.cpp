@@ -18,17 +18,6 @@ namespace {
 
 constexpr std::int32_t kUnknown = INT32_MIN;
 
-/// Sides are found here; what parts of cells are wanted is not asked.
-class NoParts : public cutting::PartSides {
-public:
-    explicit NoParts(const std::vector<std::uint8_t>& near) : PartSides(near) {}
-    std::int8_t of_region(std::size_t) const override { return cutting::kOn; }
-    std::int8_t of_face(std::size_t) const override { return cutting::kOn; }
-    std::int8_t of_cap(std::size_t, std::size_t, std::int32_t) const override {
-        return cutting::kOn;
-    }
-};
-
 }  // namespace
 
 StructureSides::StructureSides(SurfaceOverlay& overlay, const CutterWinding& winding,
@@ -131,8 +120,7 @@ bool StructureSides::is_known_in_rock_alone(std::span<const EdgeUse> uses) const
 /// What bounds one sector around an edge is in one part. This is said of sectors beside the rock,
 /// too, for the sake of cells that rounding flattened away.
 void StructureSides::join_sectors(const Progress* progress) {
-    const NoParts near(near_);
-    cutting::join_beside_surface(overlay_, winding_, near, progress,
+    cutting::join_beside_surface(overlay_, winding_, near_, progress,
                                  [this](std::int32_t a, std::int32_t b) { joined_.join(a, b); });
     const auto item_at = [this](const EdgeUse& use, std::size_t side) {
         const auto item = index(use.item);

@@ -10,6 +10,7 @@
 namespace realmodel::cutting {
 namespace {
 
+using strata::box;
 using strata::CellComplex;
 using strata::grid;
 using strata::OwnedSurface;
@@ -23,20 +24,6 @@ CellComplex level_layers(const std::vector<double>& heights, double size = 2, in
     for (const double z : heights)
         surfaces.push_back(grid(n, n, 0, 0, size, size, [z](double, double) { return z; }));
     return strata::build(surfaces);
-}
-
-OwnedSurface box(std::array<double, 3> low, std::array<double, 3> high) {
-    OwnedSurface s;
-    for (int i = 0; i < 8; ++i) {
-        s.vertex((i & 4) != 0 ? high[0] : low[0], (i & 2) != 0 ? high[1] : low[1],
-                 (i & 1) != 0 ? high[2] : low[2]);
-    }
-    for (const auto& q : std::vector<std::array<int, 4>>{
-             {0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
-        s.triangle(q[0], q[1], q[2]);
-        s.triangle(q[0], q[2], q[3]);
-    }
-    return s;
 }
 
 double sum(const std::vector<double>& values) {

@@ -54,6 +54,21 @@ inline OwnedSurface grid(int nx, int ny, double x0, double y0, double x1, double
     return s;
 }
 
+/// A closed box.
+inline OwnedSurface box(std::array<double, 3> low, std::array<double, 3> high) {
+    OwnedSurface s;
+    for (int i = 0; i < 8; ++i) {
+        s.vertex((i & 4) != 0 ? high[0] : low[0], (i & 2) != 0 ? high[1] : low[1],
+                 (i & 1) != 0 ? high[2] : low[2]);
+    }
+    for (const auto& q : std::vector<std::array<int, 4>>{
+             {0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}}) {
+        s.triangle(q[0], q[1], q[2]);
+        s.triangle(q[0], q[2], q[3]);
+    }
+    return s;
+}
+
 inline CellComplex build(const std::vector<OwnedSurface>& surfaces,
                          std::optional<double> base = std::nullopt, int threads = 1) {
     StackInput input;
