@@ -165,7 +165,7 @@ def test_a_mesh_on_one_side_only():
 
 
 def test_bays_of_the_outline_are_not_filled():
-    """Where the fault leaves the mesh the outline may bend inward: that is no gap."""
+    """Where the fault leaves the mesh, the outline may bend inward. That is not a gap."""
     vertices, triangles = strip(range(11), lambda x, y: 0 * x)
     top = vertices[:, 1] == 10.0
     vertices[top, 1] -= 0.9 - 0.18 * np.abs(vertices[top, 0] - 5.0)

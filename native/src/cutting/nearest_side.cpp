@@ -74,7 +74,7 @@ std::array<Position, 3> NearestSide::corners(std::int32_t triangle) const {
 }
 
 std::int8_t NearestSide::operator()(const Position& p) const {
-    constexpr double kAlike = 1e-9;  // of squared distances that are told apart no more
+    constexpr double kAlike = 1e-9;  // squared distances that differ by less count as equal
     struct Near {
         double distance, square;
         std::int32_t triangle;

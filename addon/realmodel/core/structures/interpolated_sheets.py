@@ -33,7 +33,7 @@ class InterpolatedSurface:
         self.keys = keys_of(entry.structure, number, self.sides)
         self.made: dict[
             int, tuple
-        ] = {}  # interpolation and what is told of its vertices, by the id of a sheet
+        ] = {}  # the interpolation and the diagnostics of its vertices, by the id of a sheet
         self.most = (-1, None)
 
     def own(self, family: Family) -> np.ndarray:

@@ -71,7 +71,7 @@ class Structures:
         )
 
     def has_block(self, number: int) -> bool:
-        """Whether a structure has a block: a body that is no void, and is there."""
+        """Whether a structure has a block: a body that is not void and exists in some rock mass."""
         body = number - len(self.faults)
         return body >= 0 and not self.bodies[body].void and bool(self.times[body])
 
