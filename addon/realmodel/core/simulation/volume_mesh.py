@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# The corners of each kind of element. They stand as in Gmsh, CGNS and Abaqus: of the first face (three or four
-# corners) counter-clockwise as seen from the rest of the element, so that volumes are positive; of a prism and
-# a hexahedron then the corners above them in the same order. VTK turns prisms the other way round.
+# The corners of each kind of element. They stand as in Gmsh, CGNS and Abaqus: of the first face (three or
+# four corners) counter-clockwise as seen from the rest of the element, so that volumes are positive; of a
+# prism and a hexahedron then the corners above them in the same order. VTK turns prisms the other way round.
 CORNERS = {"tetrahedron": 4, "pyramid": 5, "prism": 6, "hexahedron": 8}
 
 
