@@ -28,19 +28,18 @@ class ColumnFiller {
 public:
     ColumnFiller(const PlanTopology& plan, const RockBlocks& blocks, const ColumnHeights& columns,
                  const PostLevels& levels, LayeredMesh& mesh)
-        : plan_(plan), blocks_(blocks), columns_(columns), levels_(levels), mesh_(mesh) {}
+        : plan_(plan),
+          blocks_(blocks),
+          columns_(columns),
+          levels_(levels),
+          mesh_(mesh),
+          is_parted_(levels.level_count(), 0) {
+        find_parted();
+    }
 
     void fill(std::size_t t) {
-        t_ = t;
-        rock_ = plan_.rock(t);
-        for (std::size_t i = 0; i < 3; ++i) {
-            post_[i] = index(plan_.posts()[3 * t + i]);
-            node_[i] = plan_.mesh().triangles[t][i];
-            own_[i] = levels_.levels(post_[i]);
-            if (columns_.rock(post_[i]) != rock_ || rock_ < 0) return;
-        }
+        if (!load(t)) return;
         const auto layer_blocks = levels_.layer_blocks(rock_);
-        find_step();
         for (std::size_t i = 0; i < 3; ++i)
             front_[i] = own_[i][0];
         last_block_ = -1;
@@ -49,8 +48,13 @@ public:
             layer_ = static_cast<std::int32_t>(l);
             const Front top{own_[0][l + 1], own_[1][l + 1], own_[2][l + 1]};
             if (top == front_) continue;
-            if (has_step_) pass_lines(top);
-            move(top, {0, 1, 2});
+            Front parted = front_;
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (is_parted_[levels_.level_offset(post_[i]) + l] != 0) parted[i] = top[i];
+            }
+            if (has_step_ && parted != front_) pass_lines(parted);
+            move(parted);
+            move(top);
         }
         if (last_block_ >= 0) add_flat_face(-1);
     }
@@ -87,6 +91,53 @@ private:
         return {point(0, front[0]), point(1, front[1]), point(2, front[2])};
     }
 
+    /// The posts of a triangle; false where nothing stands on it.
+    bool load(std::size_t t) {
+        t_ = t;
+        rock_ = plan_.rock(t);
+        for (std::size_t i = 0; i < 3; ++i) {
+            post_[i] = index(plan_.posts()[3 * t + i]);
+            node_[i] = plan_.mesh().triangles[t][i];
+            own_[i] = levels_.levels(post_[i]);
+            if (columns_.rock(post_[i]) != rock_ || rock_ < 0) return false;
+        }
+        find_step();
+        return true;
+    }
+
+    /// A layer of a post beside a step is parted where the other side has heights within it. There
+    /// the corner moves before the others, in all triangles at the post; so do both ends of an edge
+    /// on a step, if one of them does. (No other edge has two ends on steps: PlanTopology.)
+    void find_parted() {
+        std::vector<std::array<std::size_t, 2>> pairs;  // levels of both ends
+        for (std::size_t t = 0; t < plan_.triangles(); ++t) {
+            if (!plan_.is_step(t, 0) && !plan_.is_step(t, 1) && !plan_.is_step(t, 2)) continue;
+            if (!load(t) || !has_step_) continue;
+            const auto [u, v] = step_;
+            for (std::size_t l = 0; l + 1 < own_[u].size(); ++l) {
+                const std::size_t at_u = levels_.level_offset(post_[u]) + l,
+                                  at_v = levels_.level_offset(post_[v]) + l;
+                pairs.push_back({at_u, at_v});
+                const std::array<std::int32_t, 2> low{own_[u][l], own_[v][l]},
+                    high{own_[u][l + 1], own_[v][l + 1]};
+                const bool parted = std::any_of(lines_.begin(), lines_.end(), [&](const auto& line) {
+                    return line[0] >= low[0] && line[1] >= low[1] && line[0] <= high[0] &&
+                           line[1] <= high[1] && line != low && line != high;
+                });
+                if (parted || high[0] > low[0] + 1) is_parted_[at_u] = 1;
+                if (parted || high[1] > low[1] + 1) is_parted_[at_v] = 1;
+            }
+        }
+        for (bool any = true; any;) {
+            any = false;
+            for (const auto& [u, v] : pairs) {
+                if (is_parted_[u] == is_parted_[v]) continue;
+                is_parted_[u] = is_parted_[v] = 1;
+                any = true;
+            }
+        }
+    }
+
     /// The edge on a step, and the levels of the other side along it.
     void find_step() {
         has_step_ = false;
@@ -121,13 +172,14 @@ private:
             Front next = front_;
             next[u] = to_u;
             next[v] = to_v;
-            move(next, {u, v, v});
+            move(next);
         }
     }
 
     /// Moves the front; corners that have heights in between go alone first, in the order of their
     /// nodes, so that both triangles at an edge do the same.
-    void move(const Front& to, std::array<std::size_t, 3> corners) {
+    void move(const Front& to) {
+        std::array<std::size_t, 3> corners{0, 1, 2};
         std::sort(corners.begin(), corners.end(),
                   [&](std::size_t a, std::size_t b) { return node_[a] < node_[b]; });
         for (const std::size_t c : corners) {
@@ -258,6 +310,7 @@ private:
     std::array<std::size_t, 2> step_{};
     std::vector<std::array<std::int32_t, 2>> lines_;
     std::vector<SideFace> step_faces_;
+    std::vector<std::uint8_t> is_parted_;  ///< of each layer of each post
 };
 
 /// Calls visit(corner) for the corners of all elements and faces.

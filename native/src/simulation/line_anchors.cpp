@@ -20,12 +20,12 @@ double distance(const PlanPoint& a, const PlanPoint& b) {
     return std::hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-/// Points in a grid of squares, at least `spacing` apart.
+/// Points in a grid of squares, at least `spacing` apart; those of one chain, `share` of it.
 class SparsePoints {
 public:
     SparsePoints(const PlanPoint& origin, double side) : origin_(origin), side_(side) {}
 
-    bool add(const PlanPoint& p, double spacing) {
+    bool add(const PlanPoint& p, double spacing, std::int32_t chain, double share) {
         const auto [column, row] = square(p);
         const auto reach = static_cast<std::int64_t>(std::ceil(spacing / side_));
         for (std::int64_t c = column - reach; c <= column + reach; ++c) {
@@ -33,12 +33,14 @@ public:
                 const auto found = squares_.find(key(c, r));
                 if (found == squares_.end()) continue;
                 for (const std::int32_t i : found->second) {
-                    if (distance(points[index(i)], p) < spacing) return false;
+                    const bool is_own = chains_[index(i)] == chain || chains_[index(i)] < 0;
+                    if (distance(points[index(i)], p) < (is_own ? share : 1) * spacing) return false;
                 }
             }
         }
         squares_[key(column, row)].push_back(static_cast<std::int32_t>(points.size()));
         points.push_back(p);
+        chains_.push_back(chain);
         return true;
     }
     std::vector<PlanPoint> points;
@@ -53,6 +55,7 @@ private:
     }
     PlanPoint origin_;
     double side_;
+    std::vector<std::int32_t> chains_;  ///< of each point; -1 of corners
     std::unordered_map<std::int64_t, std::vector<std::int32_t>> squares_;
 };
 
@@ -151,8 +154,8 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
     for (const PlanPoint& p : traces.points)
         widest = std::max(widest, spacing(p));
     SparsePoints anchors(traces.points.front(), widest);
-    const auto add = [&](const PlanPoint& p, double share = 1) {
-        return anchors.add(p, share * spacing(p));
+    const auto add = [&](const PlanPoint& p, std::int32_t chain = -1, double share = 1) {
+        anchors.add(p, spacing(p), chain, share);
     };
 
     std::vector<std::pair<double, std::int32_t>> corners;
@@ -182,8 +185,9 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
             }
             if (has_step != steps) continue;
             const double share = steps ? kNearerOnSteps : 1;
-            add(traces.points[index(chain.front())], share);
-            add(traces.points[index(chain.back())], share);
+            const auto number = static_cast<std::int32_t>(c);
+            add(traces.points[index(chain.front())], number, share);
+            add(traces.points[index(chain.back())], number, share);
             // evenly, then as densely as it takes that none is far from an anchor
             const double apart = spacing(traces.points[index(chain[chain.size() / 2])]);
             const double pieces = steps ? std::ceil(length / (M_SQRT2 * apart))
@@ -196,7 +200,7 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
                     const double own = distance(p, q);
                     for (; next < before + own; next += step) {
                         const double part = (next - before) / own;
-                        add({p[0] + part * (q[0] - p[0]), p[1] + part * (q[1] - p[1])}, share);
+                        add({p[0] + part * (q[0] - p[0]), p[1] + part * (q[1] - p[1])}, number, share);
                     }
                     before += own;
                 }

@@ -194,13 +194,20 @@ void PlanTopology::find_posts() {
     }
     post_.assign(3 * triangles(), -1);
     post_node_.clear();
-    posts_of_node_.assign(nodes(), 0);
+    on_step_.assign(nodes(), 0);
+    for (std::size_t t = 0; t < triangles(); ++t) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (neighbor_[t][i] >= 0 && is_step(t, i)) {
+                on_step_[index(mesh_.triangles[t][i])] = 1;
+                on_step_[index(mesh_.triangles[t][(i + 1) % 3])] = 1;
+            }
+        }
+    }
     for (std::size_t c = 0; c < 3 * triangles(); ++c) {
         const auto root = index(sets.find(static_cast<std::int32_t>(c)));
         if (root == c) {
             post_[c] = static_cast<std::int32_t>(post_node_.size());
             post_node_.push_back(node(c));
-            ++posts_of_node_[index(node(c))];
         } else {
             post_[c] = post_[root];
         }
@@ -213,11 +220,14 @@ bool PlanTopology::divide_between_steps() {
     std::vector<std::uint8_t> is_closed(triangles(), 0);
     bool any = false;
     for (std::size_t t = 0; t < triangles(); ++t) {
-        is_closed[t] = is_step(t, 0) && is_step(t, 1) && is_step(t, 2);
+        is_closed[t] = 1;
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (neighbor_[t][i] < 0 || !is_step(t, i)) is_closed[t] = 0;
+        }
         any = any || is_closed[t] != 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t a = mesh_.triangles[t][i], b = mesh_.triangles[t][(i + 1) % 3];
-            if (is_step(t, i) || !is_divided(a) || !is_divided(b)) continue;
+            if ((is_step(t, i) && neighbor_[t][i] >= 0) || !is_on_step(a) || !is_on_step(b)) continue;
             if (middles.contains(edge_of(a, b))) continue;
             const PlanPoint p = mesh_.vertices[index(a)], q = mesh_.vertices[index(b)];
             middles[edge_of(a, b)] = static_cast<std::int32_t>(nodes());

@@ -35,8 +35,8 @@ public:
     const std::vector<std::int32_t>& posts() const { return post_; }
     std::size_t post_count() const { return post_node_.size(); }
     std::int32_t post_node(std::size_t post) const { return post_node_[post]; }
-    /// Whether a node has several posts.
-    bool is_divided(std::int32_t node) const { return posts_of_node_[static_cast<std::size_t>(node)] > 1; }
+    /// Whether a node is an end of an edge on a step with triangles on both sides.
+    bool is_on_step(std::int32_t node) const { return on_step_[static_cast<std::size_t>(node)] != 0; }
 
 private:
     void link();
@@ -49,7 +49,8 @@ private:
     const PlanLines& lines_;
     meshing::PlanarMesh mesh_;
     std::vector<std::array<std::int32_t, 3>> neighbor_, segment_;
-    std::vector<std::int32_t> rock_, post_, post_node_, posts_of_node_;
+    std::vector<std::int32_t> rock_, post_, post_node_;
+    std::vector<std::uint8_t> on_step_;
 };
 
 }  // namespace realmodel::simulation

@@ -168,7 +168,7 @@ PostLevels::PostLevels(const PlanTopology& plan, const PlanLines& lines, const R
                                                           (2 * static_cast<std::int64_t>(most)));
             at += parts;
         }
-        if (plan.is_divided(plan.post_node(p))) {
+        if (plan.is_on_step(plan.post_node(p))) {
             std::int32_t& number = divided_of[index(plan.post_node(p))];
             if (number < 0) {
                 number = static_cast<std::int32_t>(divided.size());
@@ -266,9 +266,7 @@ void PostLevels::join_crossing(const PlanTopology& plan, std::vector<Divided>& n
             edges.push_back(edge);
         }
     }
-    // at the end of a step both sides have one post, whose levels stay
     const auto gap = [&](std::int32_t node, std::int32_t a, std::int32_t b) {
-        if (divided_of[index(node)] < 0) return HUGE_VAL;
         const auto& own = nodes[index(divided_of[index(node)])].heights;
         return std::abs(own[index(a)] - own[index(b)]);
     };

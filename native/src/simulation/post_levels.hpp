@@ -27,6 +27,9 @@ public:
     std::span<const std::int32_t> levels(std::size_t post) const {
         return {&level_[offset_[post]], offset_[post + 1] - offset_[post]};
     }
+    /// Where these stand among the levels of all posts.
+    std::size_t level_offset(std::size_t post) const { return offset_[post]; }
+    std::size_t level_count() const { return level_.size(); }
     std::span<const double> heights(std::int32_t node) const {
         const auto n = static_cast<std::size_t>(node);
         return {&height_[node_offset_[n]], node_offset_[n + 1] - node_offset_[n]};
