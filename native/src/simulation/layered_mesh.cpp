@@ -107,12 +107,22 @@ private:
 
     /// A layer of a post beside a step is parted where the other side has heights within it. There
     /// the corner moves before the others, in all triangles at the post; so do both ends of an edge
-    /// on a step, if one of them does. (No other edge has two ends on steps: PlanTopology.)
+    /// on a step, if one of them does. (No other edge has two such ends: PlanTopology.)
     void find_parted() {
         std::vector<std::array<std::size_t, 2>> pairs;  // levels of both ends
         for (std::size_t t = 0; t < plan_.triangles(); ++t) {
-            if (!plan_.is_step(t, 0) && !plan_.is_step(t, 1) && !plan_.is_step(t, 2)) continue;
-            if (!load(t) || !has_step_) continue;
+            const auto& nodes = plan_.mesh().triangles[t];
+            if (std::none_of(nodes.begin(), nodes.end(),
+                             [&](std::int32_t n) { return plan_.is_divided(n); }) ||
+                !load(t))
+                continue;
+            for (std::size_t i = 0; i < 3; ++i) {
+                for (std::size_t l = 0; l + 1 < own_[i].size(); ++l) {
+                    if (own_[i][l + 1] > own_[i][l] + 1)
+                        is_parted_[levels_.level_offset(post_[i]) + l] = 1;
+                }
+            }
+            if (!has_step_) continue;
             const auto [u, v] = step_;
             for (std::size_t l = 0; l + 1 < own_[u].size(); ++l) {
                 const std::size_t at_u = levels_.level_offset(post_[u]) + l,
@@ -124,8 +134,7 @@ private:
                     return line[0] >= low[0] && line[1] >= low[1] && line[0] <= high[0] &&
                            line[1] <= high[1] && line != low && line != high;
                 });
-                if (parted || high[0] > low[0] + 1) is_parted_[at_u] = 1;
-                if (parted || high[1] > low[1] + 1) is_parted_[at_v] = 1;
+                if (parted) is_parted_[at_u] = is_parted_[at_v] = 1;
             }
         }
         for (bool any = true; any;) {

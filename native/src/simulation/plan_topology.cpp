@@ -17,6 +17,8 @@ namespace realmodel::simulation {
 namespace {
 
 constexpr double kLeastAngle = 20.0 * M_PI / 180;
+constexpr double kSharpAngle = 25.0 * M_PI / 180;  ///< made better, if it can be
+constexpr int kImprovements = 8;
 
 double least_angle(const PlanPoint& a, const PlanPoint& b, const PlanPoint& c) {
     double least = M_PI;
@@ -47,6 +49,7 @@ PlanTopology::PlanTopology(const PlanLines& lines, meshing::PlanarMesh mesh)
         mark_segments();
         find_posts();
     }
+    improve();
     spread_rocks();
 }
 
@@ -117,6 +120,137 @@ bool PlanTopology::turn_border_triangles() {
         turned[t] = turned[other] = 1;
     }
     return any;
+}
+
+void PlanTopology::improve() {
+    for (int round = 0; round < kImprovements; ++round) {
+        const bool turned = turn_edges();
+        if (turned) {
+            link();
+            mark_segments();
+            find_posts();
+        }
+        if (!move_nodes() && !turned) break;
+    }
+}
+
+/// Turns the edge between two triangles, where that makes the least of their angles larger.
+bool PlanTopology::turn_edges() {
+    const auto at = [&](std::int32_t n) -> const PlanPoint& { return mesh_.vertices[index(n)]; };
+    std::vector<std::uint8_t> turned(triangles(), 0);
+    bool any = false;
+    for (std::size_t t = 0; t < triangles(); ++t) {
+        const auto own = mesh_.triangles[t];
+        const double before = least_angle(at(own[0]), at(own[1]), at(own[2]));
+        if (turned[t] != 0 || before > kSharpAngle) continue;
+        std::size_t best = 3;
+        double largest = 1.01 * before;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::int32_t n = neighbor_[t][i];
+            if (n < 0 || segment_[t][i] >= 0 || turned[index(n)] != 0) continue;
+            const std::int32_t a = own[i], b = own[(i + 1) % 3], apex = own[(i + 2) % 3],
+                               far = corner_across(index(n), a, b);
+            if (is_divided(apex) && is_divided(far)) continue;
+            // neither may get two edges at the border, which turn_border_triangles() has seen to
+            if (exact::orient2d(at(apex), at(a), at(far)) <= 0 ||
+                exact::orient2d(at(apex), at(far), at(b)) <= 0)
+                continue;
+            const double after = std::min(least_angle(at(apex), at(a), at(far)),
+                                          least_angle(at(apex), at(far), at(b)));
+            if (after <= largest || has_border_corner(t, index(n), i)) continue;
+            largest = after;
+            best = i;
+        }
+        if (best == 3) continue;
+        const auto n = index(neighbor_[t][best]);
+        const std::int32_t a = own[best], b = own[(best + 1) % 3], apex = own[(best + 2) % 3],
+                           far = corner_across(n, a, b);
+        mesh_.triangles[t] = {apex, a, far};
+        mesh_.triangles[n] = {apex, far, b};
+        turned[t] = turned[n] = 1;
+        any = true;
+    }
+    return any;
+}
+
+std::int32_t PlanTopology::corner_across(std::size_t t, std::int32_t a, std::int32_t b) const {
+    for (const std::int32_t c : mesh_.triangles[t]) {
+        if (c != a && c != b) return c;
+    }
+    return -1;
+}
+
+/// Whether turning edge i between two triangles would leave one with two edges outside.
+bool PlanTopology::has_border_corner(std::size_t t, std::size_t n, std::size_t i) const {
+    const std::int32_t a = mesh_.triangles[t][i];
+    std::size_t j = 0;
+    while (mesh_.triangles[n][j] != a)
+        ++j;  // the edge of n from a leads to the corner across, the one before it comes from b
+    const bool at_a = neighbor_[t][(i + 2) % 3] < 0 && neighbor_[n][j] < 0,
+               at_b = neighbor_[t][(i + 1) % 3] < 0 && neighbor_[n][(j + 1) % 3] < 0;
+    return at_a || at_b;
+}
+
+/// Moves nodes at sharp angles to the middle of their neighbors, or part of the way, where that
+/// makes the least angle around them larger.
+bool PlanTopology::move_nodes() {
+    const auto at = [&](std::int32_t n) -> PlanPoint& { return mesh_.vertices[index(n)]; };
+    std::vector<std::uint8_t> wanted(nodes(), 0);
+    bool any = false;
+    for (const auto& t : mesh_.triangles) {
+        if (least_angle(at(t[0]), at(t[1]), at(t[2])) > kSharpAngle) continue;
+        for (const std::int32_t n : t)
+            wanted[index(n)] = 1;
+        any = true;
+    }
+    if (!any) return false;
+    for (std::size_t t = 0; t < triangles(); ++t) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (segment_[t][i] < 0 && neighbor_[t][i] >= 0) continue;
+            wanted[index(mesh_.triangles[t][i])] = 0;
+            wanted[index(mesh_.triangles[t][(i + 1) % 3])] = 0;
+        }
+    }
+    const auto around = bucketize<std::int32_t>(nodes(), [&](const auto& put) {
+        for (std::size_t c = 0; c < 3 * triangles(); ++c) {
+            if (wanted[index(node(c))] != 0) put(index(node(c)), static_cast<std::int32_t>(c / 3));
+        }
+    });
+    bool moved = false;
+    for (std::size_t n = 0; n < nodes(); ++n) {
+        if (around[n].empty()) continue;
+        PlanPoint middle{};
+        for (const std::int32_t t : around[n]) {
+            for (const std::int32_t corner : mesh_.triangles[index(t)]) {
+                if (index(corner) == n) continue;
+                for (std::size_t axis = 0; axis < 2; ++axis)
+                    middle[axis] += at(corner)[axis] / (2.0 * static_cast<double>(around[n].size()));
+            }
+        }
+        const auto least_around = [&] {
+            double least = M_PI;
+            for (const std::int32_t t : around[n]) {
+                const auto& own = mesh_.triangles[index(t)];
+                if (exact::orient2d(at(own[0]), at(own[1]), at(own[2])) <= 0) return 0.0;
+                least = std::min(least, least_angle(at(own[0]), at(own[1]), at(own[2])));
+            }
+            return least;
+        };
+        const PlanPoint start = mesh_.vertices[n];
+        PlanPoint best = start;
+        double largest = 1.01 * least_around();
+        for (const double share : {1.0, 0.5, 0.25}) {
+            for (std::size_t axis = 0; axis < 2; ++axis)
+                mesh_.vertices[n][axis] = start[axis] + share * (middle[axis] - start[axis]);
+            const double own = least_around();
+            if (own <= largest) continue;
+            largest = own;
+            best = mesh_.vertices[n];
+        }
+        mesh_.vertices[n] = best;
+        moved = moved || best != start;
+    }
+    return moved;
 }
 
 void PlanTopology::mark_segments() {
@@ -192,14 +326,15 @@ void PlanTopology::find_posts() {
             }
         }
     }
+    std::vector<std::uint8_t> has_post(nodes(), 0);
     post_.assign(3 * triangles(), -1);
     post_node_.clear();
-    on_step_.assign(nodes(), 0);
+    is_divided_.assign(nodes(), 0);
     for (std::size_t t = 0; t < triangles(); ++t) {
         for (std::size_t i = 0; i < 3; ++i) {
             if (neighbor_[t][i] >= 0 && is_step(t, i)) {
-                on_step_[index(mesh_.triangles[t][i])] = 1;
-                on_step_[index(mesh_.triangles[t][(i + 1) % 3])] = 1;
+                is_divided_[index(mesh_.triangles[t][i])] = 1;
+                is_divided_[index(mesh_.triangles[t][(i + 1) % 3])] = 1;
             }
         }
     }
@@ -208,6 +343,9 @@ void PlanTopology::find_posts() {
         if (root == c) {
             post_[c] = static_cast<std::int32_t>(post_node_.size());
             post_node_.push_back(node(c));
+            std::uint8_t& seen = has_post[index(node(c))];
+            if (seen != 0) is_divided_[index(node(c))] = 1;
+            seen = 1;
         } else {
             post_[c] = post_[root];
         }
@@ -227,7 +365,7 @@ bool PlanTopology::divide_between_steps() {
         any = any || is_closed[t] != 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t a = mesh_.triangles[t][i], b = mesh_.triangles[t][(i + 1) % 3];
-            if ((is_step(t, i) && neighbor_[t][i] >= 0) || !is_on_step(a) || !is_on_step(b)) continue;
+            if ((is_step(t, i) && neighbor_[t][i] >= 0) || !is_divided(a) || !is_divided(b)) continue;
             if (middles.contains(edge_of(a, b))) continue;
             const PlanPoint p = mesh_.vertices[index(a)], q = mesh_.vertices[index(b)];
             middles[edge_of(a, b)] = static_cast<std::int32_t>(nodes());

@@ -15,7 +15,8 @@ class PlanTopology {
 public:
     /// Border triangles with two edges outside are turned where that leaves no sharp angle: an
     /// element there would have neighbors in one direction only. Triangles that steps bound are
-    /// divided until each has at most one edge on a step, and the corner across from it on none.
+    /// divided until each has at most one edge on a step, and the corner across from it has one post.
+    /// Sharp angles that are left from this are made better by turning edges and moving nodes.
     PlanTopology(const PlanLines& lines, meshing::PlanarMesh mesh);
 
     const meshing::PlanarMesh& mesh() const { return mesh_; }
@@ -35,8 +36,11 @@ public:
     const std::vector<std::int32_t>& posts() const { return post_; }
     std::size_t post_count() const { return post_node_.size(); }
     std::int32_t post_node(std::size_t post) const { return post_node_[post]; }
-    /// Whether a node is an end of an edge on a step with triangles on both sides.
-    bool is_on_step(std::int32_t node) const { return on_step_[static_cast<std::size_t>(node)] != 0; }
+    /// Whether a node may have heights that are not of all its triangles: it is an end of an edge
+    /// on a step with triangles on both sides, or the region touches itself there.
+    bool is_divided(std::int32_t node) const {
+        return is_divided_[static_cast<std::size_t>(node)] != 0;
+    }
 
 private:
     void link();
@@ -45,12 +49,17 @@ private:
     void find_posts();
     bool turn_border_triangles();
     bool divide_between_steps();
+    void improve();
+    bool turn_edges();
+    std::int32_t corner_across(std::size_t t, std::int32_t a, std::int32_t b) const;
+    bool has_border_corner(std::size_t t, std::size_t n, std::size_t i) const;
+    bool move_nodes();
 
     const PlanLines& lines_;
     meshing::PlanarMesh mesh_;
     std::vector<std::array<std::int32_t, 3>> neighbor_, segment_;
     std::vector<std::int32_t> rock_, post_, post_node_;
-    std::vector<std::uint8_t> on_step_;
+    std::vector<std::uint8_t> is_divided_;
 };
 
 }  // namespace realmodel::simulation

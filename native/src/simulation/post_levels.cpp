@@ -168,7 +168,7 @@ PostLevels::PostLevels(const PlanTopology& plan, const PlanLines& lines, const R
                                                           (2 * static_cast<std::int64_t>(most)));
             at += parts;
         }
-        if (plan.is_on_step(plan.post_node(p))) {
+        if (plan.is_divided(plan.post_node(p))) {
             std::int32_t& number = divided_of[index(plan.post_node(p))];
             if (number < 0) {
                 number = static_cast<std::int32_t>(divided.size());
