@@ -20,8 +20,9 @@ _CELLS_AT_ONCE = 20_000
 
 
 def write_vtu(model, file: BinaryIO, step: Callable[[float], None]) -> None:
-    """Writes every cell as a polyhedron, with the cell arrays `block` (number in the model's list), `property`
-    (library id, 0: none) and `compartment`. Faces turn counter-clockwise seen from outside their cell."""
+    """Writes every cell as a polyhedron, with the cell arrays `block` (number in the model's list),
+    `property` (library id, 0: none) and `compartment`. Faces turn counter-clockwise seen from outside their
+    cell."""
     cells = CellFaces(model)
     count = len(model.cell_block)
     block_property = np.array([block.property for block in model.blocks], np.int32)
