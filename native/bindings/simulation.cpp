@@ -109,10 +109,11 @@ py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const Pl
     LayeredMesh mesh;
     {
         const py::gil_scoped_release unlocked;
-        mesh = simulation::layered_mesh(
-            arrays.complex, view_of(block_rock), lines,
-            {{plan_vertices.begin(), plan_vertices.end()}, {plan_triangles.begin(), plan_triangles.end()}},
-            {minimum_thickness, layers, layer_thickness}, threads, control);
+        mesh = simulation::layered_mesh(arrays.complex, view_of(block_rock), lines,
+                                        {{plan_vertices.begin(), plan_vertices.end()},
+                                         {plan_triangles.begin(), plan_triangles.end()}},
+                                        {minimum_thickness, layers, layer_thickness}, threads,
+                                        control);
     }
     py::dict made;
     made["points"] = to_array(std::move(mesh.points));

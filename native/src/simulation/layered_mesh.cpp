@@ -130,10 +130,11 @@ private:
                 pairs.push_back({at_u, at_v});
                 const std::array<std::int32_t, 2> low{own_[u][l], own_[v][l]},
                     high{own_[u][l + 1], own_[v][l + 1]};
-                const bool parted = std::any_of(lines_.begin(), lines_.end(), [&](const auto& line) {
-                    return line[0] >= low[0] && line[1] >= low[1] && line[0] <= high[0] &&
-                           line[1] <= high[1] && line != low && line != high;
-                });
+                const bool parted =
+                    std::any_of(lines_.begin(), lines_.end(), [&](const auto& line) {
+                        return line[0] >= low[0] && line[1] >= low[1] && line[0] <= high[0] &&
+                               line[1] <= high[1] && line != low && line != high;
+                    });
                 if (parted) is_parted_[at_u] = is_parted_[at_v] = 1;
             }
         }
@@ -229,7 +230,8 @@ private:
         const double area = ((p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])) / 2;
         double rise = 0;
         for (std::size_t i = 0; i < 3; ++i)
-            rise += levels_.heights(node_[i])[index(to[i])] - levels_.heights(node_[i])[index(front_[i])];
+            rise += levels_.heights(node_[i])[index(to[i])] -
+                    levels_.heights(node_[i])[index(front_[i])];
         mesh_.volumes[index(block_)] += area * rise / 3;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
@@ -279,7 +281,7 @@ private:
     /// The surface at the top of one block, as most corners have it where there is that block.
     std::int32_t surface_between(std::int32_t below, std::int32_t above) const {
         const auto first = blocks_.first[index(rock_)];
-        const auto level = below < 0  ? std::size_t{0}
+        const auto level = below < 0   ? std::size_t{0}
                            : above < 0 ? index(blocks_.blocks_of(rock_))
                                        : static_cast<std::size_t>(below - first) + 1;
         std::int32_t best = -1, most = 0;

@@ -34,7 +34,8 @@ public:
                 if (found == squares_.end()) continue;
                 for (const std::int32_t i : found->second) {
                     const bool is_own = chains_[index(i)] == chain || chains_[index(i)] < 0;
-                    if (distance(points[index(i)], p) < (is_own ? share : 1) * spacing) return false;
+                    if (distance(points[index(i)], p) < (is_own ? share : 1) * spacing)
+                        return false;
                 }
             }
         }
@@ -63,7 +64,7 @@ private:
 struct Graph {
     struct Edge {
         std::int32_t from, to;
-        bool is_step;
+        bool is_step, is_of_top;
     };
     std::vector<Edge> edges;
     Buckets<std::int32_t> at;  ///< the edges at each point
@@ -71,7 +72,8 @@ struct Graph {
     explicit Graph(const Traces& traces) {
         for (const Traces::Segment& s : traces.segments) {
             if (edges.empty() || edges.back().from != s.ends[0] || edges.back().to != s.ends[1])
-                edges.push_back({s.ends[0], s.ends[1], false});
+                edges.push_back({s.ends[0], s.ends[1], false, false});
+            edges.back().is_of_top = edges.back().is_of_top || s.block == Traces::kOfTop;
             edges.back().is_step = edges.back().is_step || s.block < 0;
         }
         at = bucketize<std::int32_t>(traces.points.size(), [&](const auto& put) {
@@ -170,20 +172,27 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
         add(traces.points[index(p)]);
 
     const auto chains = chains_of(graph, is_end);
-    for (const bool steps : {true, false}) {  // walls bound the model: they are followed first
+    std::vector<double> lengths(chains.size(), 0);
+    std::vector<int> kinds(chains.size(), 2);
+    for (std::size_t c = 0; c < chains.size(); ++c) {
+        for (std::size_t i = 0; i + 1 < chains[c].size(); ++i) {
+            const std::int32_t from = chains[c][i], to = chains[c][i + 1];
+            for (const std::int32_t e : graph.at[index(from)]) {
+                if (graph.other(e, from) != to) continue;
+                const Graph::Edge& edge = graph.edges[index(e)];
+                kinds[c] = std::min(kinds[c], edge.is_of_top ? 0 : edge.is_step ? 1 : 2);
+            }
+            lengths[c] += distance(traces.points[index(from)], traces.points[index(to)]);
+        }
+    }
+    // what bounds the model is followed first, other steps and walls next
+    for (const int kind : {0, 1, 2}) {
+        const bool steps = kind < 2;
         for (std::size_t c = 0; c < chains.size(); ++c) {
             poll(progress, c);
+            if (kinds[c] != kind) continue;
             const auto& chain = chains[c];
-            bool has_step = false;
-            double length = 0;
-            for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
-                for (const std::int32_t e : graph.at[index(chain[i])]) {
-                    if (graph.other(e, chain[i]) == chain[i + 1])
-                        has_step = has_step || graph.edges[index(e)].is_step;
-                }
-                length += distance(traces.points[index(chain[i])], traces.points[index(chain[i + 1])]);
-            }
-            if (has_step != steps) continue;
+            const double length = lengths[c];
             const double share = steps ? kNearerOnSteps : 1;
             const auto number = static_cast<std::int32_t>(c);
             add(traces.points[index(chain.front())], number, share);
@@ -200,7 +209,8 @@ std::vector<PlanPoint> line_anchors(const Traces& traces,
                     const double own = distance(p, q);
                     for (; next < before + own; next += step) {
                         const double part = (next - before) / own;
-                        add({p[0] + part * (q[0] - p[0]), p[1] + part * (q[1] - p[1])}, number, share);
+                        add({p[0] + part * (q[0] - p[0]), p[1] + part * (q[1] - p[1])}, number,
+                            share);
                     }
                     before += own;
                 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lines are moved to anchors by nearness: what lies nearest to an anchor goes to it. A line then runs
-// from anchor to anchor along edges of their Delaunay triangulation, so lines cannot cross after
-// they were moved, whatever they were; and anchors are apart, so no angle between two is sharp.
+// Lines are moved to anchors by nearness: what lies nearest to an anchor goes to it. A line then
+// runs from anchor to anchor along edges of their Delaunay triangulation, so lines cannot cross
+// after they were moved, whatever they were; and anchors are apart, so no angle between two is
+// sharp.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -33,7 +34,8 @@ double distance_to_line(const PlanPoint& p, std::span<const PlanPoint> line) {
         const PlanPoint &a = line[i], &b = line[std::min(i + 1, line.size() - 1)];
         const double dx = b[0] - a[0], dy = b[1] - a[1], square = dx * dx + dy * dy;
         const double along =
-            square > 0 ? std::clamp(((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / square, 0.0, 1.0) : 0;
+            square > 0 ? std::clamp(((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / square, 0.0, 1.0)
+                       : 0;
         nearest = std::min(nearest,
                            std::sqrt(squared_distance(p, {a[0] + along * dx, a[1] + along * dy})));
     }
@@ -185,8 +187,10 @@ std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& b
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         const auto face = index(faces.find(static_cast<std::int32_t>(t)));
         const auto& own = area[face];
-        const auto most = static_cast<std::size_t>(std::max_element(own.begin(), own.end()) - own.begin());
-        rocks[t] = is_open[face] != 0 || most == blocks.count() ? -1 : static_cast<std::int32_t>(most);
+        const auto most =
+            static_cast<std::size_t>(std::max_element(own.begin(), own.end()) - own.begin());
+        rocks[t] =
+            is_open[face] != 0 || most == blocks.count() ? -1 : static_cast<std::int32_t>(most);
     }
     return rocks;
 }
@@ -256,7 +260,8 @@ PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> blo
     for (std::size_t t = 0; t < delaunay.triangles.size(); ++t) {
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t a = delaunay.triangles[t][i], b = delaunay.triangles[t][(i + 1) % 3];
-            auto& own = sides.try_emplace({std::min(a, b), std::max(a, b)}, Link{-1, -1}).first->second;
+            auto& own =
+                sides.try_emplace({std::min(a, b), std::max(a, b)}, Link{-1, -1}).first->second;
             own[a < b ? 0 : 1] = rocks[t];
         }
     }
@@ -264,8 +269,7 @@ PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> blo
     for (auto& [link, met] : links) {
         const auto& [left, right] = sides.at(link);
         if (left < 0 && right < 0) continue;
-        lines.segments.push_back(
-            {link[0], link[1], left, right, met.is_step || left != right});
+        lines.segments.push_back({link[0], link[1], left, right, met.is_step || left != right});
         std::sort(met.ending.begin(), met.ending.end());
         lines.ending_blocks.insert(lines.ending_blocks.end(), met.ending.begin(), met.ending.end());
         lines.ending_offsets.push_back(static_cast<std::int32_t>(lines.ending_blocks.size()));

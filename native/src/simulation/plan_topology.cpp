@@ -103,12 +103,15 @@ bool PlanTopology::turn_border_triangles() {
             for (std::size_t s = 0; s < triangles(); ++s) {
                 for (std::size_t e = 0; e < 3; ++e) {
                     if (segment_[s][e] >= 0)
-                        kept[edge_of(mesh_.triangles[s][e], mesh_.triangles[s][(e + 1) % 3])] = true;
+                        kept[edge_of(mesh_.triangles[s][e], mesh_.triangles[s][(e + 1) % 3])] =
+                            true;
                 }
             }
         }
         if (kept.contains(edge_of(a, b))) continue;
-        const auto at = [&](std::int32_t n) -> const PlanPoint& { return mesh_.vertices[index(n)]; };
+        const auto at = [&](std::int32_t n) -> const PlanPoint& {
+            return mesh_.vertices[index(n)];
+        };
         if (exact::orient2d(at(apex), at(a), at(far)) <= 0 ||
             exact::orient2d(at(apex), at(far), at(b)) <= 0 ||
             std::min(least_angle(at(apex), at(a), at(far)), least_angle(at(apex), at(far), at(b))) <
@@ -224,7 +227,8 @@ bool PlanTopology::move_nodes() {
             for (const std::int32_t corner : mesh_.triangles[index(t)]) {
                 if (index(corner) == n) continue;
                 for (std::size_t axis = 0; axis < 2; ++axis)
-                    middle[axis] += at(corner)[axis] / (2.0 * static_cast<double>(around[n].size()));
+                    middle[axis] +=
+                        at(corner)[axis] / (2.0 * static_cast<double>(around[n].size()));
             }
         }
         const auto least_around = [&] {
@@ -321,7 +325,8 @@ void PlanTopology::find_posts() {
             for (const std::size_t k : {i, (i + 1) % 3}) {
                 for (std::size_t j = 0; j < 3; ++j) {
                     if (mesh_.triangles[index(n)][j] == mesh_.triangles[t][k])
-                        sets.join(static_cast<std::int32_t>(3 * t + k), 3 * n + static_cast<std::int32_t>(j));
+                        sets.join(static_cast<std::int32_t>(3 * t + k),
+                                  3 * n + static_cast<std::int32_t>(j));
                 }
             }
         }
@@ -365,7 +370,8 @@ bool PlanTopology::divide_between_steps() {
         any = any || is_closed[t] != 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::int32_t a = mesh_.triangles[t][i], b = mesh_.triangles[t][(i + 1) % 3];
-            if ((is_step(t, i) && neighbor_[t][i] >= 0) || !is_divided(a) || !is_divided(b)) continue;
+            if ((is_step(t, i) && neighbor_[t][i] >= 0) || !is_divided(a) || !is_divided(b))
+                continue;
             if (middles.contains(edge_of(a, b))) continue;
             const PlanPoint p = mesh_.vertices[index(a)], q = mesh_.vertices[index(b)];
             middles[edge_of(a, b)] = static_cast<std::int32_t>(nodes());
@@ -430,7 +436,8 @@ void PlanTopology::spread_rocks() {
             const PlanPoint &from = lines_.points[index(s.from)], &to = lines_.points[index(s.to)],
                             &a = mesh_.vertices[index(mesh_.triangles[t][i])],
                             &b = mesh_.vertices[index(mesh_.triangles[t][(i + 1) % 3])];
-            const bool forward = (to[0] - from[0]) * (b[0] - a[0]) + (to[1] - from[1]) * (b[1] - a[1]) > 0;
+            const bool forward =
+                (to[0] - from[0]) * (b[0] - a[0]) + (to[1] - from[1]) * (b[1] - a[1]) > 0;
             if (rock_[t] < 0) rock_[t] = forward ? s.left_rock : s.right_rock;
         }
         if (rock_[t] >= 0) waiting.push_back(static_cast<std::int32_t>(t));

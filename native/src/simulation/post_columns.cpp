@@ -21,9 +21,8 @@ public:
         : steps_(steps), tiles_(frame_of(steps), steps.size()) {
         bins_ = bucketize<std::int32_t>(tiles_.size(), [&](const auto& put) {
             for (std::size_t s = 0; s < steps.size(); ++s) {
-                tiles_.for_each(tiles_.span(spatial::box_around(steps[s])), [&](std::size_t tile) {
-                    put(tile, static_cast<std::int32_t>(s));
-                });
+                tiles_.for_each(tiles_.span(spatial::box_around(steps[s])),
+                                [&](std::size_t tile) { put(tile, static_cast<std::int32_t>(s)); });
             }
         });
     }
@@ -95,7 +94,8 @@ ColumnHeights post_columns(const ComplexView& model, const RockBlocks& blocks,
             for (std::size_t axis = 0; axis < 2; ++axis)
                 middle[axis] += plan.mesh().vertices[index(n)][axis] / 3;
         }
-        const double own = beside[node] != 0 ? steps.free_way(middle, plan.mesh().vertices[node]) : 1;
+        const double own =
+            beside[node] != 0 ? steps.free_way(middle, plan.mesh().vertices[node]) : 1;
         if (own <= free[post]) continue;
         free[post] = own;
         center[post] = middle;

@@ -80,7 +80,8 @@ std::vector<std::vector<std::int32_t>> ending_blocks(const PlanTopology& plan,
             for (std::int32_t e = lines.ending_offsets[index(s)];
                  e < lines.ending_offsets[index(s) + 1]; ++e) {
                 for (const std::size_t k : {i, (i + 1) % 3})
-                    ending[index(plan.mesh().triangles[t][k])].push_back(lines.ending_blocks[index(e)]);
+                    ending[index(plan.mesh().triangles[t][k])].push_back(
+                        lines.ending_blocks[index(e)]);
             }
         }
     }
@@ -164,8 +165,9 @@ PostLevels::PostLevels(const PlanTopology& plan, const PlanLines& lines, const R
             for (std::int32_t k = 1; k <= parts; ++k)
                 own_heights.push_back(k == parts ? z[b + 1] : z[b] + own * k / parts);
             for (std::int32_t k = 1; k <= most; ++k)
-                *level++ = at + static_cast<std::int32_t>((2 * static_cast<std::int64_t>(k) * parts + most) /
-                                                          (2 * static_cast<std::int64_t>(most)));
+                *level++ = at + static_cast<std::int32_t>(
+                                    (2 * static_cast<std::int64_t>(k) * parts + most) /
+                                    (2 * static_cast<std::int64_t>(most)));
             at += parts;
         }
         if (plan.is_divided(plan.post_node(p))) {
@@ -187,7 +189,8 @@ PostLevels::PostLevels(const PlanTopology& plan, const PlanLines& lines, const R
         std::vector<Entry> all;
         for (const std::int32_t p : node.posts) {
             for (std::size_t h = first_height[index(p)]; h < first_height[index(p) + 1]; ++h)
-                all.push_back({own_heights[h], p, static_cast<std::int32_t>(h - first_height[index(p)]), 0});
+                all.push_back(
+                    {own_heights[h], p, static_cast<std::int32_t>(h - first_height[index(p)]), 0});
         }
         std::sort(all.begin(), all.end(), [](const Entry& a, const Entry& b) {
             return std::tie(a.height, a.post) < std::tie(b.height, b.post);
@@ -220,7 +223,8 @@ PostLevels::PostLevels(const PlanTopology& plan, const PlanLines& lines, const R
             height_.insert(height_.end(), own.begin(), own.end());
         } else if (post_of[n] >= 0) {
             const auto p = index(post_of[n]);
-            height_.insert(height_.end(), own_heights.begin() + static_cast<std::ptrdiff_t>(first_height[p]),
+            height_.insert(height_.end(),
+                           own_heights.begin() + static_cast<std::ptrdiff_t>(first_height[p]),
                            own_heights.begin() + static_cast<std::ptrdiff_t>(first_height[p + 1]));
         }
         node_offset_.push_back(height_.size());
@@ -286,8 +290,10 @@ void PostLevels::join_crossing(const PlanTopology& plan, std::vector<Divided>& n
                                                       gap(edge.nodes[1], left1[i], right1[j])
                                                   ? 0
                                                   : 1;
-                        const auto a = k == 0 ? left0[i] : left1[i], b = k == 0 ? right0[j] : right1[j];
-                        join(nodes[index(divided_of[index(edge.nodes[k])])], std::min(a, b), std::max(a, b));
+                        const auto a = k == 0 ? left0[i] : left1[i],
+                                   b = k == 0 ? right0[j] : right1[j];
+                        join(nodes[index(divided_of[index(edge.nodes[k])])], std::min(a, b),
+                             std::max(a, b));
                         any = crossing = true;
                     }
                 }

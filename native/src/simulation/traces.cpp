@@ -21,6 +21,7 @@ struct BorderEdge {
 }  // namespace
 
 Traces traces_of(const ComplexView& model, const Progress* progress) {
+    const auto top_of_all = static_cast<std::int32_t>(2 * model.blocks);
     const auto edges = bucketize<BorderEdge>(model.vertex_count(), [&](const auto& put) {
         for (std::size_t f = 0; f < model.face_count(); ++f) {
             poll(progress, f);
@@ -36,8 +37,13 @@ Traces traces_of(const ComplexView& model, const Progress* progress) {
                     if (block >= 0)
                         put(index(std::min(from, to)),
                             BorderEdge{std::max(from, to), 2 * block + (is_top ? 0 : 1),
-                                       from < to ? 1 : -1});
+                                       (from < to) == first_below ? 1 : -1});
                 }
+                const std::int32_t below = first_below ? first : second,
+                                   above = first_below ? second : first;
+                if (below >= 0 && above < 0)
+                    put(index(std::min(from, to)), BorderEdge{std::max(from, to), top_of_all,
+                                                              (from < to) == first_below ? 1 : -1});
                 from = to;
             }
         }
@@ -59,7 +65,9 @@ Traces traces_of(const ComplexView& model, const Progress* progress) {
                 sum += own[j].direction;
             if (sum != 0) {
                 const std::int32_t key = own[i].key;
-                if (key % 2 == 1 && open == key - 1 && open_to == own[i].to) {
+                if (key == top_of_all) {
+                    found.emplace_back(static_cast<std::int32_t>(v), own[i].to, Traces::kOfTop);
+                } else if (key % 2 == 1 && open == key - 1 && open_to == own[i].to) {
                     found.back() = {static_cast<std::int32_t>(v), own[i].to, key / 2};
                 } else {
                     found.emplace_back(static_cast<std::int32_t>(v), own[i].to, -1);

@@ -8,13 +8,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..method_options import check_threads
 from ..build_warning import BuildWarning
 from ..errors import BuildFailed, InputRefused, UsageError
 from ..finite import is_number
 from ..mesh_sizes import check_mesher, local_lengths
+from ..method_options import check_threads
 from ..planar_mesh import mesh_rings
 from ..work import Cancel, Progress, Work, native_module, run
+from .tetrahedra import divided, divided_quadrilaterals
 from .volume_mesh import PlanMesh, VolumeMesh
 
 ELEMENTS = ("prisms", "tetrahedra")
@@ -94,7 +95,12 @@ def simulation_mesh(
         inner = lines.inner_lines
         with work.phase(0.2, 0.5, "meshing the plan"):
             vertices, triangles = mesh_rings(
-                work, lines.rings, float(edge_length), mesher, size=_with_lines(size, inner), constraints=inner
+                work,
+                lines.rings,
+                float(edge_length),
+                mesher,
+                size=_with_lines(size, inner),
+                constraints=inner,
             )
         with work.phase(0.5, 1.0, "filling columns"):
             made = _native(
@@ -110,7 +116,7 @@ def simulation_mesh(
                 0.0 if layer_thickness is None else float(layer_thickness),
                 threads,
             )
-        return _assembled(model, made)
+        return _assembled(model, made, elements)
 
     return run(task, progress, cancel)
 
@@ -181,9 +187,19 @@ def _native(work: Work, function, *arguments):
         raise BuildFailed(f"the mesh cannot be made: {error}" + (f" at {place}" if place else "")) from error
 
 
-def _assembled(model, made: dict) -> SimulationMesh:
+def _assembled(model, made: dict, wanted: str) -> SimulationMesh:
     elements = {kind: made[kind] for kind in ("tetrahedron", "pyramid", "prism") if len(made[kind]["block"])}
     faces = {kind: made[kind] for kind in ("triangle", "quadrilateral") if len(made[kind][1])}
+    if wanted == "tetrahedra":
+        elements = {"tetrahedron": divided(elements)}
+        triangles, surface = made["triangle"]
+        sides, side_surface = made["quadrilateral"]
+        faces = {
+            "triangle": (
+                np.concatenate([triangles, divided_quadrilaterals(sides)]),
+                np.concatenate([surface, np.repeat(side_surface, 2)]),
+            )
+        }
     return SimulationMesh(
         points=made["points"],
         elements={kind: own["corners"] for kind, own in elements.items()},

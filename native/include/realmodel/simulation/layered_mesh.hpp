@@ -37,9 +37,9 @@ struct PlanSegment {
 struct PlanLines {
     std::vector<PlanPoint> points;
     std::vector<PlanSegment> segments;
-    std::vector<meshing::Ring> rings;           ///< bound the region; even-odd
-    std::vector<std::int32_t> ending_offsets;   ///< one more than segments
-    std::vector<std::int32_t> ending_blocks;    ///< the blocks that end at each segment
+    std::vector<meshing::Ring> rings;             ///< bound the region; even-odd
+    std::vector<std::int32_t> ending_offsets;     ///< one more than segments
+    std::vector<std::int32_t> ending_blocks;      ///< the blocks that end at each segment
     std::vector<std::array<PlanPoint, 2>> steps;  ///< steps and walls as the model has them
 };
 
