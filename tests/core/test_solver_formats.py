@@ -8,12 +8,12 @@ import subprocess
 
 import numpy as np
 import pytest
+from mixed_meshes import SETS, VOLUMES, layered_mesh, mixed_mesh
 from realmodel.core import BuildFailed, UsageError, build, load_project
 from realmodel.core.exporters.meshes import MESH_FORMATS, save_mesh
 from realmodel.core.exporters.modflow import element_volumes
 from realmodel.core.simulation import PolyhedralMesh, VolumeMesh
 from realmodel.core.simulation.element_faces import ElementFaces
-from solver_meshes import SETS, VOLUMES, layered_mesh, mixed_mesh
 
 WHY = "not installed: scripts/test.sh installs it"
 SHIFT = (400_000.25, 5_300_000.5, -12.0)
