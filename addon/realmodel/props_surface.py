@@ -97,6 +97,13 @@ class RealModelSurface(
         update=changes.source,
     )
     filters: CollectionProperty(type=RealModelFilter)
+    use_continuation: BoolProperty(
+        name="Continue By",
+        description="Choose the method by which the mesh is continued to faults that it does not reach. Off: "
+        "natural neighbors, and beyond its vertices the nearest elevation",
+        update=changes.setting,
+        options=set(),
+    )
     fit_variogram: BoolProperty(
         name="Fit Variogram",
         description="Fit the variogram to the points; turn off to start from what the last build fitted",

@@ -217,6 +217,34 @@ class Built(StructureCase):
         self.assertNotIn("realmodel_compartment", mesh.attributes)
         self.assertEqual(compartments.names(self.scene), [])
 
+    def test_a_mesh_is_continued_by_its_method(self):
+        """Sheets that end before the fault: level beyond, or as a method says."""
+        parts = [(0.0, 45.0, 10.0), (55.0, 100.0, 6.0)]
+        corners = [(x, y, z) for a, b, z in parts for x, y in ((a, 0), (b, 0), (b, 100), (a, 100))]
+        base = sheet("S0", 0.0)
+        top = mesh_object("S1", corners, [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]])
+        select(base, top)
+        ops.from_selected()
+        select(wall())
+        ops.fault_body_from_selected()
+        ops.build()
+        self.assertAlmostEqual(self.volumes()["S1 block"], 8e4, delta=1.0)
+        row = self.model.rocks[0].surfaces[1]
+        row.use_continuation, row.method, row.value = True, "constant", 0.0
+        ops.build()
+        less = self.volumes()["S1 block"]
+        # from the border of each part it goes down to the nearest vertex of the other part
+        self.assertAlmostEqual(less, 8e4 - 100 * (10 + 6) * 5 / 4, delta=1.0)
+        ops.save_project(filepath=str(self.folder / "p.toml"))
+        self.assertIn('method = "constant"', (self.folder / "p.toml").read_text())
+        ops.open_project(filepath=str(self.folder / "p.toml"))
+        self.assertTrue(self.model.rocks[0].surfaces[1].use_continuation)
+        ops.build()
+        self.assertAlmostEqual(self.volumes()["S1 block"], less, places=3)
+        self.model.structure_kind = "FAULT"
+        ops.fault_body_remove()
+        ops.build()  # without faults it counts for nothing
+
     def test_properties_of_bodies(self):
         self.faulted(box("ore", (60, 20, -2), (70, 30, 2)))
         row = next(row for row in self.model.results if row.name == "ore")

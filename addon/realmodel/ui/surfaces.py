@@ -60,6 +60,12 @@ def _draw_surface(layout, context, surface):
     if surface.source not in method_settings.READY_MESHES:
         layout.prop(surface, "method")
         setting_rows.draw(layout, surface, "minimum_thickness", SURFACE)
+    elif len(context.scene.realmodel.faults):
+        line = layout.row(heading="Continue By")
+        line.prop(surface, "use_continuation", text="")
+        field = line.row()
+        field.active = surface.use_continuation
+        field.prop(surface, "method", text="")
     layout.prop(surface, "rule")
     draw_property(layout, context, surface, "realmodel.surface_property")
     layout.prop(surface, "block")
@@ -120,7 +126,7 @@ class _OfTheMethod(_OfASurface):
 
     @classmethod
     def shown(cls, surface):
-        return surface.source not in method_settings.READY_MESHES and any(cls.options(surface))
+        return method_settings.has_method(surface) and any(cls.options(surface))
 
     @classmethod
     def options(cls, surface):
