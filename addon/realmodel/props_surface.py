@@ -26,6 +26,7 @@ SOURCES = (
 def interface_properties():
     """The properties by which a row knows the object that shows its shape, and keeps what its file had."""
     return {
+        "known_name": StringProperty(options={"HIDDEN"}),
         "hide": BoolProperty(
             name="Hide",
             description="Hide this interface in the viewport; it is still built",
@@ -71,7 +72,10 @@ _OWN = {key: setting for key, setting in SURFACE.items() if key not in READING}
 
 
 class RealModelSurface(
-    settings_of(_OWN), settings_of(READING, changes.reading), _Interface, bpy.types.PropertyGroup
+    settings_of(_OWN, name=changes.name),
+    settings_of(READING, changes.reading),
+    _Interface,
+    bpy.types.PropertyGroup,
 ):
     """A surface: the source of its shape, its rule, and the block beneath it."""
 

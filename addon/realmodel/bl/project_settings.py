@@ -22,6 +22,7 @@ from . import (
     built_models,
     library_rows,
     method_settings,
+    names,
     plan_mesh,
     reading_text,
     settings,
@@ -338,6 +339,7 @@ def fill(scene, project):
             add_rock(group, rock)
         structure_settings.fill(scene, project)
         group.stage = settings.last_stage(scene)
+    names.know(scene)
     units.set_up(scene, project.units)
     library_rows.fill(scene, project.library)
 

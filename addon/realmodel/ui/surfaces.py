@@ -69,7 +69,7 @@ def _draw_surface(layout, context, surface):
     layout.prop(surface, "rule")
     draw_property(layout, context, surface, "realmodel.surface_property")
     layout.prop(surface, "block")
-    _draw_figures(layout, context, surface)
+    draw_figures(layout, context, surface)
 
 
 def draw_property(layout, context, row, operator):
@@ -83,7 +83,7 @@ def draw_property(layout, context, row, operator):
     split.operator_menu_enum(operator, "property_id", text=known)
 
 
-def _draw_figures(layout, context, surface):
+def draw_figures(layout, context, surface):
     figures = surface_figures.read(surface)
     if figures is None:
         return
@@ -101,6 +101,8 @@ def _figures(scene, figures):
     yield f"Elevation {low} to {high}"
     if figures.get("deviation"):
         yield f"Standard deviation up to {units.length_text(scene, figures['deviation'])}"
+    if figures["area"] is None:
+        return
     if figures["area"] > 0.0:
         share = "" if figures["share"] is None else f" ({100 * figures['share']:.0f} %)"
         yield f"Survives over {units.area_text(scene, figures['area'])}{share}"
