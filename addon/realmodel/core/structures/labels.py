@@ -20,16 +20,22 @@ def cell_compartments(
     """
     rock_of = np.concatenate([np.full(len(entry.surfaces), n, np.int32) for n, entry in enumerate(inputs)])
     block = built["cell_block"]
+    part = np.zeros(len(block), np.int32) if structures is None else built["cell_part"]
+    parts = 1 if structures is None else len(structures.sides)
+    kind = block.astype(np.int64) * parts + part
+    has_cells = np.bincount(kind, minlength=1) > 0
+    kinds = np.flatnonzero(has_cells)
+    block, part = kinds // parts, kinds % parts
     if structures is None:
-        rock = rock_of[block]
-        rows = rock[:, None]
+        rows = rock_of[block][:, None]
     else:
         count = len(structures.faults)
         divides = acts(inputs, structures)[:count].astype(bool) & ~_dying(structures)[:, None]
-        sides = np.where(divides.T[block], structures.sides[built["cell_part"], :count], 0)
+        sides = np.where(divides.T[block], structures.sides[part, :count], 0)
         rock_of = np.append(rock_of, [0] * count + [min(times, default=0) for times in structures.times])
         rows = np.column_stack([rock_of[block], sides]).astype(np.int32)
     distinct, label = np.unique(rows, axis=0, return_inverse=True)
+    label = label.ravel()[(np.cumsum(has_cells) - 1)[kind]]
     faults = [] if structures is None else [fault.name for fault in structures.faults]
     names = compartment_names(faults, distinct[:, 1:])
     rocks = [inputs[number].rock.name for number in distinct[:, 0].tolist()]
@@ -37,7 +43,7 @@ def cell_compartments(
         names = [f"{rock}: {name}" if name else rock for rock, name in zip(rocks, names, strict=True)]
     else:
         names = [name or rock for rock, name in zip(rocks, names, strict=True)]
-    return label.ravel().astype(np.int32), names
+    return label.astype(np.int32), names
 
 
 def _dying(structures: Structures) -> np.ndarray:
