@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -18,6 +19,9 @@
 namespace realmodel::simulation {
 
 namespace {
+
+constexpr double kWeakDeterminant = 0.0015;  ///< OpenFOAM's limit is 0.001
+constexpr int kRepairs = 12;
 
 using Front = std::array<std::int32_t, 3>;  ///< of each corner of a triangle: a height of its node
 
@@ -43,6 +47,7 @@ public:
         for (std::size_t i = 0; i < 3; ++i)
             front_[i] = own_[i][0];
         last_block_ = -1;
+        fronts_.assign(1, front_);
         for (std::size_t l = 0; l < layer_blocks.size(); ++l) {
             block_ = layer_blocks[l];
             layer_ = static_cast<std::int32_t>(l);
@@ -57,6 +62,7 @@ public:
             move(top);
         }
         if (last_block_ >= 0) add_flat_face(-1);
+        find_weak();
     }
 
     /// Faces on steps that only one side has belong to the outside.
@@ -77,6 +83,9 @@ public:
         for (const SideFace* face : outside)
             add_outside(face->corners);
     }
+
+    /// Heights to give up, so that no element is left that solvers call under-determined.
+    std::vector<PostLevels::Removal>& weak() { return weak_; }
 
 private:
     struct SideFace {
@@ -250,6 +259,82 @@ private:
             }
         }
         front_ = to;
+        fronts_.push_back(to);
+    }
+
+    /// Of the elements of a column those that have inner faces in too few directions to compute a
+    /// gradient with (OpenFOAM's cell determinant, primitiveMeshTools::cellDeterminant): thin ends
+    /// of layers beside the outside. Their upright edges are given up.
+    void find_weak() {
+        const bool at_border =
+            plan_.neighbor(t_, 0) < 0 || plan_.neighbor(t_, 1) < 0 || plan_.neighbor(t_, 2) < 0;
+        for (std::size_t e = 0; e + 1 < fronts_.size(); ++e) {
+            const bool is_first = e == 0, is_last = e + 2 == fronts_.size();
+            if (!at_border && !is_first && !is_last) continue;
+            const Front &low = fronts_[e], &high = fronts_[e + 1];
+            std::size_t moved = 0;
+            for (std::size_t i = 0; i < 3; ++i)
+                moved += low[i] != high[i];
+            if (moved == 3 || determinant(low, high, is_first, is_last) > kWeakDeterminant)
+                continue;
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (low[i] == high[i]) continue;
+                if (is_first && !is_last) {
+                    weak_.push_back({node_[i], high[i], low[i]});
+                } else {
+                    weak_.push_back({node_[i], low[i], high[i]});
+                }
+            }
+        }
+    }
+
+    std::array<double, 3> position(std::size_t corner, std::int32_t at) const {
+        const PlanPoint& p = plan_.mesh().vertices[index(node_[corner])];
+        return {p[0], p[1], levels_.heights(node_[corner])[index(at)]};
+    }
+
+    double determinant(const Front& low, const Front& high, bool is_first, bool is_last) const {
+        std::array<std::array<double, 3>, 5> areas;
+        std::size_t count = 0;
+        const auto add_flat = [&](const Front& front) {
+            const auto a = position(0, front[0]), b = position(1, front[1]),
+                       c = position(2, front[2]);
+            std::array<double, 3> u, v;
+            for (std::size_t k = 0; k < 3; ++k) {
+                u[k] = b[k] - a[k];
+                v[k] = c[k] - a[k];
+            }
+            areas[count++] = {(u[1] * v[2] - u[2] * v[1]) / 2, (u[2] * v[0] - u[0] * v[2]) / 2,
+                              (u[0] * v[1] - u[1] * v[0]) / 2};
+        };
+        if (!is_first) add_flat(low);
+        if (!is_last) add_flat(high);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            if (plan_.neighbor(t_, i) < 0) continue;
+            const auto a = position(i, low[i]), b = position(j, low[j]);
+            const double rise =
+                (position(i, high[i])[2] - a[2] + position(j, high[j])[2] - b[2]) / 2;
+            areas[count++] = {(b[1] - a[1]) * rise, -(b[0] - a[0]) * rise, 0};
+        }
+        double mean = 0;
+        for (std::size_t f = 0; f < count; ++f)
+            mean += std::sqrt(areas[f][0] * areas[f][0] + areas[f][1] * areas[f][1] +
+                              areas[f][2] * areas[f][2]);
+        if (!(mean > 0)) return 0;
+        mean /= static_cast<double>(count);
+        double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+        for (std::size_t f = 0; f < count; ++f) {
+            const double x = areas[f][0] / mean, y = areas[f][1] / mean, z = areas[f][2] / mean;
+            xx += x * x;
+            xy += x * y;
+            xz += x * z;
+            yy += y * y;
+            yz += y * z;
+            zz += z * z;
+        }
+        return std::abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) +
+                        xz * (xy * yz - yy * xz));
     }
 
     template <std::size_t N>
@@ -317,6 +402,8 @@ private:
     std::array<std::int32_t, 3> node_{};
     std::array<std::span<const std::int32_t>, 3> own_;
     Front front_{};
+    std::vector<Front> fronts_;  ///< of the column, upward
+    std::vector<PostLevels::Removal> weak_;
     bool has_step_ = false;
     std::array<std::size_t, 2> step_{};
     std::vector<std::array<std::int32_t, 2>> lines_;
@@ -348,21 +435,26 @@ LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t>
     const RockBlocks blocks(block_rock);
     PlanTopology plan(lines, std::move(mesh));
     const ColumnHeights columns = post_columns(model, blocks, lines, plan, threads, progress);
-    const PostLevels levels(plan, lines, blocks, columns, layering);
+    PostLevels levels(plan, lines, blocks, columns, layering);
     LayeredMesh made;
-    made.volumes.assign(blocks.rock.size(), 0);
-    for (std::size_t r = 0; r < blocks.count(); ++r) {
-        made.layers = std::max(
-            made.layers,
-            static_cast<std::int32_t>(levels.layer_blocks(static_cast<std::int32_t>(r)).size()));
+    for (int repair = 0;; ++repair) {
+        check_total(levels.height_count(), INT32_MAX);
+        made = {};
+        made.volumes.assign(blocks.rock.size(), 0);
+        for (std::size_t r = 0; r < blocks.count(); ++r) {
+            made.layers = std::max(made.layers,
+                                   static_cast<std::int32_t>(
+                                       levels.layer_blocks(static_cast<std::int32_t>(r)).size()));
+        }
+        ColumnFiller filler(plan, blocks, columns, levels, made);
+        for (std::size_t t = 0; t < plan.triangles(); ++t) {
+            poll(progress, t);
+            filler.fill(t);
+        }
+        if (repair < kRepairs && levels.remove(plan, filler.weak()) > 0) continue;
+        filler.finish_steps();
+        break;
     }
-    check_total(levels.height_count(), INT32_MAX);
-    ColumnFiller filler(plan, blocks, columns, levels, made);
-    for (std::size_t t = 0; t < plan.triangles(); ++t) {
-        poll(progress, t);
-        filler.fill(t);
-    }
-    filler.finish_steps();
     std::vector<std::int32_t> number(levels.height_count(), -1);
     for_corners(made, [&](std::int32_t& corner) { number[index(corner)] = 0; });
     for (std::size_t n = 0, at = 0; n < plan.nodes(); ++n) {
