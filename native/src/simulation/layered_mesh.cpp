@@ -20,8 +20,10 @@ namespace realmodel::simulation {
 
 namespace {
 
-constexpr double kWeakDeterminant = 0.0015;  ///< OpenFOAM's limit is 0.001
-constexpr int kRepairs = 12;
+constexpr double kWeakDeterminant = 0.0011;  ///< of a cube it is 1; its limit is 0.001
+constexpr double kMostLean = 0.36;           ///< cosine of 69 degrees; its limit is 70
+constexpr double kSteepFace = 0.5;           ///< cosine: of 60 degrees
+constexpr int kRepairs = 30;
 
 using Front = std::array<std::int32_t, 3>;  ///< of each corner of a triangle: a height of its node
 
@@ -48,6 +50,7 @@ public:
             front_[i] = own_[i][0];
         last_block_ = -1;
         fronts_.assign(1, front_);
+        front_blocks_.clear();
         for (std::size_t l = 0; l < layer_blocks.size(); ++l) {
             block_ = layer_blocks[l];
             layer_ = static_cast<std::int32_t>(l);
@@ -260,25 +263,35 @@ private:
         }
         front_ = to;
         fronts_.push_back(to);
+        front_blocks_.push_back(block_);
     }
 
-    /// Of the elements of a column those that have inner faces in too few directions to compute a
-    /// gradient with (OpenFOAM's cell determinant, primitiveMeshTools::cellDeterminant): thin ends
-    /// of layers beside the outside. Their upright edges are given up.
+    /// The elements of a column that solvers do badly with, as OpenFOAM's checkMesh measures it:
+    /// inner faces in too few directions to compute a gradient with (its cell determinant), or a
+    /// line to the center of the next element that hardly crosses the face between the two. These
+    /// are thin ends of layers. Their upright edges are given up.
     void find_weak() {
         const bool at_border =
             plan_.neighbor(t_, 0) < 0 || plan_.neighbor(t_, 1) < 0 || plan_.neighbor(t_, 2) < 0;
-        for (std::size_t e = 0; e + 1 < fronts_.size(); ++e) {
-            const bool is_first = e == 0, is_last = e + 2 == fronts_.size();
-            if (!at_border && !is_first && !is_last) continue;
+        const std::size_t count = fronts_.size() - 1;
+        for (std::size_t e = 0; e < count; ++e) {
+            const bool is_first = e == 0, is_last = e + 1 == count;
             const Front &low = fronts_[e], &high = fronts_[e + 1];
-            std::size_t moved = 0;
-            for (std::size_t i = 0; i < 3; ++i)
-                moved += low[i] != high[i];
-            if (moved == 3 || determinant(low, high, is_first, is_last) > kWeakDeterminant)
-                continue;
+            if (moved_corners(e) == 3) {
+                // a prism may become one with the next layer of its block, no more
+                if (!at_border && !is_first && !is_last) continue;
+                if (is_first == is_last || count < 3 ||
+                    front_blocks_[e] != front_blocks_[is_first ? e + 1 : e - 1])
+                    continue;
+            }
+            const bool is_weak = determinant(low, high, is_first, is_last) < kWeakDeterminant,
+                       leans = moved_corners(e) < 3 &&
+                               ((!is_first && leans_at(e - 1)) || (!is_last && leans_at(e)));
+            if (!is_weak && !leans) continue;
             for (std::size_t i = 0; i < 3; ++i) {
-                if (low[i] == high[i]) continue;
+                // an element alone in its column would have no neighbor above, which is worse
+                if (low[i] == high[i] || (!is_weak && own_[i].back() - own_[i].front() == 2))
+                    continue;
                 if (is_first && !is_last) {
                     weak_.push_back({node_[i], high[i], low[i]});
                 } else {
@@ -286,6 +299,64 @@ private:
                 }
             }
         }
+    }
+
+    std::size_t moved_corners(std::size_t e) const {
+        std::size_t moved = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+            moved += fronts_[e][i] != fronts_[e + 1][i];
+        return moved;
+    }
+
+    /// Whether the line between the centers of an element and the next one leans by more than
+    /// kMostLean from the direction across the face between them, though the face itself is not as
+    /// steep.
+    bool leans_at(std::size_t e) const {
+        const auto below = center(e), above = center(e + 1), area = flat_area(fronts_[e + 1]);
+        double dot = 0, line = 0, across = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            dot += (above[k] - below[k]) * area[k];
+            line += (above[k] - below[k]) * (above[k] - below[k]);
+            across += area[k] * area[k];
+        }
+        if (area[2] < kSteepFace * std::sqrt(across)) return false;
+        return dot < kMostLean * std::sqrt(line * across);
+    }
+
+    /// The center of an element's volume: its upright edges weigh as they are long.
+    std::array<double, 3> center(std::size_t e) const {
+        const Front &low = fronts_[e], &high = fronts_[e + 1];
+        std::array<std::array<double, 3>, 3> from;
+        std::array<double, 3> rise;
+        double total = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            from[i] = position(i, low[i]);
+            rise[i] = position(i, high[i])[2] - from[i][2];
+            total += rise[i];
+        }
+        // integrals over a triangle of two linear functions: 1/12 of their products at different
+        // corners, 1/6 at the same
+        std::array<double, 3> made{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t j = 0; j < 3; ++j) {
+                const double weight = (i == j ? 2 : 1) * rise[j] / (4 * total);
+                made[0] += weight * from[i][0];
+                made[1] += weight * from[i][1];
+                made[2] += weight * (from[i][2] + rise[i] / 2);
+            }
+        }
+        return made;
+    }
+
+    std::array<double, 3> flat_area(const Front& front) const {
+        const auto a = position(0, front[0]), b = position(1, front[1]), c = position(2, front[2]);
+        std::array<double, 3> u, v;
+        for (std::size_t k = 0; k < 3; ++k) {
+            u[k] = b[k] - a[k];
+            v[k] = c[k] - a[k];
+        }
+        return {(u[1] * v[2] - u[2] * v[1]) / 2, (u[2] * v[0] - u[0] * v[2]) / 2,
+                (u[0] * v[1] - u[1] * v[0]) / 2};
     }
 
     std::array<double, 3> position(std::size_t corner, std::int32_t at) const {
@@ -296,22 +367,12 @@ private:
     double determinant(const Front& low, const Front& high, bool is_first, bool is_last) const {
         std::array<std::array<double, 3>, 5> areas;
         std::size_t count = 0;
-        const auto add_flat = [&](const Front& front) {
-            const auto a = position(0, front[0]), b = position(1, front[1]),
-                       c = position(2, front[2]);
-            std::array<double, 3> u, v;
-            for (std::size_t k = 0; k < 3; ++k) {
-                u[k] = b[k] - a[k];
-                v[k] = c[k] - a[k];
-            }
-            areas[count++] = {(u[1] * v[2] - u[2] * v[1]) / 2, (u[2] * v[0] - u[0] * v[2]) / 2,
-                              (u[0] * v[1] - u[1] * v[0]) / 2};
-        };
+        const auto add_flat = [&](const Front& front) { areas[count++] = flat_area(front); };
         if (!is_first) add_flat(low);
         if (!is_last) add_flat(high);
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t j = (i + 1) % 3;
-            if (plan_.neighbor(t_, i) < 0) continue;
+            if (plan_.neighbor(t_, i) < 0 || (low[i] == high[i] && low[j] == high[j])) continue;
             const auto a = position(i, low[i]), b = position(j, low[j]);
             const double rise =
                 (position(i, high[i])[2] - a[2] + position(j, high[j])[2] - b[2]) / 2;
@@ -334,7 +395,8 @@ private:
             zz += z * z;
         }
         return std::abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) +
-                        xz * (xy * yz - yy * xz));
+                        xz * (xy * yz - yy * xz)) /
+               8;
     }
 
     template <std::size_t N>
@@ -402,7 +464,8 @@ private:
     std::array<std::int32_t, 3> node_{};
     std::array<std::span<const std::int32_t>, 3> own_;
     Front front_{};
-    std::vector<Front> fronts_;  ///< of the column, upward
+    std::vector<Front> fronts_;               ///< of the column, upward
+    std::vector<std::int32_t> front_blocks_;  ///< of what lies above each
     std::vector<PostLevels::Removal> weak_;
     bool has_step_ = false;
     std::array<std::size_t, 2> step_{};
