@@ -179,11 +179,11 @@ below or inside; of a fault by its nearest triangle. Raises InputError and Cance
     module.def("structure_beyond", &structure_beyond, py::arg("fault"), py::arg("low"),
                py::arg("high"), py::arg("triangles"), py::arg("threads") = 0,
                py::arg("control") = nullptr,
-               R"(Which triangles of a sheet a fault may pass where it goes on beyond its border.
+               R"(Which triangles of a sheet a fault meets where it goes on beyond its border.
 
 fault: as of structure_parts. low, high: (N, 3) float64, the lowest and the highest place of each
-vertex, equal in plan. triangles: (T, 3) int32. Returns (T,) uint8: none too few, perhaps some too
-many. Raises InputError and Cancelled.)");
+vertex, equal in plan. triangles: (T, 3) int32. Returns (T,) uint8, 1 where it may touch a triangle,
+2 where it may pass it: none too few, perhaps some too many. Raises InputError and Cancelled.)");
     module.def("structure_continuation", &structure_continuation, py::arg("fault"), py::arg("box"),
                R"(The triangles (K, 3, 3) float64 by which a fault goes on beyond its border.
 

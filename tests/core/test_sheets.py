@@ -10,7 +10,7 @@ from structure_cases import SQUARE, closed_form_of, plane_fault, prepared
 
 
 def side_of(shape, *points):
-    return nearest_side(np.array(points, float), *shape)
+    return nearest_side(np.array(points, float), *shape[:2])
 
 
 def points_of(height, seed=1, count=300):

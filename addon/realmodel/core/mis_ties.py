@@ -45,6 +45,8 @@ def contradictions(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     heights at their place are apart. points: (P, 3 + K), the latter of which places have to have in common.
     """
     place, _, apart = _places(points)
+    if not apart.any():
+        return np.zeros(len(points), bool), np.zeros(len(points))
     return (apart > LARGEST_SHARE * np.ptp(points[:, 2]))[place], apart[place]
 
 

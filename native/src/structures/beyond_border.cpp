@@ -21,6 +21,7 @@ Position cross(const Position& a, const Position& b) {
 }
 
 constexpr double kTouches = 1e-9;  // of the extent of all: so near counts as met
+constexpr std::uint8_t kMeets = 1, kPasses = 2;
 
 /// What lies over and under a triangle in plan, between two heights at each corner.
 struct Prism {
@@ -59,7 +60,7 @@ bool all_beyond(const auto& points, const Position& on, const Position& outward,
         points, [&](const Position& p) { return dot(minus(p, on), outward) > near; });
 }
 
-/// False where a plane parts them.
+/// False where a plane parts them, by so much at least.
 bool may_meet(const Prism& prism, const Slab& slab, double near) {
     const Position& first = slab.corners[0];
     const Position& normal = slab.normals[0];
@@ -124,9 +125,11 @@ std::vector<std::uint8_t> triangles_beyond(const Structure& fault, std::span<con
     parallel_ranges(count, 1 << 6, threads, progress, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const Prism& prism = prisms[t];
-            found[t] = std::ranges::any_of(slabs, [&](const Slab& slab) {
-                return prism.box.meets(slab.box) && may_meet(prism, slab, near);
-            });
+            for (const Slab& slab : slabs) {
+                if (found[t] == kPasses) break;
+                if (!prism.box.meets(slab.box) || !may_meet(prism, slab, near)) continue;
+                found[t] = may_meet(prism, slab, -near) ? kPasses : kMeets;
+            }
         }
     });
     return found;

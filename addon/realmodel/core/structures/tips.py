@@ -19,6 +19,7 @@ from .triangles import crossing_pairs, distances_of_pairs, edges_of, segments_hi
 _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
 _AT_ONCE = 1 << 21
 _HALVINGS = 30  # a billionth of an edge
+_PASSES = 2
 
 Within = Callable[[np.ndarray], np.ndarray]
 
@@ -173,7 +174,7 @@ def with_equal_ends(
         low[:, 2], high[:, 2] = (np.where(known, each[:, 2], 0.0) for each in (low, high))
         inside = known & within(low) & within(high)
         entire = np.ascontiguousarray(triangles[inside[triangles].all(axis=1)])
-        doubtful = [entire[_pass_beyond(work, fault, low, high, entire, threads)] for fault in faults]
+        doubtful = [entire[_met(work, fault, low, high, entire, threads) > 0] for fault in faults]
         for nodes, some in zip(passed, doubtful, strict=True):
             nodes[some] = True
     crossed = np.ascontiguousarray(triangles[(known & ~inside)[triangles].any(axis=1)])
@@ -188,7 +189,11 @@ def with_equal_ends(
                 some = doubtful[number]
                 some = np.ascontiguousarray(some[near[sides][some].any(axis=1)])
                 sheet = np.column_stack([plan, np.where(known, z, 0.0)])
-                beyond[some[_pass_beyond(work, fault, sheet, sheet, some, threads)]] = True
+                met = _met(work, fault, sheet, sheet, some, threads)
+                beyond[some[met == _PASSES]] = True
+                touched = np.unique(some[met > 0]).astype(np.int32)
+                alone = np.repeat(touched[:, None], 3, axis=1)
+                beyond[touched[_met(work, fault, sheet, sheet, alone, threads) > 0]] = True
                 if len(crossed):
                     beyond |= _beyond(work, plan, z, crossed, fault, within, threads)
             if (beyond & (weights[number] > 0)).any():
@@ -199,10 +204,12 @@ def with_equal_ends(
             return found
 
 
-def _pass_beyond(work: Work, fault: FaultShape, low, high, triangles, threads: int) -> np.ndarray:
-    """(T,) bool: the triangles through which a fault would go on beyond its ends, between two heights."""
-    native = native_module().structure_beyond
-    return work.native(native, fault.native(), low, high, triangles, threads=threads).astype(bool)
+def _met(work: Work, fault: FaultShape, low, high, triangles, threads: int) -> np.ndarray:
+    """(T,) uint8: the triangles that a fault touches or passes beyond its ends, between two heights."""
+    triangles = np.ascontiguousarray(triangles)
+    return work.native(
+        native_module().structure_beyond, fault.native(), low, high, triangles, threads=threads
+    )
 
 
 def _near(triangles: np.ndarray, on_side: list[np.ndarray], passed: list[np.ndarray]) -> np.ndarray:

@@ -71,8 +71,8 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
 std::vector<std::int8_t> sides_of_points(const Structure& structure, std::span<const double> points,
                                          int threads, const Progress* progress);
 
-/// Which triangles of a sheet a fault's continuation beyond its border may pass, wherever the sheet
-/// lies between two heights: none too few, perhaps some too many.
+/// Which triangles of a sheet a fault's continuation beyond its border may touch, 1, or pass, 2,
+/// wherever the sheet lies between two heights: none too few, perhaps some too many.
 /// @param low, high  3 N coordinates of its vertices, equal in plan
 /// @param triangles  3 T
 /// @throws InputError  as parts_of does
