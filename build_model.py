@@ -158,7 +158,7 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--eroded",
         action="store_true",
-        help="tell what each surface removed of each block, in the table and the report",
+        help="tell what each surface removed and each body took of each block, in the table and the report",
     )
     parser.add_argument(
         "--check-model",

@@ -9,11 +9,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from conftest import grid_surface
-from realmodel.core import OutputFailed, Project, Rock, Surface, UsageError, build
+from realmodel.core import Fault, OutputFailed, Project, Rock, Surface, UsageError, build
 from realmodel.core.exporters import WRITERS, save_model, writer_for
 from realmodel.core.exporters.npz import model_arrays
 from realmodel.core.exporters.report import SCHEMA, model_report
 from stacks import places
+from structure_cases import plane_fault
 
 
 def crossing_surfaces(n=8, count=4):
@@ -113,6 +114,22 @@ def polyhedron_volume(cell):
         for b, c in pairwise(corners[1:]):
             volume += np.dot(corners[0], np.cross(b, c)) / 6.0
     return volume
+
+
+def test_vtk_reads_the_compartments(tmp_path):
+    levels = [Surface(f"S{k}", *grid_surface(3, lambda x, y, k=k: 0.5 * k + 0 * x)) for k in range(2)]
+    fault = Fault("F1", *plane_fault(x=0.4))
+    model = build(Project("x", [Rock("rock", levels)], faults=[fault]))
+    assert len(model.compartment_names) == 2
+    model.save(tmp_path / "m.vtu")
+    grid = read_by_vtk(tmp_path / "m.vtu")
+    from vtk.util.numpy_support import vtk_to_numpy
+
+    compartment = vtk_to_numpy(grid.GetCellData().GetArray("compartment"))
+    assert np.array_equal(compartment, model.cell_compartment)
+    volumes = np.array([polyhedron_volume(grid.GetCell(i)) for i in range(grid.GetNumberOfCells())])
+    west, east = sorted(np.bincount(compartment, volumes))
+    assert (west, east) == pytest.approx((0.2, 0.3))
 
 
 @pytest.mark.parametrize("cells", ["columns", "blocks"])

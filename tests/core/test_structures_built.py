@@ -23,6 +23,7 @@ from realmodel.core.residuals import residuals
 from realmodel.core.rules import RULES
 from realmodel.core.structures.located import OUTSIDE, Locator
 from realmodel.core.structures.proof import closed_forms
+from realmodel.core.table import volume_table
 from realmodel.core.volume_uncertainty import volume_deviations
 from structure_cases import SQUARE, ball, box_body, plane_fault
 
@@ -341,6 +342,35 @@ def test_what_a_body_takes_is_no_erosion():
     erosion = build(Project("p", [rock(surfaces(level(-2), level(2), level(1)))], bodies=[tunnel])).eroded()
     assert erosion.total == pytest.approx(100.0)
     assert erosion.remaining[1] == pytest.approx(300 - 20.0, rel=1e-6)
+    assert erosion.taken == pytest.approx(np.array([[0.0, 20.0, 0.0]]), abs=1e-6)
+    assert erosion.deposited[1] == pytest.approx(400.0)
+
+
+def test_what_each_body_takes():
+    """A body of ore that a younger surface cuts, and a tunnel through it and two layers, after all."""
+    given = surfaces(level(-2), level(2), level(4), level(3))
+    ore = Body("ore", *box_body([2, 2, 0], [8, 8, 4]), after="S2")
+    tunnel = Body("tunnel", *box_body([-1, 4, 1], [11, 6, 3]), void=True)
+    model = build(Project("p", [rock(given)], bodies=[ore, tunnel]))
+    names = [block.name for block in model.blocks]
+    erosion = model.eroded()
+    taken = [dict(zip(names, row.round(6).tolist(), strict=True)) for row in erosion.taken]
+    none = dict.fromkeys(names, 0.0)
+    assert taken[0] == none | {"S1 block": 72.0, "S2 block": 72.0}
+    assert taken[1] == none | {"S1 block": 8.0, "S2 block": 8.0, "ore": 24.0}
+    assert dict(zip(names, erosion.by_block.round(6).tolist(), strict=True)) == none | {
+        "S2 block": 64.0,
+        "ore": 36.0,
+    }
+    report = model_report(model, erosion=erosion)["erosion"]
+    assert [(entry["name"], entry["taken"]) for entry in report["bodies"]] == [
+        ("ore", pytest.approx(144.0)),
+        ("tunnel", pytest.approx(40.0)),
+    ]
+    for entry in report["blocks"]:
+        gone = entry["eroded"] + entry["taken"]
+        assert entry["deposited"] == pytest.approx(entry["remaining"] + gone)
+    assert volume_table(model, erosion).splitlines()[0].split()[-1] == "taken"
 
 
 def cap_above(model, z):

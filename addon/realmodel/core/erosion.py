@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each surface removed of each block when it came."""
+"""What each surface removed, and each body took, of each block when it came."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import itertools
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,10 +22,12 @@ class Erosion:
 
     volume: (S, B) float64, what surface k (global index) removed of block j: the volume of the block just
     before the surface came, less that just after. remaining: (B,) what is left, the model's own volumes.
+    taken: (N, B) float64, what body n (from 0) took of block j when it came; this is no erosion.
     """
 
     volume: np.ndarray
     remaining: np.ndarray
+    taken: np.ndarray
 
     @property
     def by_surface(self) -> np.ndarray:
@@ -38,8 +41,8 @@ class Erosion:
 
     @property
     def deposited(self) -> np.ndarray:
-        """(B,) what was laid down of each block: what is left and what was removed since."""
-        return self.remaining + self.by_block
+        """(B,) what was laid down of each block: what is left, and what was removed or taken since."""
+        return self.remaining + self.by_block + self.taken.sum(axis=0)
 
     @property
     def total(self) -> float:
@@ -56,21 +59,44 @@ def eroded(
 def _eroded(work: Work, model, threads: int) -> Erosion:
     """Goes back in time from the model itself: to just before each surface that cuts anything."""
     stages = [m for m in range(_most_surfaces(model) - 1) if any(_cut_at(model, m + 1))]
+    arrivals = _arrivals_of_bodies(model)
+    names = [body.name for body in model.structures.bodies] if arrivals else []
     remaining = np.array([block.volume for block in model.blocks], np.float64)
     volume = np.zeros((len(model.surface_names), len(model.blocks)))
-    after, done, total = remaining, 0, sum(m + 1 for m in stages)
+    after, done, total = remaining, 0, sum(m + 1 for m in stages) + sum(m + 1 for m, _ in arrivals)
     for m in reversed(stages):
         with work.phase(done / total, (done + m + 1) / total, f"building stage {m}"):
             before = _stage_volumes(work, model, m, threads)
         done += m + 1
         # what bodies took that came after the surface is no erosion
-        left = _stage_volumes(work, model, m + 1, threads, m) if _body_came(model, m + 1) else after
+        came = any(time > m for time, _ in arrivals)
+        left = _stage_volumes(work, model, m + 1, threads, (m + 1, 0)) if came else after
         for surface, older in _cut_at(model, m + 1):
             removed = before[older] - left[older]
             volume[surface, older] = np.where(removed > _rounding(model, before[older]), removed, 0.0)
         # from here back to the next stage nothing cuts, so that these are its volumes just after, too
         after = np.where(np.isnan(before), after, before)
-    return Erosion(volume, remaining)
+    taken = np.zeros((len(names), len(model.blocks)))
+    for m, group in itertools.groupby(arrivals, lambda arrival: arrival[0]):
+        bodies = [body for _, body in group]
+        states = []
+        for body in bodies:
+            with work.phase(done / total, (done + m + 1) / total, f"building without '{names[body]}'"):
+                states.append(_stage_volumes(work, model, m, threads, (m, body)))
+            done += m + 1
+        last = m == _most_surfaces(model) - 1
+        states.append(remaining if last else _stage_volumes(work, model, m, threads))
+        for body, before, left in zip(bodies, states, states[1:], strict=False):
+            gone = np.nan_to_num(before - left)
+            taken[body] += np.where(gone > _rounding(model, np.nan_to_num(before)), gone, 0.0)
+    return Erosion(volume, remaining, taken)
+
+
+def _arrivals_of_bodies(model) -> list[tuple[int, int]]:
+    """(m, body): that a body came after surface m of some rock mass, oldest first."""
+    if model.structures is None:
+        return []
+    return sorted({(m, n) for n, times in enumerate(model.structures.times) for m in times.values()})
 
 
 def _most_surfaces(model) -> int:
@@ -107,16 +133,11 @@ def _bodies_before(model, rock: int, k: int) -> list[int]:
     ]
 
 
-def _body_came(model, k: int) -> bool:
-    """Whether there is a body that came after surface k."""
-    if model.structures is None:
-        return False
-    return any(after >= k for times in model.structures.times for after in times.values())
-
-
-def _stage_volumes(work: Work, model, m: int, threads: int, bodies_until: int | None = None) -> np.ndarray:
-    """(B,) volumes of the blocks just after surface m; NaN for those that come later. bodies_until: without
-    bodies that came after this surface."""
+def _stage_volumes(
+    work: Work, model, m: int, threads: int, until: tuple[int, int] | None = None
+) -> np.ndarray:
+    """(B,) volumes of the blocks just after surface m; NaN for those that come later. until: with those
+    bodies alone that came, as (surface, body), before it; None: all until surface m."""
     first = _first_surfaces(model)
     kept = [min(len(rock.surfaces), m + 1) for rock in model.project.rocks]
     first_kept = np.cumsum([0, *kept])
@@ -127,7 +148,7 @@ def _stage_volumes(work: Work, model, m: int, threads: int, bodies_until: int | 
         )
         bodies = None
     else:
-        bodies = model.structures.stage(m if bodies_until is None else bodies_until)
+        bodies = _with_bodies(model.structures, until or (m + 1, 0))
         inputs = [entry.stage(m) for entry in model.rock_inputs]
         built = build_joined(work, inputs, bodies, "blocks", threads, *work.stretch)
     for b, block in enumerate(model.blocks):
@@ -139,6 +160,15 @@ def _stage_volumes(work: Work, model, m: int, threads: int, bodies_until: int | 
         elif own < kept[block.rock]:
             volumes[b] = built["volumes"][first_kept[block.rock] + own]
     return volumes
+
+
+def _with_bodies(structures, until: tuple[int, int]):
+    """The structures with those bodies alone that came, as (surface, body), before `until`."""
+    times = [
+        {rock: after for rock, after in times.items() if (after, body) < until}
+        for body, times in enumerate(structures.times)
+    ]
+    return replace(structures, times=times)
 
 
 def _rounding(model, volumes: np.ndarray) -> np.ndarray:

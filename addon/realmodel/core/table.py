@@ -9,6 +9,7 @@ from .erosion import Erosion
 
 _HEADINGS = ("block", "property", "rock", "volume", "share", "cells", "components", "largest")
 _HEADINGS_OF_EROSION = ("eroded", "surface eroded")
+_HEADING_OF_BODIES = "taken"
 _NUMBERS_FROM = 3
 
 
@@ -16,11 +17,15 @@ def volume_table(model, erosion: Erosion | None = None) -> str:
     """A line for each block, youngest first as in the field, and the sum; plain text with aligned columns.
 
     `largest` is the share of a block's largest connected part, where it has several. With an erosion there
-    are what was eroded of each block, and what the surface above it eroded of all older ones.
+    are what was eroded of each block, what the surface above it eroded of all older ones, and what bodies
+    took of the block.
     """
     library = model.project.library
     total = model.volume
     headings = _HEADINGS if erosion is None else (*_HEADINGS, *_HEADINGS_OF_EROSION)
+    with_bodies = erosion is not None and len(erosion.taken) > 0
+    if with_bodies:
+        headings = (*headings, _HEADING_OF_BODIES)
     rows = []
     for number, block in reversed(list(enumerate(model.blocks))):
         entry = library.get(block.property) if library else None
@@ -38,12 +43,16 @@ def volume_table(model, erosion: Erosion | None = None) -> str:
         ]
         if erosion is not None:
             row += [_figure(erosion.by_block[number]), _figure(erosion.by_surface[block.surface])]
+        if with_bodies:
+            row.append(_figure(erosion.taken[:, number].sum()))
         rows.append(row)
     cells = sum(block.cells for block in model.blocks)
     parts = sum(block.components for block in model.blocks)
     sums = ["total", "", "", _figure(total), _share(total, total), f"{cells}", f"{parts}", ""]
     if erosion is not None:
         sums += [_figure(erosion.total)] * 2
+    if with_bodies:
+        sums.append(_figure(erosion.taken.sum()))
     widths = [max(len(row[i]) for row in (headings, *rows, sums)) for i in range(len(headings))]
     rule = "-" * (sum(widths) + 2 * (len(widths) - 1))
     lines = [_line(headings, widths), rule, *(_line(row, widths) for row in rows), rule, _line(sums, widths)]

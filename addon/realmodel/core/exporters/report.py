@@ -76,16 +76,21 @@ def model_report(
 
 
 def _erosion(model, erosion: Erosion) -> dict:
-    """What each surface removed of which blocks, and for each block what was laid down, removed and left."""
+    """What each surface removed and each body took of which blocks, and for each block what was laid down,
+    removed, taken and left."""
     names = [block.name for block in model.blocks]
     rock_of = [rock.name for rock in model.project.rocks for _ in rock.surfaces]
     return {
         "total": erosion.total,
         "blocks": [
-            {"name": name, "deposited": float(laid), "eroded": float(gone), "remaining": float(left)}
-            for name, laid, gone, left in zip(
-                names, erosion.deposited, erosion.by_block, erosion.remaining, strict=True
-            )
+            {
+                "name": name,
+                "deposited": float(erosion.deposited[b]),
+                "eroded": float(erosion.by_block[b]),
+                "taken": float(erosion.taken[:, b].sum()),
+                "remaining": float(erosion.remaining[b]),
+            }
+            for b, name in enumerate(names)
         ],
         "surfaces": [
             {
@@ -99,6 +104,16 @@ def _erosion(model, erosion: Erosion) -> dict:
             }
             for k, surface in enumerate(model.surface_names[: len(rock_of)])
         ],
+        "bodies": [
+            {
+                "name": body.name,
+                "taken": float(own.sum()),
+                "blocks": [{"block": names[b], "taken": float(own[b])} for b in np.flatnonzero(own)],
+            }
+            for body, own in zip(model.structures.bodies, erosion.taken, strict=True)
+        ]
+        if len(erosion.taken)
+        else [],
     }
 
 

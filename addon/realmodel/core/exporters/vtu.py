@@ -20,8 +20,9 @@ _CELLS_AT_ONCE = 20_000
 
 
 def write_vtu(model, file: BinaryIO, step: Callable[[float], None]) -> None:
-    """Writes every cell as a polyhedron, with the cell arrays `block` (number in the model's list) and
-    `property` (library id, 0: none). Faces turn counter-clockwise seen from outside their cell."""
+    """Writes every cell as a polyhedron, with the cell arrays `block` (number in the model's list),
+    `property` (library id, 0: none) and `compartment`. Faces turn counter-clockwise seen from outside their
+    cell."""
     cells = CellFaces(model)
     count = len(model.cell_block)
     block_property = np.array([block.property for block in model.blocks], np.int32)
@@ -31,6 +32,7 @@ def write_vtu(model, file: BinaryIO, step: Callable[[float], None]) -> None:
         ArrayTag("Points", "Points", "f8", model.vertices.nbytes, 3),
         ArrayTag("CellData", "block", "i4", 4 * count),
         ArrayTag("CellData", "property", "i4", 4 * count),
+        ArrayTag("CellData", "compartment", "i4", 4 * count),
         ArrayTag("Cells", "types", "u1", count),
         ArrayTag("Cells", "faceoffsets", "i8", 8 * count),
         ArrayTag("Cells", "faces", "i8", faces_size),
@@ -41,6 +43,7 @@ def write_vtu(model, file: BinaryIO, step: Callable[[float], None]) -> None:
     write_array(file, np.ascontiguousarray(model.vertices, "<f8"))
     write_array(file, model.cell_block.astype("<i4"))
     write_array(file, block_property[model.cell_block].astype("<i4") if count else np.empty(0, "<i4"))
+    write_array(file, np.ascontiguousarray(model.cell_compartment, "<i4"))
     write_array(file, np.full(count, _POLYHEDRON, np.uint8))
     write_array(file, np.cumsum(streams).astype("<i8"))
     faces_at = file.tell()

@@ -25,8 +25,13 @@ def build_joined(
 
     Blocks have the numbers of the surfaces above them, and those of bodies the numbers of their structures,
     counted after all surfaces; so have faces. `cell_part` (C,) int32 is the part of space of each cell.
-    Raises InputRefused.
+    Bodies that are not there yet divide nothing. Raises InputRefused.
     """
+    there = structures.there()
+    if len(there) < len(structures):
+        few, part = structures.only(there)
+        built = build_joined(work, inputs, few, cells, threads, start, end)
+        return _renumbered(built, np.array(there, np.int64), part, len(structures))
     models, parts, warnings = [], [], {}
     reach = Reach(work, structures, threads)
     steps = np.linspace(start, start + _BUILT * (end - start), len(structures.sides) + 1)
@@ -50,6 +55,23 @@ def build_joined(
     joined["cell_part"] = np.array(parts, np.int32)[joined["cell_part"]]
     joined["warnings"] = list(warnings)
     return joined
+
+
+def _renumbered(built: dict, there: np.ndarray, part: np.ndarray, count: int) -> dict:
+    """The arrays of a model of some structures, numbered as if all `count` of them had been given. there:
+    their numbers; part: (P,) the parts that theirs are of."""
+    surfaces = len(built["volumes"]) - len(there)
+    number = np.append(np.arange(surfaces), surfaces + there).astype(np.int32)
+    volumes = np.zeros(surfaces + count)
+    volumes[number] = built["volumes"]
+    face = built["face_surface"]
+    return {
+        **built,
+        "volumes": volumes,
+        "face_surface": np.where(face < 0, face, np.append(number, np.int32(-1))[face]).astype(np.int32),
+        "cell_block": number[built["cell_block"]],
+        "cell_part": part[built["cell_part"]],
+    }
 
 
 def _nothing(inputs: list, structures: Structures) -> dict:

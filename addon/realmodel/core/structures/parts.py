@@ -89,6 +89,29 @@ class Structures:
         times = [{rock: after for rock, after in each.items() if after <= m} for each in self.times]
         return replace(self, times=times)
 
+    def there(self) -> list[int]:
+        """The numbers of the faults, and of the bodies that are there."""
+        count = len(self.faults)
+        return [*range(count), *(count + body for body, times in enumerate(self.times) if times)]
+
+    def only(self, numbers: list[int]) -> tuple[Structures, np.ndarray]:
+        """All faults and some bodies, by their numbers; and (P,) int32 a part of these structures for each
+        part that those leave."""
+        kept = [number - len(self.faults) for number in numbers[len(self.faults) :]]
+        sides, first, part = np.unique(self.sides[:, numbers], axis=0, return_index=True, return_inverse=True)
+        low, high = np.full((len(sides), 3), np.inf), np.full((len(sides), 3), -np.inf)
+        np.minimum.at(low, part.ravel(), self.low)
+        np.maximum.at(high, part.ravel(), self.high)
+        few = replace(
+            self,
+            bodies=[self.bodies[body] for body in kept],
+            times=[self.times[body] for body in kept],
+            sides=np.ascontiguousarray(sides),
+            low=low,
+            high=high,
+        )
+        return few, first.astype(np.int32)
+
 
 def structures_of(project, faults: list[Fault], bodies: list[Body]) -> Structures:
     """faults, bodies: those of the project, with arrays."""

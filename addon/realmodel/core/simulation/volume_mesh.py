@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Volume meshes as arrays: of tetrahedra, pyramids, prisms and hexahedra, or of polyhedra."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# The corners of each kind of element. They stand as in Gmsh, CGNS and Abaqus: of the first face (three or
+# four corners) counter-clockwise as seen from the rest of the element, so that volumes are positive; of a
+# prism and a hexahedron then the corners above them in the same order. VTK turns prisms the other way round.
+CORNERS = {"tetrahedron": 4, "pyramid": 5, "prism": 6, "hexahedron": 8}
+
+
+@dataclass(frozen=True, eq=False)
+class PlanMesh:
+    """The planar mesh that columns of elements stand on.
+
+    vertices: (P, 2) float64. triangles: (T, 3) int32, counter-clockwise. column, layer: of the elements of
+    each kind, (E,) int32: the triangle that each lies over, and its layer, 0 the highest. layers: how many
+    there are.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    column: dict[str, np.ndarray]
+    layer: dict[str, np.ndarray]
+    layers: int
+
+
+@dataclass(frozen=True, eq=False)
+class VolumeMesh:
+    """A mesh of elements for solvers.
+
+    points: (N, 3) float64, model units; every one is used.
+    elements: of each kind of CORNERS that there is, (E, corners) int32.
+    element_block: of each kind, (E,) int32: the block of each element, an index of block_names.
+    faces: "triangle" (F, 3), "quadrilateral" (F, 4) int32: each face of an element that lies on the outside,
+    or inside on a surface, once; those of the outside counter-clockwise seen from outside.
+    face_surface: of both, (F,) int32: the surface that each lies on, an index of surface_names; -1 a vertical
+    wall, -2 the flat base, -3 a cut.
+    block_names, block_property (B,) int32 (ids of the library, 0: none), surface_names, surface_kind (S,)
+    int32: as of the model; so blocks and surfaces have the numbers that they have there.
+    plan: where the elements stand in columns.
+    """
+
+    points: np.ndarray
+    elements: dict[str, np.ndarray]
+    element_block: dict[str, np.ndarray]
+    faces: dict[str, np.ndarray]
+    face_surface: dict[str, np.ndarray]
+    block_names: list[str]
+    block_property: np.ndarray
+    surface_names: list[str]
+    surface_kind: np.ndarray
+    plan: PlanMesh | None = None
+
+    @property
+    def cells(self) -> int:
+        """How many elements there are."""
+        return sum(map(len, self.elements.values()))
+
+
+@dataclass(frozen=True, eq=False)
+class PolyhedralMesh:
+    """A mesh of polyhedra that share faces, in the layout of a model's arrays (docs/dev/geometry.md).
+
+    points: (N, 3) float64. face_offsets: (F + 1,) int64; face_vertices: int32; face_cells: (F, 2) int32;
+    face_surface: (F,) int32; cell_block: (C,) int32. Names and kinds as of VolumeMesh.
+    """
+
+    points: np.ndarray
+    face_offsets: np.ndarray
+    face_vertices: np.ndarray
+    face_cells: np.ndarray
+    face_surface: np.ndarray
+    cell_block: np.ndarray
+    block_names: list[str]
+    block_property: np.ndarray
+    surface_names: list[str]
+    surface_kind: np.ndarray
+
+    @property
+    def cells(self) -> int:
+        """How many polyhedra there are."""
+        return len(self.cell_block)
+
+    @classmethod
+    def of_model(cls, model) -> PolyhedralMesh:
+        """The exact cells of a model; arrays are shared, not copied."""
+        return cls(
+            model.vertices,
+            model.face_offsets,
+            model.face_vertices,
+            model.face_cells,
+            model.face_surface,
+            model.cell_block,
+            [block.name for block in model.blocks],
+            np.array([block.property for block in model.blocks], np.int32),
+            list(model.surface_names),
+            model.surface_kind,
+        )
