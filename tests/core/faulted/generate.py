@@ -18,6 +18,7 @@ from .contract import FaultSides
 RULES = ("erosional", "erosional", "conformable", "base", "discontinuous")
 STEP = 2.0  # between surfaces, about
 BASE = -14.0
+RAGGED = 0.0  # of faults that reach no farther than they must
 
 
 class _Side(FaultSides):
@@ -76,13 +77,23 @@ def _faults(rng, names, masses):
         elif found and rng.random() < 0.4:
             _branch(rng, fault, found, own)
         if rng.random() < 0.4:  # no farther than it must reach
-            low, high = np.array([-2.0, -2, BASE - 3]), np.array([10.0 * len(masses) + 2, 12, 25])
-            corners = vertices[triangles]
-            own &= ((corners.max(axis=1) > low) & (corners.min(axis=1) < high)).all(axis=1)
+            own &= _needed(vertices, triangles, uv, len(masses), rng.random() < RAGGED)
         fault.triangles, fault.beyond = triangles[own], triangles[~own]
         if len(fault.triangles):
             found.append((fault, rng.choice([0.0, 0.5, 1.0, -1.0, rng.uniform(-1.6, 1.6)])))
     return found
+
+
+def _needed(vertices, triangles, uv, masses, ragged):
+    """(T,) the triangles of a fault near the rock; their border runs along lines of its grid or is ragged."""
+    low, high = np.array([-2.0, -2, BASE - 3]), np.array([10.0 * masses + 2, 12, 25])
+    corners = vertices[triangles]
+    near = ((corners.max(axis=1) > low) & (corners.min(axis=1) < high)).all(axis=1)
+    if ragged or not near.any():
+        return near
+    own = uv[triangles]
+    first, last = own[near].min(axis=(0, 1)), own[near].max(axis=(0, 1))
+    return ((own >= first) & (own <= last)).all(axis=(1, 2))
 
 
 def _branch(rng, fault, found, own):

@@ -33,7 +33,8 @@ def failures_of(case, count=240, seed=1):
             return [] if re.search(case.refused, text) else [f"refusal: not for {case.refused}: {text}"]
         if any(what in text and may(case) for what, may in REFUSALS):
             return []
-        return [f"refused: {text}"]
+        what = re.sub(r"'[^']*'|[-\d.,()]+", "", text.split(": ", 1)[-1])[:40]
+        return [f"refused {' '.join(what.split())}: {text}"]
     except Exception as error:
         return [f"raised: {type(error).__name__}: {error}"]
     if case.refused is not None:
@@ -79,8 +80,9 @@ def topology(model):
         failures.append(f"closed: {(balance != 0).sum()} edges of cells are open")
     if model.cell_kind == "columns" and (used != 2).any():
         failures.append(f"touching: {(used != 2).sum()} edges are used more than twice by a cell")
-    if (model.cell_volumes <= 0).any():
-        failures.append(f"volume: {(model.cell_volumes <= 0).sum()} cells have none")
+    least = -1e-12 * float(np.prod(np.ptp(model.vertices, axis=0))) if len(model.vertices) else 0.0
+    if (model.cell_volumes < least).any():
+        failures.append(f"volume: {(model.cell_volumes < least).sum()} cells have a negative one")
     total = np.bincount(model.cell_block, model.cell_volumes, len(model.blocks))
     given = np.array([block.volume for block in model.blocks])
     if not np.allclose(total, given, rtol=1e-9, atol=1e-9 * max(total.max(initial=0.0), 1e-300)):
@@ -208,6 +210,11 @@ class Judgement:
                     failures.append(f"beside: at {p.tolist()} is cell {found}, face {f} names {expected}")
         return failures[:4]
 
+    def _displaces(self, fault, block):
+        """Whether a fault displaces a block somewhere, or what is below the oldest surface, where no block is."""
+        rocks = range(len(self.case.rocks))
+        return block == AIR or any(self.contract.acts(fault, block, rock) for rock in rocks)
+
     def _surfaces(self, face, at, rows):
         """Faces lie on the surfaces that they name, and faults are there only where they act."""
         failures = []
@@ -248,12 +255,7 @@ class Judgement:
             acting = [
                 g
                 for g in range(len(self.case.faults))
-                if any(
-                    b != AIR and self.contract.acts(g, b, r)
-                    for b in blocks
-                    for r in range(len(self.case.rocks))
-                )
-                and inner[g] != outer[g]
+                if inner[g] != outer[g] and any(self._displaces(g, block) for block in blocks)
             ]
             own = name - self.surfaces
             if 0 <= own < len(self.case.faults) and own not in acting:

@@ -33,6 +33,16 @@ def _set(of, **values):
     return change
 
 
+def _pop_surface(case, r, k):
+    """Leaves out a surface; what names it names the one before or after."""
+    surfaces = case.rocks[r].surfaces
+    gone = surfaces.pop(k).name
+    for entry in (*case.faults, *case.bodies):
+        key = "youngest" if hasattr(entry, "youngest") else "after"
+        if getattr(entry, key) == gone:
+            setattr(entry, key, surfaces[max(0, k - 1)].name)
+
+
 def _smaller(case):
     """Changes that make a case smaller, the boldest first."""
     for n, fault in enumerate(case.faults):
@@ -45,10 +55,10 @@ def _smaller(case):
             yield lambda c, r=r: c.rocks.pop(r)
         for k in range(len(rock.surfaces)):
             if len(rock.surfaces) > 1:
-                yield lambda c, r=r, k=k: c.rocks[r].surfaces.pop(k)
+                yield lambda c, r=r, k=k: _pop_surface(c, r, k)
     for n, fault in enumerate(case.faults):
         entry = lambda c, n=n: c.faults[n]  # noqa: E731
-        for key, value in (("youngest", None), ("ends_at", []), ("rocks", [])):
+        for key, value in (("youngest", None), ("rocks", [])):
             if getattr(fault, key) != value:
                 yield _set(entry, **{key: value})
     for n, body in enumerate(case.bodies):
@@ -76,7 +86,9 @@ def _smaller(case):
 
 def _rounder(case):
     """Changes to rounder numbers."""
-    meshes = [lambda c, n=n: c.faults[n] for n in range(len(case.faults))]
+    # a fault that ends somewhere ends outside of the rock by its coordinates
+    whole = [n for n, fault in enumerate(case.faults) if not len(fault.beyond)]
+    meshes = [lambda c, n=n: c.faults[n] for n in whole]
     meshes += [lambda c, n=n: c.bodies[n] for n in range(len(case.bodies))]
     for r, rock in enumerate(case.rocks):
         meshes += [lambda c, r=r, k=k: c.rocks[r].surfaces[k] for k in range(len(rock.surfaces))]
