@@ -122,6 +122,9 @@ std::int32_t WantedParts::cap_face(std::size_t region, std::int32_t low, std::in
     if (model.block(low) == model.block(high)) return -2 - kWall;
     std::int32_t surface = std::max(model.block(low), model.block(high));
     if (low >= 0 && high >= 0) surface = std::min(model.block(low), model.block(high));
+    // bodies have a block for each rock mass
+    const auto count = static_cast<std::int32_t>(acts_.size() / model.blocks);
+    if (surface >= model.surfaces) surface = model.surfaces + (surface - model.surfaces) % count;
     return -2 - surface;
 }
 
@@ -177,13 +180,19 @@ void WantedParts::find_same(std::size_t region) {
         same_.insert({low, high});
         return;
     }
-    if (ends_itself(low, region) && ends_itself(high, region)) return;
     const auto& structures = sides_.structures_at(region);
-    const auto fault = std::ranges::find_if(structures, [&](const RegionOf& of) {
+    const auto parts_sides = [&](const RegionOf& of) {
         const auto s = index(of.structure);
         return sides_.sides(sides_.part_at(region, 0))[s] !=
                sides_.sides(sides_.part_at(region, 1))[s];
-    });
+    };
+    // beyond its tip, surfaces that are torn on both sides are displaced still
+    const bool is_beyond_tip =
+        low >= 0 && high >= 0 && std::ranges::any_of(structures, [&](const RegionOf& of) {
+            return !of.is_own && sides_.dies_out(of.structure) && parts_sides(of);
+        });
+    if (!is_beyond_tip && ends_itself(low, region) && ends_itself(high, region)) return;
+    const auto fault = std::ranges::find_if(structures, parts_sides);
     sides_.refuse("ends_inside",
                   "the fault ends in the rock: what is beyond differs on its two sides",
                   fault == structures.end() ? -1 : fault->structure, region);

@@ -188,6 +188,9 @@ class Contract:
         rock = self.case.rocks[r]
         state, decided = np.full(len(points), AIR), np.ones(len(points), bool)
         protected, covered = np.zeros(len(points), bool), np.zeros(len(points), bool)
+        if not rock.rings:  # its region is what its surfaces cover
+            ever = np.any([levels(points, sheet) != 0 for sheet in sheets], axis=0)
+            insides = [inside & ever for inside in insides]
         has_base = rock.base_elevation is not None
         for k, (surface, sheet) in enumerate(zip(rock.surfaces, sheets, strict=True)):
             level = levels(points, sheet)
@@ -203,11 +206,13 @@ class Contract:
             for b, inside in enumerate(insides):
                 if self.times[b].get(r) != k:
                     continue
-                # without a base whether nothing is ever there depends on surfaces to come; without a region
-                # on what the surfaces cover
-                if not (has_base and rock.rings):
+                if not has_base:  # whether nothing is ever there depends on surfaces to come
                     decided &= ~(inside & ~covered)
-                inside = inside & (state != NEVER)
+                    if self.case.bodies[b].void:  # what fills it is no more than near to it: see the docs
+                        decided &= ~(inside & (k + 1 < len(sheets)))
+                if self.case.bodies[b].void:
+                    decided &= ~(inside & protected & (k + 1 < len(sheets)))
+                inside = inside & (has_base | (state != NEVER))
                 state[inside] = AIR if self.case.bodies[b].void else 100 + b
         return state, decided
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 import numpy as np
 
 from ..build_warning import BuildWarning
-from .joining import acts
 from .parts import Structures, compartment_names, compartment_of
 
 
@@ -18,17 +17,12 @@ def cell_compartments(
     A compartment lies on one side of each fault that divides its blocks: where faults die out their two sides
     are one compartment, and what is younger than a fault is not divided by it.
     """
-    rock_of = np.concatenate([np.full(len(entry.surfaces), n, np.int32) for n, entry in enumerate(inputs)])
-    block = built["cell_block"]
     if structures is None:
-        rock = rock_of[block]
-        rows = rock[:, None]
+        rock_of = np.repeat(np.arange(len(inputs)), [len(entry.surfaces) for entry in inputs])
+        rows = rock_of[built["cell_block"]][:, None].astype(np.int32)
     else:
-        count = len(structures.faults)
-        divides = acts(inputs, structures)[:count].astype(bool) & ~_dying(structures)[:, None]
-        sides = np.where(divides.T[block], structures.sides[built["cell_part"], :count], 0)
-        rock_of = np.append(rock_of, [0] * count + [min(times, default=0) for times in structures.times])
-        rows = np.column_stack([rock_of[block], sides]).astype(np.int32)
+        sides = np.where(_dying(structures), 0, built["cell_sides"])
+        rows = np.column_stack([built["cell_rock"], sides]).astype(np.int32)
     distinct, label = np.unique(rows, axis=0, return_inverse=True)
     faults = [] if structures is None else [fault.name for fault in structures.faults]
     names = compartment_names(faults, distinct[:, 1:])

@@ -102,7 +102,8 @@ class ReadyMesh:
             for number, side in zip(met, given, strict=True):
                 other = LEFT if side > 0 else RIGHT
                 hidden |= (self.masks[:, family.dying[number]] == other) & beside[number]
-            seen[given] = self._continued(plan, self.tiling.heights(own & ~hidden), triangles)
+            left = own & ~hidden if (own & ~hidden).any() else own  # what hides all hides nothing
+            seen[given] = self._continued(plan, self.tiling.heights(left), triangles)
         equal = with_equal_ends(
             self.work,
             plan,
