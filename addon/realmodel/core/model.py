@@ -128,7 +128,8 @@ class Model:
         return [np.ascontiguousarray(triangles[sheet == each]) for each in np.unique(sheet)]
 
     def save(self, path: str | Path) -> None:
-        """Writes the model to a file, by its ending (.npz, .vtu). It appears whole or not at all.
+        """Writes the model to a file or folder, by its ending: those of exporters.FORMATS. It appears whole
+        or not at all.
 
         Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
         """

@@ -10,7 +10,7 @@ from ..bl.boolean_job import OPERATIONS
 _SURFACE_OF_OBJECT = ("surface_add", "Surface from Active Object", {"use_object": True})
 _EXPORT = (
     ("save_project", "RealModel Project (.toml)", {}),
-    ("export", "RealModel Model (.npz/.vtu)", {}),
+    ("export", "RealModel Model (cells, meshes, shapes)", {}),
     ("report", "RealModel Report (.json/.csv)", {}),
 )
 _IMPORT = (
