@@ -206,9 +206,15 @@ class Judgement:
             for which, found in ((0, own), (1, other)):
                 expected = self.model.face_cells[f, which]
                 p = points[k + which * len(face)]
-                if found not in (-9, expected) and not self._near(p):
+                if found not in (-9, expected) and not self._near(p) and not self._is_between(p, f):
                     failures.append(f"beside: at {p.tolist()} is cell {found}, face {f} names {expected}")
         return failures[:4]
+
+    def _is_between(self, point, face):
+        """Whether another face is about as near to a point as that which it was taken beside."""
+        own = self.faces.face == face
+        away = distances(point[None], self.faces.corners[own])[0]
+        return distances(point[None], self.faces.corners[~own])[0] < 2 * away
 
     def _displaces(self, fault, block):
         """Whether a fault displaces a block somewhere, or what is below the oldest surface, where no block is."""
@@ -261,6 +267,7 @@ class Judgement:
             if 0 <= own < len(self.case.faults) and own not in acting:
                 failures.append(f"unacting: {said}, which does not act there")
             is_cut = not vertical and not 0 <= name < self.surfaces  # columns in bodies end at surfaces
-            if blocks[0] == blocks[1] and not acting and (is_cut or model.cell_kind == "blocks"):
+            same = blocks[0] == blocks[1] and model.cell_compartment[cells[0]] == model.cell_compartment[cells[1]]
+            if same and not acting and (is_cut or model.cell_kind == "blocks"):
                 failures.append(f"needless: {said}, both of one block and compartment")
         return failures[:6]
