@@ -7,7 +7,6 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
-
 from stacks import places
 
 CORPUS = places.ROOT / "tests" / "data" / "structures"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is at a point, by the contract alone: the events of each rock mass, oldest first, at the point.
 
-The sheets are taken from the model as data. Sides of faults, insides of bodies and heights are decided exactly,
-and share nothing with the program.
+The sheets are taken from the model as data. Sides of faults, insides of bodies and heights are decided
+exactly, and share nothing with the program.
 """
 
 import numpy as np
@@ -51,14 +51,15 @@ class FaultSides:
 
 
 def is_inside(points, corners):
-    """(N,) whether points are inside of a closed surface; and (N,) whether that is decided."""
+    """(N,) whether points are inside of a closed surface: whether a ray leaves it an odd number of times; and
+    (N,) whether that is decided."""
     low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
     inside, decided = np.zeros(len(points), bool), np.zeros(len(points), bool)
     for far in ((1.1, 1.37, 1.73), (-0.41, 1.93, 1.57), (1.67, -0.71, -0.83)):
         left = np.flatnonzero(~decided)
         to = low + np.array(far) * (high - low)
         count, clean = signs.crossings(points[left], to, corners)
-        inside[left[clean]] = count[clean] != 0
+        inside[left[clean]] = count[clean] % 2 != 0
         decided[left[clean]] = True
     return inside, decided
 
@@ -132,7 +133,7 @@ class Contract:
         return 1 if (area * above).sum() * 2 > area.sum() else -1
 
     def rows(self, points):
-        """(N, F) sides of all faults, 0 beyond a fault at which one ends; and (N,) whether that is decided."""
+        """(N, F) sides of all faults, 0 beyond a fault at which one ends; and (N,) if that is decided."""
         rows = np.array([side(points) for side in self.sides]).reshape(-1, len(points)).T
         decided = (rows != 0).all(axis=1)
         done = set()

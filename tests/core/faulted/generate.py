@@ -2,8 +2,8 @@
 """Random projects with faults and bodies, from a number: each is to be built, or to be refused for a reason
 that the case names.
 
-Heights are drawn for each surface and each combination of sides of the faults that displace it, and points and
-meshes are taken from them where they lie on these sides.
+Heights are drawn for each surface and each combination of sides of the faults that displace it, and points
+and meshes are taken from them where they lie on these sides.
 """
 
 import itertools
@@ -18,6 +18,11 @@ from .contract import FaultSides
 RULES = ("erosional", "erosional", "conformable", "base", "discontinuous")
 STEP = 2.0  # between surfaces, about
 BASE = -14.0
+PLACES = [(1.0, (0, 0, 0))] * 5 + [  # scale, shift
+    (100.0, (452000.0, 6201000.0, -1800.0)),
+    (0.1, (0, 0, 0)),
+    (40.115, (4500000.37, 5300000.11, 311.7)),
+]
 RAGGED = 0.0  # of faults that reach no farther than they must
 
 
@@ -47,13 +52,13 @@ def random_case(seed):
     return case
 
 
-def _times(rock, names, entry_rocks, surface):
+def _youngest(rock, names, fault):
     """The number of the youngest surface of a rock mass that a fault displaces, -1 for none."""
-    if entry_rocks and rock.name not in entry_rocks:
+    if fault.rocks and rock.name not in fault.rocks:
         return -1
-    if surface is None:
+    if fault.youngest is None:
         return len(names) - 1
-    return names.index(surface) if surface in names else -1
+    return names.index(fault.youngest) if fault.youngest in names else -1
 
 
 def _faults(rng, names, masses):
@@ -96,6 +101,11 @@ def _needed(vertices, triangles, uv, masses, ragged):
     return ((own >= first) & (own <= last)).all(axis=(1, 2))
 
 
+def _areas(corners):
+    """Twice those of triangles (T, 3, 3)."""
+    return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+
+
 def _branch(rng, fault, found, own):
     """Lets a fault end at another one."""
     other, _ = rng.choice(found)
@@ -108,10 +118,7 @@ def _branch(rng, fault, found, own):
     if reaches.all() or not reaches.any():
         return
     # beyond the other fault it goes on for some triangles, but for no larger part
-    area = np.linalg.norm(
-        np.cross(*(fault.vertices[fault.triangles[:, k]] - fault.vertices[fault.triangles[:, 0]] for k in (1, 2))),
-        axis=1,
-    )
+    area = _areas(fault.vertices[fault.triangles])
     crossed = reaches & (corner[fault.triangles] * kept <= 0).any(axis=1)
     if area[crossed].sum() > 0.3 * area[reaches].sum():
         return
@@ -126,9 +133,10 @@ def _fill(rng, rock, r, names, made):
     ring = np.array([[0.0, 0], [10, 0], [10, 10], [0, 10]])
     if r == 0 and rng.random() < 0.2:
         ring = np.array([[0.0, 0], [10, 0], [10, 10], [6, 10], [5.5, 4], [4, 10], [0, 10]])
-    rock.rings = [ring + [x0, 0]]
+    shift = np.array([x0, 0.0])
+    rock.rings = [ring + shift]
     if rng.random() < 0.15:
-        rock.rings.append(np.array([[3.0, 3], [4, 3], [4, 5], [3.5, 5.5]]) + [x0, 0])
+        rock.rings.append(np.array([[3.0, 3], [4, 3], [4, 5], [3.5, 5.5]]) + shift)
     rock.edge_length = rng.choice([2.5, 3.5, 5.0])
     rock.base_elevation = BASE if rng.random() < 0.7 else None
     interpolates = rng.random() < 0.6
@@ -138,7 +146,7 @@ def _fill(rng, rock, r, names, made):
     faults = [fault for fault, _ in made]
     shared = _plan(rng) if rng.random() < 0.5 else None
     for k, name in enumerate(names[r]):
-        active = [f for f, fault in enumerate(faults) if _times(rock, names[r], fault.rocks, fault.youngest) >= k]
+        active = [f for f, fault in enumerate(faults) if _youngest(rock, names[r], fault) >= k]
         height = _height(rng, k, [(sides[f], made[f][1], faults[f]) for f in active])
         surface = SurfaceCase(name, rng.choice(RULES) if rng.random() < 0.6 else "erosional")
         own = [(faults[f], sides[f]) for f in active]
@@ -197,8 +205,7 @@ def _sides(own, points):
             if name in names:
                 other = names.index(name)
                 middles = side.own.mean(axis=1)
-                area = np.linalg.norm(np.cross(side.own[:, 1] - side.own[:, 0], side.own[:, 2] - side.own[:, 0]), axis=1)
-                kept = 1 if (own[other][1](middles) * area).sum() > 0 else -1
+                kept = 1 if (own[other][1](middles) * _areas(side.own)).sum() > 0 else -1
                 rows[rows[:, other] == -kept, f] = 0
     return rows
 
@@ -223,7 +230,7 @@ def _plan(rng):
     plan = np.array([(x, y) for x in at for y in at])
     if rng.random() < 0.4:
         inner = ((plan > low) & (plan < high)).all(axis=1)
-        moves = np.array([[rng.uniform(-0.3, 0.3) for _ in range(2)] for _ in plan]) * (high - low) / n
+        moves = np.array([[rng.uniform(-0.2, 0.2) for _ in range(2)] for _ in plan]) * (high - low) / n
         plan = np.round(plan + moves * inner[:, None], 3)
     return plan, shapes._grid(n + 1, n + 1, rng)
 
@@ -232,7 +239,7 @@ def _mesh(rng, own, height, plan, x0, torn, has_region):
     nodes, triangles = plan
     if not has_region or x0 > 0:  # beside another rock mass surfaces end at the wall
         nodes = np.clip(nodes, 0, 10)
-    nodes = nodes + [x0, 0]
+    nodes = nodes + np.array([x0, 0.0])
     if not torn:
         row = (0,) * len(own)
         return np.column_stack([nodes, height(nodes, row)]), triangles
@@ -275,10 +282,7 @@ def _bodies(rng, names, masses):
 
 def _place(rng, case):
     """Moves a case as a whole: to the size of projected coordinates, or smaller."""
-    scale, shift = rng.choice(
-        [(1.0, (0, 0, 0))] * 5
-        + [(100.0, (452000.0, 6201000.0, -1800.0)), (0.1, (0, 0, 0)), (40.115, (4500000.37, 5300000.11, 311.7))]
-    )
+    scale, shift = rng.choice(PLACES)
     if scale == 1.0:
         return
     shift = np.array(shift)

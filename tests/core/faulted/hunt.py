@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hunts for models with faults and bodies that are built wrongly: python -m tests.core.faulted.hunt SECONDS [SEED]
+"""Hunts for models with faults and bodies that are built wrongly:
+
+    python -m tests.core.faulted.hunt SECONDS [SEED]
 
 Random cases are built and judged in a process of their own, so that a crash or a hang is a finding too. Each
 finding is minimized and written to tests/data/structures/ (or --into FOLDER), named by its seed.
@@ -14,12 +16,13 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # tests/core
 
+from stacks import places
+from stacks.hunt import Worker
+
 from faulted.case import CORPUS, load_case, save_case
 from faulted.generate import random_case
 from faulted.judge import failures_of, kinds_of
 from faulted.minimize import minimize
-from stacks import places
-from stacks.hunt import Worker
 
 
 def report(worker, case, failures, folder, name, steps):
@@ -34,8 +37,8 @@ def report(worker, case, failures, folder, name, steps):
         print(f"    {failure[:300]}", flush=True)
 
 
-def hunt(seconds, seed, folder, most, steps):
-    """Judges cases, seed after seed, until the time is over or enough is found; the number of failing ones."""
+def hunt(seconds, seed, every, folder, most, steps):
+    """Judges cases, each `every`-th seed, until the time is over or enough is found; how many failed."""
     worker = Worker(failures_of)
     stop = time.monotonic() + seconds
     failed, judged = collections.Counter(), 0
@@ -48,7 +51,7 @@ def hunt(seconds, seed, folder, most, steps):
             failed[min(kinds_of(failures))] += 1
             print(f"seed {number}: {failures[0][:250]}", flush=True)
             report(worker, case, failures, folder, number, steps)
-        number += 1
+        number += every
     worker.close()
     print(f"{judged} cases from seed {seed}, {sum(failed.values())} failed {dict(failed)}")
     return sum(failed.values())
@@ -62,6 +65,7 @@ def main():
     )
     parser.add_argument("seconds", type=float)
     parser.add_argument("seed", type=int, nargs="?", default=0)
+    parser.add_argument("--every", type=int, default=1, help="how many seeds others take")
     parser.add_argument("--into", default=str(CORPUS))
     parser.add_argument("--most", type=int, default=40, help="findings to stop at")
     parser.add_argument("--steps", type=int, default=150, help="tries to make a finding smaller; 0: none")
@@ -76,7 +80,8 @@ def main():
             report(worker, case, failures, given.into, given.case.stem, given.steps)
         worker.close()
         raise SystemExit(1 if failures else 0)
-    raise SystemExit(1 if hunt(given.seconds, given.seed, given.into, given.most, given.steps) else 0)
+    failed = hunt(given.seconds, given.seed, given.every, given.into, given.most, given.steps)
+    raise SystemExit(1 if failed else 0)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Greedy reduction of a failing case: fewer faults, bodies, rock masses, surfaces, triangles and points, rounder
-numbers."""
+"""Greedy reduction of a failing case: fewer faults, bodies, rock masses, surfaces, triangles and points,
+rounder numbers."""
 
 import copy
 import pickle

@@ -26,8 +26,8 @@ def _between(rng, low, high, count):
 
 
 def fault_surface(rng, kind, tip=None):
-    """Vertices (V, 3) and triangles of a surface that divides all of the space around the rock, and the (u, v)
-    of its vertices: along its strike and up its dip. tip: a value of u that a line of edges has."""
+    """Vertices (V, 3) and triangles of a surface that divides all of the space around the rock, and the
+    (u, v) of its vertices: along its strike and up its dip. tip: a value of u that a line of edges has."""
     whole = rng.random() < 0.6
     count = (rng.randint(1, 4), rng.randint(1, 4))
     u, v = _between(rng, -9, 9, count[0]), _between(rng, -14, 9, count[1])
@@ -36,8 +36,14 @@ def fault_surface(rng, kind, tip=None):
         u = v = [-FAR, FAR]
     if kind in ("lattice", "wall"):
         along, up = rng.choice(
-            [((0, 1, 0), (0, 0, 1)), ((1, 0, 0), (0, 0, 1)), ((0, 1, 0), (1, 0, 1)), ((1, 1, 0), (0, 0, 1)),
-             ((1, 0, 0), (0, 1, 2)), ((0, 1, 0), (-2, 0, 1))]
+            [
+                ((0, 1, 0), (0, 0, 1)),
+                ((1, 0, 0), (0, 0, 1)),
+                ((0, 1, 0), (1, 0, 1)),
+                ((1, 1, 0), (0, 0, 1)),
+                ((1, 0, 0), (0, 1, 2)),
+                ((0, 1, 0), (-2, 0, 1)),
+            ]
         )
         origin = np.round(origin)
         if kind == "wall":
@@ -146,14 +152,14 @@ def body_mesh(rng, width, top):
     elif kind == "ring":
         mesh = torus(rng, center, size + 0.5, 0.4 * size)
     elif kind == "two":
-        near = np.array([rng.uniform(-1, 1) for _ in range(3)])
-        mesh = together(ball(rng, center, size, 0.0), ball(rng, center + near + [2.5 * size, 0, 0], size, 0.0))
+        other = center + np.array([rng.uniform(-1, 1) + 2.5 * size, rng.uniform(-1, 1), rng.uniform(-1, 1)])
+        mesh = together(ball(rng, center, size, 0.0), ball(rng, other, size, 0.0))
     elif kind == "hollow":
         inner = ball(rng, center, 0.5 * size, 0.1)
         mesh = together(ball(rng, center, 1.7 * size, 0.0), (inner[0], inner[1][:, ::-1]))
     elif kind == "pit":
         low = np.array([*np.round(center[:2], 1), top - rng.uniform(0.5, 5)])
-        mesh = box(low, [*(low[:2] + [rng.uniform(0.5, 4), rng.uniform(0.5, 4)]), top + 5])
+        mesh = box(low, [low[0] + rng.uniform(0.5, 4), low[1] + rng.uniform(0.5, 4), top + 5])
     else:
         mesh = ball(rng, center, size, 0.5 if kind == "star" else 0.0)
     if rng.random() < 0.2:

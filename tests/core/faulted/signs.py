@@ -42,8 +42,9 @@ def over(a, b, c, p):
         np.broadcast_to(x, np.broadcast_shapes(a.shape, b.shape, c.shape, p.shape)) for x in (a, b, c, p)
     )
     u, v, w = (x - p for x in (a, b, c))
-    vw, size = np.cross(v, w), np.abs(v[:, [1, 2, 0]] * w[:, [2, 0, 1]]) + np.abs(v[:, [2, 0, 1]] * w[:, [1, 2, 0]])
-    value, bound = (u * vw).sum(axis=1), 1e-14 * (np.abs(u) * size).sum(axis=1)
+    one, two = v[:, [1, 2, 0]] * w[:, [2, 0, 1]], v[:, [2, 0, 1]] * w[:, [1, 2, 0]]
+    value = (u * (one - two)).sum(axis=1)
+    bound = 1e-14 * (np.abs(u) * (np.abs(one) + np.abs(two))).sum(axis=1)
     return -_signs(value, bound, (a, b, c, p))
 
 
@@ -56,8 +57,8 @@ def pairs_of_boxes(low, high, low2, high2):
 
 
 def crossings(points, to, corners):
-    """How often the ways from points (N, 3) to the point `to` (3,) cross triangles (M, 3, 3): to the side that
-    sees them counter-clockwise less to the other one, (N,); and (N,) bool, whether none touches an edge."""
+    """How often the ways from points (N, 3) to the point `to` (3,) cross triangles (M, 3, 3): to the side
+    that sees them counter-clockwise less to the other one, (N,); and (N,) bool, if none touches an edge."""
     count, clean = np.zeros(len(points), int), np.ones(len(points), bool)
     rows, numbers = pairs_of_boxes(
         np.minimum(points, to), np.maximum(points, to), corners.min(axis=1), corners.max(axis=1)

@@ -65,7 +65,7 @@ class ClosedForm:
         points = np.asarray(points, np.float64).reshape(-1, 3)
         where = self.compartments_of(points)
         blocks = np.full(len(points), AIR, np.int64)
-        insides = [winding_numbers(points, *body.shape) != 0 for body in self.bodies]
+        insides = [winding_numbers(points, *body.shape) % 2 != 0 for body in self.bodies]
         for number, sheets in enumerate(self.sheets):
             here = np.flatnonzero(where == number)
             if len(here):

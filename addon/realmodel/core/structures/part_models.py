@@ -73,8 +73,8 @@ def inside_body(
     plans: list[tuple[np.ndarray, np.ndarray]],
 ) -> Stack:
     """The stack inside of a body that came after surface `after`: all that was there, air and rock, is the
-    body, block `block`, or NOTHING in a void. top: a height above all sheets and bodies. plans: triangulations
-    that together cover the rock mass in plan. Raises InputRefused.
+    body, block `block`, or NOTHING in a void. top: a height above all sheets and bodies. plans:
+    triangulations that together cover the rock mass in plan. Raises InputRefused.
     """
     older = sum(number <= after for number in stack.surfaces)  # with fillers of earlier bodies
     if stack.base_elevation is not None:
