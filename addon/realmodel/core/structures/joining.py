@@ -25,8 +25,9 @@ def build_joined(
 
     Blocks have the numbers of the surfaces above them, and those of bodies the numbers of their structures,
     counted after all surfaces; so have faces. `cell_part` (C,) int32 is the part of space of each cell,
-    `cell_rock` (C,) int32 its rock mass, `cell_sides` (C, F) int8 its side of each fault that divides its
-    block, else 0. Bodies that are not there yet divide nothing. Raises InputRefused.
+    `cell_own_block` (C,) int32 is its block with those of bodies as body_block numbers them,
+    `rock_of_own_block` (B,) int32 the rock mass of these, `own_block_divided` (S, B) as `acts` has it.
+    Bodies that are not there yet divide nothing. Raises InputRefused.
     """
     there = structures.there()
     if len(there) < len(structures):
@@ -55,7 +56,7 @@ def build_joined(
         except native.InputError as error:
             raise refused_structure(error, structures) from error
     joined["cell_part"] = np.array(parts, np.int32)[joined["cell_part"]]
-    _tell_of_cells(joined, inputs, structures, divides)
+    _merge_blocks_of_bodies(joined, inputs, structures, divides)
     joined["warnings"] = list(warnings)
     return joined
 
@@ -77,22 +78,18 @@ def _renumbered(built: dict, there: np.ndarray, part: np.ndarray, count: int) ->
     }
 
 
-def _tell_of_cells(joined: dict, inputs: list, structures: Structures, divides: np.ndarray) -> None:
-    """Gives each body one block for all rock masses, and notes the rock mass of each cell and its sides of
-    the faults that divide its block. divides: as `acts` has it."""
+def _merge_blocks_of_bodies(joined: dict, inputs: list, structures: Structures, divides) -> None:
+    """Gives each body one block for all rock masses. divides: as `acts` has it."""
     first, count = _first_surfaces(inputs), len(structures)
     own, surfaces = joined["cell_block"], first[-1]
-    rock_of = np.repeat(np.arange(len(inputs)), [*np.diff(first)])
-    rock_of = np.append(rock_of, np.repeat(np.arange(len(inputs)), count)).astype(np.int32)
-    joined["cell_rock"] = rock_of[own]
-    faults = len(structures.faults)
-    sides = structures.sides[joined["cell_part"], :faults]
-    joined["cell_sides"] = np.where(divides[:faults].T[own] > 0, sides, 0).astype(np.int8)
+    rocks = np.arange(len(inputs), dtype=np.int32)
+    joined["cell_own_block"] = own
+    joined["own_block_divided"] = divides
+    joined["rock_of_own_block"] = np.append(np.repeat(rocks, np.diff(first)), np.repeat(rocks, count))
     body = own >= surfaces
     joined["cell_block"] = np.where(body, surfaces + (own - surfaces) % max(1, count), own).astype(np.int32)
-    volumes = joined["volumes"]
-    of_bodies = volumes[surfaces:].reshape(len(inputs), count).sum(axis=0)
-    joined["volumes"] = np.concatenate([volumes[:surfaces], of_bodies])
+    of_bodies = joined["volumes"][surfaces:].reshape(len(inputs), count).sum(axis=0)
+    joined["volumes"] = np.append(joined["volumes"][:surfaces], of_bodies)
 
 
 def _nothing(inputs: list, structures: Structures) -> dict:
@@ -105,8 +102,9 @@ def _nothing(inputs: list, structures: Structures) -> dict:
         "face_surface": np.empty(0, np.int32),
         "cell_block": np.empty(0, np.int32),
         "cell_part": np.empty(0, np.int32),
-        "cell_rock": np.empty(0, np.int32),
-        "cell_sides": np.empty((0, len(structures.faults)), np.int8),
+        "cell_own_block": np.empty(0, np.int32),
+        "rock_of_own_block": np.empty(0, np.int32),
+        "own_block_divided": np.empty((len(structures), 0), np.uint8),
         "volumes": np.zeros(blocks),
         "warnings": [],
     }

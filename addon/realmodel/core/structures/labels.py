@@ -19,11 +19,22 @@ def cell_compartments(
     """
     if structures is None:
         rock_of = np.repeat(np.arange(len(inputs)), [len(entry.surfaces) for entry in inputs])
-        rows = rock_of[built["cell_block"]][:, None].astype(np.int32)
+        block, part, parts = built["cell_block"], np.zeros(len(built["cell_block"]), np.int32), 1
     else:
-        sides = np.where(_dying(structures), 0, built["cell_sides"])
-        rows = np.column_stack([built["cell_rock"], sides]).astype(np.int32)
+        rock_of = built["rock_of_own_block"]
+        block, part, parts = built["cell_own_block"], built["cell_part"], len(structures.sides)
+    kind = block.astype(np.int64) * parts + part
+    has_cells = np.bincount(kind, minlength=1) > 0
+    kinds = np.flatnonzero(has_cells)
+    block, part = kinds // parts, kinds % parts
+    rows = rock_of[block][:, None]
+    if structures is not None:
+        count = len(structures.faults)
+        divides = built["own_block_divided"][:count].astype(bool) & ~_dying(structures)[:, None]
+        rows = np.column_stack([rows, np.where(divides.T[block], structures.sides[part, :count], 0)])
+    rows = rows.astype(np.int32)
     distinct, label = np.unique(rows, axis=0, return_inverse=True)
+    label = label.ravel()[(np.cumsum(has_cells) - 1)[kind]]
     faults = [] if structures is None else [fault.name for fault in structures.faults]
     names = compartment_names(faults, distinct[:, 1:])
     rocks = [inputs[number].rock.name for number in distinct[:, 0].tolist()]
@@ -31,7 +42,7 @@ def cell_compartments(
         names = [f"{rock}: {name}" if name else rock for rock, name in zip(rocks, names, strict=True)]
     else:
         names = [name or rock for rock, name in zip(rocks, names, strict=True)]
-    return label.ravel().astype(np.int32), names
+    return label.astype(np.int32), names
 
 
 def _dying(structures: Structures) -> np.ndarray:
