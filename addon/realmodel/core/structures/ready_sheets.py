@@ -8,7 +8,6 @@ import itertools
 import numpy as np
 
 from ..heights import heights
-from ..methods import checked_options
 from ..work import Work
 from .families import Family, are_within
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
@@ -16,8 +15,6 @@ from .rock_structure import Triangulation
 from .sides import fault_sides
 from .tips import on_fault, trace_of, with_equal_ends
 from .triangles import meet, welded
-
-_METHOD, _OPTIONS = "natural_neighbour", {"extrapolate": "nearest"}
 
 
 class ReadyMesh:
@@ -29,9 +26,7 @@ class ReadyMesh:
         self.work, self.entry, self.number, self.threads = work, entry, number, threads
         surface = entry.rock.surfaces[number]
         self.vertices, self.triangles = surface.vertices, surface.triangles
-        self.method = surface.method or _METHOD
-        options = surface.options if surface.method else {**_OPTIONS, **surface.options}
-        self.settings = checked_options(self.method, options)
+        self.method, self.settings = surface.method_options()
         faults = entry.structure.faults
         self.active = faults.active(number)
         self.masks = np.full((len(self.triangles), len(faults)), LEFT | RIGHT, np.uint8)
