@@ -362,15 +362,14 @@ def _requests(options: argparse.Namespace) -> list:
 def _checked_targets(options: argparse.Namespace, requests: list) -> list[Path]:
     """Where the outputs will stand; refused before anything is built rather than after."""
     from realmodel.core import UsageError
-    from realmodel.core.atomic import writable_target
-    from realmodel.core.exporters import writer_for
+    from realmodel.core.exporters import format_for, output_target
     from realmodel.core.exporters.surfaces import surface_writer_for
 
     for path in options.export:
-        surface_writer_for(path) if options.surfaces_only else writer_for(path)
+        surface_writer_for(path) if options.surfaces_only else format_for(path)
     paths = [*options.export, *(p for p in (options.report, options.blend, options.render) if p is not None)]
     paths += [path for request in requests for path in request.outputs]
-    targets = [writable_target(path) for path in paths]
+    targets = [output_target(path) for path in paths]
     for path, target in zip(paths, targets, strict=True):
         if targets.count(target) > 1:
             raise UsageError(f"{path}: two outputs have this name")
@@ -391,8 +390,7 @@ def _write(options: argparse.Namespace, project, model, outputs, progress, valid
     from realmodel.core.exporters.report import write_report
 
     for path in options.export:
-        with outputs.file(path) as file:
-            write_model(model, path, file, lambda share, path=path: progress(1.0, f"writing {path.name}"))
+        write_model(model, path, outputs, lambda share, path=path: progress(1.0, f"writing {path.name}"))
     if options.blend is not None or options.render is not None:
         _write_with_blender(options, project, model, outputs, progress)
     if options.report is not None:

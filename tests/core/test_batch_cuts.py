@@ -101,7 +101,7 @@ def test_vtu_and_obj_know_block_and_property(layers, out, tmp_path):  # noqa: F8
         (("--fence", "0,0,0,0,1,1=f.vtu"), "two consecutive points are equal"),
         (("--cut", "0,0,0,1,0,0=,"), "one of them may be left out"),
         (("--cut", "0,0,0,1,0,0=a.npz,b.npz,c.npz"), "expected "),
-        (("--cut", "0,0,0,1,0,0=a.obj"), "use .npz or .vtu"),
+        (("--cut", "0,0,0,1,0,0=a.xyz"), "use one of .npz, .vtu"),
         (("--cut", "fault.unknown=a.npz"), "is not a cutter"),
         (("--cut", "other.toml:=a.npz"), "the block is missing"),
         (("--cut", ":chalk=a.npz"), "no block named 'chalk'"),

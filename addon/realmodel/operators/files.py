@@ -11,13 +11,13 @@ from ..bl import results
 from ..bl.display import shown_models
 from ..core import UsageError
 from ..core.atomic import Outputs
-from ..core.exporters import save_model
+from ..core.exporters import FORMATS, save_model
 from ..core.exporters.report import write_report
 from .reporting import Reporting, a_model, chosen_path
 
-_MODELS = (
-    ("NPZ", "NumPy (.npz)", "All arrays of the model, for Python"),
-    ("VTU", "VTK Unstructured Grid (.vtu)", "The polyhedral cells, for ParaView and simulation"),
+_MODELS = tuple(
+    (known.ending[1:].upper(), f"{known.label} ({known.ending})", known.description)
+    for known in FORMATS.values()
 )
 _REPORTS = (
     ("JSON", "Report (.json)", "Volumes, settings, warnings, and the proof of the model"),

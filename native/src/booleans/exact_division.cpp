@@ -106,7 +106,7 @@ void ExactDivision::find_candidates() {
             boxes[i] = pieces_.box(pieces_[chosen_[i]].corners);
     });
     // the tree of the inputs is that of their pieces, as long as none is divided
-    const bool all = count == pieces_.input_count();
+    const bool all = pieces_.are_whole() && count == pieces_.input_count();
     const std::optional<BoxTree> own =
         all ? std::nullopt : std::optional<BoxTree>(std::in_place, boxes);
     const BoxTree& tree = own ? *own : pieces_.tree();

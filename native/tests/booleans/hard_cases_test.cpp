@@ -135,6 +135,19 @@ TEST(IntersectHard, SpheresMovedByAFewUnits) {
     }
 }
 
+/// A corner touches a triangle that another one divides. Once there are as many triangles as
+/// pieces, which had been taken for "nothing is divided yet".
+TEST(IntersectHard, TrianglesFarAwayChangeNothing) {
+    const Mesh a{{0, 0, 0, 8, 0, 0, 0, 8, 0}, {0, 1, 2}};
+    Mesh b{{1, 1, 0, 1, 1, 2, 1, 2, 2, 3, -1, -1, 3, -1, 1, 3, 9, 0}, {0, 1, 2, 3, 4, 5}};
+    const std::size_t alone = intersect(a.view(), b.view()).triangles.size();
+    for (std::size_t far = 1; far < 20; ++far) {
+        const double x = 100.0 * static_cast<double>(far);
+        b.add({{x, 0, 0, x, 1, 0, x, 0, 1}, {0, 1, 2}});
+        EXPECT_EQ(intersect(a.view(), b.view()).triangles.size(), alone + far);
+    }
+}
+
 TEST(IntersectHard, ASingleTriangleInACube) {
     const Mesh a = cube({0, 0, 0}, 2);
     const Mesh inside{{0.5, 0.5, 0.5, 1.5, 0.5, 0.5, 0.5, 1.5, 0.5}, {0, 1, 2}};

@@ -10,6 +10,7 @@ import numpy as np
 from ..work import Work, native_module
 from .parts import Structures
 from .sides import FaultShape, Triangulation, fault_sides
+from .triangles import extents
 
 _CELLS = (64, 64, 16)  # of the grid, at most
 _BELOW, _ABOVE, _BOTH = 1, 2, 3  # on which sides of a fault a cell may have points
@@ -29,6 +30,7 @@ class Reach:
         step = self.size[:2].max() / _CELLS[0]
         self.cells = np.maximum(1, np.minimum(_CELLS, np.ceil(self.size / step))).astype(int)
         self.step = self.size / self.cells
+        self.ranges: dict[int, tuple] = {}  # of sheets: the sheet, first and last cells of its triangles
         self.masks = [
             self._sides(work, FaultShape(fault.vertices, fault.triangles, fault.dies_out), threads)
             for fault in structures.faults
@@ -47,8 +49,9 @@ class Reach:
 
     def over(self, columns: np.ndarray, sheet: Triangulation) -> np.ndarray:
         """(T,) bool: the triangles of a sheet whose boxes in plan meet some of these columns."""
-        corners = sheet[0][sheet[1], :2]
-        first, last = self._range(corners.min(axis=1), corners.max(axis=1))
+        if id(sheet) not in self.ranges:
+            self.ranges[id(sheet)] = sheet, *self._range(*extents(sheet[0][sheet[1], :2]))
+        _, first, last = self.ranges[id(sheet)]
         total = np.zeros(np.array(columns.shape) + 1, np.int64)
         total[1:, 1:] = columns.cumsum(axis=0).cumsum(axis=1)
         (x0, y0), (x1, y1) = first.T, last.T + 1
@@ -86,7 +89,7 @@ class Reach:
         passed = np.zeros(self.cells, bool)
         pieces = _divided(corners, float(self.step.max()), self.low, self.low + self.size)
         if len(pieces):
-            first, last = self._range(pieces.min(axis=1), pieces.max(axis=1))
+            first, last = self._range(*extents(pieces))
             for move in itertools.product(*(range(int(most) + 1) for most in (last - first).max(axis=0))):
                 at = first + move
                 passed[tuple(at[(at <= last).all(axis=1)].T)] = True

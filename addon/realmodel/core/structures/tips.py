@@ -87,7 +87,10 @@ def on_fault(points: np.ndarray, fault: FaultShape) -> np.ndarray:
     boxes = np.stack([points - near, points + near, points], axis=1)
     found = np.zeros(len(points), bool)
     low, high = vertices[triangles].min(axis=(0, 1)) - near, vertices[triangles].max(axis=(0, 1)) + near
-    some = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
+    inside = np.ones(len(points), bool)
+    for axis in range(3):
+        inside &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
+    some = np.flatnonzero(inside)
     pairs = crossing_pairs(boxes[some], vertices[triangles])
     away = distances_of_pairs(points[some[pairs[:, 0]]], vertices[triangles[pairs[:, 1]]])
     found[some[pairs[away <= near, 0]]] = True
