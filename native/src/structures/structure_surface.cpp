@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "cutting/nearest_side.hpp"
 #include "realmodel/base/errors.hpp"
 
 namespace realmodel::structures {
@@ -60,9 +61,10 @@ std::vector<BorderEdge> border_of(const CutterSurface& surface) {
 /// farther: where they cross, they cross all through.
 class Continuation {
 public:
+    /// @param in_its_plane  of vertices: edges between such ones are continued so
     /// @param size  of a box around the rock and all structures
-    Continuation(const CutterSurface& fault, bool in_its_plane, double size)
-        : fault_(fault), in_its_plane_(in_its_plane), lengths_{1.25 * size, 8 * size} {}
+    Continuation(const CutterSurface& fault, std::vector<std::uint8_t> in_its_plane, double size)
+        : fault_(fault), in_its_plane_(std::move(in_its_plane)), lengths_{1.25 * size, 8 * size} {}
 
     std::vector<std::array<Position, 3>> triangles() {
         std::map<NodeId, std::vector<std::pair<NodeId, Position>>> arriving, leaving;
@@ -103,7 +105,8 @@ private:
         for (std::size_t k = 0; k < 3; ++k)
             away[k] = share * along[k] - inward[k];
         away = unit(away);
-        if (in_its_plane_ || std::abs(away[2]) < 0.5) return away;
+        if (in_its_plane_[index(edge.from)] != 0 && in_its_plane_[index(edge.to)] != 0) return away;
+        if (std::abs(away[2]) < 0.5) return away;
         return {0, 0, away[2] > 0 ? 1.0 : -1.0};
     }
 
@@ -130,10 +133,37 @@ private:
     }
 
     const CutterSurface& fault_;
-    bool in_its_plane_;
+    std::vector<std::uint8_t> in_its_plane_;
     std::array<double, 2> lengths_;
     std::vector<std::array<Position, 3>> triangles_;
 };
+
+/// Of the vertices of a fault: whether its continuation there must go on in its plane. Where it
+/// dies out that is so everywhere, and beyond a fault that it ends at: straight up or down it might
+/// come back through that.
+std::vector<std::uint8_t> in_its_plane(const Structure& structure,
+                                       std::span<const CutterSurface> given,
+                                       const CutterSurface& own) {
+    std::vector<std::uint8_t> found(own.vertices.size(), structure.dies_out ? 1 : 0);
+    if (structure.dies_out) return found;
+    for (const std::int32_t other : structure.ends_at) {
+        const cutting::NearestSide nearest(given[index(other)]);
+        double above = 0;
+        for (const auto& t : own.triangles) {
+            const std::array corners{own.vertices[index(t[0])], own.vertices[index(t[1])],
+                                     own.vertices[index(t[2])]};
+            const Position normal = cutting::polygon_normal(corners);
+            Position middle{0, 0, 0};
+            for (std::size_t k = 0; k < 3; ++k)
+                middle[k] = (corners[0][k] + corners[1][k] + corners[2][k]) / 3;
+            above += nearest(middle) * std::sqrt(dot(normal, normal));
+        }
+        for (std::size_t v = 0; v < found.size(); ++v) {
+            if (nearest(own.vertices[v]) * above < 0) found[v] = 1;
+        }
+    }
+    return found;
+}
 
 }  // namespace
 
@@ -187,7 +217,9 @@ StructureSurface structure_surface(std::span<const Structure> structures, const 
             add({own.vertices[index(t[0])], own.vertices[index(t[1])], own.vertices[index(t[2])]},
                 false);
         if (!structures[index(s)].is_body) {
-            for (const auto& t : Continuation(own, structures[index(s)].dies_out, size).triangles())
+            for (const auto& t :
+                 Continuation(own, in_its_plane(structures[index(s)], given, own), size)
+                     .triangles())
                 add(t, true);
         }
         CutterSurface& single = all.single.emplace_back();

@@ -36,7 +36,7 @@ def is_ascii_grid(head: bytes) -> bool:
 
 
 def read_ascii_grid(file: str | Path, nodata: Sequence[float] = (), step: Step = no_step) -> Raster:
-    """A grid; heights stand at the centres of its cells. nodata: further numbers that mean no height.
+    """A grid; heights stand at the centers of its cells. nodata: further numbers that mean no height.
 
     Raises InputRefused naming file and line.
     """
@@ -96,7 +96,7 @@ def _count(file: Path, header: dict, lines: dict, key: str) -> int:
 
 
 def _lower_left(file: Path, header: dict, axis: str, size: float) -> float:
-    """The coordinate of the centre of the cell in the south-west."""
+    """The coordinate of the center of the cell in the south-west."""
     if f"{axis}llcenter" in header:
         return header[f"{axis}llcenter"]
     if f"{axis}llcorner" in header:

@@ -65,7 +65,7 @@ class ClosedForm:
         points = np.asarray(points, np.float64).reshape(-1, 3)
         where = self.compartments_of(points)
         blocks = np.full(len(points), AIR, np.int64)
-        insides = [winding_numbers(points, *body.shape) != 0 for body in self.bodies]
+        insides = [winding_numbers(points, *body.shape) % 2 != 0 for body in self.bodies]
         for number, sheets in enumerate(self.sheets):
             here = np.flatnonzero(where == number)
             if len(here):
@@ -78,6 +78,7 @@ class ClosedForm:
 
     def _history(self, points: np.ndarray, sheets, insides) -> np.ndarray:
         """The events oldest first, at points of one compartment."""
+        has_base = self.base_elevation is not None
         state = np.full(len(points), AIR, np.int64)
         covered = np.zeros(len(points), bool)
         protected = np.zeros(len(points), bool)
@@ -87,7 +88,7 @@ class ClosedForm:
             below, above = exists & (points[:, 2] < heights), exists & (points[:, 2] > heights)
             if RULES[rule].cuts:
                 state[above & ~protected] = AIR
-            oldest = self.blocks[0] if k == 0 and self.base_elevation is not None else _BASEMENT
+            oldest = self.blocks[0] if k == 0 and has_base else _BASEMENT
             filled = below & (state == AIR)
             state[filled] = np.where(covered, self.blocks[k], oldest)[filled]
             covered |= exists
@@ -95,7 +96,7 @@ class ClosedForm:
                 protected |= below | (exists & (state != AIR))
             for body, inside in zip(self.bodies, insides, strict=True):
                 if body.after == k:
-                    state[inside & (state != _BASEMENT)] = body.block
+                    state[inside & (has_base | (state != _BASEMENT))] = body.block
         state[state == _BASEMENT] = AIR
         return state
 

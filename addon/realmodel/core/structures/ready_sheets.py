@@ -81,15 +81,18 @@ class ReadyMesh:
         def within(points: np.ndarray) -> np.ndarray:
             return are_within(self.work, self.entry, self.number, family, points, self.threads)
 
-        traces = [
-            trace_of(self.work, (np.column_stack([plan, common]), triangles), fault, within, self.threads)
-            for fault in faults
-        ]
+        def traces_on(sheet: Triangulation) -> list:
+            return [trace_of(self.work, sheet, fault, within, self.threads) for fault in faults]
+
+        traces = traces_on((np.column_stack([plan, common]), triangles))
         met = [number for number, trace in enumerate(traces) if len(trace.points)]
         if not met:
             sheet = np.column_stack([plan, common]), triangles
             return dict.fromkeys(family.members.values(), sheet)
-        plan, triangles = self.tiling.nodes, self.tiling.tiles
+        if not self.tiling.is_mesh:
+            plan, triangles = self.tiling.nodes, self.tiling.tiles
+            common = self._continued(plan, self.tiling.heights(own), triangles)
+            traces = traces_on((np.column_stack([plan, common]), triangles))
         beside = {n: traces[n].beside(self.vertices[:, :2])[self.triangles].any(axis=1) for n in met}
         seen = {}
         for given in itertools.product((-1, 1), repeat=len(met)):
@@ -97,7 +100,8 @@ class ReadyMesh:
             for number, side in zip(met, given, strict=True):
                 other = LEFT if side > 0 else RIGHT
                 hidden |= (self.masks[:, family.dying[number]] == other) & beside[number]
-            seen[given] = self._continued(plan, self.tiling.heights(own & ~hidden), triangles)
+            left = own & ~hidden if (own & ~hidden).any() else own  # what hides all hides nothing
+            seen[given] = self._continued(plan, self.tiling.heights(left), triangles)
         equal = with_equal_ends(
             self.work,
             plan,
