@@ -35,7 +35,7 @@ from .schema import ROCK, SURFACE
 from .structures.check import check_structures
 from .structures.entries import Body, Fault
 from .toml_table import TomlDocument
-from .units import METRES, MODEL_UNIT
+from .units import METERS, MODEL_UNIT
 
 
 @dataclass(frozen=True)
@@ -258,9 +258,9 @@ def check_project(project: Project) -> None:
     """Refuses a project that cannot be built, before anything is read. Raises InputRefused."""
     if not is_name(project.name):
         raise InputRefused("a project needs a name", file=project.path)
-    if project.units not in METRES:
+    if project.units not in METERS:
         what = f"unknown unit {project.units!r}"
-        raise InputRefused(what, file=project.path, item="units", advice=f"there are {', '.join(METRES)}")
+        raise InputRefused(what, file=project.path, item="units", advice=f"there are {', '.join(METERS)}")
     if not project.rocks:
         raise InputRefused("there is no rock mass", file=project.path, item=f"project '{project.name}'")
     seen: set[str] = set()

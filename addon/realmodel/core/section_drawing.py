@@ -12,7 +12,7 @@ from .drawing.charts import Axes, legend, legend_size, tick_texts
 from .drawing.drawing import BLACK, Drawing
 from .drawing.glyphs import text_width
 from .errors import UsageError
-from .units import METRES
+from .units import METERS
 
 if TYPE_CHECKING:
     from .section import Section
@@ -162,10 +162,10 @@ def _directions(section: Section) -> tuple[np.ndarray | None, np.ndarray | None]
 
 def _scale(extent: np.ndarray, unit: str) -> tuple[float, float]:
     """The ratio N of a scale 1 : N at which the extent fits the page, and points for a unit."""
-    least = float((extent * float(METRES[unit]) / (np.array(_PLOT) * _POINT)).max())
+    least = float((extent * float(METERS[unit]) / (np.array(_PLOT) * _POINT)).max())
     power = 10.0 ** np.floor(np.log10(least))
     ratio = next(f * power for f in (1.0, 2.0, 2.5, 5.0, 10.0) if f * power >= least * (1 - 1e-9))
-    return ratio, float(METRES[unit]) / ratio / _POINT
+    return ratio, float(METERS[unit]) / ratio / _POINT
 
 
 def _subtitle(section: Section, ratio: float, exaggeration: float) -> str:
