@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files damaged at random are either read or refused in one line; nothing else ever comes out."""
 
+import io
 import os
 import struct
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -58,12 +60,30 @@ BINARY_STL = bytes(80) + struct.pack("<I", 2) + 2 * struct.pack("<12fH", *range(
 GRID = b"ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1.5\nNODATA_value -9\n1 2 3\n4 -9 6e0\n"
 
 
+GRIDS = Path(__file__).parents[1] / "data" / "grids"
+CPS3 = b'FSASCI 0 1 "COMPUTED" 0 1.0E+30 0\nFSATTR 0 0\nFSLIMI 0 2 0 1 1 6\nFSNROW 2 3\nFSXINC 1 1\n->GRID\n'
+CPS3 += b"1 2\n3 1e30\n5.5 6\n"
+
+
+def array_file(values):
+    file = io.BytesIO()
+    np.save(file, values)
+    return file.getvalue()
+
+
+def read_points_of(file):
+    return read_point_file(PointFile(file))
+
+
 STICKS = b"1 2 3\n1 2 5.5\n999.000 999.000 999.000\n\n4 5 6\n4 5 7\n999 999 999\n"
 READERS = {
     "p.toml": (PROJECT, load_project),
     "library.toml": (LIBRARY, load_library),
     "p.csv": (POINTS, read_points),
-    "g.asc": (GRID, lambda file: read_point_file(PointFile(file))),
+    "g.asc": (GRID, read_points_of),
+    **{path.name: (path.read_bytes(), read_points_of) for path in sorted(GRIDS.iterdir())},
+    "c.cps3": (CPS3, read_points_of),
+    "a.npy": (array_file(np.arange(12.0).reshape(4, 3)), read_points_of),
     "f.pol": (STICKS, lambda file: read_fault_points(PointFile(file))),
     "m.off": (OFF, read_mesh),
     "m.obj": (OBJ, read_mesh),

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 
 from ..heights import heights
@@ -12,8 +10,8 @@ from ..work import Work
 from .families import Family, are_within
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
 from .rock_structure import Triangulation
-from .sides import fault_sides
-from .tips import on_fault, trace_of, with_equal_ends
+from .sides import FaultShape, fault_sides
+from .tips import on_fault, shared, trace_of, with_equal_ends
 from .triangles import meet, welded
 
 
@@ -34,7 +32,7 @@ class ReadyMesh:
             self._divide(int(fault), faults.shapes[fault])
         self.tiling: PlanTiling | None = None
 
-    def _divide(self, fault: int, shape: Triangulation) -> None:
+    def _divide(self, fault: int, shape: FaultShape) -> None:
         """On which sides of a fault each triangle has a part."""
         side = fault_sides(self.work, self.vertices, shape, self.threads)
         on = on_fault(self.vertices, shape)
@@ -95,7 +93,7 @@ class ReadyMesh:
             traces = traces_on((np.column_stack([plan, common]), triangles))
         beside = {n: traces[n].beside(self.vertices[:, :2])[self.triangles].any(axis=1) for n in met}
         seen = {}
-        for given in itertools.product((-1, 1), repeat=len(met)):
+        for given in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
             hidden = np.zeros(len(self.triangles), bool)
             for number, side in zip(met, given, strict=True):
                 other = LEFT if side > 0 else RIGHT
@@ -108,12 +106,11 @@ class ReadyMesh:
             triangles,
             seen,
             [faults[number] for number in met],
-            [traces[number] for number in met],
             within,
             0.0,
             self.threads,
         )
-        found = {given: (np.column_stack([plan, z]), triangles) for given, z in equal.items()}
+        found = shared({given: (np.column_stack([plan, z]), triangles) for given, z in equal.items()})
         return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
 
     def _continued(self, plan: np.ndarray, known: np.ndarray, triangles: np.ndarray) -> np.ndarray:
