@@ -23,6 +23,8 @@ namespace {
 constexpr double kWeakDeterminant = 0.0011;  ///< of a cube it is 1; its limit is 0.001
 constexpr double kMostLean = 0.36;           ///< cosine of 69 degrees; its limit is 70
 constexpr double kSteepFace = 0.5;           ///< cosine: of 60 degrees
+constexpr double kNoDeterminant = 1e-8;      ///< inner faces in two directions only
+constexpr double kThickEnd = 3;  ///< minimum thicknesses: no block gives up an end as thick
 constexpr int kRepairs = 30;
 
 using Front = std::array<std::int32_t, 3>;  ///< of each corner of a triangle: a height of its node
@@ -33,11 +35,12 @@ using Front = std::array<std::int32_t, 3>;  ///< of each corner of a triangle: a
 class ColumnFiller {
 public:
     ColumnFiller(const PlanTopology& plan, const RockBlocks& blocks, const ColumnHeights& columns,
-                 const PostLevels& levels, LayeredMesh& mesh)
+                 const PostLevels& levels, double minimum_thickness, LayeredMesh& mesh)
         : plan_(plan),
           blocks_(blocks),
           columns_(columns),
           levels_(levels),
+          minimum_thickness_(minimum_thickness),
           mesh_(mesh),
           is_parted_(levels.level_count(), 0) {
         find_parted();
@@ -284,7 +287,8 @@ private:
                     front_blocks_[e] != front_blocks_[is_first ? e + 1 : e - 1])
                     continue;
             }
-            const bool is_weak = determinant(low, high, is_first, is_last) < kWeakDeterminant,
+            const double independence = determinant(low, high, is_first, is_last);
+            const bool is_weak = independence < kWeakDeterminant,
                        leans = moved_corners(e) < 3 &&
                                ((!is_first && leans_at(e - 1)) || (!is_last && leans_at(e)));
             if (!is_weak && !leans) continue;
@@ -292,13 +296,29 @@ private:
                 // an element alone in its column would have no neighbor above, which is worse
                 if (low[i] == high[i] || (!is_weak && own_[i].back() - own_[i].front() == 2))
                     continue;
-                if (is_first && !is_last) {
-                    weak_.push_back({node_[i], high[i], low[i]});
-                } else {
-                    weak_.push_back({node_[i], low[i], high[i]});
-                }
+                const bool upper = is_first && !is_last;  // which of its heights goes
+                const std::int32_t gone = upper ? high[i] : low[i];
+                const double rise = position(i, high[i])[2] - position(i, low[i])[2];
+                if (independence > kNoDeterminant && divides_blocks(i, gone) &&
+                    rise >= kThickEnd * minimum_thickness_)
+                    continue;
+                weak_.push_back({node_[i], gone, upper ? low[i] : high[i]});
             }
         }
+    }
+
+    /// Whether a height is not just one between layers of one block: without it a block would lose
+    /// volume.
+    bool divides_blocks(std::size_t corner, std::int32_t height) const {
+        const auto own = own_[corner];
+        const auto blocks = levels_.layer_blocks(rock_);
+        std::int32_t below = -1, above = -1;
+        for (std::size_t l = 0; l + 1 < own.size(); ++l) {
+            if (own[l] == own[l + 1]) continue;
+            if (own[l + 1] == height) below = blocks[l];
+            if (own[l] == height) above = blocks[l];
+        }
+        return below != above;
     }
 
     std::size_t moved_corners(std::size_t e) const {
@@ -456,6 +476,7 @@ private:
     const RockBlocks& blocks_;
     const ColumnHeights& columns_;
     const PostLevels& levels_;
+    const double minimum_thickness_;
     LayeredMesh& mesh_;
 
     std::size_t t_ = 0;
@@ -509,7 +530,7 @@ LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t>
                                    static_cast<std::int32_t>(
                                        levels.layer_blocks(static_cast<std::int32_t>(r)).size()));
         }
-        ColumnFiller filler(plan, blocks, columns, levels, made);
+        ColumnFiller filler(plan, blocks, columns, levels, layering.minimum_thickness, made);
         for (std::size_t t = 0; t < plan.triangles(); ++t) {
             poll(progress, t);
             filler.fill(t);
