@@ -9,9 +9,8 @@ import numpy as np
 
 from ..errors import place_text
 from ..work import Work
-from .closed_form import AIR, BodyOfRock, ClosedForm, heights_at
+from .closed_form import AIR, BodyOfRock, ClosedForm, heights_at, nearest_distance
 from .located import OUTSIDE, Locator
-from .triangles import distances_of_pairs
 
 _ROUNDING = 64  # units in the last place of the largest coordinate: what is nearer is left undecided
 _LOOKED_AT = 200  # points that do not agree: whether rounding may be the cause
@@ -157,9 +156,7 @@ def _check_faces(model, places: int, random) -> dict:
                 off = np.abs(heights_at(points[own, :2], vertices, sheet) - points[own, 2])
                 away[own] = np.fmin(away[own], off)
         else:
-            for n in own:
-                at = np.broadcast_to(points[n], (len(triangles), 3))
-                away[n] = distances_of_pairs(at, vertices[triangles]).min()
+            away[own] = nearest_distance(points[own], vertices, triangles)
     allowed = _ROUNDING * np.spacing(np.abs(model.vertices).max()) * (1 + _steepness(model))
     wrong = np.flatnonzero(away > allowed)
     names = [model.surface_names[number] for number in model.face_surface[faces]]
