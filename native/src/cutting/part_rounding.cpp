@@ -73,8 +73,11 @@ void PartRounding::find_pieces_of_parts() {
     on_wall_.assign(nodes, 0);
     is_near_.assign(nodes, 0);
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        const bool changed = std::ranges::any_of(
-            pieces_[p].parts, [this](std::int32_t part) { return part >= 0 && is_changed(part); });
+        // of joined models whole cells, too, get new polygons where they end at a structure
+        const bool changed = (joins_models_ && (pieces_[p].face < 0 || pieces_[p].is_level)) ||
+                             std::ranges::any_of(pieces_[p].parts, [this](std::int32_t part) {
+                                 return part >= 0 && is_changed(part);
+                             });
         if (!changed) continue;
         for (const NodeId node : pieces_.polygons[p])
             is_near_[index(node)] = 1;
