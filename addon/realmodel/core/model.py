@@ -20,6 +20,7 @@ from .exporters import save_model
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
+from .simulation import simulation_mesh
 from .structures.parts import Structures
 from .surface_set import vertex_attributes
 from .validation import PLACES_OF_CHECK, ValidationReport, validate
@@ -169,6 +170,7 @@ class Model:
         """
         return validate(self, places, seed, threads, progress, cancel)
 
+    simulation_mesh = simulation_mesh
     cut_by_plane = cutting.cut_by_plane
     cut_by_surface = cutting.cut_by_surface
     cut_by_block = cutting.cut_by_block

@@ -52,6 +52,21 @@ std::int8_t side_of(const std::array<Position, 3>& t, const Position& p) {
     return *side < 0 ? kBelow : kAbove;
 }
 
+/// Whether the plane of a triangle may pass through a box.
+bool plane_meets(const std::array<Position, 3>& triangle, const Box& box) {
+    constexpr double kRounding = 0x1p-40;
+    const Position& a = triangle[0];
+    const Position normal = polygon_normal(triangle);
+    double distance = 0, reach = 0, size = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double off = (box.low[k] + box.high[k]) / 2 - a[k];
+        distance += normal[k] * off;
+        reach += std::abs(normal[k]) * (box.high[k] - box.low[k]) / 2;
+        size += std::abs(normal[k] * off);
+    }
+    return std::abs(distance) <= reach + kRounding * size;
+}
+
 std::vector<Box> boxes_of(const CutterSurface& surface) {
     std::vector<Box> boxes;
     for (const auto& t : surface.triangles) {
@@ -103,6 +118,13 @@ std::int8_t NearestSide::operator()(const Position& p) const {
             best = &one;
     }
     return best == nullptr ? kAbove : side_of(corners(best->triangle), p);
+}
+
+bool NearestSide::is_near(const Box& box, double margin) const {
+    Box around = box, wide = box;
+    around.widen(margin);
+    wide.widen(2 * margin);
+    return tree_.any(wide, [&](std::int32_t t) { return plane_meets(corners(t), around); });
 }
 
 std::int8_t NearestSide::within(const Position& p) const {

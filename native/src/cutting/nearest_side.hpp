@@ -16,6 +16,14 @@ public:
     std::int8_t operator()(const Position& p) const;
     /// Of a closed surface: below is inside, where a ray leaves it an odd number of times. Exact.
     std::int8_t within(const Position& p) const;
+    /// One of the two: `within` of a closed surface.
+    std::int8_t side(const Position& p) const {
+        return surface_.is_closed ? within(p) : (*this)(p);
+    }
+    /// Whether a triangle may come as near to a box as `margin`.
+    bool is_near(const spatial::Box& box, double margin) const;
+
+    const CutterSurface& surface() const { return surface_; }
 
 private:
     std::array<Position, 3> corners(std::int32_t triangle) const;

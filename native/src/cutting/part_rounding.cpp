@@ -2,11 +2,13 @@
 #include "cutting/part_rounding.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
+#include <unordered_map>
 
-#include "cutting/distinct.hpp"
 #include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
@@ -73,8 +75,11 @@ void PartRounding::find_pieces_of_parts() {
     on_wall_.assign(nodes, 0);
     is_near_.assign(nodes, 0);
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        const bool changed = std::ranges::any_of(
-            pieces_[p].parts, [this](std::int32_t part) { return part >= 0 && is_changed(part); });
+        // of joined models whole cells, too, get new polygons where they end at a structure
+        const bool changed = (joins_models_ && (pieces_[p].face < 0 || pieces_[p].is_level)) ||
+                             std::ranges::any_of(pieces_[p].parts, [this](std::int32_t part) {
+                                 return part >= 0 && is_changed(part);
+                             });
         if (!changed) continue;
         for (const NodeId node : pieces_.polygons[p])
             is_near_[index(node)] = 1;
@@ -186,7 +191,8 @@ bool PartRounding::stays_sound(std::int32_t part) const {
 /// they become it.
 /// @return these nodes
 std::vector<NodeId> PartRounding::find_contractions() {
-    std::map<Position, NodeId> first_at;  // the model's vertex, or the first new node; -1 neither
+    std::unordered_map<Position, NodeId, PositionHash>
+        first_at;  // the model's vertex, or the first new node; -1 neither
     for (const Position& p : new_positions_)
         first_at.try_emplace(p, -1);
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
@@ -254,6 +260,8 @@ bool PartRounding::join_short_edges() {
     const double allowed = rounding_of(vertices_);
     std::set<std::array<NodeId, 2>> edges;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        if (std::ranges::none_of(pieces_.polygons[p], [this](NodeId node) { return is_new(node); }))
+            continue;
         const std::vector<NodeId> loop = contracted(p);
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const auto edge = unordered(loop[i], loop[(i + 1) % loop.size()]);
@@ -327,21 +335,47 @@ void PartRounding::contract() {
     find_pieces_of_parts();
 }
 
-/// Of polygons that are the same, those that face each other within one part make up for each
-/// other: what is left is between the others.
-void PartRounding::cancel_doubled() {
-    std::map<std::vector<NodeId>, std::vector<std::size_t>> equal;  // pieces by sorted nodes
+/// Pieces near the cutter with their sorted nodes, in the order of these: among them all that are
+/// equal to others.
+std::vector<std::pair<std::vector<NodeId>, std::size_t>> PartRounding::find_doubled() const {
+    // how many have the same hash, up to 2
+    std::vector<std::uint8_t> count(std::bit_ceil(8 * pieces_.size() + 1), 0);
+    constexpr std::size_t kFar = SIZE_MAX;
+    std::vector<std::size_t> slot(pieces_.size(), kFar);
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const auto nodes = pieces_.polygons[p];
         if (!std::ranges::all_of(nodes, [this](NodeId node) { return is_near_[index(node)] != 0; }))
             continue;
-        std::vector<NodeId> sorted(nodes.begin(), nodes.end());
-        std::sort(sorted.begin(), sorted.end());
-        equal[std::move(sorted)].push_back(p);
+        std::uint64_t hash = nodes.size();
+        for (const NodeId node : nodes)
+            hash += KeyTable::hash(std::array{static_cast<std::uint64_t>(node)});
+        slot[p] = hash & (count.size() - 1);
+        auto& own = count[slot[p]];
+        own = static_cast<std::uint8_t>(std::min(own + 1, 2));
     }
+    std::vector<std::pair<std::vector<NodeId>, std::size_t>> found;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        if (slot[p] == kFar || count[slot[p]] < 2) continue;
+        const auto nodes = pieces_.polygons[p];
+        auto& key = found.emplace_back(std::vector<NodeId>(nodes.begin(), nodes.end()), p).first;
+        std::sort(key.begin(), key.end());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+/// Of polygons that are the same, those that face each other within one part make up for each
+/// other: what is left is between the others.
+void PartRounding::cancel_doubled() {
+    const auto order = find_doubled();
     std::vector<std::uint8_t> is_gone(pieces_.size(), 0);
+    bool any = false;
     Pieces fresh;
-    for (const auto& [sorted, same] : equal) {
+    std::vector<std::size_t> same;
+    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+        same.clear();
+        for (; end < order.size() && order[end].first == order[begin].first; ++end)
+            same.push_back(order[end].second);
         if (same.size() < 2) continue;
         std::map<std::int32_t, int> facing;  // of parts: how often a polygon faces away from each
         std::size_t before = 0;
@@ -357,6 +391,7 @@ void PartRounding::cancel_doubled() {
         for (const auto& [part, times] : facing)
             left[times > 0 ? 0 : 1].insert(left[times > 0 ? 0 : 1].end(), std::abs(times), part);
         if (left[0].size() + left[1].size() == before) continue;
+        any = true;
         const Piece first = pieces_[same[0]];
         std::vector<NodeId> nodes(pieces_.polygons[same[0]].begin(),
                                   pieces_.polygons[same[0]].end());
@@ -374,11 +409,13 @@ void PartRounding::cancel_doubled() {
         for (const std::size_t p : same)
             is_gone[p] = 1;
     }
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    for (std::size_t p = 0; any && p < pieces_.size(); ++p) {
         if (is_gone[p] == 0) fresh.add(pieces_.polygons[p], pieces_[p]);
     }
-    pieces_ = std::move(fresh);
-    find_pieces_of_parts();
+    if (any) {
+        pieces_ = std::move(fresh);
+        find_pieces_of_parts();
+    }
     drop_hollow();
 }
 

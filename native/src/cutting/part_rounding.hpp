@@ -2,11 +2,11 @@
 #pragma once
 
 #include <optional>
-#include <set>
 #include <span>
 #include <vector>
 
 #include "base/counting_sort.hpp"
+#include "cutting/distinct.hpp"
 #include "cutting/halves.hpp"
 
 namespace realmodel::cutting {
@@ -46,6 +46,7 @@ private:
     std::optional<std::size_t> touches_of(std::int32_t part) const;
     bool stays_sound(std::int32_t part) const;
     std::vector<NodeId> contracted(std::size_t piece) const;
+    std::vector<std::pair<std::vector<NodeId>, std::size_t>> find_doubled() const;
     void cancel_doubled();
     void set_touching_apart();
     void set_apart();
@@ -76,7 +77,7 @@ private:
     std::vector<std::uint8_t> is_near_;     ///< of nodes: of a part that is less than its cell
     std::vector<std::uint8_t> is_doubled_;  ///< of pieces: another of a half has its nodes
     Buckets<std::int32_t> pieces_of_;       ///< the pieces around each part
-    std::set<Position> taken_;              ///< positions of nodes
+    Positions taken_;                       ///< positions of nodes
 };
 
 }  // namespace realmodel::cutting

@@ -108,9 +108,12 @@ public:
     }
     std::size_t leaf_count() const { return leaves_.size(); }
     bool any(const Box& box) const {
-        bool found = false;
-        find(box, [&found](std::int32_t) { found = true; });
-        return found;
+        return any(box, [](std::int32_t) { return true; });
+    }
+    /// Whether accepts(number) holds for one of them.
+    template <class Accepts>
+    bool any(const Box& box, const Accepts& accepts) const {
+        return !nodes_.empty() && any(0, box, accepts);
     }
 
 private:
@@ -191,6 +194,16 @@ private:
         for (std::size_t i = 0; i < 2; ++i) {
             if (away[i] <= bound()) approach(children[i], p, bound, visit);
         }
+    }
+    template <class Accepts>
+    bool any(std::size_t number, const Box& box, const Accepts& accepts) const {
+        const Node& node = nodes_[number];
+        if (!node.box.meets(box)) return false;
+        for (std::size_t i = node.begin; node.second == 0 && i < node.end; ++i) {
+            if (boxes_[i].meets(box) && accepts(order_[i])) return true;
+        }
+        return node.second != 0 &&
+               (any(number + 1, box, accepts) || any(node.second, box, accepts));
     }
     /// Calls visit(leaf) for the leaves that meet a box and do not end at a position or before it.
     template <class Visit>

@@ -238,10 +238,11 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
         rock.include(box_of(own.model));
     }
     const StructureSurface surface = structure_surface(structures, rock);
+    const std::vector<cutting::NearestSide> nearest(surface.single.begin(), surface.single.end());
     begin(progress, 0, 0.1, "leaving out what is in other parts");
     for (std::size_t m = 0; m < models.size(); ++m) {
         together.add(models[m].model, static_cast<std::int32_t>(m),
-                     places_of_cells(models[m].model, models[m].sides, surface, threads, progress));
+                     places_of_cells(models[m].model, models[m].sides, nearest, threads, progress));
     }
     together.share_vertices(threads, progress);
     if (auto joined = join(together, surface, models, structures, acts, threads, progress))

@@ -14,8 +14,8 @@ namespace realmodel::structures {
 /// All structures as one surface that cuts, each triangle with the number of its structure. Faults
 /// turn counter-clockwise seen from above, on the whole. They are continued beyond their borders as
 /// far as the rock reaches: straight up or down where they end at a height, in their own plane
-/// where they end aside or die out. There they divide nothing, but every way from one side to the
-/// other crosses them.
+/// where they end aside, along their mean plane where they die out. There they divide nothing, but
+/// every way from one side to the other crosses them.
 struct StructureSurface {
     cutting::CutterSurface surface;
     std::vector<std::int32_t> structure;         ///< of triangles

@@ -12,14 +12,13 @@ from ..errors import UsageError
 from ..simulation import PolyhedralMesh
 from .dxf import write_dxf
 from .gltf import write_glb
+from .meshes import MESH_FORMATS, write_mesh
 from .npz import write_npz
 from .obj import write_mtl, write_obj
-from .openfoam import POLY_MESH, write_openfoam
 from .parts import model_parts
 from .ply import write_ply
 from .stl import write_stl
 from .tsurf import write_tsurf
-from .vtu import write_vtu
 
 Step = Callable[[float], None]
 
@@ -63,9 +62,9 @@ def _write_obj(model, path, outputs: Outputs, step: Step) -> None:
         write_obj(parts, file, step, materials.name)
 
 
-def _write_openfoam(model, path, outputs: Outputs, step: Step) -> None:
-    with outputs.folder(path, POLY_MESH) as folder:
-        write_openfoam(PolyhedralMesh.of_model(model), folder, step)
+def _cells(model, path, outputs: Outputs, step: Step) -> None:
+    """The exact cells as a mesh for simulation."""
+    write_mesh(PolyhedralMesh.of_model(model), path, outputs, step, model.project.units)
 
 
 FORMATS: dict[str, ModelFormat] = {
@@ -76,14 +75,21 @@ FORMATS: dict[str, ModelFormat] = {
             ".vtu",
             "VTK Unstructured Grid",
             "The polyhedral cells, for ParaView and simulation",
-            _file(write_vtu),
+            _cells,
         ),
         ModelFormat(
             ".foam",
             "OpenFOAM Case",
             "A folder with the polyhedral cells as polyMesh, with zones of cells and patches",
-            _write_openfoam,
-            POLY_MESH,
+            _cells,
+            MESH_FORMATS[".foam"].folder,
+        ),
+        ModelFormat(".exo", "Exodus II", "The polyhedral cells, an element block for each block", _cells),
+        ModelFormat(
+            ".disu",
+            "MODFLOW 6 DISU",
+            "The polyhedral cells as an unstructured grid, and a table of the block of each",
+            _cells,
         ),
         ModelFormat(
             ".obj", "Wavefront OBJ", "The closed boundary of every block, a group for each", _write_obj

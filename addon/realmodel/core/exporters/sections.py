@@ -3,8 +3,8 @@
 
 .vtu: VTK unstructured grid ("VTK File Formats", XML) of polygon cells, for ParaView, PyVista and meshio.
 .obj: Wavefront OBJ, a group for each block and a material for each property, for any modeller.
-.csv: one row for each corner of each polygon. .npz: the arrays of Section. .svg, .dxf, .png: drawings with
-axes and a legend (section_drawing.py).
+.ply, .stl, .glb, .ts: triangles, a part for each block. .csv: one row for each corner of each polygon.
+.npz: the arrays of Section. .svg, .dxf, .png: drawings with axes and a legend (section_drawing.py).
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ from .. import drawing
 from ..errors import UsageError
 from ..section_drawing import draw_section
 from .npz import write_arrays
+from .part_formats import PART_WRITERS
+from .parts import section_parts
 from .vtk_xml import write_grid
 
 _POLYGON = 7
@@ -54,7 +56,7 @@ def write_section_npz(section, file: BinaryIO) -> None:
 
 def write_section_vtu(section, file: BinaryIO) -> None:
     """Polygon cells with the cell arrays `block` (number in the model's list), `property` (library id, 0:
-    none), `cells` (the model's, below and above; -1: outside), and `panel` where it is a fence."""
+    none), `compartment`, `cells` (the model's, below and above; -1: outside), and `panel` of a fence."""
     arrays = [
         ("Points", "Points", section.vertices.astype("<f8")),
         ("Cells", "connectivity", section.polygon_vertices.astype("<i8")),
@@ -62,6 +64,7 @@ def write_section_vtu(section, file: BinaryIO) -> None:
         ("Cells", "types", np.full(len(section), _POLYGON, np.uint8)),
         ("CellData", "block", section.block.astype("<i4")),
         ("CellData", "property", section.property.astype("<i4")),
+        ("CellData", "compartment", section.compartment.astype("<i4")),
         ("CellData", "cells", section.cells.astype("<i4")),
     ]
     if hasattr(section, "panel"):
@@ -90,12 +93,15 @@ def write_section_obj(section, file: BinaryIO) -> None:
 
 def write_section_csv(section, file: BinaryIO) -> None:
     """polygon, block (number), block_name, property, x, y, z of every corner; of a fence also panel and the
-    distance along it, so that distance and z draw the unrolled picture."""
-    is_fence = hasattr(section, "panel")
+    distance along it, so that distance and z draw the unrolled picture; of a model that faults divide also
+    the name of the compartment."""
+    is_fence, is_divided = hasattr(section, "panel"), len(section.compartment_names) > 1
     text = io.StringIO(newline="")
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(
-        ["polygon", "block", "block_name", "property", "x", "y", "z", *(["panel", "distance"] * is_fence)]
+        ["polygon", "block", "block_name", "property", "x", "y", "z"]
+        + ["panel", "distance"] * is_fence
+        + ["compartment"] * is_divided
     )
     along = section.corner_distances() if is_fence else None
     for k in range(len(section)):
@@ -104,13 +110,19 @@ def write_section_csv(section, file: BinaryIO) -> None:
         for corner in range(int(section.offsets[k]), int(section.offsets[k + 1])):
             place = section.vertices[section.polygon_vertices[corner]].tolist()
             extra = [int(section.panel[k]), repr(float(along[corner]))] if is_fence else []
+            extra += [section.compartment_names[int(section.compartment[k])]] * is_divided
             rows.writerow([*told, *map(repr, place), *extra])
     file.write(text.getvalue().encode("utf-8"))
+
+
+def _shapes(write: Callable) -> Callable:
+    return lambda section, file: write(section_parts(section), file, lambda _: None)
 
 
 SECTION_WRITERS: dict[str, Callable] = {
     ".vtu": write_section_vtu,
     ".obj": write_section_obj,
+    **{ending: _shapes(write) for ending, write in PART_WRITERS.items() if ending != ".dxf"},
     ".csv": write_section_csv,
     ".npz": write_section_npz,
     **dict.fromkeys(drawing.WRITERS, write_section_drawing),

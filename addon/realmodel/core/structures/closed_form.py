@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is at a point of a rock mass with faults and bodies, from its sheets alone: nothing is built.
 
-An evaluation of its own, for tests and for the proof of a model: it shares nothing with the builder.
+An evaluation of its own, for tests and for the proof of a model: it shares nothing with the builder but how
+faults go on beyond their borders.
 """
 
 from __future__ import annotations
@@ -12,8 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..rules import RULES
+from ..work import native_module
 from .exact import orient2d, orient3d
-from .sides import RockFaults
+from .sides import FaultShape, RockFaults
 from .triangles import distances_of_pairs
 
 Triangulation = tuple[np.ndarray, np.ndarray]
@@ -52,7 +54,7 @@ class ClosedForm:
     def compartments_of(self, points: np.ndarray) -> np.ndarray:
         """(N,) the compartment that each point lies in; -1 for none."""
         points = np.asarray(points, np.float64).reshape(-1, 3)
-        columns = [nearest_side(points, *shape) for shape in self.faults.shapes]
+        columns = [nearest_side(points, *self._continued(shape, points)) for shape in self.faults.shapes]
         sides = np.column_stack(columns) if columns else np.zeros((len(points), 0), np.int8)
         sides = self.faults.without_dropped(sides)
         found = np.full(len(points), -1, np.int64)
@@ -60,12 +62,22 @@ class ClosedForm:
             found[(sides == row).all(axis=1)] = number
         return found
 
+    @staticmethod
+    def _continued(shape: FaultShape, points: np.ndarray) -> Triangulation:
+        """A fault with what it is continued by beyond its border."""
+        if not len(points):
+            return shape.vertices, shape.triangles
+        box = np.array([points.min(axis=0), points.max(axis=0)])
+        beyond = native_module().structure_continuation(shape.native(), box).reshape(-1, 3)
+        numbers = np.arange(len(shape.vertices), len(shape.vertices) + len(beyond)).reshape(-1, 3)
+        return np.concatenate([shape.vertices, beyond]), np.concatenate([shape.triangles, numbers])
+
     def blocks_at(self, points: np.ndarray) -> np.ndarray:
         """(N,) the block at each point (N, 3); AIR for none. Points of no compartment are in none."""
         points = np.asarray(points, np.float64).reshape(-1, 3)
         where = self.compartments_of(points)
         blocks = np.full(len(points), AIR, np.int64)
-        insides = [winding_numbers(points, *body.shape) != 0 for body in self.bodies]
+        insides = [winding_numbers(points, *body.shape) % 2 != 0 for body in self.bodies]
         for number, sheets in enumerate(self.sheets):
             here = np.flatnonzero(where == number)
             if len(here):
@@ -78,6 +90,7 @@ class ClosedForm:
 
     def _history(self, points: np.ndarray, sheets, insides) -> np.ndarray:
         """The events oldest first, at points of one compartment."""
+        has_base = self.base_elevation is not None
         state = np.full(len(points), AIR, np.int64)
         covered = np.zeros(len(points), bool)
         protected = np.zeros(len(points), bool)
@@ -87,7 +100,7 @@ class ClosedForm:
             below, above = exists & (points[:, 2] < heights), exists & (points[:, 2] > heights)
             if RULES[rule].cuts:
                 state[above & ~protected] = AIR
-            oldest = self.blocks[0] if k == 0 and self.base_elevation is not None else _BASEMENT
+            oldest = self.blocks[0] if k == 0 and has_base else _BASEMENT
             filled = below & (state == AIR)
             state[filled] = np.where(covered, self.blocks[k], oldest)[filled]
             covered |= exists
@@ -95,7 +108,7 @@ class ClosedForm:
                 protected |= below | (exists & (state != AIR))
             for body, inside in zip(self.bodies, insides, strict=True):
                 if body.after == k:
-                    state[inside & (state != _BASEMENT)] = body.block
+                    state[inside & (has_base | (state != _BASEMENT))] = body.block
         state[state == _BASEMENT] = AIR
         return state
 

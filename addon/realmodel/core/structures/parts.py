@@ -13,7 +13,7 @@ from .entries import Body, Fault
 from .history import body_times, displaced_surfaces
 from .refusals import refused_structure
 from .rock_structure import RockStructure
-from .sides import RockFaults
+from .sides import FaultShape, RockFaults
 
 _BEYOND = 0.25  # of the range of heights of the data: how far above and below there may be rock
 
@@ -63,7 +63,7 @@ class Structures:
         faults = [self.faults[number] for number in numbers]
         return RockFaults(
             [fault.name for fault in faults],
-            [(fault.vertices, fault.triangles) for fault in faults],
+            [FaultShape(fault.vertices, fault.triangles, fault.dies_out) for fault in faults],
             [self.displaced[number][rock] for number in numbers],
             [fault.dies_out for fault in faults],
             numbers,
