@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from conftest import grid_surface
-from realmodel.core import Library, Project, Property, Rock, Surface, build
+from realmodel.core import Library, Project, Property, Rock, Surface, build, build_surfaces
 from realmodel.core.readers import read_mesh
 
 WHY = "not installed: scripts/test.sh installs it"
@@ -147,3 +147,28 @@ def test_every_triangle_of_a_block_has_an_area(model):
         # faces with corners in one line are divided without triangles on it, up to rounding
         assert (area > 0).mean() > 0.999
         assert_closed(part.triangles)
+
+
+@pytest.mark.parametrize("ending", [".ply", ".stl", ".ts"])
+def test_surfaces_and_sections_are_written_as_shapes(model, tmp_path, ending):
+    surfaces = build_surfaces(model.project)
+    surfaces.save(tmp_path / f"s{ending}")
+    read = read_mesh(tmp_path / f"s{ending}")
+    assert len(read.triangles) == sum(len(surfaces.surface(k)[1]) for k in range(4))
+    low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
+    section = model.section((low + high) / 2, (1.0, 0.3, 0.1))
+    section.save(tmp_path / f"c{ending}")
+    read = read_mesh(tmp_path / f"c{ending}")
+    a, b, c = (read.vertices[read.triangles] - low).transpose(1, 0, 2)
+    assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(section.area, rel=1e-6)
+
+
+def test_surfaces_and_sections_in_glb_and_dxf(model, tmp_path):
+    trimesh = pytest.importorskip("trimesh", reason=f"trimesh is {WHY}")
+    ezdxf = pytest.importorskip("ezdxf", reason=f"ezdxf is {WHY}")
+    build_surfaces(model.project).save(tmp_path / "s.dxf")
+    document = ezdxf.readfile(tmp_path / "s.dxf")
+    assert {"S0", "S1", "S2", "S3"} <= {layer.dxf.name for layer in document.layers}
+    middle = (model.vertices.min(axis=0) + model.vertices.max(axis=0)) / 2
+    model.section(middle, (1.0, 0.0, 0.0)).save(tmp_path / "c.glb")
+    assert set(trimesh.load(tmp_path / "c.glb").geometry) <= set(NAMES)

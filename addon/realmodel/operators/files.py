@@ -33,6 +33,10 @@ SECTIONS = (
     *DRAWINGS,
     ("VTU", "VTK Unstructured Grid (.vtu)", "Polygons that know their block, for ParaView"),
     ("OBJ", "Wavefront OBJ (.obj)", "Polygons, a group for each block"),
+    ("PLY", "PLY (.ply)", "Triangles that know their block"),
+    ("STL", "STL (.stl)", "Triangles, a solid for each block"),
+    ("GLB", "glTF Binary (.glb)", "Triangles in the colors of the properties, for the web"),
+    ("TS", "GOCAD TSurf (.ts)", "Triangles, an object for each block"),
     ("CSV", "Table of Corners (.csv)", "The corners of the polygons"),
     ("NPZ", "NumPy (.npz)", "All arrays of the section, for Python"),
 )

@@ -179,8 +179,8 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
             points, _ = read_fault_points(PointFile(path), None, units)
             whole = points if isinstance(points, np.ndarray) else np.concatenate(points)
             return "fault", "POINTS_FILE", path, whole
-        mesh, scale = read_mesh(path), MeshFile(path).scale(units)
-        vertices = mesh.vertices * (scale[0], scale[0], scale[1])
+        mesh = read_mesh(path)
+        vertices, _ = mesh.in_model(MeshFile(path), units)
         return _kind_of_shape(self.kind, vertices, mesh.triangles), "MESH_FILE", path, vertices
 
 

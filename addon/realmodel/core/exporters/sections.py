@@ -3,8 +3,8 @@
 
 .vtu: VTK unstructured grid ("VTK File Formats", XML) of polygon cells, for ParaView, PyVista and meshio.
 .obj: Wavefront OBJ, a group for each block and a material for each property, for any modeller.
-.csv: one row for each corner of each polygon. .npz: the arrays of Section. .svg, .dxf, .png: drawings with
-axes and a legend (section_drawing.py).
+.ply, .stl, .glb, .ts: triangles, a part for each block. .csv: one row for each corner of each polygon.
+.npz: the arrays of Section. .svg, .dxf, .png: drawings with axes and a legend (section_drawing.py).
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ from .. import drawing
 from ..errors import UsageError
 from ..section_drawing import draw_section
 from .npz import write_arrays
+from .part_formats import PART_WRITERS
+from .parts import section_parts
 from .vtk_xml import write_grid
 
 _POLYGON = 7
@@ -113,9 +115,14 @@ def write_section_csv(section, file: BinaryIO) -> None:
     file.write(text.getvalue().encode("utf-8"))
 
 
+def _shapes(write: Callable) -> Callable:
+    return lambda section, file: write(section_parts(section), file, lambda _: None)
+
+
 SECTION_WRITERS: dict[str, Callable] = {
     ".vtu": write_section_vtu,
     ".obj": write_section_obj,
+    **{ending: _shapes(write) for ending, write in PART_WRITERS.items() if ending != ".dxf"},
     ".csv": write_section_csv,
     ".npz": write_section_npz,
     **dict.fromkeys(drawing.WRITERS, write_section_drawing),

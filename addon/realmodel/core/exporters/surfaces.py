@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces with their heights, before they bound anything: .npz, .vtu of triangles, and a report."""
+"""Surfaces with their heights, before they bound anything: .npz, .vtu of triangles, shapes, and a report."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ import numpy as np
 from ..atomic import Outputs
 from ..errors import UsageError
 from .npz import joined_attributes, texts, write_arrays
+from .part_formats import PART_WRITERS
+from .parts import surface_parts
 from .report import SCHEMA, surface_entries, versions, warning_entries
 from .vtk_xml import write_grid
 
@@ -66,14 +68,22 @@ def write_surfaces_vtu(surfaces, file: BinaryIO) -> None:
     )
 
 
-WRITERS: dict[str, Callable[..., None]] = {".npz": write_surfaces_npz, ".vtu": write_surfaces_vtu}
+def _shapes(write: Callable) -> Callable:
+    return lambda surfaces, file: write(surface_parts(surfaces), file, lambda _: None)
+
+
+WRITERS: dict[str, Callable[..., None]] = {
+    ".npz": write_surfaces_npz,
+    ".vtu": write_surfaces_vtu,
+    **{ending: _shapes(write) for ending, write in PART_WRITERS.items()},
+}
 
 
 def surface_writer_for(path: str | Path) -> Callable[..., None]:
     """The function (surfaces, file) that writes files of this ending. Raises UsageError."""
     ending = Path(path).suffix.lower()
     if ending not in WRITERS:
-        raise UsageError(f"{path}: surfaces are written to {' or '.join(WRITERS)} files")
+        raise UsageError(f"{path}: surfaces are written to {', '.join(WRITERS)} files")
     return WRITERS[ending]
 
 
