@@ -16,7 +16,9 @@ from .process import ROOT, Skipped
 _FAULTS = "shared/data/california_faults"  # beside the project, or farther up, of those who have it
 
 
-def _sphere(rings: int, middle: tuple[float, float, float], radius: float) -> tuple[np.ndarray, np.ndarray]:
+def make_sphere(
+    rings: int, middle: tuple[float, float, float], radius: float
+) -> tuple[np.ndarray, np.ndarray]:
     """A sphere of 4 rings (rings - 1) triangles, which have all shapes."""
     around = 2 * rings
     latitude = np.repeat(np.pi * (np.arange(1, rings) / rings - 0.5), around)
@@ -35,7 +37,7 @@ def _sphere(rings: int, middle: tuple[float, float, float], radius: float) -> tu
 
 
 def _spheres(rings: int):
-    return _sphere(rings, (0, 0, 0), 1.0), _sphere(rings, (0.31, 0.22, 0.13), 0.93)
+    return make_sphere(rings, (0, 0, 0), 1.0), make_sphere(rings, (0.31, 0.22, 0.13), 0.93)
 
 
 def _faults() -> tuple[np.ndarray, np.ndarray]:

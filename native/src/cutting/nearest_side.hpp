@@ -13,7 +13,8 @@ public:
 
     /// Of any surface: the side of the triangle that is nearest; of several that are, of the one
     /// seen most squarely. Exact with regard to that triangle; on its plane is above.
-    std::int8_t operator()(const Position& p) const;
+    /// @param at_border  set to whether a border edge is nearest, of triangles that share vertices
+    std::int8_t operator()(const Position& p, bool* at_border = nullptr) const;
     /// Of a closed surface: below is inside, where a ray leaves it an odd number of times. Exact.
     std::int8_t within(const Position& p) const;
     /// One of the two: `within` of a closed surface.
@@ -27,9 +28,11 @@ public:
 
 private:
     std::array<Position, 3> corners(std::int32_t triangle) const;
+    bool is_on_border(std::int32_t triangle, const Position& q) const;
 
     const CutterSurface& surface_;
     spatial::BoxTree tree_;
+    std::vector<std::uint8_t> border_;  ///< of triangles: bit i for the edge after corner i
 };
 
 }  // namespace realmodel::cutting

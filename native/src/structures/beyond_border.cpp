@@ -103,7 +103,7 @@ std::vector<std::uint8_t> triangles_beyond(const Structure& fault, std::span<con
     }
     std::vector<std::uint8_t> found(count, 0);
     if (count == 0) return found;
-    const StructureSurface surface = structure_surface(std::span(&fault, 1), all);
+    const StructureSurface surface = structure_surface(std::span(&fault, 1), all, true);
     for (const Position& p : surface.single[0].vertices)
         all.include(p);
     const Position extent = minus(all.high, all.low);
@@ -140,7 +140,7 @@ std::vector<std::array<std::array<double, 3>, 3>> continuation_of(
     Box box;
     for (const Position& p : corners)
         box.include(p);
-    const StructureSurface surface = structure_surface(std::span(&fault, 1), box);
+    const StructureSurface surface = structure_surface(std::span(&fault, 1), box, true);
     std::vector<std::array<Position, 3>> found;
     for (std::size_t t = 0; t < surface.surface.triangles.size(); ++t) {
         if (surface.is_continuation[t] == 0) continue;

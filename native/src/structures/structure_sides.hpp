@@ -55,6 +55,7 @@ public:
 private:
     void name_structures();
     bool is_known_in_rock_alone(std::span<const EdgeUse> uses) const;
+    std::vector<std::uint8_t> regions_beyond() const;
     void join_sectors(const Progress* progress);
     void number_parts();
     void find_neighbors();

@@ -239,6 +239,32 @@ private:
     std::vector<std::array<Position, 3>> triangles_;
 };
 
+/// Whether a part of a segment is in a box.
+bool passes(const Box& box, const Position& from, const Position& to) {
+    double begin = 0, end = 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double step = to[k] - from[k];
+        if (step == 0) {
+            if (from[k] < box.low[k] || from[k] > box.high[k]) return false;
+            continue;
+        }
+        const double low = (box.low[k] - from[k]) / step, high = (box.high[k] - from[k]) / step;
+        begin = std::max(begin, std::min(low, high));
+        end = std::min(end, std::max(low, high));
+    }
+    return begin <= end;
+}
+
+/// Whether the border of a fault comes near the rock. If not, the fault divides it by itself.
+bool ends_near(const CutterSurface& fault, const Box& rock) {
+    const Position extent = minus(rock.high, rock.low);
+    Box near = rock;
+    near.widen(1e-6 * std::sqrt(dot(extent, extent)));
+    return std::ranges::any_of(border_of(fault), [&](const BorderEdge& edge) {
+        return passes(near, fault.vertices[index(edge.from)], fault.vertices[index(edge.to)]);
+    });
+}
+
 /// Of the vertices of a fault: whether its continuation there must go on in its plane. Where it
 /// dies out that is so everywhere, and beyond a fault that it ends at: straight up or down it might
 /// come back through that.
@@ -286,7 +312,8 @@ CutterSurface checked_surface(const Structure& structure, std::int32_t number) {
     }
 }
 
-StructureSurface structure_surface(std::span<const Structure> structures, const Box& rock) {
+StructureSurface structure_surface(std::span<const Structure> structures, const Box& rock,
+                                   bool continues_all) {
     std::vector<CutterSurface> given;
     Box whole = rock;
     for (std::int32_t s = 0; index(s) < structures.size(); ++s) {
@@ -317,7 +344,7 @@ StructureSurface structure_surface(std::span<const Structure> structures, const 
         for (const auto& t : own.triangles)
             add({own.vertices[index(t[0])], own.vertices[index(t[1])], own.vertices[index(t[2])]},
                 false);
-        if (!structures[index(s)].is_body) {
+        if (!structures[index(s)].is_body && (continues_all || ends_near(own, rock))) {
             for (const auto& t :
                  Continuation(own, in_its_plane(structures[index(s)], given, own), size)
                      .triangles())

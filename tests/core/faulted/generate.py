@@ -23,7 +23,7 @@ PLACES = [(1.0, (0, 0, 0))] * 5 + [  # scale, shift
     (0.1, (0, 0, 0)),
     (40.115, (4500000.37, 5300000.11, 311.7)),
 ]
-RAGGED = 0.0  # of faults that reach no farther than they must
+RAGGED = 0.3  # of faults that reach no farther than they must
 
 
 class _Side(FaultSides):
@@ -81,7 +81,7 @@ def _faults(rng, names, masses):
             own &= (uv[triangles, 0] <= tip + 1e-9).all(axis=1)
         elif found and rng.random() < 0.4:
             _branch(rng, fault, found, own)
-        if rng.random() < 0.4:  # no farther than it must reach
+        if not fault.ends_at and rng.random() < 0.4:  # no farther than it must reach
             own &= _needed(vertices, triangles, uv, len(masses), rng.random() < RAGGED)
         fault.triangles, fault.beyond = triangles[own], triangles[~own]
         if len(fault.triangles):

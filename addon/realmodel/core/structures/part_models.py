@@ -116,20 +116,26 @@ def _on_floors(stack: Stack, plans) -> Stack:
 
 def _emptied(stack: Stack, older: int, body) -> Stack:
     """Inside of a void: what came before is air, and younger surfaces fill it from the base."""
-    if floors := stack.surfaces.count(FLOOR):
-        kept = [*range(floors), *range(older, len(stack.sheets))]
+    if FLOOR in stack.surfaces:
+        # where no older surface was, none that comes later forms a block
+        base = float(stack.sheets[0][0][0, 2])
+        were = [stack.sheets[k] for k in range(older) if stack.surfaces[k] >= 0]
+        floors = [_level(plan, base) for plan in distinct_plans(were)]
         return Stack(
-            [stack.sheets[k] for k in kept],
-            [stack.rules[k] for k in kept],
+            [*floors, *stack.sheets[older:]],
+            [*[_DEPOSITS] * len(floors), *stack.rules[older:]],
             None,
-            [stack.blocks[k] for k in kept],
-            [stack.surfaces[k] for k in kept],
+            [*[NOTHING] * len(floors), *stack.blocks[older:]],
+            [*[FLOOR] * len(floors), *stack.surfaces[older:]],
         )
     if older == len(stack.sheets):
         return Stack([], [], None, [], [])
     if not RULES[stack.rules[older]].cuts:
+        source = body.source
         raise InputRefused(
             "younger surfaces fill this void, and there is no base elevation that they fill it from",
+            file=source.document.file if source else body.shape_file,
+            line=source.line("after") if source else None,
             item=body_item(body),
             advice="give the rock mass a base_elevation, or leave out 'after'",
         )

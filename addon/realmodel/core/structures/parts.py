@@ -170,7 +170,11 @@ def box_around(inputs: list, structures: Structures) -> np.ndarray:
     made = all(shape is not None for entry in inputs for shape in entry.surfaces)
     margin = np.array([0.0, 0.0, 0.0 if made else _BEYOND * (high[2] - low[2])])
     margin = margin if low[2] < high[2] else np.array([0.0, 0.0, 1.0])
-    return np.array([low - margin, high + margin])
+    box = np.array([low - margin, high + margin])
+    bases = [entry.rock.base_elevation for entry in inputs]
+    if None not in bases:  # no rock is lower
+        box[0, 2] = min(bases)
+    return box
 
 
 def add_compartments(structures: Structures, inputs: list) -> None:
