@@ -66,12 +66,12 @@ CASES = {
     "drogon faults": (
         real_faults.drogon,
         True,
-        "4 horizons of 32,600 points, 6 faults as sticks that die out",
+        "4 horizons of 32,600 picks, 6 faults that die out (sticks)",
     ),
     "california faults": (
         real_faults.california,
         True,
-        "3 level surfaces on a base, 20 faults (TSurf) that die out",
+        "3 level surfaces, 20 faults that die out (TSurf)",
     ),
     "ten surfaces": (ten_surfaces, False, "10 made surfaces x 7,200 triangles, ten triangulations"),
 }
