@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import colorsys
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -122,13 +123,15 @@ class Model:
         sheet = self.surface_triangle_sheet[begin:end]
         return [np.ascontiguousarray(triangles[sheet == each]) for each in np.unique(sheet)]
 
-    def save(self, path: str | Path) -> None:
+    def save(self, path: str | Path, cell_size: float | Sequence[float] | None = None) -> None:
         """Writes the model to a file or folder, by its ending: those of exporters.FORMATS. It appears whole
         or not at all.
 
-        Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
+        cell_size: of regular grids (.csv, .vti, .tif, .asc), one number, two (in plan, in height) or three;
+        None: a hundredth of the longest side. Raises UsageError for an ending that is not known,
+        OutputFailed where it cannot be written.
         """
-        save_model(self, path)
+        save_model(self, path, cell_size=cell_size)
 
     def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
         """The model as it was just after surface m (from 0) of each rock mass. Raises UsageError where no
