@@ -93,6 +93,12 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         default=[],
         help="write the model to F, whose ending says the format; may be given several times",
     )
+    parser.add_argument(
+        "--cell-size",
+        metavar="X[,Y[,Z]]",
+        type=_sizes,
+        help="the cells of regular grids by --export (.csv, .vti, .tif, .asc)",
+    )
     parser.add_argument("--report", metavar="F", type=Path, help="write a report to F.json")
     parser.add_argument("--render", metavar="F", type=Path, help="render a picture to F.png (in Blender)")
     parser.add_argument(
@@ -216,6 +222,16 @@ def _factor(text: str) -> float:
     if not 0.0 < factor <= MOST_EXAGGERATION:
         raise argparse.ArgumentTypeError(f"'{text}' is not a number above 0, at most {MOST_EXAGGERATION:g}")
     return factor
+
+
+def _sizes(text: str) -> list[float]:
+    try:
+        sizes = [float(word) for word in text.split(",")]
+    except ValueError:
+        sizes = []
+    if not 1 <= len(sizes) <= 3 or not all(0.0 < size < 1e300 for size in sizes):
+        raise argparse.ArgumentTypeError(f"'{text}' is not one to three numbers above 0")
+    return sizes
 
 
 def _whole(text: str) -> int:
@@ -390,7 +406,13 @@ def _write(options: argparse.Namespace, project, model, outputs, progress, valid
     from realmodel.core.exporters.report import write_report
 
     for path in options.export:
-        write_model(model, path, outputs, lambda share, path=path: progress(1.0, f"writing {path.name}"))
+        write_model(
+            model,
+            path,
+            outputs,
+            lambda share, path=path: progress(1.0, f"writing {path.name}"),
+            options.cell_size,
+        )
     if options.blend is not None or options.render is not None:
         _write_with_blender(options, project, model, outputs, progress)
     if options.report is not None:

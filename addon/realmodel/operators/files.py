@@ -4,7 +4,7 @@
 from pathlib import Path
 
 import bpy
-from bpy.props import EnumProperty, StringProperty
+from bpy.props import EnumProperty, FloatVectorProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ..bl import results
@@ -93,9 +93,18 @@ class REALMODEL_OT_export(Exporting, bpy.types.Operator):
 
     format: format_menu(_MODELS)
     filter_glob: format_filter(_MODELS)
+    cell_size: FloatVectorProperty(
+        name="Cell Size",
+        description="Of regular grids (block models, GeoTIFF, ESRI ASCII), in model units; 0: automatic",
+        size=3,
+        min=0.0,
+        default=(0.0, 0.0, 0.0),
+        subtype="XYZ",
+    )
 
     def write(self, context, path):
-        save_model(shown_models.whole(context.scene), path)
+        size = self.cell_size[:] if any(self.cell_size) else None
+        save_model(shown_models.whole(context.scene), path, cell_size=size)
 
 
 class REALMODEL_OT_report(Exporting, bpy.types.Operator):

@@ -255,14 +255,41 @@ bool passes(const Box& box, const Position& from, const Position& to) {
     return begin <= end;
 }
 
-/// Whether the border of a fault comes near the rock. If not, the fault divides it by itself.
-bool ends_near(const CutterSurface& fault, const Box& rock) {
+/// Whether a part of a triangle is in a box: what its six planes leave of the triangle.
+bool passes(const Box& box, const std::array<Position, 3>& triangle) {
+    std::vector<Position> left(triangle.begin(), triangle.end());
+    for (std::size_t plane = 0; plane < 6 && !left.empty(); ++plane) {
+        const std::size_t k = plane / 2;
+        const auto inward = [&](const Position& p) {
+            return plane % 2 == 0 ? p[k] - box.low[k] : box.high[k] - p[k];
+        };
+        std::vector<Position> kept;
+        for (std::size_t i = 0; i < left.size(); ++i) {
+            const Position &a = left[i], &b = left[(i + 1) % left.size()];
+            const double at_a = inward(a), at_b = inward(b);
+            if (at_a >= 0) kept.push_back(a);
+            if ((at_a < 0) != (at_b < 0)) {
+                const double share = at_a / (at_a - at_b);
+                kept.push_back(beyond(a, minus(b, a), share));
+            }
+        }
+        left = std::move(kept);
+    }
+    return !left.empty();
+}
+
+/// Whether a fault divides some rock by itself: it passes it, and its border is away from it.
+bool divides(const CutterSurface& fault, const Box& rock) {
     const Position extent = minus(rock.high, rock.low);
     Box near = rock;
     near.widen(1e-6 * std::sqrt(dot(extent, extent)));
-    return std::ranges::any_of(border_of(fault), [&](const BorderEdge& edge) {
-        return passes(near, fault.vertices[index(edge.from)], fault.vertices[index(edge.to)]);
-    });
+    const auto at = [&fault](NodeId v) { return fault.vertices[index(v)]; };
+    return std::ranges::none_of(
+               border_of(fault),
+               [&](const BorderEdge& edge) { return passes(near, at(edge.from), at(edge.to)); }) &&
+           std::ranges::any_of(fault.triangles, [&](const auto& t) {
+               return passes(rock, std::array{at(t[0]), at(t[1]), at(t[2])});
+           });
 }
 
 /// Of the vertices of a fault: whether its continuation there must go on in its plane. Where it
@@ -344,7 +371,7 @@ StructureSurface structure_surface(std::span<const Structure> structures, const 
         for (const auto& t : own.triangles)
             add({own.vertices[index(t[0])], own.vertices[index(t[1])], own.vertices[index(t[2])]},
                 false);
-        if (!structures[index(s)].is_body && (continues_all || ends_near(own, rock))) {
+        if (!structures[index(s)].is_body && (continues_all || !divides(own, rock))) {
             for (const auto& t :
                  Continuation(own, in_its_plane(structures[index(s)], given, own), size)
                      .triangles())

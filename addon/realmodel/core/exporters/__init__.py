@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from .npz import write_npz
 from .obj import write_mtl, write_obj
 from .parts import model_parts
 from .ply import write_ply
+from .regular import write_ascii_grids, write_block_table, write_geotiff, write_vti
 from .stl import write_stl
 from .tsurf import write_tsurf
 
@@ -29,7 +30,9 @@ class ModelFormat:
 
     label, description: of the panel's menu. write(model, path, outputs, step) writes it by outputs.file or
     outputs.folder; step(share) is called now and then, last with 1. folder: what is renewed where the format
-    is a folder, "" for a file.
+    is a folder, "" for a file. has_cell_size: it is a regular grid, and write takes the size of its cells
+    too,
+    as of regular_cells.checked_size.
     """
 
     ending: str
@@ -37,6 +40,7 @@ class ModelFormat:
     description: str
     write: Callable[..., None]
     folder: str = ""
+    has_cell_size: bool = False
 
 
 def _file(write: Callable) -> Callable:
@@ -116,6 +120,30 @@ FORMATS: dict[str, ModelFormat] = {
             "The closed boundary of every block, an object for each",
             _file(lambda model, file, step: write_tsurf(model_parts(model), file, step, model.project.units)),
         ),
+        ModelFormat(
+            ".csv",
+            "Block Model",
+            "Regular cells with the share of each block, a row for each",
+            write_block_table,
+            has_cell_size=True,
+        ),
+        ModelFormat(
+            ".vti", "VTK Image", "Regular cells with the share of each block", write_vti, has_cell_size=True
+        ),
+        ModelFormat(
+            ".tif",
+            "GeoTIFF",
+            "Elevation, and top and thickness of every block, as bands",
+            write_geotiff,
+            has_cell_size=True,
+        ),
+        ModelFormat(
+            ".asc",
+            "ESRI ASCII Grids",
+            "Elevation, and top and thickness of every block, a file for each",
+            write_ascii_grids,
+            has_cell_size=True,
+        ),
     )
 }
 
@@ -139,16 +167,27 @@ def no_step(_share: float) -> None:
     """For callers that want no progress."""
 
 
-def write_model(model, path: str | Path, outputs: Outputs, step: Step = no_step) -> None:
-    """Writes a model in the format of the path's ending; it appears with the other outputs."""
-    format_for(path).write(model, path, outputs, step)
+def write_model(
+    model,
+    path: str | Path,
+    outputs: Outputs,
+    step: Step = no_step,
+    cell_size: float | Sequence[float] | None = None,
+) -> None:
+    """Writes a model in the format of the path's ending; it appears with the other outputs. cell_size: of
+    regular grids."""
+    known = format_for(path)
+    known.write(model, path, outputs, step, *([cell_size] if known.has_cell_size else []))
 
 
-def save_model(model, path: str | Path, step: Step = no_step) -> None:
-    """Writes a model to a file, or a folder, that appears whole or not at all."""
+def save_model(
+    model, path: str | Path, step: Step = no_step, cell_size: float | Sequence[float] | None = None
+) -> None:
+    """Writes a model to a file, or a folder, that appears whole or not at all. cell_size: of regular
+    grids."""
     format_for(path)
     with Outputs() as outputs:
-        write_model(model, path, outputs, step)
+        write_model(model, path, outputs, step, cell_size)
 
 
 __all__ = ["FORMATS", "ModelFormat", "format_for", "output_target", "save_model", "write_model"]

@@ -25,7 +25,8 @@ ATTRIBUTES = ("height", "variance", "distance")
 def surface_arrays(surfaces) -> dict[str, np.ndarray]:
     """By the names that the arrays of a model have: surface_vertices (Vs, 3), surface_triangles (Ts, 3)
     within their own surface, offsets (S+1,), surface_names, and for each vertex surface_height,
-    surface_variance and surface_distance (Vs,), NaN where there is none."""
+    surface_variance and surface_distance (Vs,), NaN where there is none; surface_triangle_sheet (Ts,), the
+    sheet of its surface that each triangle is of, from 0."""
     shapes = [surfaces.surface(number) for number in range(len(surfaces.surface_names))]
     arrays = {
         "surface_vertices": np.concatenate([vertices for vertices, _ in shapes]),
@@ -36,6 +37,7 @@ def surface_arrays(surfaces) -> dict[str, np.ndarray]:
     return {
         **arrays,
         **{f"surface_{name}": joined_attributes(surfaces, name) for name in ATTRIBUTES},
+        "surface_triangle_sheet": surfaces.surface_triangle_sheet,
         "surface_names": texts(surfaces.surface_names),
     }
 
@@ -47,7 +49,8 @@ def write_surfaces_npz(surfaces, file: BinaryIO) -> None:
 
 def write_surfaces_vtu(surfaces, file: BinaryIO) -> None:
     """Writes all triangles as one unstructured grid (VTK File Formats, XML), with the point arrays height,
-    variance and distance (NaN where there is none) and the cell array `surface`, the number of each one's."""
+    variance and distance (NaN where there is none) and the cell arrays `surface`, the number of each one's,
+    and `sheet`."""
     arrays = surface_arrays(surfaces)
     first = np.repeat(arrays["surface_vertex_offsets"][:-1], np.diff(arrays["surface_triangle_offsets"]))
     corners = arrays["surface_triangles"].astype("<i8") + first[:, None]
@@ -64,6 +67,7 @@ def write_surfaces_vtu(surfaces, file: BinaryIO) -> None:
             ("Cells", "types", np.full(count, _TRIANGLE, np.uint8)),
             *(("PointData", name, arrays[f"surface_{name}"].astype("<f8")) for name in ATTRIBUTES),
             ("CellData", "surface", number),
+            ("CellData", "sheet", arrays["surface_triangle_sheet"].astype("<i4")),
         ],
     )
 

@@ -76,58 +76,46 @@ def inside_body(
     body, block `block`, or NOTHING in a void. top: a height above all sheets and bodies. plans:
     triangulations that together cover the rock mass in plan. Raises InputRefused.
     """
-    older = sum(number <= after for number in stack.surfaces)  # with fillers of earlier bodies
-    if stack.base_elevation is not None:
-        stack, older = _on_floors(stack, plans), older + len(plans)
+    older = sum(number <= after for number in stack.surfaces)  # with floors, and fillers of earlier bodies
+    base = stack.base_elevation
+    if FLOOR in stack.surfaces:
+        base = float(stack.sheets[0][0][0, 2])
     if block == NOTHING:
-        return _emptied(stack, older, body)
+        return _emptied(stack, older, base, body)
     # what is protected depends on all that was there
     protects = any(RULES[rule].protects for rule in stack.rules[:older])
-    floors = stack.surfaces.count(FLOOR)
-    kept = range(older) if protects or not floors else range(floors)
-    return Stack(
-        [
-            *(stack.sheets[k] for k in kept),
-            *(_level(plan, top) for plan in plans),
-            *stack.sheets[older:],
-        ],
-        [*(stack.rules[k] for k in kept), *[_DEPOSITS] * len(plans), *stack.rules[older:]],
+    kept = [k for k in range(older) if stack.surfaces[k] != FLOOR] if protects or base is None else []
+    inside = Stack(
+        [*(stack.sheets[k] for k in kept), *(_level(plan, top) for plan in plans)],
+        [*(stack.rules[k] for k in kept), *[_DEPOSITS] * len(plans)],
         None,
-        [
-            *(NOTHING if k == 0 or stack.surfaces[k] == FLOOR else block for k in kept),
-            *[block] * len(plans),
-            *stack.blocks[older:],
-        ],
-        [*(stack.surfaces[k] for k in kept), *[FILLER] * len(plans), *stack.surfaces[older:]],
+        [block] * (len(kept) + len(plans)),
+        [*(stack.surfaces[k] for k in kept), *[FILLER] * len(plans)],
+    )
+    if base is None:
+        inside.blocks[0] = NOTHING
+    return _upon(base, plans, inside, stack, older)
+
+
+def _upon(base: float | None, plans, lower: Stack, stack: Stack, older: int) -> Stack:
+    """Floors at a base elevation, which all else lies on, then one stack, then the younger surfaces of
+    another."""
+    floors = [] if base is None else [_level(plan, base) for plan in plans]
+    return Stack(
+        [*floors, *lower.sheets, *stack.sheets[older:]],
+        [*[_DEPOSITS] * len(floors), *lower.rules, *stack.rules[older:]],
+        None,
+        [*[NOTHING] * len(floors), *lower.blocks, *stack.blocks[older:]],
+        [*[FLOOR] * len(floors), *lower.surfaces, *stack.surfaces[older:]],
     )
 
 
-def _on_floors(stack: Stack, plans) -> Stack:
-    """The same with surfaces in the place of the base elevation, which all else lies on."""
-    count = len(plans)
-    return Stack(
-        [*(_level(plan, stack.base_elevation) for plan in plans), *stack.sheets],
-        [*[_DEPOSITS] * count, *stack.rules],
-        None,
-        [*[NOTHING] * count, *stack.blocks],
-        [*[FLOOR] * count, *stack.surfaces],
-    )
-
-
-def _emptied(stack: Stack, older: int, body) -> Stack:
+def _emptied(stack: Stack, older: int, base: float | None, body) -> Stack:
     """Inside of a void: what came before is air, and younger surfaces fill it from the base."""
-    if FLOOR in stack.surfaces:
+    if base is not None:
         # where no older surface was, none that comes later forms a block
-        base = float(stack.sheets[0][0][0, 2])
-        were = [stack.sheets[k] for k in range(older) if stack.surfaces[k] >= 0]
-        floors = [_level(plan, base) for plan in distinct_plans(were)]
-        return Stack(
-            [*floors, *stack.sheets[older:]],
-            [*[_DEPOSITS] * len(floors), *stack.rules[older:]],
-            None,
-            [*[NOTHING] * len(floors), *stack.blocks[older:]],
-            [*[FLOOR] * len(floors), *stack.surfaces[older:]],
-        )
+        plans = distinct_plans(stack.sheets[:older])
+        return _upon(base, plans, Stack([], [], None, [], []), stack, older)
     if older == len(stack.sheets):
         return Stack([], [], None, [], [])
     if not RULES[stack.rules[older]].cuts:
