@@ -279,6 +279,7 @@ private:
         const std::size_t count = fronts_.size() - 1;
         for (std::size_t e = 0; e < count; ++e) {
             const bool is_first = e == 0, is_last = e + 1 == count;
+            if (is_first && is_last) continue;  // giving it up would only make its neighbor the end
             const Front &low = fronts_[e], &high = fronts_[e + 1];
             if (moved_corners(e) == 3) {
                 // a prism may become one with the next layer of its block, no more
