@@ -52,8 +52,13 @@ if ! wanted booleans; then
     :
 elif "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/benchmark_booleans.txt" "$python"; then
     export REALMODEL_BOOLEANS_PYTHON=$peers/bin/python
+    geogram=("$peers"/lib/python*/site-packages)
+    c++ -O2 -std=c++17 -fopenmp -I "${geogram[0]}/include/geogram1" "$root/scripts/benchmarks/geogram_arrangement.cpp" \
+        "${geogram[0]}/lib64/libgeogram.a" "${geogram[0]}"/geogram.libs/libtbb* "-Wl,-rpath,${geogram[0]}/geogram.libs" \
+        -ldl -o "$peers/geogram_arrangement" ||
+        echo "benchmark.sh: the program of geogram could not be built; measuring without it" >&2
 else
-    echo "benchmark.sh: trueform could not be installed; measuring without it" >&2
+    echo "benchmark.sh: trueform and geogram could not be installed; measuring without them" >&2
 fi
 if wanted blender memory &&
     ! { "$root/scripts/install_dependencies.sh" bpy &&

@@ -445,10 +445,10 @@ class Live(StructureCase):
         bpy.context.view_layer.update()
         self.live_is_done()
         self.assertNotAlmostEqual(self.volumes()["ore"], before["ore"], places=3)
-        raise_by(fault, -200.0)
+        raise_by(fault, -60.0)  # it ends within the rock
         self.live_is_done()
         self.assertIn("F1", bpy.context.window_manager.realmodel.problem)
-        raise_by(fault, 200.0)
+        raise_by(fault, 60.0)
         self.live_is_done()
         self.assertEqual(bpy.context.window_manager.realmodel.problem, "")
         self.model.bodies[0].void = True

@@ -55,7 +55,7 @@ def thicknesses(mesh):
 
 @pytest.mark.parametrize(
     ("sample", "edge", "thickness", "deviation"),
-    [("two_layers", 4.0, 0.2, 0.003), ("haut_barr", 13.0, 0.5, 0.02), ("gravel_plain", 15.0, 0.5, 0.01)],
+    [("two_layers", 4.0, 0.2, 0.003), ("haut_barr", 13.0, 0.5, 0.02), ("gravel_plain", 15.0, 0.5, 0.03)],
 )
 @pytest.mark.parametrize("elements", ["prisms", "tetrahedra"])
 def test_samples(sample, edge, thickness, deviation, elements):
@@ -141,7 +141,9 @@ def test_a_layer_ends_where_its_thickness_does():
     )
     model = build(project)
     mesh = checked(model.simulation_mesh(8.0, 0.01))
-    assert mesh.volumes == pytest.approx(mesh.exact_volumes, rel=1e-9)
+    # ends at the border that solvers could not compute with went to the layer below
+    assert mesh.volumes == pytest.approx(mesh.exact_volumes, rel=0.05)
+    assert mesh.volumes.sum() == pytest.approx(mesh.exact_volumes.sum(), rel=1e-9)
     line = np.isclose(mesh.points[:, 0], 50.0, atol=1e-9)
     assert line.sum() >= 16
     wedge = np.flatnonzero(np.array(mesh.block_names) == "top block")[0]

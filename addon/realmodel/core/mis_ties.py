@@ -40,14 +40,19 @@ def mean_heights(points: np.ndarray) -> np.ndarray:
     return np.column_stack([points[first, :2], _means(points, place)])
 
 
-def contradictions(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(P,) bool: the points that contradict others at their place by more than a mis-tie; and (P,) how far
-    heights at their place are apart. points: (P, 3 + K), the latter of which places have to have in common.
-    """
+def contradictions(points: np.ndarray) -> np.ndarray:
+    """(P,) bool: the points that contradict others at their place by more than a mis-tie. points: (P, 3 + K),
+    the latter of which places have to have in common."""
     place, _, apart = _places(points)
     if not apart.any():
-        return np.zeros(len(points), bool), np.zeros(len(points))
-    return (apart > LARGEST_SHARE * np.ptp(points[:, 2]))[place], apart[place]
+        return np.zeros(len(points), bool)
+    return (apart > LARGEST_SHARE * np.ptp(points[:, 2]))[place]
+
+
+def heights_apart(points: np.ndarray) -> np.ndarray:
+    """(P,) how far the heights at each point's place are apart."""
+    place, _, apart = _places(points)
+    return apart[place]
 
 
 def _places(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -19,6 +20,13 @@ namespace realmodel::simulation {
 
 namespace {
 
+constexpr double kWeakDeterminant = 0.0011;  ///< of a cube it is 1; its limit is 0.001
+constexpr double kMostLean = 0.36;           ///< cosine of 69 degrees; its limit is 70
+constexpr double kSteepFace = 0.5;           ///< cosine: of 60 degrees
+constexpr double kNoDeterminant = 1e-8;      ///< inner faces in two directions only
+constexpr double kThickEnd = 3;  ///< minimum thicknesses: no block gives up an end as thick
+constexpr int kRepairs = 30;
+
 using Front = std::array<std::int32_t, 3>;  ///< of each corner of a triangle: a height of its node
 
 /// Fills the columns of all triangles from the bottom up. A front, one height at each corner, moves
@@ -27,11 +35,12 @@ using Front = std::array<std::int32_t, 3>;  ///< of each corner of a triangle: a
 class ColumnFiller {
 public:
     ColumnFiller(const PlanTopology& plan, const RockBlocks& blocks, const ColumnHeights& columns,
-                 const PostLevels& levels, LayeredMesh& mesh)
+                 const PostLevels& levels, double minimum_thickness, LayeredMesh& mesh)
         : plan_(plan),
           blocks_(blocks),
           columns_(columns),
           levels_(levels),
+          minimum_thickness_(minimum_thickness),
           mesh_(mesh),
           is_parted_(levels.level_count(), 0) {
         find_parted();
@@ -43,6 +52,8 @@ public:
         for (std::size_t i = 0; i < 3; ++i)
             front_[i] = own_[i][0];
         last_block_ = -1;
+        fronts_.assign(1, front_);
+        front_blocks_.clear();
         for (std::size_t l = 0; l < layer_blocks.size(); ++l) {
             block_ = layer_blocks[l];
             layer_ = static_cast<std::int32_t>(l);
@@ -57,6 +68,7 @@ public:
             move(top);
         }
         if (last_block_ >= 0) add_flat_face(-1);
+        find_weak();
     }
 
     /// Faces on steps that only one side has belong to the outside.
@@ -77,6 +89,9 @@ public:
         for (const SideFace* face : outside)
             add_outside(face->corners);
     }
+
+    /// Heights to give up, so that no element is left that solvers call under-determined.
+    std::vector<PostLevels::Removal>& weak() { return weak_; }
 
 private:
     struct SideFace {
@@ -250,6 +265,158 @@ private:
             }
         }
         front_ = to;
+        fronts_.push_back(to);
+        front_blocks_.push_back(block_);
+    }
+
+    /// The elements of a column that solvers do badly with, as OpenFOAM's checkMesh measures it:
+    /// inner faces in too few directions to compute a gradient with (its cell determinant), or a
+    /// line to the center of the next element that hardly crosses the face between the two. These
+    /// are thin ends of layers. Their upright edges are given up.
+    void find_weak() {
+        const bool at_border =
+            plan_.neighbor(t_, 0) < 0 || plan_.neighbor(t_, 1) < 0 || plan_.neighbor(t_, 2) < 0;
+        const std::size_t count = fronts_.size() - 1;
+        for (std::size_t e = 0; e < count; ++e) {
+            const bool is_first = e == 0, is_last = e + 1 == count;
+            const Front &low = fronts_[e], &high = fronts_[e + 1];
+            if (moved_corners(e) == 3) {
+                // a prism may become one with the next layer of its block, no more
+                if (!at_border && !is_first && !is_last) continue;
+                if (is_first == is_last || count < 3 ||
+                    front_blocks_[e] != front_blocks_[is_first ? e + 1 : e - 1])
+                    continue;
+            }
+            const double independence = determinant(low, high, is_first, is_last);
+            const bool is_weak = independence < kWeakDeterminant,
+                       leans = moved_corners(e) < 3 &&
+                               ((!is_first && leans_at(e - 1)) || (!is_last && leans_at(e)));
+            if (!is_weak && !leans) continue;
+            for (std::size_t i = 0; i < 3; ++i) {
+                // an element alone in its column would have no neighbor above, which is worse
+                if (low[i] == high[i] || (!is_weak && own_[i].back() - own_[i].front() == 2))
+                    continue;
+                const bool upper = is_first && !is_last;  // which of its heights goes
+                const std::int32_t gone = upper ? high[i] : low[i];
+                const double rise = position(i, high[i])[2] - position(i, low[i])[2];
+                if (independence > kNoDeterminant && divides_blocks(i, gone) &&
+                    rise >= kThickEnd * minimum_thickness_)
+                    continue;
+                weak_.push_back({node_[i], gone, upper ? low[i] : high[i]});
+            }
+        }
+    }
+
+    /// Whether a height is not just one between layers of one block: without it a block would lose
+    /// volume.
+    bool divides_blocks(std::size_t corner, std::int32_t height) const {
+        const auto own = own_[corner];
+        const auto blocks = levels_.layer_blocks(rock_);
+        std::int32_t below = -1, above = -1;
+        for (std::size_t l = 0; l + 1 < own.size(); ++l) {
+            if (own[l] == own[l + 1]) continue;
+            if (own[l + 1] == height) below = blocks[l];
+            if (own[l] == height) above = blocks[l];
+        }
+        return below != above;
+    }
+
+    std::size_t moved_corners(std::size_t e) const {
+        std::size_t moved = 0;
+        for (std::size_t i = 0; i < 3; ++i)
+            moved += fronts_[e][i] != fronts_[e + 1][i];
+        return moved;
+    }
+
+    /// Whether the line between the centers of an element and the next one leans by more than
+    /// kMostLean from the direction across the face between them, though the face itself is not as
+    /// steep.
+    bool leans_at(std::size_t e) const {
+        const auto below = center(e), above = center(e + 1), area = flat_area(fronts_[e + 1]);
+        double dot = 0, line = 0, across = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            dot += (above[k] - below[k]) * area[k];
+            line += (above[k] - below[k]) * (above[k] - below[k]);
+            across += area[k] * area[k];
+        }
+        if (area[2] < kSteepFace * std::sqrt(across)) return false;
+        return dot < kMostLean * std::sqrt(line * across);
+    }
+
+    /// The center of an element's volume: its upright edges weigh as they are long.
+    std::array<double, 3> center(std::size_t e) const {
+        const Front &low = fronts_[e], &high = fronts_[e + 1];
+        std::array<std::array<double, 3>, 3> from;
+        std::array<double, 3> rise;
+        double total = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            from[i] = position(i, low[i]);
+            rise[i] = position(i, high[i])[2] - from[i][2];
+            total += rise[i];
+        }
+        // integrals over a triangle of two linear functions: 1/12 of their products at different
+        // corners, 1/6 at the same
+        std::array<double, 3> made{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t j = 0; j < 3; ++j) {
+                const double weight = (i == j ? 2 : 1) * rise[j] / (4 * total);
+                made[0] += weight * from[i][0];
+                made[1] += weight * from[i][1];
+                made[2] += weight * (from[i][2] + rise[i] / 2);
+            }
+        }
+        return made;
+    }
+
+    std::array<double, 3> flat_area(const Front& front) const {
+        const auto a = position(0, front[0]), b = position(1, front[1]), c = position(2, front[2]);
+        std::array<double, 3> u, v;
+        for (std::size_t k = 0; k < 3; ++k) {
+            u[k] = b[k] - a[k];
+            v[k] = c[k] - a[k];
+        }
+        return {(u[1] * v[2] - u[2] * v[1]) / 2, (u[2] * v[0] - u[0] * v[2]) / 2,
+                (u[0] * v[1] - u[1] * v[0]) / 2};
+    }
+
+    std::array<double, 3> position(std::size_t corner, std::int32_t at) const {
+        const PlanPoint& p = plan_.mesh().vertices[index(node_[corner])];
+        return {p[0], p[1], levels_.heights(node_[corner])[index(at)]};
+    }
+
+    double determinant(const Front& low, const Front& high, bool is_first, bool is_last) const {
+        std::array<std::array<double, 3>, 5> areas;
+        std::size_t count = 0;
+        const auto add_flat = [&](const Front& front) { areas[count++] = flat_area(front); };
+        if (!is_first) add_flat(low);
+        if (!is_last) add_flat(high);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            if (plan_.neighbor(t_, i) < 0 || (low[i] == high[i] && low[j] == high[j])) continue;
+            const auto a = position(i, low[i]), b = position(j, low[j]);
+            const double rise =
+                (position(i, high[i])[2] - a[2] + position(j, high[j])[2] - b[2]) / 2;
+            areas[count++] = {(b[1] - a[1]) * rise, -(b[0] - a[0]) * rise, 0};
+        }
+        double mean = 0;
+        for (std::size_t f = 0; f < count; ++f)
+            mean += std::sqrt(areas[f][0] * areas[f][0] + areas[f][1] * areas[f][1] +
+                              areas[f][2] * areas[f][2]);
+        if (!(mean > 0)) return 0;
+        mean /= static_cast<double>(count);
+        double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+        for (std::size_t f = 0; f < count; ++f) {
+            const double x = areas[f][0] / mean, y = areas[f][1] / mean, z = areas[f][2] / mean;
+            xx += x * x;
+            xy += x * y;
+            xz += x * z;
+            yy += y * y;
+            yz += y * z;
+            zz += z * z;
+        }
+        return std::abs(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) +
+                        xz * (xy * yz - yy * xz)) /
+               8;
     }
 
     template <std::size_t N>
@@ -309,6 +476,7 @@ private:
     const RockBlocks& blocks_;
     const ColumnHeights& columns_;
     const PostLevels& levels_;
+    const double minimum_thickness_;
     LayeredMesh& mesh_;
 
     std::size_t t_ = 0;
@@ -317,6 +485,9 @@ private:
     std::array<std::int32_t, 3> node_{};
     std::array<std::span<const std::int32_t>, 3> own_;
     Front front_{};
+    std::vector<Front> fronts_;               ///< of the column, upward
+    std::vector<std::int32_t> front_blocks_;  ///< of what lies above each
+    std::vector<PostLevels::Removal> weak_;
     bool has_step_ = false;
     std::array<std::size_t, 2> step_{};
     std::vector<std::array<std::int32_t, 2>> lines_;
@@ -348,21 +519,26 @@ LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t>
     const RockBlocks blocks(block_rock);
     PlanTopology plan(lines, std::move(mesh));
     const ColumnHeights columns = post_columns(model, blocks, lines, plan, threads, progress);
-    const PostLevels levels(plan, lines, blocks, columns, layering);
+    PostLevels levels(plan, lines, blocks, columns, layering);
     LayeredMesh made;
-    made.volumes.assign(blocks.rock.size(), 0);
-    for (std::size_t r = 0; r < blocks.count(); ++r) {
-        made.layers = std::max(
-            made.layers,
-            static_cast<std::int32_t>(levels.layer_blocks(static_cast<std::int32_t>(r)).size()));
+    for (int repair = 0;; ++repair) {
+        check_total(levels.height_count(), INT32_MAX);
+        made = {};
+        made.volumes.assign(blocks.rock.size(), 0);
+        for (std::size_t r = 0; r < blocks.count(); ++r) {
+            made.layers = std::max(made.layers,
+                                   static_cast<std::int32_t>(
+                                       levels.layer_blocks(static_cast<std::int32_t>(r)).size()));
+        }
+        ColumnFiller filler(plan, blocks, columns, levels, layering.minimum_thickness, made);
+        for (std::size_t t = 0; t < plan.triangles(); ++t) {
+            poll(progress, t);
+            filler.fill(t);
+        }
+        if (repair < kRepairs && levels.remove(plan, filler.weak()) > 0) continue;
+        filler.finish_steps();
+        break;
     }
-    check_total(levels.height_count(), INT32_MAX);
-    ColumnFiller filler(plan, blocks, columns, levels, made);
-    for (std::size_t t = 0; t < plan.triangles(); ++t) {
-        poll(progress, t);
-        filler.fill(t);
-    }
-    filler.finish_steps();
     std::vector<std::int32_t> number(levels.height_count(), -1);
     for_corners(made, [&](std::int32_t& corner) { number[index(corner)] = 0; });
     for (std::size_t n = 0, at = 0; n < plan.nodes(); ++n) {

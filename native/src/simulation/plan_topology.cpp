@@ -82,47 +82,49 @@ void PlanTopology::link() {
 }
 
 bool PlanTopology::turn_border_triangles() {
-    std::map<Edge, bool> kept;  // between the ends of segments, as far as they are one edge
-    std::vector<std::uint8_t> turned(triangles(), 0);
-    bool any = false;
+    std::vector<std::size_t> corners;
     for (std::size_t t = 0; t < triangles(); ++t) {
-        if (std::count(neighbor_[t].begin(), neighbor_[t].end(), -1) != 2) continue;
+        if (std::count(neighbor_[t].begin(), neighbor_[t].end(), -1) == 2) corners.push_back(t);
+    }
+    if (corners.empty()) return false;
+    mark_segments();
+    std::vector<std::uint8_t> turned(triangles(), 0);
+    const auto at = [&](std::int32_t n) -> const PlanPoint& { return mesh_.vertices[index(n)]; };
+    const auto turn = [&](std::size_t t) {
         const auto i = static_cast<std::size_t>(
             std::max_element(neighbor_[t].begin(), neighbor_[t].end()) - neighbor_[t].begin());
         const auto other = index(neighbor_[t][i]);
-        if (turned[t] != 0 || turned[other] != 0) continue;
         auto &own = mesh_.triangles[t], &beyond = mesh_.triangles[other];
-        const std::int32_t a = own[i], b = own[(i + 1) % 3], apex = own[(i + 2) % 3];
-        std::size_t j = 0;
-        while (beyond[j] == a || beyond[j] == b)
-            ++j;
-        const std::int32_t far = beyond[j];
-        if (std::count(neighbor_[other].begin(), neighbor_[other].end(), -1) > 1) continue;
-        if (kept.empty()) {
-            mark_segments();
-            for (std::size_t s = 0; s < triangles(); ++s) {
-                for (std::size_t e = 0; e < 3; ++e) {
-                    if (segment_[s][e] >= 0)
-                        kept[edge_of(mesh_.triangles[s][e], mesh_.triangles[s][(e + 1) % 3])] =
-                            true;
-                }
-            }
-        }
-        if (kept.contains(edge_of(a, b))) continue;
-        const auto at = [&](std::int32_t n) -> const PlanPoint& {
-            return mesh_.vertices[index(n)];
-        };
-        if (exact::orient2d(at(apex), at(a), at(far)) <= 0 ||
+        const std::int32_t a = own[i], b = own[(i + 1) % 3], apex = own[(i + 2) % 3],
+                           far = corner_across(other, a, b);
+        if (turned[other] != 0 || segment_[t][i] >= 0 ||
+            std::count(neighbor_[other].begin(), neighbor_[other].end(), -1) > 1 ||
+            exact::orient2d(at(apex), at(a), at(far)) <= 0 ||
             exact::orient2d(at(apex), at(far), at(b)) <= 0 ||
             std::min(least_angle(at(apex), at(a), at(far)), least_angle(at(apex), at(far), at(b))) <
                 kLeastAngle)
-            continue;
+            return false;
         own = {apex, a, far};
         beyond = {apex, far, b};
-        any = true;
-        turned[t] = turned[other] = 1;
+        turned[other] = 1;
+        return true;
+    };
+    for (const std::size_t t : corners) {
+        if (turned[t] != 0 || turn(t)) continue;
+        const auto own = mesh_.triangles[t];
+        const auto n = static_cast<std::int32_t>(nodes());
+        PlanPoint center{};
+        for (const std::int32_t corner : own) {
+            for (std::size_t axis = 0; axis < 2; ++axis)
+                center[axis] += at(corner)[axis] / 3;
+        }
+        mesh_.vertices.push_back(center);
+        mesh_.triangles[t] = {own[0], own[1], n};
+        mesh_.triangles.push_back({own[1], own[2], n});
+        mesh_.triangles.push_back({own[2], own[0], n});
+        turned[t] = 1;
     }
-    return any;
+    return true;
 }
 
 void PlanTopology::improve() {

@@ -13,11 +13,11 @@ namespace realmodel::simulation {
 /// Edge i of a triangle goes from its corner i to its corner (i + 1) % 3.
 class PlanTopology {
 public:
-    /// Border triangles with two edges outside are turned where that leaves no sharp angle: an
-    /// element there would have neighbors in one direction only. Triangles that steps bound are
-    /// divided until each has at most one edge on a step, and the corner across from it has one
-    /// post. Sharp angles that are left from this are made better by turning edges and moving
-    /// nodes.
+    /// Border triangles with two edges outside are turned where that leaves no sharp angle, else
+    /// divided: an element there would have neighbors in one direction only. Triangles that steps
+    /// bound are divided until each has at most one edge on a step, and the corner across from it
+    /// has one post. Sharp angles that are left from this are made better by turning edges and
+    /// moving nodes.
     PlanTopology(const PlanLines& lines, meshing::PlanarMesh mesh);
 
     const meshing::PlanarMesh& mesh() const { return mesh_; }

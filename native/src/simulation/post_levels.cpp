@@ -157,17 +157,14 @@ PostLevels::PostLevels(const PlanTopology& plan, const PlanLines& lines, const R
             const double own = z[b + 1] - z[b];
             std::int32_t parts = 0;
             if (own > 0) {
-                double wanted = std::min<double>(most, std::floor(own / thickness));
-                if (layering.layer_thickness > 0)
-                    wanted = std::min(wanted, std::ceil(own / layering.layer_thickness));
+                const double wanted = std::min<double>(most, std::floor(own / thickness));
                 parts = std::max(1, static_cast<std::int32_t>(wanted));
             }
             for (std::int32_t k = 1; k <= parts; ++k)
                 own_heights.push_back(k == parts ? z[b + 1] : z[b] + own * k / parts);
+            // where there are fewer layers the uppermost end
             for (std::int32_t k = 1; k <= most; ++k)
-                *level++ = at + static_cast<std::int32_t>(
-                                    (2 * static_cast<std::int64_t>(k) * parts + most) /
-                                    (2 * static_cast<std::int64_t>(most)));
+                *level++ = at + std::min(k, parts);
             at += parts;
         }
         if (plan.is_divided(plan.post_node(p))) {
@@ -229,6 +226,38 @@ PostLevels::PostLevels(const PlanTopology& plan, const PlanLines& lines, const R
         }
         node_offset_.push_back(height_.size());
     }
+}
+
+std::size_t PostLevels::remove(const PlanTopology& plan, std::vector<Removal>& removals) {
+    std::sort(removals.begin(), removals.end());
+    std::vector<std::int32_t> gone(node_offset_.size() - 1, -1);  // one of a node at a time
+    std::vector<std::int32_t> kept(node_offset_.size() - 1, -1);
+    std::size_t count = 0;
+    for (const Removal& removal : removals) {
+        if (gone[index(removal.node)] >= 0) continue;
+        gone[index(removal.node)] = removal.height;
+        kept[index(removal.node)] = removal.into;
+        ++count;
+    }
+    for (std::size_t p = 0; p + 1 < offset_.size(); ++p) {
+        const auto n = index(plan.post_node(p));
+        if (gone[n] < 0) continue;
+        for (std::size_t l = offset_[p]; l < offset_[p + 1]; ++l) {
+            if (level_[l] == gone[n]) level_[l] = kept[n];
+            if (level_[l] > gone[n]) --level_[l];
+        }
+    }
+    std::size_t to = 0;
+    for (std::size_t n = 0; n + 1 < node_offset_.size(); ++n) {
+        const std::size_t begin = node_offset_[n];
+        node_offset_[n] = to;
+        for (std::size_t h = begin; h < node_offset_[n + 1]; ++h) {
+            if (static_cast<std::int32_t>(h - begin) != gone[n]) height_[to++] = height_[h];
+        }
+    }
+    node_offset_.back() = to;
+    height_.resize(to);
+    return count;
 }
 
 void PostLevels::join(Divided& node, std::int32_t from, std::int32_t to) {

@@ -37,6 +37,14 @@ public:
     std::size_t node_offset(std::size_t node) const { return node_offset_[node]; }
     std::size_t height_count() const { return height_.size(); }
 
+    /// A height of a node that is given up; what has it takes the one below or above.
+    struct Removal {
+        std::int32_t node, height, into;
+        auto operator<=>(const Removal&) const = default;
+    };
+    /// Removes heights, the first of each node. @return how many
+    std::size_t remove(const PlanTopology& plan, std::vector<Removal>& removals);
+
 private:
     struct Divided {
         std::vector<std::int32_t> posts;

@@ -220,3 +220,15 @@ def _assembled(model, made: dict, wanted: str) -> SimulationMesh:
         volumes=made["volumes"],
         exact_volumes=np.array([block.volume for block in model.blocks]),
     )
+
+
+def mesh_entry(mesh: SimulationMesh) -> dict:
+    """What the report says of a mesh: volumes are in model units cubed."""
+    return {
+        "elements": {kind: len(corners) for kind, corners in mesh.elements.items()},
+        "points": len(mesh.points),
+        "blocks": [
+            {"block": name, "volume": float(volume), "exact_volume": float(exact)}
+            for name, volume, exact in zip(mesh.block_names, mesh.volumes, mesh.exact_volumes, strict=True)
+        ],
+    }

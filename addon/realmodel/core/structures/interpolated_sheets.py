@@ -14,6 +14,7 @@ from ..mis_ties import contradictions, mean_heights
 from ..surface_heights import give_heights, needed_surfaces, where_known
 from ..work import Work
 from ..wrong_sides import heights_at
+from .beyond_faults import beyond_faults
 from .families import Family, are_within, keys_of
 from .rock_structure import Triangulation
 from .sides import sides_of
@@ -41,22 +42,25 @@ class InterpolatedSurface:
         self.most = (-1, None)
 
     def _leave_out_contradictions(self) -> None:
-        """Of points at one place in plan, and on the same sides of all faults, those that contradict."""
+        """Leaves out points that others at their place in plan contradict, and tells."""
         faults = self.entry.structure.faults
         rows = np.where(faults.active(self.number), self.sides, 0)
-        wrong, apart = contradictions(np.column_stack([self.points, rows]))
-        if wrong.all() or not wrong.any():
+        beyond = beyond_faults(self.points, rows)
+        wrong = contradictions(np.column_stack([self.points, rows])[~beyond])
+        left_out = beyond.copy()
+        left_out[np.flatnonzero(~beyond)[wrong]] = True
+        if left_out.all() or not left_out.any():
             return
-        worst = int(np.where(wrong, apart, 0.0).argmax())
+        first = self.points[np.flatnonzero(left_out)[0]]
         text = (
-            f"{int(wrong.sum())} of its {len(wrong)} points are left out: they have others straight above or "
-            f"below them in their compartment, by up to {apart[worst]:.4g} at "
-            f"{place_text(self.points[worst])}; mostly picks reach beyond a fault there"
+            f"{int(left_out.sum())} of its {len(left_out)} points are left out, one at {place_text(first)}: "
+            "others straight above or below them fit this side of the faults better; mostly picks of the "
+            "other side reach beyond a fault there"
         )
         warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
         every = list(range(len(self.entry.structure.compartments)))
         self.entry.structure.warnings.append((every, warning))
-        self.points, self.sides = self.points[~wrong], self.sides[~wrong]
+        self.points, self.sides = self.points[~left_out], self.sides[~left_out]
 
     def own(self, family: Family) -> np.ndarray:
         """(P,) bool: the points in its compartments."""
@@ -73,6 +77,8 @@ class InterpolatedSurface:
         own = self.own(family)
         first = next(iter(family.members.values()))
         common = self._interpolated(family, first, own)
+        if not own.any() and not needed_surfaces(self.entry.rock, self.number):
+            return dict.fromkeys(family.members.values(), common)
         faults = [self.entry.structure.faults.shapes[fault] for fault in family.dying]
         nodes, triangles = self.entry.region
         z = self._on_nodes(common)
