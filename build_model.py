@@ -303,7 +303,7 @@ def _run(options: argparse.Namespace) -> None:
     if options.surfaces_only:
         _surfaces_only(options, project, progress)
         return
-    with Outputs() as outputs, _Interruptible(outputs):
+    with Outputs(project.input_files()) as outputs, _Interruptible(outputs):
         try:
             for request in requests:
                 request.read()

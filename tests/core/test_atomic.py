@@ -211,3 +211,16 @@ def test_a_full_disk_is_told_in_one_line_and_leaves_nothing(small_disk):
     for message in outcomes_of(_write_too_much, small_disk):
         assert "large: cannot be written: No space left on device; make room" in message
     assert names(small_disk) == []
+
+
+def test_an_output_beside_another_replaces_no_input_and_no_other_output(out):
+    (out / "p.mtl").write_text("read")
+    outputs = Outputs([out / "p.mtl"])
+    with pytest.raises(OutputFailed, match="a file that is read"), outputs, outputs.file(out / "p.mtl"):
+        pass
+    assert (out / "p.mtl").read_text() == "read"
+    with pytest.raises(OutputFailed, match="two outputs have this name"), Outputs() as outputs:
+        for _ in range(2):
+            with outputs.file(out / "a") as file:
+                file.write(b"new")
+    assert names(out) == ["p.mtl"]

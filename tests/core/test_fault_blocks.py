@@ -77,7 +77,7 @@ def checked(project_path, model, tmp_path):
 @pytest.mark.skipif(not REAL.is_dir(), reason="the real data are not there")
 def test_a_real_reservoir_with_six_faults_that_die_out(tmp_path):
     """One closed model; picks that reach beyond the faults are left out, so the throw is the blocks'."""
-    path = real_faults.drogon(tmp_path, edge_length=300)
+    path = real_faults.drogon(tmp_path, edge_length=300, method="idw")
     model = build(load_project(path))
     checked(path, model, tmp_path)
     assert len(model.blocks) == 3 and model.compartment_names == ["drogon"]

@@ -12,7 +12,7 @@ import os
 import secrets
 import shutil
 import weakref
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
@@ -31,7 +31,9 @@ class Outputs:
     ...         file.write(b"...")
     """
 
-    def __init__(self):
+    def __init__(self, inputs: Iterable[str | Path] = ()):
+        """inputs: files that are read, which no output may replace."""
+        self._inputs = {Path(os.path.realpath(file)) for file in inputs}
         self._written: list[tuple[Path, Path]] = []  # (where it waits, its target), files and folders
         self._folders: list[Path] = []
         weakref.finalize(self, _remove, self._folders)  # a Ctrl-C may come while drop() runs
@@ -57,6 +59,10 @@ class Outputs:
         """A path of the same name for software that writes files by name (Blender). Raises OutputFailed
         in the place of OSError, and where nothing was written."""
         target = writable_target(target)
+        if target in self._inputs:
+            raise OutputFailed(f"{target}: this is a file that is read; choose another name")
+        if any(target == other for _, other in self._written):
+            raise OutputFailed(f"{target}: two outputs have this name")
         with _explained(target):
             path = self._waiting_folder(target) / target.name
             yield path

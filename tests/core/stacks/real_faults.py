@@ -30,14 +30,14 @@ _CALIFORNIA = (  # that lie in a square of 120 km around San Bernardino, or reac
 )
 
 
-def drogon(folder, edge_length=200):
+def drogon(folder, edge_length=200, method="natural_neighbour"):
     """The project file of a reservoir: four horizons picked block by block, and six faults as sticks."""
     data = places.REAL_DATA / "drogon_faults"
     text = f'format = 1\nname = "drogon faults"\n[[rock]]\nname = "drogon"\nregion = {_DROGON_REGION}\n'
     text += f"edge_length = {edge_length}\n"
     for name in DROGON_HORIZONS:
         text += f'[[rock.surface]]\nname = "{name}"\npoints = "{(data / name).as_posix()}.poi"\n'
-        text += 'z_axis = "down"\nmethod = "natural_neighbour"\nextrapolate = "nearest"\n'
+        text += f'z_axis = "down"\nmethod = "{method}"\nextrapolate = "nearest"\n'
     for number in range(1, 7):
         text += f'[[fault]]\nname = "F{number}"\npoints = "{(data / f"F{number}.pol").as_posix()}"\n'
         text += 'z_axis = "down"\ndies_out = true\nextend = 100\n'
