@@ -279,7 +279,6 @@ private:
         const std::size_t count = fronts_.size() - 1;
         for (std::size_t e = 0; e < count; ++e) {
             const bool is_first = e == 0, is_last = e + 1 == count;
-            if (is_first && is_last) continue;  // giving it up would only make its neighbor the end
             const Front &low = fronts_[e], &high = fronts_[e + 1];
             if (moved_corners(e) == 3) {
                 // a prism may become one with the next layer of its block, no more
@@ -300,8 +299,9 @@ private:
                 const bool upper = is_first && !is_last;  // which of its heights goes
                 const std::int32_t gone = upper ? high[i] : low[i];
                 const double rise = position(i, high[i])[2] - position(i, low[i])[2];
-                if (independence > kNoDeterminant && divides_blocks(i, gone) &&
-                    rise >= kThickEnd * minimum_thickness_)
+                // one alone in its column would only make its neighbor the end
+                if ((independence > kNoDeterminant || (is_first && is_last)) &&
+                    divides_blocks(i, gone) && rise >= kThickEnd * minimum_thickness_)
                     continue;
                 weak_.push_back({node_[i], gone, upper ? low[i] : high[i]});
             }
