@@ -5,6 +5,7 @@ import multiprocessing
 import os
 import random
 import resource
+import shutil
 import signal
 import subprocess
 import time
@@ -154,6 +155,24 @@ def test_ctrl_c_at_any_moment_leaves_nothing(out):
             child.join(5)
         assert child.exitcode == 7
         assert [name for name in names(out) if name.startswith(".")] == []
+
+
+def test_ctrl_c_while_folders_are_removed_is_told_and_they_are_removed(out, monkeypatch):
+    rmtree = shutil.rmtree
+
+    def interrupted(folder, ignore_errors):
+        monkeypatch.setattr(shutil, "rmtree", rmtree)
+        try:
+            raise KeyboardInterrupt
+        finally:
+            os.close(-1)  # as rmtree does, where the first close was done already
+
+    with pytest.raises(KeyboardInterrupt) as held, Outputs() as outputs:  # held: nothing is finalized
+        monkeypatch.setattr(shutil, "rmtree", interrupted)
+        with outputs.file(out / "a") as file:
+            file.write(b"a")
+    assert names(out) == ["a"]
+    assert held.traceback
 
 
 def _fill(out, outcome):

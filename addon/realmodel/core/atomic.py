@@ -36,7 +36,7 @@ class Outputs:
         self._inputs = {Path(os.path.realpath(file)) for file in inputs}
         self._written: list[tuple[Path, Path]] = []  # (where it waits, its target), files and folders
         self._folders: list[Path] = []
-        weakref.finalize(self, _remove, self._folders)  # a Ctrl-C may come while drop() runs
+        weakref.finalize(self, _remove, self._folders)  # a Ctrl-C may come before drop()
 
     def __enter__(self) -> Outputs:
         return self
@@ -128,12 +128,19 @@ class Outputs:
     def drop(self) -> None:
         """Gives up all that is not published."""
         self._written.clear()
-        _remove(self._folders)
+        try:
+            _remove(self._folders)
+        except KeyboardInterrupt:  # it may keep this object alive, so that it is not finalized
+            _remove(self._folders)
+            raise
 
 
 def _remove(folders: list[Path]) -> None:
     while folders:
-        shutil.rmtree(folders[-1], ignore_errors=True)
+        try:
+            shutil.rmtree(folders[-1], ignore_errors=True)
+        except OSError as error:  # where a Ctrl-C follows a close, rmtree closes again and tells of that
+            raise error.__context__ or error from None
         folders.pop()
 
 
