@@ -96,7 +96,7 @@ def test_vtu_and_obj_know_block_and_property(layers, out, tmp_path):  # noqa: F8
         (("--section", "0,0,0,0,0,0=s.vtu"), "the normal must not be zero"),
         (("--section", "0,0,0,1,0,0"), "expected --section X,Y,Z,NX,NY,NZ=FILE"),
         (("--section", "0,0,0,1,0,nan=s.vtu"), "a plane is six numbers"),
-        (("--section", "0,0,0,1,0,0=s.stl"), "use one of .vtu, .obj, .csv, .npz"),
+        (("--section", "0,0,0,1,0,0=s.step"), "use one of .vtu, .obj, .ply, .stl, .glb, .ts, .csv, .npz"),
         (("--fence", "0,0,1=f.vtu"), "at least two points"),
         (("--fence", "0,0,0,0,1,1=f.vtu"), "two consecutive points are equal"),
         (("--cut", "0,0,0,1,0,0=,"), "one of them may be left out"),

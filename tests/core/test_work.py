@@ -2,6 +2,7 @@
 """Long work in a thread: progress often enough, cancelling soon enough, nothing left running."""
 
 import _thread
+import itertools
 import threading
 import time
 
@@ -101,11 +102,20 @@ def test_what_progress_raises_stops_the_work():
 
 
 def test_ctrl_c_stops_the_work_and_passes_on():
-    steps = Steps()
-    timer = threading.Timer(0.2, _thread.interrupt_main)
+    steps, stopped = Steps(), threading.Event()
+
+    def press():
+        for delay in itertools.chain([0.2], itertools.repeat(5.0)):
+            if stopped.wait(delay):
+                return
+            _thread.interrupt_main()  # Python drops one that comes while it frees an object: pressed again
+
+    thread = threading.Thread(target=press)
     with pytest.raises(KeyboardInterrupt):
-        timer.start()
+        thread.start()
         run(steps)
+    stopped.set()
+    thread.join()
     run(lambda _work: None)
     assert not working_threads()
     assert steps.done < ENDLESS
