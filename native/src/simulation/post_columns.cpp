@@ -34,7 +34,8 @@ public:
         if (steps_.empty() || !box.meets(tiles_.frame())) return free;
         tiles_.for_each(tiles_.span(box), [&](std::size_t tile) {
             for (const std::int32_t s : bins_[tile]) {
-                const auto& [p, q] = steps_[index(s)];
+                const auto& step = steps_[index(s)];
+                const auto &p = step[0], &q = step[1];
                 if (exact::orient2d(a, b, p) * exact::orient2d(a, b, q) > 0) continue;
                 const int from = exact::orient2d(p, q, a), to = exact::orient2d(p, q, b);
                 if (from * to > 0 || (from == 0 && to == 0)) continue;
