@@ -173,12 +173,12 @@ def test_loops_that_meet_in_a_vertex():
     across = solids.moved(solids.sheet(4.0), (0, 0, 0), TURN[[1, 0, 2]])
     found = intersect(solids.sheet(2.0), solids.together(sheet, across))
     assert {loop.kind for loop in found.loops} <= {"open", "soft_closed"}
-    steps = sum(len(loop.vertices) - (loop.kind == "open") for loop in found.loops)
+    steps = sum(len(loop.vertices) - (loop.kind != "hard_closed") for loop in found.loops)
     edges = {
         frozenset(edge)
         for loop in found.loops
         for edge in itertools.pairwise(
-            loop.vertices.tolist() + loop.vertices[:1].tolist() * (loop.kind != "open")
+            loop.vertices.tolist() + loop.vertices[:1].tolist() * (loop.kind == "hard_closed")
         )
     }
     assert len(edges) == steps, "no edge is in two loops"

@@ -194,7 +194,7 @@ TEST(IntersectHard, LoopsOfTwoCylindersThatCross) {
     EXPECT_FALSE(r.is_closed[0]);
     EXPECT_EQ(r.loops.size(), 4U);
     for (const IntersectionLoop& loop : r.loops)
-        EXPECT_EQ(loop.kind, LoopKind::kOpen);
+        EXPECT_EQ(loop.kind, LoopKind::kSoftClosed);
     ASSERT_EQ(r.sub_blocks.size(), 1U);
     EXPECT_EQ(std::count_if(r.sub_surfaces.begin(), r.sub_surfaces.end(),
                             [](const SubSurface& s) { return s.is_public; }),
@@ -214,7 +214,8 @@ TEST(IntersectHard, SoftLoopsMeetInOneVertex) {
     ASSERT_EQ(r.loops.size(), 2U);
     for (const IntersectionLoop& loop : r.loops) {
         EXPECT_EQ(loop.kind, LoopKind::kSoftClosed);
-        EXPECT_EQ(loop.vertices.size(), 3U);
+        ASSERT_EQ(loop.vertices.size(), 4U);
+        EXPECT_EQ(loop.vertices.front(), loop.vertices.back());
     }
 }
 
