@@ -328,7 +328,7 @@ def _run(options: argparse.Namespace) -> None:
             progress.close()
     if not options.quiet:
         with contextlib.suppress(BrokenPipeError):  # the outputs are there
-            for warning in model.warnings:
+            for warning in [*model.warnings, *(mesh.warnings if mesh is not None else ())]:
                 print(f"warning: {warning}")
             if options.check_model:
                 print(f"{validation}\n")

@@ -156,6 +156,13 @@ def test_a_layer_ends_where_its_thickness_does():
     assert thicknesses(thin).min() >= 1.499
     assert thin.volumes.sum() == pytest.approx(mesh.volumes.sum(), rel=1e-9)
     assert thin.volumes[wedge] < mesh.volumes[wedge]
+    assert mesh.warnings == []
+    half = checked(model.simulation_mesh(8.0, 4.0))
+    volume = f"{half.volumes[wedge]:.6g}"
+    assert [str(warning) for warning in half.warnings] == [
+        f"rock 'r': block 'top block' has a volume of {volume} in the mesh, and of 9000 in the model; a shorter "
+        "edge length or a smaller minimum thickness changes less"
+    ]
 
 
 def test_rock_masses_of_other_layers_share_their_wall():

@@ -20,6 +20,7 @@ from .volume_mesh import PlanMesh, VolumeMesh
 
 ELEMENTS = ("prisms", "tetrahedra")
 MESHER = "frontal"
+_MOST_CHANGE = 0.1  # of a block's volume, without a warning
 _THINNEST = 1e-9  # of the largest coordinate: nearer than this, doubles leave no room for a layer
 
 
@@ -28,7 +29,7 @@ class SimulationMesh(VolumeMesh):
     """A mesh for solvers and what it changed.
 
     volumes: (B,) float64, of the elements of each block; exact_volumes: (B,) float64, of the block itself;
-    model units cubed. warnings: what was not done as asked.
+    model units cubed. warnings: blocks whose volume it changes by more than a tenth.
     """
 
     volumes: np.ndarray = field(default_factory=lambda: np.empty(0))
@@ -219,7 +220,21 @@ def _assembled(model, made: dict, wanted: str) -> SimulationMesh:
         ),
         volumes=made["volumes"],
         exact_volumes=np.array([block.volume for block in model.blocks]),
+        warnings=_changes(model, made["volumes"]),
     )
+
+
+def _changes(model, volumes: np.ndarray) -> list[BuildWarning]:
+    return [
+        BuildWarning(
+            f"block '{block.name}' has a volume of {volume:.6g} in the mesh, and of {block.volume:.6g} in "
+            "the model; a shorter edge length or a smaller minimum thickness changes less",
+            "mesh_volume",
+            model.rock_inputs[block.rock].rock.name,
+        )
+        for block, volume in zip(model.blocks, volumes, strict=True)
+        if abs(volume - block.volume) > _MOST_CHANGE * block.volume
+    ]
 
 
 def mesh_entry(mesh: SimulationMesh) -> dict:
