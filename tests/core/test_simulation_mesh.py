@@ -160,8 +160,8 @@ def test_a_layer_ends_where_its_thickness_does():
     half = checked(model.simulation_mesh(8.0, 4.0))
     volume = f"{half.volumes[wedge]:.6g}"
     assert [str(warning) for warning in half.warnings] == [
-        f"rock 'r': block 'top block' has a volume of {volume} in the mesh, and of 9000 in the model; a shorter "
-        "edge length or a smaller minimum thickness changes less"
+        f"rock 'r': block 'top block' has a volume of {volume} in the mesh, and of 9000 in the model; a "
+        "shorter edge length or a smaller minimum thickness changes less"
     ]
 
 
