@@ -108,7 +108,7 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         default=[],
         help=(
             "write the section by a plane (point, normal) to F, a drawing (.svg, .dxf, .png) or polygons "
-            "(.vtu, .obj, .csv, .npz); any number of times"
+            "(.vtu, .obj, .ply, .stl, .glb, .ts, .csv, .npz); any number of times"
         ),
     )
     parser.add_argument(

@@ -51,6 +51,14 @@ def _is_surface(scene, item):
     return any(item in (row.object, row.interface) for _, row in settings.interface_rows(scene))
 
 
+def _active_in_its_list(scene):
+    """(kind, list, number in it) of the active fault or body."""
+    row = settings.active_structure(scene)
+    kind = settings.kind_of(row)
+    rows = settings.structures_of(scene, kind)
+    return kind, rows, list(rows).index(row)
+
+
 def _add(scene, kind, name, source):
     """A row for a fault or a body, which becomes the active one."""
     rows = settings.structures_of(scene, kind)
@@ -192,10 +200,9 @@ class REALMODEL_OT_fault_body_remove(Reporting, bpy.types.Operator):
     needs = (a_structure,)
 
     def act(self, context):
-        scene, row = context.scene, settings.active_structure(context.scene)
-        kind = settings.kind_of(row)
-        rows = settings.structures_of(scene, kind)
-        number = list(rows).index(row)
+        scene = context.scene
+        kind, rows, number = _active_in_its_list(scene)
+        row = rows[number]
         with settings.filling():
             if kind == "body":
                 library_rows.remove_made(scene, row)
@@ -217,10 +224,8 @@ class REALMODEL_OT_fault_body_copy(Reporting, bpy.types.Operator):
     needs = (a_structure,)
 
     def act(self, context):
-        scene, chosen = context.scene, settings.active_structure(context.scene)
-        kind = settings.kind_of(chosen)
-        rows = settings.structures_of(scene, kind)
-        number = list(rows).index(chosen)
+        scene = context.scene
+        kind, rows, number = _active_in_its_list(scene)
         row = rows.add()
         source = rows[number]
         settings.copy_row(source, row)
@@ -248,10 +253,8 @@ class REALMODEL_OT_fault_body_move(Reporting, bpy.types.Operator):
     )
 
     def act(self, context):
-        scene, row = context.scene, settings.active_structure(context.scene)
-        kind = settings.kind_of(row)
-        rows = settings.structures_of(scene, kind)
-        number = list(rows).index(row)
+        scene = context.scene
+        kind, rows, number = _active_in_its_list(scene)
         target = number + (-1 if self.direction == "UP" else 1)
         if not 0 <= target < len(rows):
             return {"CANCELLED"}

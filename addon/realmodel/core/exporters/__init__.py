@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..atomic import Outputs, writable_folder, writable_target
-from ..errors import UsageError
 from ..simulation import PolyhedralMesh
 from .dxf import write_dxf
+from .endings import by_ending
 from .gltf import write_glb
 from .meshes import MESH_FORMATS, write_mesh
 from .npz import write_npz
@@ -150,11 +150,7 @@ FORMATS: dict[str, ModelFormat] = {
 
 def format_for(path: str | Path) -> ModelFormat:
     """The format that this ending says. Raises UsageError."""
-    ending = Path(path).suffix.lower()
-    if ending not in FORMATS:
-        what = f"files ending in '{ending}' are not supported" if ending else "the file name has no extension"
-        raise UsageError(f"{path}: {what}; use one of {', '.join(FORMATS)}")
-    return FORMATS[ending]
+    return by_ending(path, FORMATS, "files ending in {} are not supported")
 
 
 def output_target(path: str | Path) -> Path:

@@ -13,6 +13,7 @@ from ..simulation import PolyhedralMesh, VolumeMesh
 from ..simulation.element_faces import ElementFaces
 from ..units import MODEL_UNIT
 from .cdb import write_cdb
+from .endings import by_ending
 from .exodus import write_exodus
 from .f3grid import write_f3grid
 from .gmsh import write_msh
@@ -94,11 +95,7 @@ MESH_FORMATS: dict[str, MeshFormat] = {
 
 def mesh_format_for(path: str | Path) -> MeshFormat:
     """The format that this ending says. Raises UsageError."""
-    ending = Path(path).suffix.lower()
-    if ending not in MESH_FORMATS:
-        what = f"meshes are not written as '{ending}'" if ending else "the file name has no extension"
-        raise UsageError(f"{path}: {what}; use one of {', '.join(MESH_FORMATS)}")
-    return MESH_FORMATS[ending]
+    return by_ending(path, MESH_FORMATS, "meshes are not written as {}")
 
 
 def mesh_target(path: str | Path) -> Path:

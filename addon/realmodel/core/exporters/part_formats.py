@@ -18,3 +18,11 @@ PART_WRITERS: dict[str, Callable[..., None]] = {
     ".dxf": write_dxf,
     ".ts": write_tsurf,
 }
+
+
+def part_writers(parts_of: Callable) -> dict[str, Callable[..., None]]:
+    """Functions (item, file) by ending that write parts_of(item)."""
+    return {
+        ending: lambda item, file, write=write: write(parts_of(item), file, lambda _: None)
+        for ending, write in PART_WRITERS.items()
+    }

@@ -20,10 +20,10 @@ from typing import BinaryIO
 import numpy as np
 
 from .. import drawing
-from ..errors import UsageError
 from ..section_drawing import draw_section
+from .endings import by_ending
 from .npz import write_arrays
-from .part_formats import PART_WRITERS
+from .part_formats import part_writers
 from .parts import section_parts
 from .vtk_xml import write_grid
 
@@ -33,14 +33,11 @@ _POLYGON = 7
 def section_writer(path: str | Path, exaggeration: float = 1.0) -> Callable[..., None]:
     """The function (section, file) that writes files of this ending. exaggeration: of heights in drawings.
     Raises UsageError."""
-    ending = Path(path).suffix.lower()
-    if ending not in SECTION_WRITERS:
-        known = ", ".join(SECTION_WRITERS)
-        what = f"sections are not written as '{ending}'" if ending else "the file name has no extension"
-        raise UsageError(f"{path}: {what}; use one of {known}")
-    if ending in drawing.WRITERS:
-        return partial(write_section_drawing, write=drawing.WRITERS[ending], exaggeration=exaggeration)
-    return SECTION_WRITERS[ending]
+    writer = by_ending(path, SECTION_WRITERS, "sections are not written as {}")
+    if writer is write_section_drawing:
+        draw = drawing.WRITERS[Path(path).suffix.lower()]
+        return partial(writer, write=draw, exaggeration=exaggeration)
+    return writer
 
 
 def write_section_drawing(
@@ -115,14 +112,10 @@ def write_section_csv(section, file: BinaryIO) -> None:
     file.write(text.getvalue().encode("utf-8"))
 
 
-def _shapes(write: Callable) -> Callable:
-    return lambda section, file: write(section_parts(section), file, lambda _: None)
-
-
 SECTION_WRITERS: dict[str, Callable] = {
     ".vtu": write_section_vtu,
     ".obj": write_section_obj,
-    **{ending: _shapes(write) for ending, write in PART_WRITERS.items() if ending != ".dxf"},
+    **{ending: writer for ending, writer in part_writers(section_parts).items() if ending != ".dxf"},
     ".csv": write_section_csv,
     ".npz": write_section_npz,
     **dict.fromkeys(drawing.WRITERS, write_section_drawing),

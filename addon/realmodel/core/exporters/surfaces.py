@@ -13,7 +13,7 @@ import numpy as np
 from ..atomic import Outputs
 from ..errors import UsageError
 from .npz import joined_attributes, texts, write_arrays
-from .part_formats import PART_WRITERS
+from .part_formats import part_writers
 from .parts import surface_parts
 from .report import SCHEMA, surface_entries, versions, warning_entries
 from .vtk_xml import write_grid
@@ -72,14 +72,10 @@ def write_surfaces_vtu(surfaces, file: BinaryIO) -> None:
     )
 
 
-def _shapes(write: Callable) -> Callable:
-    return lambda surfaces, file: write(surface_parts(surfaces), file, lambda _: None)
-
-
 WRITERS: dict[str, Callable[..., None]] = {
     ".npz": write_surfaces_npz,
     ".vtu": write_surfaces_vtu,
-    **{ending: _shapes(write) for ending, write in PART_WRITERS.items()},
+    **part_writers(surface_parts),
 }
 
 

@@ -83,7 +83,7 @@ def read_obj(file: str | Path, step: Step = no_step) -> TriangleMesh:
 
 def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
     """Reads all surfaces of a GOCAD TSurf file as one. Depths that are positive downward become heights;
-    values at vertices are not read, which is told. Raises InputRefused naming file and line."""
+    a word says that values at vertices are not read. Raises InputRefused naming file and line."""
     file = Path(file)
     vertices, faces, lines = [], [], []
     index: dict[int, int] = {}  # of a vertex by its number in the present surface
