@@ -97,7 +97,7 @@ def test_vtk_xml_of_vtk(tmp_path, kind, mode, compressed, wide):
 @pytest.mark.parametrize("binary", [0, 1])
 def test_msh_of_gmsh(tmp_path, version, binary):
     gmsh = pytest.importorskip("gmsh", reason=f"Gmsh {WHY}", exc_type=ImportError)
-    gmsh.initialize()
+    gmsh.initialize(interruptible=False)  # or Ctrl-C would end Python from then on
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.model.addDiscreteEntity(2, 1)

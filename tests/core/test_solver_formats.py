@@ -82,7 +82,7 @@ def test_vtu(mesh, tmp_path):
 def test_gmsh(mesh, tmp_path):
     gmsh = pytest.importorskip("gmsh", reason=f"Gmsh is {WHY}", exc_type=ImportError)
     save_mesh(mesh, tmp_path / "m.msh")
-    gmsh.initialize()
+    gmsh.initialize(interruptible=False)  # or Ctrl-C would end Python from then on
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.open(str(tmp_path / "m.msh"))

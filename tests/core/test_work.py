@@ -2,7 +2,6 @@
 """Long work in a thread: progress often enough, cancelling soon enough, nothing left running."""
 
 import _thread
-import itertools
 import threading
 import time
 
@@ -102,20 +101,11 @@ def test_what_progress_raises_stops_the_work():
 
 
 def test_ctrl_c_stops_the_work_and_passes_on():
-    steps, stopped = Steps(), threading.Event()
-
-    def press():
-        for delay in itertools.chain([0.2], itertools.repeat(5.0)):
-            if stopped.wait(delay):
-                return
-            _thread.interrupt_main()  # Python drops one that comes while it frees an object: pressed again
-
-    thread = threading.Thread(target=press)
+    steps = Steps()
+    timer = threading.Timer(0.2, _thread.interrupt_main)
     with pytest.raises(KeyboardInterrupt):
-        thread.start()
+        timer.start()
         run(steps)
-    stopped.set()
-    thread.join()
     run(lambda _work: None)
     assert not working_threads()
     assert steps.done < ENDLESS
