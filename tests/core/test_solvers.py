@@ -208,8 +208,8 @@ def settlement(layers):
 @pytest.mark.parametrize(("elements", "within"), [("prisms", 1e-6), ("tetrahedra", 0.04)])
 @pytest.mark.parametrize("names", [["clay"], ["clay", "sand"]])
 def test_calculix_finds_the_settlement_under_own_weight(tmp_path, names, elements, within):
-    """Of one layer rho g H^2 / 2 E, where Poisson's ratio is 0. Columns of prisms are exact at nodes; the load of
-    tetrahedra is not spread evenly over theirs."""
+    """Of one layer rho g H^2 / 2 E, where Poisson's ratio is 0. Columns of prisms are exact at nodes; the
+    load of tetrahedra is not spread evenly over theirs."""
     layers = {name: COLUMN[name] for name in names}
     (height, stiffness, density) = COLUMN["clay"]
     assert settlement({"clay": COLUMN["clay"]}) == pytest.approx(
