@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..errors import InputRefused, place_text
 from ..heights import heights
 from ..work import Work
 from .families import Family, are_within
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
-from .tips import on_fault, shared, trace_of, with_equal_ends
+from .tips import on_fault, shared, torn_beyond, trace_of, with_equal_ends
 from .triangles import meet, welded
 
 
@@ -85,6 +86,7 @@ class ReadyMesh:
         if not met:
             sheet = np.column_stack([plan, common]), triangles
             return dict.fromkeys(family.members.values(), sheet)
+        self._require_one_height_beyond(family, met, (np.column_stack([plan, common]), triangles))
         if not self.tiling.is_mesh:
             plan, triangles = self.tiling.nodes, self.tiling.tiles
             common = self._continued(plan, self.tiling.heights(own), triangles)
@@ -100,6 +102,18 @@ class ReadyMesh:
             seen[given] = self._continued(plan, self.tiling.heights(left), triangles)
         found = self._with_equal_ends(family, met, seen, plan, triangles)
         return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
+
+    def _require_one_height_beyond(self, family: Family, met: list[int], sheet: Triangulation) -> None:
+        faults = self.entry.structure.faults
+        for number in met:
+            fault, within = family.dying[number], self._within(family)
+            place = torn_beyond(self.work, sheet, faults.shapes[fault], within, self.threads)
+            if place is not None:
+                raise InputRefused(
+                    f"it has two heights beyond the tip of fault '{faults.names[fault]}' near {place_text(place)}",
+                    advice="extend the fault, or give data beyond the tip that agree",
+                    place=tuple(place.tolist()),
+                )
 
     def drawn_together(self, family: Family, sheets: dict) -> dict[tuple[int, ...], Triangulation]:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""

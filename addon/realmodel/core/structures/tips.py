@@ -14,13 +14,13 @@ import numpy as np
 
 from ..work import Work, native_module
 from .sides import FaultShape, Triangulation, fault_sides
-from .triangles import crossing_pairs, distances_of_pairs, edges_of, segments_hit, shares_hit
+from .triangles import crossing_pairs, distances_of_pairs, edges_of, open_edges, segments_hit, shares_hit
 
 _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
 _AT_ONCE = 1 << 21
 _HALVINGS = 30  # a billionth of an edge
 _PASSES = 2
-_SHARES = (np.arange(16) + 0.5) / 16  # of the line in which two triangles meet: where it is looked at
+_SHARES = (np.arange(16) + 0.5) / 16  # of a line: where it is looked at
 
 Within = Callable[[np.ndarray], np.ndarray]
 
@@ -243,6 +243,36 @@ def shared(sheets: dict[tuple[int, ...], Triangulation]) -> dict[tuple[int, ...]
     return {sides: known.setdefault(sheet[0].tobytes(), sheet) for sides, sheet in sheets.items()}
 
 
+def torn_beyond(
+    work: Work, sheet: Triangulation, fault: FaultShape, within: Within, threads: int = 0
+) -> np.ndarray | None:
+    """(3,) a place in a compartment at which a sheet has two heights along a line in which a fault would go
+    on beyond its ends; None where there is none."""
+    vertices, triangles = sheet
+    ends = vertices[open_edges(vertices, triangles)]
+    swap = (ends[:, 0, 0] > ends[:, 1, 0]) | (
+        (ends[:, 0, 0] == ends[:, 1, 0]) & (ends[:, 0, 1] > ends[:, 1, 1])
+    )
+    ends[swap] = ends[swap, ::-1]
+    lines, line = np.unique(ends[:, :, :2].reshape(-1, 4), axis=0, return_inverse=True)
+    low, high = np.full((len(lines), 2), np.inf), np.full((len(lines), 2), -np.inf)
+    np.minimum.at(low, line.ravel(), ends[:, :, 2])
+    np.maximum.at(high, line.ravel(), ends[:, :, 2])
+    torn = (low < high).any(axis=1)
+    low, high = (_along(np.dstack([lines[torn].reshape(-1, 2, 2), z[torn]])) for z in (low, high))
+    alone = np.repeat(np.arange(len(low), dtype=np.int32)[:, None], 3, axis=1)
+    on = np.all([_met(work, fault, places, places, alone, threads) > 0 for places in (low, high)], axis=0)
+    middles = (low + high)[on] / 2
+    middles = middles[within(middles)]
+    return middles[0] if len(middles) else None
+
+
+def _along(lines: np.ndarray) -> np.ndarray:
+    """(16 K, 3) some places along each of some lines (K, 2, 3)."""
+    begin, end = lines[:, :1], lines[:, 1:]
+    return np.ascontiguousarray((begin + _SHARES[None, :, None] * (end - begin)).reshape(-1, 3))
+
+
 def _meet_within(corners: np.ndarray, others: np.ndarray, within: Within) -> np.ndarray:
     """(K,) bool: the triangles (K, 3, 3) of which places where they meet others (M, 3, 3) are in a
     compartment."""
@@ -260,9 +290,9 @@ def _meet_within(corners: np.ndarray, others: np.ndarray, within: Within) -> np.
     at = np.arange(len(rows))
     first = some[at, np.isfinite(some[:, :, 0]).argmax(axis=1)]
     last = some[at, np.nan_to_num(np.linalg.norm(some - first[:, None], axis=2), nan=-1.0).argmax(axis=1)]
-    places = first[:, None] + _SHARES[None, :, None] * (last - first)[:, None]
+    places = _along(np.stack([first, last], axis=1))
     found = np.zeros(len(corners), bool)
-    found[pairs[rows[within(places.reshape(-1, 3)).reshape(-1, len(_SHARES)).any(axis=1)], 0]] = True
+    found[pairs[rows[within(places).reshape(-1, len(_SHARES)).any(axis=1)], 0]] = True
     return found
 
 
