@@ -70,17 +70,18 @@ class Fin:
     def top(self, x, y):
         """Its bare rock: a rounded summit with ledges of hard beds, and clefts along the joints."""
         along, across = self.local(x, y)
-        r = min(self.share(x, y), 1.25)
-        z = self.summit - 2.2 * r**2 - 15.0 * r**9
-        z -= 3.0 * step((along / self.half_length - 0.35) * 5.0)
-        for level, height, width in ((452.0, 2.4, 0.9), (444.0, 2.0, 0.9), (436.0, 1.5, 0.8)):
+        r = min(self.share(x, y), 1.2)
+        u = along / self.half_length
+        z = self.summit - 1.2 * r**2 - 5.0 * r**14
+        z -= 5.0 * step((u - 0.45) * 7.0) + 3.0 * step((-u - 0.6) * 8.0) + 1.2 * math.sin(2.6 * u + self.turn * 9.0)
+        for level, height, width in ((456.0, 1.3, 0.5), (452.0, 1.8, 0.6), (448.5, 1.2, 0.5), (444.0, 1.4, 0.6)):
             e = z - level - structure(x, y)
-            z += height * math.tanh(e / width) * bell(e / 5.0)
-        z += 0.35 * math.sin(x / 1.9 + 0.6 * math.sin(y / 2.3)) + 0.3 * math.sin(y / 1.6 + x / 4.1)
+            z += height * math.tanh(e / width) * bell(e / 3.0)
+        z += 0.30 * math.sin(x / 1.9 + 0.6 * math.sin(y / 2.3)) + 0.25 * math.sin(y / 1.6 + x / 4.1)
         for at, lean, depth in self.joints:
-            away = along - at - 0.02 * lean * across
-            z -= depth * bell(away / 1.5) * (0.55 + 0.45 * r)
-        return max(z, 428.0 + 0.5 * math.sin(x / 3.0))
+            away = along - at - 0.03 * lean * across - 0.5 * math.sin(across / 2.7)
+            z -= depth * bell(away / 1.3) ** 0.7 * (0.5 + 0.5 * r)
+        return max(z, 429.0 + 0.5 * math.sin(x / 3.0))
 
 
 def step(t):
@@ -93,9 +94,9 @@ def bell(t):
 
 
 FINS = [
-    Fin("Septentrional Rock", (50.0, 37.0), 36.0, 15.0, 9.0, 457.0, [(-14.0, 8.0, 11.0), (9.0, -5.0, 16.0)], 1),
-    Fin("Median Rock", (131.0, 33.0), 33.0, 17.5, -6.0, 460.0, [(-6.0, -7.0, 9.0), (15.0, 6.0, 13.0)], 2),
-    Fin("Markenfels", (208.0, 37.5), 30.0, 13.5, 13.0, 455.0, [(-9.0, 4.0, 14.0), (8.0, -9.0, 10.0)], 3),
+    Fin("Septentrional Rock", (50.0, 38.0), 37.0, 11.0, 8.0, 457.5, [(-15.0, 8.0, 9.0), (8.0, -6.0, 17.0), (19.0, 4.0, 6.0)], 1),
+    Fin("Median Rock", (130.0, 32.0), 34.0, 12.5, -7.0, 459.5, [(-9.0, -7.0, 8.0), (14.0, 6.0, 14.0)], 2),
+    Fin("Markenfels", (207.0, 38.0), 31.0, 9.5, 12.0, 455.5, [(-10.0, 5.0, 12.0), (9.0, -9.0, 16.0)], 3),
 ]
 
 
@@ -164,11 +165,12 @@ def soil(x, y):
 
 
 def pockets(fin):
-    """Soil in the hollows of a fin's top."""
+    """Soil and grass in the hollows of a fin's summit."""
 
     def height(x, y):
-        smooth = fin.summit - 4.2 - 9.0 * min(fin.share(x, y), 1.2) ** 6
-        return min(fin.top(x, y) + 0.6, smooth - 1.5 + 0.6 * math.sin(x / 6.0 + y / 5.0))
+        uneven = 0.5 * math.sin(x / 3.7 + 1.0) * math.sin(y / 2.9) + 0.3 * math.sin(x / 8.0)
+        level = fin.summit - 2.6 + uneven - 12.0 * min(fin.share(x, y), 1.2) ** 4
+        return min(level, fin.top(x, y) + 0.8)
 
     return height
 
@@ -288,7 +290,7 @@ def main(folder):
         along = fin.half_length * 1.3
         box = fin.center[0] - along, fin.center[1] - along, fin.center[0] + along, fin.center[1] + along
         near = lambda x, y, spacing, fin=fin: (fin.share(x, y) - 1.0) * fin.half_width < spacing  # noqa: E731
-        write_rock(folder, lines, fin.name, 1.3, fin_surfaces(fin), near, box)
+        write_rock(folder, lines, fin.name, 1.15, fin_surfaces(fin), near, box)
 
     def on_base(x, y, spacing):
         if (rim(x, y) - 1.0) * WIDTH / 2 > spacing:
