@@ -93,6 +93,12 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         default=[],
         help="write the model to F, whose ending says the format; may be given several times",
     )
+    parser.add_argument(
+        "--cell-size",
+        metavar="X[,Y[,Z]]",
+        type=_sizes,
+        help="the cells of regular grids by --export (.csv, .vti, .tif, .asc)",
+    )
     parser.add_argument("--report", metavar="F", type=Path, help="write a report to F.json")
     parser.add_argument("--render", metavar="F", type=Path, help="render a picture to F.png (in Blender)")
     parser.add_argument(
@@ -102,7 +108,7 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         default=[],
         help=(
             "write the section by a plane (point, normal) to F, a drawing (.svg, .dxf, .png) or polygons "
-            "(.vtu, .obj, .csv, .npz); any number of times"
+            "(.vtu, .obj, .ply, .stl, .glb, .ts, .csv, .npz); any number of times"
         ),
     )
     parser.add_argument(
@@ -128,6 +134,36 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
             "cut the model by a plane X,Y,Z,NX,NY,NZ, a file of a surface, or a block PROJECT.toml:BLOCK "
             "(:BLOCK of the model itself) and write its halves as --export does; one may be left out"
         ),
+    )
+    parser.add_argument(
+        "--mesh",
+        metavar="FILE",
+        type=Path,
+        help="write a mesh for simulation to FILE, whose ending says the format (.foam, .vtu, .msh, ...)",
+    )
+    parser.add_argument(
+        "--mesh-edge",
+        metavar="L",
+        type=_length,
+        help="its edge length in plan (default: 1/50 of the model)",
+    )
+    parser.add_argument(
+        "--mesh-thickness",
+        metavar="T",
+        type=_length,
+        help="layers end where they are thinner (default: 1/10 of the edge length)",
+    )
+    parser.add_argument("--mesh-layers", metavar="N", type=_whole, help="divide each block into N layers")
+    parser.add_argument(
+        "--mesh-layer-thickness",
+        metavar="H",
+        type=_length,
+        help="divide blocks into layers no thicker than H (with --mesh-layers: into N at most)",
+    )
+    parser.add_argument(
+        "--mesh-elements",
+        choices=("prisms", "tetrahedra"),
+        help="prisms, with pyramids and tetrahedra where layers end (default), or tetrahedra alone",
     )
     parser.add_argument("--stage", metavar="M", type=_whole, help="only up to surface M, counted from 0")
     parser.add_argument(
@@ -185,15 +221,30 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
             "section",
             "fence",
             "cut",
+            "mesh",
         ):
             if getattr(options, name):
                 parser.error(f"--surfaces-only goes without --{name.replace('_', '-')}")
     if options.exaggeration != 1.0 and not options.section and not options.fence:
         parser.error("--exaggeration is of drawings: it goes with --section or --fence")
-    outputs = ("--blend", "--export", "--report", "--render", "--section", "--fence", "--cut")
+    outputs = ("--blend", "--export", "--report", "--render", "--section", "--fence", "--cut", "--mesh")
     if options.estimate and any(getattr(options, name[2:]) for name in outputs):
         parser.error(f"--estimate builds nothing: it goes without {', '.join(outputs)}")
+    of_mesh = ("edge", "thickness", "layers", "layer_thickness", "elements")
+    for name in of_mesh:
+        if getattr(options, f"mesh_{name}") is not None and options.mesh is None:
+            parser.error(f"--mesh-{name.replace('_', '-')} goes with --mesh")
     return options
+
+
+def _length(text: str) -> float:
+    try:
+        length = float(text)
+    except ValueError:
+        length = 0.0
+    if not 0.0 < length < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a length above 0")
+    return length
 
 
 def _gigabytes(text: str) -> int:
@@ -218,6 +269,16 @@ def _factor(text: str) -> float:
     return factor
 
 
+def _sizes(text: str) -> list[float]:
+    try:
+        sizes = [float(word) for word in text.split(",")]
+    except ValueError:
+        sizes = []
+    if not 1 <= len(sizes) <= 3 or not all(0.0 < size < 1e300 for size in sizes):
+        raise argparse.ArgumentTypeError(f"'{text}' is not one to three numbers above 0")
+    return sizes
+
+
 def _whole(text: str) -> int:
     if not text.isdecimal():
         raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from 0")
@@ -231,7 +292,8 @@ def _run(options: argparse.Namespace) -> None:
     from realmodel.core.terminal import TerminalProgress
 
     requests = _requests(options)
-    targets = _checked_targets(options, requests)
+    mesh_request = _mesh_request(options)
+    targets = _checked_targets(options, requests, mesh_request)
     project = load_project(options.project)
     _refuse_overwriting([*project.input_files(), *(f for r in requests for f in r.inputs)], targets)
     progress = TerminalProgress(sys.stdout, options.quiet)
@@ -241,7 +303,7 @@ def _run(options: argparse.Namespace) -> None:
     if options.surfaces_only:
         _surfaces_only(options, project, progress)
         return
-    with Outputs() as outputs, _Interruptible(outputs):
+    with Outputs(project.input_files()) as outputs, _Interruptible(outputs):
         try:
             for request in requests:
                 request.read()
@@ -255,7 +317,10 @@ def _run(options: argparse.Namespace) -> None:
             )
             validation = _validation(options, model, progress)
             erosion = _erosion(options, model, progress)
-            _write(options, project, model, outputs, progress, validation, erosion)
+            mesh = mesh_request.make(model, options.threads, progress) if mesh_request else None
+            _write(options, project, model, outputs, progress, validation, erosion, mesh)
+            if mesh is not None:
+                mesh_request.write(mesh, outputs, project.units, progress)
             told = [request.run(model, outputs, options.threads, progress) for request in requests]
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, signal.SIG_IGN)  # in a moment all is there: too late to stop
@@ -263,13 +328,15 @@ def _run(options: argparse.Namespace) -> None:
             progress.close()
     if not options.quiet:
         with contextlib.suppress(BrokenPipeError):  # the outputs are there
-            for warning in model.warnings:
+            for warning in [*model.warnings, *(mesh.warnings if mesh is not None else ())]:
                 print(f"warning: {warning}")
             if options.check_model:
                 print(f"{validation}\n")
             print(volume_table(model, erosion), flush=True)
             for line in told:
                 print(line, flush=True)
+            if mesh is not None:
+                print(mesh_request.line(mesh), flush=True)
 
 
 def _surfaces_only(options: argparse.Namespace, project, progress) -> None:
@@ -359,18 +426,36 @@ def _requests(options: argparse.Namespace) -> list:
     ]
 
 
-def _checked_targets(options: argparse.Namespace, requests: list) -> list[Path]:
+def _mesh_request(options: argparse.Namespace):
+    """What --mesh asks for, or None."""
+    from realmodel.core.batch_mesh import BatchMesh
+
+    if options.mesh is None:
+        return None
+    return BatchMesh(
+        options.mesh,
+        options.mesh_edge,
+        options.mesh_thickness,
+        options.mesh_layers,
+        options.mesh_layer_thickness,
+        options.mesh_elements or "prisms",
+    )
+
+
+def _checked_targets(options: argparse.Namespace, requests: list, mesh=None) -> list[Path]:
     """Where the outputs will stand; refused before anything is built rather than after."""
     from realmodel.core import UsageError
-    from realmodel.core.atomic import writable_target
-    from realmodel.core.exporters import writer_for
+    from realmodel.core.exporters import format_for, output_target
     from realmodel.core.exporters.surfaces import surface_writer_for
 
     for path in options.export:
-        surface_writer_for(path) if options.surfaces_only else writer_for(path)
+        surface_writer_for(path) if options.surfaces_only else format_for(path)
     paths = [*options.export, *(p for p in (options.report, options.blend, options.render) if p is not None)]
     paths += [path for request in requests for path in request.outputs]
-    targets = [writable_target(path) for path in paths]
+    targets = [output_target(path) for path in paths]
+    if mesh is not None:
+        paths.append(mesh.path)
+        targets.append(mesh.target())
     for path, target in zip(paths, targets, strict=True):
         if targets.count(target) > 1:
             raise UsageError(f"{path}: two outputs have this name")
@@ -386,18 +471,25 @@ def _refuse_overwriting(files: list[Path], targets: list[Path]) -> None:
             raise UsageError(f"{target}: this is a file that the project reads; choose another name")
 
 
-def _write(options: argparse.Namespace, project, model, outputs, progress, validation, erosion) -> None:
+def _write(
+    options: argparse.Namespace, project, model, outputs, progress, validation, erosion, mesh=None
+) -> None:
     from realmodel.core.exporters import write_model
     from realmodel.core.exporters.report import write_report
 
     for path in options.export:
-        with outputs.file(path) as file:
-            write_model(model, path, file, lambda share, path=path: progress(1.0, f"writing {path.name}"))
+        write_model(
+            model,
+            path,
+            outputs,
+            lambda share, path=path: progress(1.0, f"writing {path.name}"),
+            options.cell_size,
+        )
     if options.blend is not None or options.render is not None:
         _write_with_blender(options, project, model, outputs, progress)
     if options.report is not None:
         with outputs.file(options.report) as file:
-            write_report(model, options.report, file, options.stage, validation, erosion)
+            write_report(model, options.report, file, options.stage, validation, erosion, mesh)
 
 
 def _write_with_blender(options: argparse.Namespace, project, model, outputs, progress) -> None:

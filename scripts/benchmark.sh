@@ -5,7 +5,7 @@
 #
 #   scripts/benchmark.sh              all sizes; writes the page
 #   scripts/benchmark.sh --quick      small sizes, each once, as a look; the page is left as it is
-#   scripts/benchmark.sh --only stacks|watch|blender|memory|heights|meshing|booleans, --memory GB, --write F.md, --help
+#   scripts/benchmark.sh --only stacks|watch|blender|memory|heights|meshing|booleans|structures, --memory GB, --write F.md, --help
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 python=/usr/bin/python3
@@ -52,8 +52,13 @@ if ! wanted booleans; then
     :
 elif "$root/scripts/python_environment.sh" "$peers" "$root/scripts/requirements/benchmark_booleans.txt" "$python"; then
     export REALMODEL_BOOLEANS_PYTHON=$peers/bin/python
+    geogram=("$peers"/lib/python*/site-packages)
+    c++ -O2 -std=c++17 -fopenmp -I "${geogram[0]}/include/geogram1" "$root/scripts/benchmarks/geogram_arrangement.cpp" \
+        "${geogram[0]}/lib64/libgeogram.a" "${geogram[0]}"/geogram.libs/libtbb* "-Wl,-rpath,${geogram[0]}/geogram.libs" \
+        -ldl -o "$peers/geogram_arrangement" ||
+        echo "benchmark.sh: the program of geogram could not be built; measuring without it" >&2
 else
-    echo "benchmark.sh: trueform could not be installed; measuring without it" >&2
+    echo "benchmark.sh: trueform and geogram could not be installed; measuring without them" >&2
 fi
 if wanted blender memory &&
     ! { "$root/scripts/install_dependencies.sh" bpy &&

@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / folder) for folder in ("addon", "scripts", "tests/core")]
 
 from benchmarks import page, process  # noqa: E402
-from stacks import places, project_files, real_data  # noqa: E402
+from stacks import places, project_files, real_data, real_faults  # noqa: E402
 from stacks.generate import sine_surface  # noqa: E402
 
 RUNS = (("columns", 1), ("columns", 2), ("blocks", 2))
@@ -63,6 +63,16 @@ CASES = {
     "drogon": (drogon, True, "4 grids of 48,125 nodes that coincide over thousands of nodes"),
     "pleasant": (pleasant, True, "4 grids with layers of 1 m, base elevation"),
     "shellmound": (shellmound, True, "5 grids, the youngest of partial extent"),
+    "drogon faults": (
+        real_faults.drogon,
+        True,
+        "4 horizons of 32,600 picks, 6 faults that die out (sticks)",
+    ),
+    "california faults": (
+        real_faults.california,
+        True,
+        "3 level surfaces, 20 faults that die out (TSurf)",
+    ),
     "ten surfaces": (ten_surfaces, False, "10 made surfaces x 7,200 triangles, ten triangulations"),
 }
 

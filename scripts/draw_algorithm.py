@@ -61,12 +61,12 @@ def draw_border(d):
         for i, name in enumerate(outline):
             d.path([CORNERS[outline[i - 1]], CORNERS[name]], RED, 2.4)
             x, y = middle(CORNERS[outline[i - 1]], CORNERS[name])
-            centre = middle(*corners(outline))
+            center = middle(*corners(outline))
             away = 15 if outline == OUTLINES[0] else 17
-            length = math.hypot(x - centre[0], y - centre[1])
+            length = math.hypot(x - center[0], y - center[1])
             d.text(
-                x + away * (x - centre[0]) / length,
-                y + away * (y - centre[1]) / length + 4,
+                x + away * (x - center[0]) / length,
+                y + away * (y - center[1]) / length + 4,
                 "+1",
                 11,
                 bold=True,
@@ -219,23 +219,23 @@ def draw_columns(d):
 
 
 def draw_around(d):
-    centre, radius = (92, 96), 78
+    center, radius = (92, 96), 78
     ends = [-20, 75, 150, 250]  # degrees, on the page
     fills, names = (SAND, CREAM, PALE, STONE), ("A", "B", "outside", "C")
 
     def on_circle(angle, r=radius):
         a = math.radians(angle)
-        return (centre[0] + r * math.cos(a), centre[1] + r * math.sin(a))
+        return (center[0] + r * math.cos(a), center[1] + r * math.sin(a))
 
     for i, begin in enumerate(ends):
         end = ends[i + 1] if i + 1 < len(ends) else ends[0] + 360
         arc = [on_circle(begin + (end - begin) * k / 12) for k in range(13)]
-        outlined(d, [centre, *arc], fills[i])
+        outlined(d, [center, *arc], fills[i])
         x, y = on_circle((begin + end) / 2, 46)
         d.text(x, y + 4, names[i], 11.5, anchor="middle")
     for angle in ends:
-        d.path([centre, on_circle(angle)], INK, 2)
-    d.dot(centre, RED, 5)
+        d.path([center, on_circle(angle)], INK, 2)
+    d.dot(center, RED, 5)
     d.text(92, 190, "around a place, at one height", 10.5, anchor="middle")
 
     x = 250

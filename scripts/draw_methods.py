@@ -27,7 +27,7 @@ _MANY = 300  # points, beyond which their dots become smaller
 
 
 def horizon(x, y):
-    """A dome beside a trough on a regional dip, with a flexure across: metres."""
+    """A dome beside a trough on a regional dip, with a flexure across: meters."""
     dome = 45 * np.exp(-((x - 320) ** 2 + (y - 400) ** 2) / 140**2)
     trough = -30 * np.exp(-(((x - 720) / 220) ** 2) - ((y - 250) / 120) ** 2)
     return 85 + 0.03 * x + dome + trough + 12 * np.tanh((y - 0.3 * x - 300) / 60)

@@ -3,7 +3,7 @@
 # Installs the Debian packages that RealModel needs and this machine lacks; with nothing missing it
 # does nothing. docs/dev/dependencies.md says what each is for.
 #
-#   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|heights|clang|tsan|gui|versions]...      (default: build)
+#   scripts/install_dependencies.sh [build|blender|bpy|test|tidy|benchmark|heights|clang|tsan|gui|versions|solvers]...      (default: build)
 set -euo pipefail
 
 # A package, or package=command where the command in any version on PATH does as well.
@@ -14,6 +14,7 @@ bpy=(libegl1 libgl1 libice6 libsm6 libx11-6 libxfixes3 libxi6 libxkbcommon0 libx
 test=(clang-format=clang-format shellcheck=shellcheck git=git)
 tidy=(clang-tidy=clang-tidy)
 versions=(debootstrap)
+solvers=(openfoam=checkMesh)
 benchmark=(libmpfr-dev blender=blender python3-numpy)
 heights=(gmt=gmt r-cran-gstat)
 clang=(clang=clang++ libomp-dev)
@@ -44,8 +45,9 @@ for group in "$@"; do
         tsan) wanted+=("${tsan[@]}") ;;
         gui) wanted+=("${gui[@]}") ;;
         versions) wanted+=("${versions[@]}") ;;
+        solvers) wanted+=("${solvers[@]}") ;;
         *)
-            echo "install_dependencies.sh: no group '$group'; there are build, blender, bpy, test, tidy, benchmark, heights, clang, tsan, gui, versions" >&2
+            echo "install_dependencies.sh: no group '$group'; there are build, blender, bpy, test, tidy, benchmark, heights, clang, tsan, gui, versions, solvers" >&2
             exit 2
             ;;
     esac

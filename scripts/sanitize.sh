@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Looks for errors of memory, undefined behaviour and races: the C++ tests, the stacks of the corpus and
+# Looks for errors of memory, undefined behavior and races: the C++ tests, the stacks of the corpus and
 # made ones, under AddressSanitizer with UndefinedBehaviorSanitizer and under ThreadSanitizer
 # (clang++, whose OpenMP archer explains to the latter). Every step ends in time.
 #

@@ -114,6 +114,7 @@ finish() {
 install() {
     local groups=(build)
     wants format shellcheck && groups+=(test)
+    wants core && groups+=(solvers)
     wants blender package && groups+=(blender)
     wants gui && groups+=(gui)
     wants bpy && groups+=(bpy)

@@ -192,7 +192,7 @@ class RealModelSettings(bpy.types.PropertyGroup):
         description="Direction in which the blocks move apart",
         items=(
             ("Z", "Upward", "The younger a block, the higher it is lifted"),
-            ("CENTRE", "From Center", "Each block moves away from the center of the model"),
+            ("CENTER", "From Center", "Each block moves away from the center of the model"),
             ("BLOCK", "Side by Side", "The blocks stand side by side, the oldest first"),
             ("COMPARTMENT", "Compartments", "The parts that faults leave move away from each other"),
         ),

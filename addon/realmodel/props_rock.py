@@ -58,12 +58,13 @@ class RealModelConstraint(bpy.types.PropertyGroup):
     )
 
 
-_SETTINGS = settings_of(ROCK, edge_length=changes.edge_length, triangles=changes.triangles)
+_SETTINGS = settings_of(ROCK, name=changes.name, edge_length=changes.edge_length, triangles=changes.triangles)
 
 
 class RealModelRock(_SETTINGS, bpy.types.PropertyGroup):
     """A rock mass: a region in plan and its surfaces, oldest first."""
 
+    known_name: StringProperty(options={"HIDDEN"})
     region: PointerProperty(
         name="Region",
         type=bpy.types.Object,

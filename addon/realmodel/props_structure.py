@@ -77,7 +77,7 @@ _MESH_READING = {key: setting for key, setting in BODY.items() if key in READING
 
 
 class RealModelFault(
-    settings_of(_FAULT, **dict.fromkeys(_FITTED, changes.fitted)),
+    settings_of(_FAULT, name=changes.name, **dict.fromkeys(_FITTED, changes.fitted)),
     settings_of(READING, changes.reading),
     _shape_properties((*_MESH_SOURCES, _POINTS_SOURCE)),
     bpy.types.PropertyGroup,
@@ -90,7 +90,7 @@ class RealModelFault(
 
 
 class RealModelBody(
-    settings_of(_BODY),
+    settings_of(_BODY, name=changes.name),
     settings_of(_MESH_READING, changes.reading),
     _shape_properties(_MESH_SOURCES),
     bpy.types.PropertyGroup,

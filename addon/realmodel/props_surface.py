@@ -26,6 +26,7 @@ SOURCES = (
 def interface_properties():
     """The properties by which a row knows the object that shows its shape, and keeps what its file had."""
     return {
+        "known_name": StringProperty(options={"HIDDEN"}),
         "hide": BoolProperty(
             name="Hide",
             description="Hide this interface in the viewport; it is still built",
@@ -71,7 +72,10 @@ _OWN = {key: setting for key, setting in SURFACE.items() if key not in READING}
 
 
 class RealModelSurface(
-    settings_of(_OWN), settings_of(READING, changes.reading), _Interface, bpy.types.PropertyGroup
+    settings_of(_OWN, name=changes.name),
+    settings_of(READING, changes.reading),
+    _Interface,
+    bpy.types.PropertyGroup,
 ):
     """A surface: the source of its shape, its rule, and the block beneath it."""
 
@@ -97,6 +101,13 @@ class RealModelSurface(
         update=changes.source,
     )
     filters: CollectionProperty(type=RealModelFilter)
+    use_continuation: BoolProperty(
+        name="Continue By",
+        description="Choose the method by which the mesh is continued to faults that it does not reach. Off: "
+        "natural neighbors, and beyond its vertices the nearest elevation",
+        update=changes.setting,
+        options=set(),
+    )
     fit_variogram: BoolProperty(
         name="Fit Variogram",
         description="Fit the variogram to the points; turn off to start from what the last build fitted",

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the input files of the Haut-Barr sample: region.geojson, *.csv and ground.off.
+"""Writes the input files of the Castle Hill sample: region.geojson, *.csv and ground.off.
 
-    python3 blend_samples/haut_barr/generate.py [FOLDER]
+    python3 blend_samples/castle_hill/generate.py [FOLDER]
 
 Everything is made up: no measurement of the real hill went into it. The formulas below (README.md
-explains them) give heights in metres at a plan position (x, y) in metres from the south-west
+explains them) give heights in meters at a plan position (x, y) in meters from the south-west
 corner, which is put at UTM zone 32N, 377400 E, 5397900 N, so that the sample also shows that
 large coordinates lose nothing. Only `math` and `random.Random` are used and heights are written in
-centimetres, so every machine writes the same files.
+centimeters, so every machine writes the same files.
 """
 
 import json
@@ -17,7 +17,7 @@ import sys
 from pathlib import Path
 
 EAST, NORTH = 377400, 5397900  # UTM 32N of the local origin
-WIDTH, DEPTH = 1200.0, 800.0  # extent of the region in plan, metres
+WIDTH, DEPTH = 1200.0, 800.0  # extent of the region in plan, meters
 
 # fmt: off
 # Concave: a bay in the south, where the old road enters, bares the inside of the castle hill.
@@ -30,7 +30,7 @@ OUTLINE = [
 QUARRY = [(1010, 548), (1062, 530), (1108, 554), (1120, 600), (1086, 640), (1030, 632), (998, 592)]
 # fmt: on
 
-# Levels of the tops of the layers where the structure is 0 (below the castle), metres
+# Levels of the tops of the layers where the structure is 0 (below the castle), meters
 LEVEL = {
     "permian": 342.0,
     "annweiler": 374.0,
@@ -41,7 +41,7 @@ LEVEL = {
     "voltzia": 564.0,
     "muschelkalk": 582.0,
 }
-THROW = 134.0  # of the flexure in the east, metres
+THROW = 134.0  # of the flexure in the east, meters
 
 
 def step(t):
@@ -92,12 +92,12 @@ def top(layer):
 
 
 def main_valley(x, y):
-    """Distance from the axis of the main valley (the Zorn's), metres."""
+    """Distance from the axis of the main valley (the Zorn's), meters."""
     return abs(x - 330.0 - 52.0 * math.sin((y + 60.0) / 170.0))
 
 
 def side_valley(x, y):
-    """Distance from the axis of the side valley that follows the flexure, metres."""
+    """Distance from the axis of the side valley that follows the flexure, meters."""
     return abs(x - 838.0 - 0.20 * (y - 400.0) - 24.0 * math.sin(y / 120.0))
 
 
@@ -194,7 +194,7 @@ def write_region(path):
 
     feature = {
         "type": "Feature",
-        "properties": {"name": "Haut-Barr"},
+        "properties": {"name": "Castle Hill"},
         "geometry": {"type": "Polygon", "coordinates": [ring(OUTLINE), ring(QUARRY[::-1])]},
     }
     with open(path, "w", encoding="ascii", newline="\n") as file:

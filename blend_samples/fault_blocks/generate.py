@@ -100,7 +100,7 @@ def tunnel():
     ring = [
         (12.0 * math.cos(k * math.pi / 4 + 0.3), 12.0 * math.sin(k * math.pi / 4 + 0.3)) for k in range(8)
     ]
-    corners = [(700.0 + u, y, 1110.0 + v) for y in (-50.0, 1650.0) for u, v in ring]
+    corners = [(700.0 + u, y, 1141.0 + v) for y in (-50.0, 1650.0) for u, v in ring]
     faces = [(k, (k + 1) % 8, 8 + (k + 1) % 8, 8 + k) for k in range(8)]
     return corners, [*faces, tuple(range(7, -1, -1)), tuple(range(8, 16))]
 

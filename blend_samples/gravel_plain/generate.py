@@ -3,7 +3,7 @@
 
     python3 blend_samples/gravel_plain/generate.py [FOLDER]
 
-Everything is made up. Heights are formulas of the plan position in metres from the south-west
+Everything is made up. Heights are formulas of the plan position in meters from the south-west
 corner, which is put at UTM zone 32N, 412000 E, 5336000 N. Only `math` and `random.Random` are used
 and numbers are written in fixed decimals, so every machine writes the same files.
 """
@@ -69,7 +69,7 @@ def region():
 
 
 def raster():
-    """Heights at the centres of cells, the northernmost row first; it reaches a cell beyond the region."""
+    """Heights at the centers of cells, the northernmost row first; it reaches a cell beyond the region."""
     columns, rows = WIDTH // CELL + 2, DEPTH // CELL + 2
     lines = [f"ncols {columns}", f"nrows {rows}", f"xllcorner {EAST - CELL}", f"yllcorner {NORTH - CELL}"]
     lines += [f"cellsize {CELL}", "NODATA_value -9999"]

@@ -31,7 +31,9 @@ class Fin:
         self.summit = summit  # elevation of its highest part, meters
         self.joints = joints  # clefts across it: (along, lean, depth), meters along its axis
         shake = random.Random(seed)
-        self.waves = [(order, shake.uniform(0, 2 * math.pi), 0.09 / order**0.6) for order in (2, 3, 5, 7, 11, 16)]
+        self.waves = [
+            (order, shake.uniform(0, 2 * math.pi), 0.09 / order**0.6) for order in (2, 3, 5, 7, 11, 16)
+        ]
 
     def radius(self, angle):
         """Of the outline as a share of the oval's, by the angle in the oval."""
@@ -39,7 +41,10 @@ class Fin:
         notches = 0.0
         for along, lean, _ in self.joints:
             for side in (-1.0, 1.0):
-                at = math.atan2(side * math.sqrt(max(0.0, 1.0 - (along / self.half_length) ** 2)), along / self.half_length)
+                at = math.atan2(
+                    side * math.sqrt(max(0.0, 1.0 - (along / self.half_length) ** 2)),
+                    along / self.half_length,
+                )
                 away = (angle - at - 0.002 * lean + math.pi) % (2.0 * math.pi) - math.pi
                 notches = max(notches, 0.10 * bell(away / 0.055))
         return bare - notches
@@ -62,7 +67,9 @@ class Fin:
         while angle < 2.0 * math.pi - 1e-3:
             r = self.radius(angle)
             along, across = r * self.half_length * math.cos(angle), r * self.half_width * math.sin(angle)
-            corners.append((self.center[0] + along * cos - across * sin, self.center[1] + along * sin + across * cos))
+            corners.append(
+                (self.center[0] + along * cos - across * sin, self.center[1] + along * sin + across * cos)
+            )
             tangent = math.hypot(self.half_length * math.sin(angle), self.half_width * math.cos(angle))
             angle += spacing / max(tangent, self.half_width)
         return corners
@@ -73,8 +80,17 @@ class Fin:
         r = min(self.share(x, y), 1.2)
         u = along / self.half_length
         z = self.summit - 1.2 * r**2 - 5.0 * r**14
-        z -= 5.0 * step((u - 0.45) * 7.0) + 3.0 * step((-u - 0.6) * 8.0) + 1.2 * math.sin(2.6 * u + self.turn * 9.0)
-        for level, height, width in ((456.0, 1.3, 0.5), (452.0, 1.8, 0.6), (448.5, 1.2, 0.5), (444.0, 1.4, 0.6)):
+        z -= (
+            5.0 * step((u - 0.45) * 7.0)
+            + 3.0 * step((-u - 0.6) * 8.0)
+            + 1.2 * math.sin(2.6 * u + self.turn * 9.0)
+        )
+        for level, height, width in (
+            (456.0, 1.3, 0.5),
+            (452.0, 1.8, 0.6),
+            (448.5, 1.2, 0.5),
+            (444.0, 1.4, 0.6),
+        ):
             e = z - level - structure(x, y)
             z += height * math.tanh(e / width) * bell(e / 3.0)
         z += 0.30 * math.sin(x / 1.9 + 0.6 * math.sin(y / 2.3)) + 0.25 * math.sin(y / 1.6 + x / 4.1)
@@ -94,7 +110,16 @@ def bell(t):
 
 
 FINS = [
-    Fin("Septentrional Rock", (50.0, 38.0), 37.0, 11.0, 8.0, 457.5, [(-15.0, 8.0, 9.0), (8.0, -6.0, 17.0), (19.0, 4.0, 6.0)], 1),
+    Fin(
+        "Septentrional Rock",
+        (50.0, 38.0),
+        37.0,
+        11.0,
+        8.0,
+        457.5,
+        [(-15.0, 8.0, 9.0), (8.0, -6.0, 17.0), (19.0, 4.0, 6.0)],
+        1,
+    ),
     Fin("Median Rock", (130.0, 32.0), 34.0, 12.5, -7.0, 459.5, [(-9.0, -7.0, 8.0), (14.0, 6.0, 14.0)], 2),
     Fin("Markenfels", (207.0, 38.0), 31.0, 9.5, 12.0, 455.5, [(-10.0, 5.0, 12.0), (9.0, -9.0, 16.0)], 3),
 ]
@@ -107,7 +132,9 @@ def structure(x, y):
 
 def bed(level, relief=0.15, wave=13.0):
     """The top of a bed, slightly uneven."""
-    return lambda x, y: level + structure(x, y) + relief * math.sin(x / wave + 0.7 * y / wave) * math.cos(y / wave)
+    return lambda x, y: (
+        level + structure(x, y) + relief * math.sin(x / wave + 0.7 * y / wave) * math.cos(y / wave)
+    )
 
 
 def foresets(low, slope, bend, start, turn=0.0):
@@ -161,7 +188,11 @@ def debris(x, y):
 
 
 def soil(x, y):
-    return max(bench(x, y), debris(x, y)) + 0.45 * step((math.sin(x / 17.0) + math.cos(y / 11.0) - 0.2) * 3.0) - 0.12
+    return (
+        max(bench(x, y), debris(x, y))
+        + 0.45 * step((math.sin(x / 17.0) + math.cos(y / 11.0) - 0.2) * 3.0)
+        - 0.12
+    )
 
 
 def pockets(fin):
@@ -297,7 +328,9 @@ def main(folder):
             return False
         return all((fin.share(x, y) - 1.0) * fin.half_width > -spacing for fin in FINS)
 
-    write_rock(folder, lines, "base", 2.4, base_surfaces(), on_base, (-9.0, -9.0, LENGTH + 9.0, WIDTH + 9.0), BASE)
+    write_rock(
+        folder, lines, "base", 2.4, base_surfaces(), on_base, (-9.0, -9.0, LENGTH + 9.0, WIDTH + 9.0), BASE
+    )
     (folder / "project.toml").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

@@ -13,58 +13,22 @@
 #include <cstring>
 #include <fstream>
 #include <map>
-#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "../tests/booleans/small_meshes.hpp"
 #include "realmodel/booleans/intersect.hpp"
 
 namespace {
 
 using realmodel::booleans::TriangleMesh;
 
-struct Surface {
-    std::vector<double> vertices;
-    std::vector<std::int32_t> triangles;
-    TriangleMesh view() const { return {vertices, triangles}; }
-};
-
-Surface sphere(const std::array<double, 3>& middle, double radius, int rings) {
-    Surface s;
-    const auto add = [&](double latitude, double longitude) {
-        s.vertices.insert(s.vertices.end(),
-                          {middle[0] + radius * std::cos(latitude) * std::cos(longitude),
-                           middle[1] + radius * std::cos(latitude) * std::sin(longitude),
-                           middle[2] + radius * std::sin(latitude)});
-    };
-    const int around = 2 * rings;
-    add(-std::numbers::pi / 2, 0);
-    for (int i = 1; i < rings; ++i) {
-        for (int j = 0; j < around; ++j)
-            add(std::numbers::pi * (static_cast<double>(i) / rings - 0.5),
-                2 * std::numbers::pi * j / around);
-    }
-    add(std::numbers::pi / 2, 0);
-    const int last = static_cast<int>(s.vertices.size() / 3) - 1;
-    const auto at = [&](int i, int j) {
-        if (i == 0) return 0;
-        return i == rings ? last : 1 + (i - 1) * around + j % around;
-    };
-    for (int i = 0; i < rings; ++i) {
-        for (int j = 0; j < around; ++j) {
-            if (i > 0)
-                s.triangles.insert(s.triangles.end(), {at(i, j), at(i, j + 1), at(i + 1, j)});
-            if (i + 1 < rings)
-                s.triangles.insert(s.triangles.end(),
-                                   {at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});
-        }
-    }
-    return s;
-}
+using realmodel::booleans::Mesh;
+using realmodel::booleans::sphere;
 
 /// Appends the triangles of a file: of an .obj its faces in fans, of a .ts its TRGL.
-void read(const char* name, Surface& s) {
+void read(const char* name, Mesh& s) {
     std::ifstream file(name);
     if (!file) throw std::runtime_error(std::string(name) + " cannot be read");
     const auto first = static_cast<std::int32_t>(s.vertices.size() / 3);
@@ -127,25 +91,25 @@ int main(int argc, char** argv) {
     };
     try {
         if (argc > 2 && std::strcmp(argv[1], "spheres") == 0) {
-            const Surface a = sphere({0, 0, 0}, 1, number(2, 100)),
-                          b = sphere({0.31, 0.22, 0.13}, 0.93, number(2, 100));
+            const Mesh a = sphere({0, 0, 0}, 1, number(2, 100)),
+                       b = sphere({0.31, 0.22, 0.13}, 0.93, number(2, 100));
             measure(a.view(), b.view(), number(3, 0));
         } else if (argc > 3 && std::strcmp(argv[1], "shifted") == 0) {
-            Surface a;
+            Mesh a;
             read(argv[2], a);
-            Surface b = a;
+            Mesh b = a;
             for (double& x : b.vertices) {
                 for (int i = 0; i < number(3, 1); ++i)
                     x = std::nextafter(x, HUGE_VAL);
             }
             measure(a.view(), b.view(), number(4, 0));
         } else if (argc > 3 && std::strcmp(argv[1], "files") == 0) {
-            Surface a;
+            Mesh a;
             for (int i = 3; i < argc; ++i)
                 read(argv[i], a);
             // all cross each other within the first surface; the second one is one of its triangles
-            const Surface b{{a.vertices.begin(), a.vertices.end()},
-                            {a.triangles.begin(), a.triangles.begin() + 3}};
+            const Mesh b{{a.vertices.begin(), a.vertices.end()},
+                         {a.triangles.begin(), a.triangles.begin() + 3}};
             measure(a.view(), b.view(), number(2, 0));
         } else {
             std::fprintf(stderr, "boolean_benchmark spheres|shifted|files ...\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cut_by_plane, cut_by_surface, cut_by_block, section_by_plane, fence_panel.
+// cut_by_plane, cut_by_surface, cut_by_block, section_by_plane, fence_panel, triangulate_faces.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -114,6 +114,21 @@ py::dict fence_panel(const py::dict& model, const std::array<double, 2>& start,
     return to_dict(std::move(section));
 }
 
+py::tuple triangulate_faces(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
+                            const Indices& face_vertices, int threads, Progress* control) {
+    require_columns(vertices, 3, "vertices");
+    const auto positions = view(vertices);
+    const auto offsets = view(face_offsets);
+    const std::span<const std::int32_t> corners(face_vertices.data(),
+                                                static_cast<std::size_t>(face_vertices.size()));
+    cutting::FaceTriangles found;
+    {
+        const py::gil_scoped_release unlocked;
+        found = cutting::triangulate_faces(positions, offsets, corners, threads, control);
+    }
+    return py::make_tuple(to_array(std::move(found.triangles)), to_array(std::move(found.offsets)));
+}
+
 }  // namespace
 
 void bind_cutting(py::module_& module) {
@@ -149,6 +164,14 @@ above, -1 outside.)");
                py::arg("threads") = 0, py::arg("control") = nullptr,
                "The vertical section over the stretch from start to end, (x, y) each; as of "
                "section_by_plane, above is to its right.");
+    module.def(
+        "triangulate_faces", &triangulate_faces, py::arg("vertices"), py::arg("face_offsets"),
+        py::arg("face_vertices"), py::arg("threads") = 0, py::arg("control") = py::none(),
+        R"(Faces divided into triangles, turned as the faces are, always the same for the same face.
+
+vertices: (V, 3) float64; face_offsets: (F + 1,) int64; face_vertices: int32. Returns triangles (T, 3) int32,
+vertex numbers, face after face, and offsets (F + 1,) int64: where those of each face begin. Each edge of a
+face is an edge of one of its triangles. Raises InputError kind "bad_index" (items: the face); Cancelled.)");
 }
 
 }  // namespace realmodel::bindings

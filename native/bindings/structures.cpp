@@ -114,6 +114,42 @@ Array<std::int8_t> structure_sides(const StructureArrays& structure, const Array
     return to_array(std::move(sides));
 }
 
+Array<std::uint8_t> structure_beyond(const StructureArrays& fault, const Array<double>& low,
+                                     const Array<double>& high,
+                                     const Array<std::int32_t>& triangles, int threads,
+                                     const Progress* control) {
+    require_columns(low, 3, "low");
+    require_columns(high, 3, "high");
+    require_columns(triangles, 3, "triangles");
+    if (low.shape(0) != high.shape(0)) throw py::value_error("low and high: one of each vertex");
+    for (py::ssize_t i = 0; i < triangles.size(); ++i) {
+        if (triangles.data()[i] < 0 || triangles.data()[i] >= low.shape(0))
+            throw py::value_error("triangles: a vertex that is not there");
+    }
+    const structures::Structure view = view_of(fault);
+    std::vector<std::uint8_t> found;
+    {
+        const py::gil_scoped_release release;
+        found = structures::triangles_beyond(
+            view, {low.data(), static_cast<std::size_t>(low.size())},
+            {high.data(), static_cast<std::size_t>(high.size())},
+            {triangles.data(), static_cast<std::size_t>(triangles.size())}, threads, control);
+    }
+    return to_array(std::move(found));
+}
+
+Array<double> structure_continuation(const StructureArrays& fault,
+                                     const std::array<std::array<double, 3>, 2>& box) {
+    const auto found = structures::continuation_of(view_of(fault), box);
+    Array<double> array({found.size(), std::size_t{3}, std::size_t{3}});
+    double* out = array.mutable_data();
+    for (const auto& triangle : found) {
+        for (const auto& corner : triangle)
+            out = std::copy(corner.begin(), corner.end(), out);
+    }
+    return array;
+}
+
 }  // namespace
 
 void bind_structures(py::module_& module) {
@@ -140,6 +176,19 @@ model of each cell (where cells of several became one, the first). Raises InputE
         py::arg("threads") = 0, py::arg("control") = nullptr,
         R"(The side of a structure that points (N, 3) are on: (N,) int8, 1 above or outside, -1
 below or inside; of a fault by its nearest triangle. Raises InputError and Cancelled.)");
+    module.def("structure_beyond", &structure_beyond, py::arg("fault"), py::arg("low"),
+               py::arg("high"), py::arg("triangles"), py::arg("threads") = 0,
+               py::arg("control") = nullptr,
+               R"(Which triangles of a sheet a fault meets where it goes on beyond its border.
+
+fault: as of structure_parts. low, high: (N, 3) float64, the lowest and the highest place of each
+vertex, equal in plan. triangles: (T, 3) int32. Returns (T,) uint8, 1 where it may touch a triangle,
+2 where it may pass it: none too few, perhaps some too many. Raises InputError and Cancelled.)");
+    module.def("structure_continuation", &structure_continuation, py::arg("fault"), py::arg("box"),
+               R"(The triangles (K, 3, 3) float64 by which a fault goes on beyond its border.
+
+fault: as of structure_parts. box: two corners of a box around the rock, which they leave. Raises
+InputError.)");
 }
 
 }  // namespace realmodel::bindings

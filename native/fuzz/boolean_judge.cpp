@@ -291,7 +291,7 @@ private:
         std::map<std::int32_t, int> degree;
         const auto each_edge = [](const booleans::IntersectionLoop& loop, const auto& visit) {
             const std::size_t count = loop.vertices.size();
-            for (std::size_t i = 0; i + (loop.kind == LoopKind::kOpen ? 1 : 0) < count; ++i)
+            for (std::size_t i = 0; i + (loop.kind == LoopKind::kHardClosed ? 0 : 1) < count; ++i)
                 visit(loop.vertices[i], loop.vertices[(i + 1) % count]);
         };
         for (const auto& loop : r.loops) {
@@ -320,15 +320,16 @@ private:
         if (expected != edges.size()) add("loops", "an edge of one is no intersection edge");
         for (const auto& loop : r.loops) {
             const auto& v = loop.vertices;
-            if (v.size() < (loop.kind == LoopKind::kOpen ? 2U : 3U))
-                return add("loops", "one is too short");
+            const bool hard = loop.kind == LoopKind::kHardClosed;
+            if (v.size() < (hard ? 3U : 2U)) return add("loops", "one is too short");
             for (std::size_t i = 0; i < v.size(); ++i) {
-                const bool end = loop.kind == LoopKind::kOpen
-                                     ? i == 0 || i + 1 == v.size()
-                                     : loop.kind == LoopKind::kSoftClosed && i == 0;
+                const bool end = !hard && (i == 0 || i + 1 == v.size());
                 if ((degree[v[i]] == 2) == end)
                     return add("loops", "one goes through a vertex wrongly");
             }
+            const bool soft = degree[v.front()] > 2 && degree[v.back()] > 2;
+            if (!hard && soft != (loop.kind == LoopKind::kSoftClosed))
+                return add("loops", "one is of a wrong kind");
         }
     }
 

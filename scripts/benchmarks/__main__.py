@@ -16,13 +16,14 @@ from . import (
     memory_table,
     meshing_table,
     page,
+    structures_table,
     watching_table,
     window_table,
 )
 from .process import ROOT
 from .stacks_table import Limits, Row, StackRows
 
-PARTS = ("stacks", "watch", "blender", "memory", "heights", "meshing", "booleans")
+PARTS = ("stacks", "watch", "blender", "memory", "heights", "meshing", "booleans", "structures")
 _QUICK_TRIANGLES, _ALL_TRIANGLES = 800_000, 10_000_000
 
 
@@ -75,6 +76,12 @@ def main() -> int:
     if "booleans" in parts:
         rows = booleans_table.measure(given.quick, memory, _say)
         tables["booleans"] = [page.table(booleans_table.BOOLEANS, rows, 2)]
+    if "structures" in parts:
+        faulted, cuts = structures_table.measure(given.quick, memory, _say)
+        tables["structures"] = [
+            page.table(structures_table.FAULTS, faulted, 2),
+            page.table(structures_table.CUTS, cuts),
+        ]
     if given.write:
         for name, of_part in tables.items():
             lines = [machine, *(line for table in of_part for line in ("", *table))]

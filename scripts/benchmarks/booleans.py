@@ -6,17 +6,23 @@ Seconds go from arrays to arrays; the processors' seconds beside hardly depend o
 
 from __future__ import annotations
 
+import json
 import resource
+import subprocess
+import tempfile
 import time
 
 import numpy as np
 
 from .process import ROOT, Skipped
 
+_GEOGRAM = ROOT / "build" / "booleans_environment" / "geogram_arrangement"
 _FAULTS = "shared/data/california_faults"  # beside the project, or farther up, of those who have it
 
 
-def _sphere(rings: int, middle: tuple[float, float, float], radius: float) -> tuple[np.ndarray, np.ndarray]:
+def make_sphere(
+    rings: int, middle: tuple[float, float, float], radius: float
+) -> tuple[np.ndarray, np.ndarray]:
     """A sphere of 4 rings (rings - 1) triangles, which have all shapes."""
     around = 2 * rings
     latitude = np.repeat(np.pi * (np.arange(1, rings) / rings - 0.5), around)
@@ -35,7 +41,7 @@ def _sphere(rings: int, middle: tuple[float, float, float], radius: float) -> tu
 
 
 def _spheres(rings: int):
-    return _sphere(rings, (0, 0, 0), 1.0), _sphere(rings, (0.31, 0.22, 0.13), 0.93)
+    return make_sphere(rings, (0, 0, 0), 1.0), make_sphere(rings, (0.31, 0.22, 0.13), 0.93)
 
 
 def _faults() -> tuple[np.ndarray, np.ndarray]:
@@ -107,3 +113,16 @@ def trueform_faults() -> dict:
         raise Skipped("trueform is not installed") from missing
     vertices, triangles = _faults()
     return _timed(lambda: len(trueform.polygon_arrangements(trueform.Mesh(triangles, vertices))[0][0]))
+
+
+def geogram_faults() -> dict:
+    if not _GEOGRAM.is_file():
+        raise Skipped("geogram_arrangement was not built")
+    vertices, triangles = _faults()
+    with tempfile.NamedTemporaryFile(suffix=".mesh") as file:
+        np.array([len(vertices), len(triangles)], np.int64).tofile(file)
+        np.ascontiguousarray(vertices, np.float64).tofile(file)
+        np.ascontiguousarray(triangles, np.int32).tofile(file)
+        file.flush()
+        told = subprocess.run([_GEOGRAM, file.name], check=True, capture_output=True, text=True)
+    return json.loads(told.stdout)

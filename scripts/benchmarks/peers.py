@@ -32,12 +32,12 @@ def close_to_solid(surface: Surface, bottom: float) -> Surface:
     middle = len(vertices) + len(rim)
     foot = vertices[rim].copy()
     foot[:, 2] = bottom
-    centre = [[*vertices[:, :2].mean(axis=0), bottom]]
+    center = [[*vertices[:, :2].mean(axis=0), bottom]]
     a, b = border.T
     walls = [np.stack([b, a, below[a]], axis=1), np.stack([b, below[a], below[b]], axis=1)]
     floor = np.stack([np.full(len(a), middle), below[b], below[a]], axis=1)
     closed = np.concatenate([triangles, *walls, floor])
-    return np.concatenate([vertices, foot, centre]), closed.astype(np.int32)
+    return np.concatenate([vertices, foot, center]), closed.astype(np.int32)
 
 
 def manifold(spec: dict) -> dict:

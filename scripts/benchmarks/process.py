@@ -107,7 +107,8 @@ def _resident(number: int) -> int:
 def alone(function: str, *arguments, seconds: float = 600.0, memory: float = 12e9, python: str | None = None):
     """Calls "module.function" of this package with the arguments in a fresh interpreter.
 
-    Returns what it returns, a dictionary, with `peak` added: bytes resident at most in that process.
+    Returns what it returns, a dictionary, with `peak` added: bytes resident at most in that process,
+    unless it says so itself.
     Raises Skipped as run_apart does.
     """
     command = [python or sys.executable, "-m", "benchmarks.process", function, json.dumps(arguments)]
@@ -123,7 +124,7 @@ def main() -> None:
         result = getattr(importlib.import_module(f"benchmarks.{module}"), name)(*json.loads(arguments))
     except Skipped as skipped:
         sys.exit(str(skipped))
-    print(json.dumps({**result, "peak": peak_resident()}))
+    print(json.dumps({"peak": peak_resident(), **result}))
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ class Origin(unittest.TestCase):
         box = np.array([[0.0, 0.0, 400.0], [500.0, 300.0, 480.0]])
         np.testing.assert_array_equal(origin.choose_origin(box), 0.0)
 
-    def test_utm_keeps_a_millimetre_over_ten_kilometres(self):
+    def test_utm_keeps_a_millimeter_over_ten_kilometers(self):
         shake = np.random.default_rng(1)
         low = np.array([377400.0, 5397900.0, -300.0])
         points = low + shake.random((20000, 3)) * (10000.0, 10000.0, 1500.0)

@@ -12,6 +12,7 @@ from panel_case import SAMPLES, PanelCase, ops, outline, select, sheet, stack
 from realmodel.bl import method_settings, region_size, results, surface_figures
 from realmodel.bl.display import shown_models
 from realmodel.core import load_library, load_project
+from realmodel.core.exporters import FORMATS
 from realmodel.core.methods import METHODS, NEIGHBOURS_OF_FITTED
 from realmodel.core.project_writer import off_text, points_text
 from realmodel.core.schema import ROCK, SURFACE
@@ -450,6 +451,14 @@ class Results(PanelCase):
             self.refused(operator, "", filepath=str(self.folder / name))
         self.refused(ops.export, "no folder", filepath=str(self.folder / "none" / "m.npz"))
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["m.npz", "r.json", "t.csv"])
+
+    def test_every_format_of_models_is_exported(self):
+        stack(0.0, 10.0)
+        ops.build()
+        for ending in FORMATS:
+            ops.export(filepath=str(self.folder / f"m{ending}"))
+            self.assertTrue((self.folder / f"m{ending}").exists(), ending)
+        self.assertTrue((self.folder / "m.foam" / "constant" / "polyMesh" / "owner").is_file())
 
     def test_export_after_opening_and_of_whole_blocks(self):
         stack(0.0, 10.0)

@@ -92,11 +92,11 @@ class Registration(unittest.TestCase):
     def test_every_setting_and_choice_says_what_it_does(self):
         realmodel.register()
         self.addCleanup(realmodel.unregister)
-        from realmodel import props_rock, props_stage, props_surface, props_view
+        from realmodel import props_rock, props_stage, props_structure, props_surface, props_view
 
         found = [
             (cls.__name__, cls.bl_rna)
-            for m in (props_rock, props_stage, props_surface, props_view)
+            for m in (props_rock, props_stage, props_structure, props_surface, props_view)
             for cls in m.CLASSES
         ]
         found.append(("scene.realmodel", bpy.context.scene.realmodel.bl_rna))

@@ -8,7 +8,15 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 from panel_case import PanelCase, ops, raise_by, select, sheet
-from realmodel.bl import choices, compartments, meshes, project_settings, settings, viewports
+from realmodel.bl import (
+    choices,
+    compartments,
+    meshes,
+    project_settings,
+    settings,
+    surface_figures,
+    viewports,
+)
 from realmodel.bl import scene as model_tree
 from realmodel.bl.display import bodies, colors, coordinates, modes, sections, viewpoints
 from realmodel.core import load_project
@@ -93,6 +101,76 @@ class Lists(StructureCase):
         self.assertEqual([row.name for row in self.model.faults], names[:1])
         self.assertEqual(len(self.model.faults[0].ends_at), 0)  # that fault is gone
         self.assertIn(names[1], bpy.data.objects)
+
+    def test_a_copy(self):
+        self.faulted(box("ore", (60, 20, -2), (70, 30, 2)))
+        self.model.structure_kind = "FAULT"
+        self.model.faults[0].youngest = "S2"
+        ops.fault_body_copy()
+        first, second = self.model.faults
+        self.assertEqual((second.name, second.youngest, second.object), ("F1 2", "S2", first.object))
+        self.assertEqual((second.interface, self.model.active_fault), (None, 1))
+        second.object = wall("F2", 80.0)
+        self.model.structure_kind = "BODY"
+        ops.fault_body_copy()
+        self.assertEqual([row.name for row in self.model.bodies], ["ore", "ore 2"])
+        self.model.bodies[1].object = box("more", (20, 20, -2), (30, 30, 2))
+        ops.build()
+        self.assertEqual(len(compartments.names(self.scene)), 3)
+        self.assertAlmostEqual(self.volumes()["ore 2"], 400.0, places=6)
+
+    def test_hidden_and_edited(self):
+        self.faulted(box("ore", (60, 20, -2), (70, 30, 2)))
+        self.model.display = "SURFACES"
+        self.model.structure_kind = "FAULT"
+        ops.fault_body_hide()
+        self.assertTrue(self.model.faults[0].hide and bpy.data.objects["F1"].hide_get())
+        ops.fault_body_hide()
+        self.assertFalse(bpy.data.objects["F1"].hide_get())
+        ops.fault_body_edit()
+        self.assertEqual((bpy.context.mode, bpy.context.object.name), ("EDIT_MESH", "F1"))
+        ops.edit_done()
+        self.assertEqual((bpy.context.mode, self.model.display), ("OBJECT", "SURFACES"))
+        ops.fault_body_add(empty=True)
+        self.refused(ops.fault_body_edit, "no surface in the scene yet")
+
+    def test_what_refers_to_a_name_follows_it(self):
+        self.faulted(wall("F2", 80.0), box("ore", (60, 20, -2), (70, 30, 2)))
+        first, second = self.model.faults
+        ore, rock = self.model.bodies[0], self.model.rocks[0]
+        first.ends_at.add().name = second.name
+        first.youngest = ore.after = "S1"
+        first.rocks.add().name = ore.rock = rock.name
+        second.name, rock.surfaces[1].name, rock.name = "other", "top", "basin"
+        self.assertEqual((first.ends_at[0].name, first.youngest, ore.after), ("other", "top", "top"))
+        self.assertEqual((first.rocks[0].name, ore.rock), ("basin", "basin"))
+        first.ends_at.clear()
+        ops.build()
+        rock.surfaces[2].name = "top"  # two of one name: nobody knows which is meant
+        rock.surfaces[2].name = "young"
+        self.assertEqual(first.youngest, "top")
+        self.save_and_open()
+        self.model.rocks[0].surfaces[1].name = "middle"
+        self.assertEqual(self.model.faults[0].youngest, "middle")
+
+    def test_figures(self):
+        self.faulted(box("ore", (60, 20, -2), (70, 30, 2)))
+        for row, count in ((self.model.faults[0], 2), (self.model.bodies[0], 12)):
+            self.assertEqual(surface_figures.read(row)["triangles"], count)
+        self.assertEqual(surface_figures.read(self.model.bodies[0])["high"], 2.0)
+
+    def test_dropped_files_become_faults_where_blender_takes_files(self):
+        handler = getattr(bpy.types, "REALMODEL_FH_faults_and_bodies", None)
+        self.assertEqual(handler is not None, hasattr(bpy.types, "FileHandler"))
+        if handler is not None:
+            self.assertEqual(handler.bl_import_operator, "realmodel.fault_body_add")
+            self.assertLessEqual({".pol", ".ts", ".off"}, set(handler.bl_file_extensions.split(";")))
+        for name in ("a", "b"):
+            text = "OFF\n4 2 0\n50 -9 -60\n50 109 -60\n50 109 60\n50 -9 60\n3 0 1 2\n3 0 2 3\n"
+            (self.folder / f"{name}.off").write_text(text)
+        files = [{"name": "a.off"}, {"name": "b.off"}]
+        ops.fault_body_add("INVOKE_DEFAULT", directory=str(self.folder), files=files)
+        self.assertEqual([row.name for row in self.model.faults], ["a", "b"])
 
     def test_lists_of_a_fault(self):
         self.faulted(build=False)
@@ -217,6 +295,34 @@ class Built(StructureCase):
         self.assertNotIn("realmodel_compartment", mesh.attributes)
         self.assertEqual(compartments.names(self.scene), [])
 
+    def test_a_mesh_is_continued_by_its_method(self):
+        """Sheets that end before the fault: level beyond, or as a method says."""
+        parts = [(0.0, 45.0, 10.0), (55.0, 100.0, 6.0)]
+        corners = [(x, y, z) for a, b, z in parts for x, y in ((a, 0), (b, 0), (b, 100), (a, 100))]
+        base = sheet("S0", 0.0)
+        top = mesh_object("S1", corners, [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]])
+        select(base, top)
+        ops.from_selected()
+        select(wall())
+        ops.fault_body_from_selected()
+        ops.build()
+        self.assertAlmostEqual(self.volumes()["S1 block"], 8e4, delta=1.0)
+        row = self.model.rocks[0].surfaces[1]
+        row.use_continuation, row.method, row.value = True, "constant", 0.0
+        ops.build()
+        less = self.volumes()["S1 block"]
+        # from the border of each part it goes down to the nearest vertex of the other part
+        self.assertAlmostEqual(less, 8e4 - 100 * (10 + 6) * 5 / 4, delta=1.0)
+        ops.save_project(filepath=str(self.folder / "p.toml"))
+        self.assertIn('method = "constant"', (self.folder / "p.toml").read_text())
+        ops.open_project(filepath=str(self.folder / "p.toml"))
+        self.assertTrue(self.model.rocks[0].surfaces[1].use_continuation)
+        ops.build()
+        self.assertAlmostEqual(self.volumes()["S1 block"], less, places=3)
+        self.model.structure_kind = "FAULT"
+        ops.fault_body_remove()
+        ops.build()  # without faults it counts for nothing
+
     def test_properties_of_bodies(self):
         self.faulted(box("ore", (60, 20, -2), (70, 30, 2)))
         row = next(row for row in self.model.results if row.name == "ore")
@@ -339,10 +445,10 @@ class Live(StructureCase):
         bpy.context.view_layer.update()
         self.live_is_done()
         self.assertNotAlmostEqual(self.volumes()["ore"], before["ore"], places=3)
-        raise_by(fault, -200.0)
+        raise_by(fault, -60.0)  # it ends within the rock
         self.live_is_done()
         self.assertIn("F1", bpy.context.window_manager.realmodel.problem)
-        raise_by(fault, 200.0)
+        raise_by(fault, 60.0)
         self.live_is_done()
         self.assertEqual(bpy.context.window_manager.realmodel.problem, "")
         self.model.bodies[0].void = True

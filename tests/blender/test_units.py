@@ -8,7 +8,7 @@ import bpy
 from panel_case import PanelCase, ops
 from realmodel.bl import batch, units
 from realmodel.core import build, load_project
-from realmodel.core.units import METRES
+from realmodel.core.units import METERS
 
 PROJECT = """format = 1
 name = "quarry"
@@ -60,7 +60,7 @@ class ModelInFeet(PanelCase):
         ):
             self.open(unit)
             shown = self.scene.unit_settings
-            self.assertAlmostEqual(shown.scale_length, float(METRES[unit]), places=7)
+            self.assertAlmostEqual(shown.scale_length, float(METERS[unit]), places=7)
             self.assertEqual((shown.system, shown.length_unit), (system, length_unit))
 
     def test_lengths_are_typed_and_read_in_feet(self):

@@ -383,7 +383,7 @@ class Apart(Case):
     def test_the_user_s_own_place_stays(self):
         item = self.blocks()["Sand"]
         item.location, item.delta_location = (5.0, 6.0, 7.0), (1.0, 0.0, 0.0)
-        for direction in ("Z", "CENTRE", "BLOCK"):
+        for direction in ("Z", "CENTER", "BLOCK"):
             self.settings.explode_direction = direction
             self.settings.explode = 0.7
             self.assertEqual(tuple(item.location), (5.0, 6.0, 7.0))

@@ -15,13 +15,13 @@ def ring_area(ring) -> float:
 class Figures:
     """lengths: (T, 3) of sides; ratios: (T,) mean ratio, 1 where equilateral; least_angle: degrees,
     of angles that are not between two border edges or constraints; six: share of inside vertices with six
-    neighbours; centres: (T, 2)."""
+    neighbours; centers: (T, 2)."""
 
     lengths: np.ndarray
     ratios: np.ndarray
     least_angle: float
     six: float
-    centres: np.ndarray
+    centers: np.ndarray
 
 
 def edges_of(triangles) -> np.ndarray:
@@ -102,5 +102,5 @@ def check_mesh(vertices, triangles, rings, lines=()) -> Figures:
         ratios=4 * np.sqrt(3) * areas / (lengths**2).sum(axis=1),
         least_angle=float(angles[free].min()) if free.any() else 60.0,
         six=float((valence[inside] == 6).mean()) if inside.any() else 1.0,
-        centres=corners.mean(axis=1),
+        centers=corners.mean(axis=1),
     )

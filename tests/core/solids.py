@@ -2,6 +2,8 @@
 """Closed and open triangulated surfaces, (vertices, triangles) each, for the tests of Booleans, and what can
 be said of them without intersecting anything."""
 
+from fractions import Fraction
+
 import numpy as np
 from stacks import places
 
@@ -70,6 +72,17 @@ def volume(vertices, triangles):
         return 0.0
     a, b, c = (vertices - vertices[triangles[0, 0]])[triangles].transpose(1, 0, 2)
     return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
+
+
+def exact_volumes(vertices, triangles):
+    """(T,) whole numbers, and the unit that they count: the volume between each triangle and the origin.
+    Those of a closed surface add up to its volume, without any rounding."""
+    digits, exponents = np.frexp(vertices)
+    least = int(exponents.min()) - 53
+    whole = (digits * 2.0**53).astype(np.int64).astype(object) << (exponents - 53 - least).astype(object)
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = whole[triangles].transpose(1, 2, 0)
+    six = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+    return six, Fraction(2) ** (3 * least) / 6
 
 
 def area(vertices, triangles):

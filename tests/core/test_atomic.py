@@ -5,6 +5,7 @@ import multiprocessing
 import os
 import random
 import resource
+import shutil
 import signal
 import subprocess
 import time
@@ -156,6 +157,24 @@ def test_ctrl_c_at_any_moment_leaves_nothing(out):
         assert [name for name in names(out) if name.startswith(".")] == []
 
 
+def test_ctrl_c_while_folders_are_removed_is_told_and_they_are_removed(out, monkeypatch):
+    rmtree = shutil.rmtree
+
+    def interrupted(folder, ignore_errors):
+        monkeypatch.setattr(shutil, "rmtree", rmtree)
+        try:
+            raise KeyboardInterrupt
+        finally:
+            os.close(-1)  # as rmtree does, where the first close was done already
+
+    with pytest.raises(KeyboardInterrupt) as held, Outputs() as outputs:  # held: nothing is finalized
+        monkeypatch.setattr(shutil, "rmtree", interrupted)
+        with outputs.file(out / "a") as file:
+            file.write(b"a")
+    assert names(out) == ["a"]
+    assert held.traceback
+
+
 def _fill(out, outcome):
     resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
@@ -211,3 +230,16 @@ def test_a_full_disk_is_told_in_one_line_and_leaves_nothing(small_disk):
     for message in outcomes_of(_write_too_much, small_disk):
         assert "large: cannot be written: No space left on device; make room" in message
     assert names(small_disk) == []
+
+
+def test_an_output_beside_another_replaces_no_input_and_no_other_output(out):
+    (out / "p.mtl").write_text("read")
+    outputs = Outputs([out / "p.mtl"])
+    with pytest.raises(OutputFailed, match="a file that is read"), outputs, outputs.file(out / "p.mtl"):
+        pass
+    assert (out / "p.mtl").read_text() == "read"
+    with pytest.raises(OutputFailed, match="two outputs have this name"), Outputs() as outputs:
+        for _ in range(2):
+            with outputs.file(out / "a") as file:
+                file.write(b"new")
+    assert names(out) == ["p.mtl"]

@@ -11,7 +11,7 @@ from realmodel.core import mesh_region
 
 sys.path.insert(0, str(ROOT / "scripts"))
 
-from benchmarks import hard_outlines, meshing, page, peers, process
+from benchmarks import hard_outlines, meshing, page, peers, process, structures
 from benchmarks.made_stacks import StackSpec
 
 
@@ -49,6 +49,23 @@ def test_a_surface_closed_for_peers_is_a_closed_solid():
     a, b, c = (vertices[triangles[:, i]] for i in range(3))
     volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
     assert 0.8 < volume < 1.3, "counter-clockwise seen from outside"
+
+
+@pytest.mark.parametrize(("faults", "compartments"), [(0, 1), (1, 2), (3, 6)])
+def test_a_stack_with_faults_has_its_compartments(faults, compartments):
+    spec = {"surfaces": 3, "quads": 12, "plan": "own"}
+    found = structures.build_faulted(spec, "columns", 1, faults)
+    assert found["compartments"] == compartments
+    assert found["cells"] > 400
+
+
+def test_a_sphere_cuts_as_much_from_ours_as_from_its_peer():
+    spec = {"surfaces": 3, "quads": 12}
+    try:
+        theirs = structures.manifold_cut(spec, 8)
+    except process.Skipped as missing:
+        pytest.skip(str(missing))
+    assert structures.ours_cut(spec, 8, 1)["volume"] == pytest.approx(theirs["volume"], rel=1e-9)
 
 
 @pytest.mark.parametrize("graded", [False, True])

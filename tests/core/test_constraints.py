@@ -102,10 +102,10 @@ def test_edges_are_shorter_at_what_files_hold(write, tmp_path):
     vertices, triangles = model.rock_inputs[0].region
     sides = vertices[triangles] - vertices[np.roll(triangles, 1, axis=1)]
     lengths = np.hypot(*np.moveaxis(sides, -1, 0)).mean(axis=1)
-    centres = vertices[triangles].mean(axis=1)
+    centers = vertices[triangles].mean(axis=1)
 
     def mean_at(place):
-        return lengths[np.hypot(*(centres - place).T) < 0.25].mean()
+        return lengths[np.hypot(*(centers - place).T) < 0.25].mean()
 
     river, well, other, side, point, far = map(
         mean_at, [(2, 2), (6, 3), (1, 3.5), (4.5, 3), (7.5, 0.5), (4, 0.3)]

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files damaged at random are either read or refused in one line; nothing else ever comes out."""
 
+import io
 import os
 import struct
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -58,12 +60,54 @@ BINARY_STL = bytes(80) + struct.pack("<I", 2) + 2 * struct.pack("<12fH", *range(
 GRID = b"ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1.5\nNODATA_value -9\n1 2 3\n4 -9 6e0\n"
 
 
+GRIDS = Path(__file__).parents[1] / "data" / "grids"
+CPS3 = b'FSASCI 0 1 "COMPUTED" 0 1.0E+30 0\nFSATTR 0 0\nFSLIMI 0 2 0 1 1 6\nFSNROW 2 3\nFSXINC 1 1\n->GRID\n'
+CPS3 += b"1 2\n3 1e30\n5.5 6\n"
+
+
+def array_file(values):
+    file = io.BytesIO()
+    np.save(file, values)
+    return file.getvalue()
+
+
+def read_points_of(file):
+    return read_point_file(PointFile(file))
+
+
+DXF = b"0\nSECTION\n2\nENTITIES\n0\n3DFACE\n8\nA\n10\n0\n20\n0\n30\n1\n11\n1\n21\n0\n31\n2\n12\n1\n22\n1\n32\n3\n"  # noqa: E501
+DXF += b"13\n0\n23\n1\n33\n4\n0\nENDSEC\n0\nEOF\n"
+MSH = b"$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n1 0 0\n0 1 0\n$EndNodes\n"  # noqa: E501
+MSH += b"$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n"
+BINARY_MSH = b"$MeshFormat\n4.1 1 8\n" + struct.pack("<i", 1) + b"\n$EndMeshFormat\n$Nodes\n"
+BINARY_MSH += struct.pack("<4Q3iQ3Q9d", 1, 3, 1, 3, 2, 1, 0, 3, 1, 2, 3, 0, 0, 0, 1, 0, 0, 0, 1, 0)
+BINARY_MSH += b"\n$EndNodes\n$Elements\n" + struct.pack("<4Q3iQ4Q", 1, 1, 1, 1, 2, 1, 2, 1, 1, 1, 2, 3)
+BINARY_MSH += b"\n$EndElements\n"
+LANDXML = b'<LandXML><Units><Metric linearUnit="meter"/></Units><Surfaces><Surface name="a"><Pnts><P id="1">0 0 1</P>'  # noqa: E501
+LANDXML += (
+    b'<P id="2">1 0 1</P><P id="3">0 1 1</P></Pnts><Faces><F>1 2 3</F></Faces></Surface></Surfaces></LandXML>'
+)
+VTP = (
+    b'<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt32"><PolyData><Piece>'
+)
+VTP += (
+    b'<Points><DataArray type="Float32" NumberOfComponents="3" format="appended" offset="0"/></Points><Polys>'
+)
+VTP += b'<DataArray type="Int32" Name="connectivity" format="ascii">0 1 2</DataArray>'
+VTP += b'<DataArray type="Int32" Name="offsets" format="binary">BAAAAAMAAAA=</DataArray></Polys></Piece></PolyData>'  # noqa: E501
+VTP += b'<AppendedData encoding="raw">_' + struct.pack("<I9f", 36, 0, 0, 0, 1, 0, 0, 0, 1, 0)
+VTP += b"</AppendedData></VTKFile>"
+
+
 STICKS = b"1 2 3\n1 2 5.5\n999.000 999.000 999.000\n\n4 5 6\n4 5 7\n999 999 999\n"
 READERS = {
     "p.toml": (PROJECT, load_project),
     "library.toml": (LIBRARY, load_library),
     "p.csv": (POINTS, read_points),
-    "g.asc": (GRID, lambda file: read_point_file(PointFile(file))),
+    "g.asc": (GRID, read_points_of),
+    **{path.name: (path.read_bytes(), read_points_of) for path in sorted(GRIDS.iterdir())},
+    "c.cps3": (CPS3, read_points_of),
+    "a.npy": (array_file(np.arange(12.0).reshape(4, 3)), read_points_of),
     "f.pol": (STICKS, lambda file: read_fault_points(PointFile(file))),
     "m.off": (OFF, read_mesh),
     "m.obj": (OBJ, read_mesh),
@@ -72,6 +116,11 @@ READERS = {
     "b.ply": (BINARY_PLY, read_mesh),
     "a.stl": (STL, read_mesh),
     "b.stl": (BINARY_STL, read_mesh),
+    "m.dxf": (DXF, read_mesh),
+    "m.msh": (MSH, read_mesh),
+    "b.msh": (BINARY_MSH, read_mesh),
+    "m.xml": (LANDXML, read_mesh),
+    "m.vtp": (VTP, read_mesh),
     "r.geojson": (REGION, read_region),
 }
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sample with faults: its script writes it, its model is closed and displaced as it was made; and sticks
-of a real reservoir, where these are there."""
+"""The sample with faults: its script writes it, its model is closed and displaced as it was made; and faults
+of a real reservoir and of California, where these are there."""
 
 import subprocess
 import sys
@@ -12,6 +12,7 @@ from realmodel.core import Fault, PointFile, Project, Rock, Surface, build, load
 from realmodel.core.structures.displacement import displacements
 from realmodel.core.structures.reading import read_structures
 from realmodel.core.work import run
+from stacks import places, real_faults
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / "blend_samples" / "fault_blocks"
@@ -60,3 +61,43 @@ def test_sticks_of_a_real_reservoir():
         }
         assert {(x, y, -z) for x, y, z in fault.vertices.tolist()} == points
         assert len(fault.triangles) >= len(points) - 2
+
+
+def checked(project_path, model, tmp_path):
+    """Passes the proof, and the outside checker where it is there."""
+    assert model.validate(1000).passed
+    check = places.CHECK / "check_model.py"
+    if check.is_file():
+        model.save(tmp_path / "model.npz")
+        command = [sys.executable, check, project_path, tmp_path / "model.npz"]
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout
+
+
+@pytest.mark.skipif(not REAL.is_dir(), reason="the real data are not there")
+def test_a_real_reservoir_with_six_faults_that_die_out(tmp_path):
+    """One closed model; picks that reach beyond the faults are left out, so the throw is the blocks'."""
+    path = real_faults.drogon(tmp_path, edge_length=300, method="idw")
+    model = build(load_project(path))
+    checked(path, model, tmp_path)
+    assert len(model.blocks) == 3 and model.compartment_names == ["drogon"]
+    left_out = [w for w in model.warnings if "reach beyond a fault" in w.text]
+    assert {w.surface for w in left_out} == set(real_faults.DROGON_HORIZONS)
+    throws = {(each.fault, each.surface): each.throw for each in displacements(model)}
+    assert len(throws) == 24
+    for fault, least in (("F1", 15), ("F3", 15), ("F4", 8)):
+        assert throws[fault, "TopVolantis"].mean() > least  # normal faults of some tens of meters
+    for throw in throws.values():
+        assert np.abs(throw).max() < 100
+
+
+@pytest.mark.skipif(not (REAL.parent / "california_faults").is_dir(), reason="the real data are not there")
+def test_a_box_with_faults_of_california(tmp_path):
+    path = real_faults.california(tmp_path, faults=8)
+    model = build(load_project(path))
+    checked(path, model, tmp_path)
+    area, heights = 120e3**2, (5000, 5000, 4500)
+    for block, height in zip(model.blocks, heights, strict=True):
+        assert block.volume == pytest.approx(area * height, rel=1e-9) and block.components == 1
+    slits = {int(n) for n in np.unique(model.face_surface) if n >= 3}
+    assert len(slits) >= 6  # the others are blind, below or above the rock

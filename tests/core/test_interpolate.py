@@ -42,7 +42,7 @@ def test_kriging_as_in_the_textbook(model, anisotropy):
     assert not result.variogram.fitted
 
 
-def test_kriging_honours_the_points_and_uses_neighbours():
+def test_kriging_honors_the_points_and_uses_neighbours():
     result = interpolate(POINTS, POINTS[:, :2], variogram={**SETTINGS, "nugget": 0.0}, neighbours=8)
     assert result.z == pytest.approx(POINTS[:, 2])
     assert result.variance == pytest.approx(np.zeros(len(POINTS)), abs=1e-9)

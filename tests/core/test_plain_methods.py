@@ -36,7 +36,7 @@ def test_a_plane_comes_out_as_a_plane(method):
 
 
 @pytest.mark.parametrize("method", ["tin", "natural_neighbour"])
-def test_points_are_honoured_and_heights_stay_between(method):
+def test_points_are_honored_and_heights_stay_between(method):
     assert np.array_equal(interpolate(WAVY, PLAN, method).z, WAVY[:, 2])
     far = np.vstack([NODES, UTM + RNG.normal(0, 3000, (200, 2))])
     one, two = (interpolate(WAVY, far, method, threads=threads).z for threads in (1, 2))

@@ -12,7 +12,7 @@ UTM = np.array([431234.56, 5398765.43])
 
 
 def near(figures, place, distance):
-    return figures.lengths[np.hypot(*(figures.centres - place).T) < distance]
+    return figures.lengths[np.hypot(*(figures.centers - place).T) < distance]
 
 
 @pytest.mark.parametrize("origin", [np.zeros(2), UTM])
@@ -22,11 +22,11 @@ def test_shorter_edges_near_a_point(origin):
     rings = [SQUARE + origin, HOLE + origin]
     found = check_mesh(*mesh_region(rings[0], rings[1:], 8, size=size), rings)
     assert near(found, place, 4).mean() == pytest.approx(0.5, rel=0.05)
-    far = np.hypot(*(found.centres - place).T) > 5 + 8 / 0.25
+    far = np.hypot(*(found.centers - place).T) > 5 + 8 / 0.25
     assert found.lengths[far].mean() == pytest.approx(8, rel=0.1)
     assert found.least_angle >= 25
     # graded: no edge longer than its distance allows, by half
-    distance = np.hypot(*(found.centres - place).T)
+    distance = np.hypot(*(found.centers - place).T)
     assert (found.lengths.max(axis=1) <= 1.6 * np.minimum(8, 0.5 + 0.25 * np.maximum(0, distance - 4))).all()
 
 
@@ -35,7 +35,7 @@ def test_shorter_edges_near_outlines_and_lines():
     size = [{"at": "outline", "length": 2, "distance": 0}, {"at": line, "length": 1, "distance": 3}]
     found = check_mesh(*mesh_region(SQUARE, [HOLE], 6, size=size), [SQUARE, HOLE])
     a, b = np.array(line[:-1]), np.array(line[1:])
-    at_line = distances_to_segments(found.centres, a, b) < 2
+    at_line = distances_to_segments(found.centers, a, b) < 2
     assert found.lengths[at_line].mean() == pytest.approx(1, rel=0.05)
     assert found.least_angle >= 25
     plain = mesh_region(SQUARE, [HOLE], 6, size=[{"at": "outline", "length": 2, "distance": 0}])

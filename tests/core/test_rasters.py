@@ -70,7 +70,7 @@ def test_a_raster_in_feet(write):
 
 
 def test_a_raster_is_a_grid_of_method_grid(write):
-    """Bilinear heights of a tilted plane between the cells' centres are the plane's."""
+    """Bilinear heights of a tilted plane between the cells' centers are the plane's."""
     rows = [" ".join(f"{2 * (5 + 10 * c) - (45 - 10 * r):.1f}" for c in range(6)) for r in range(5)]
     text = "ncols 6\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 10\n" + "\n".join(rows)
     write("dtm.asc", text)

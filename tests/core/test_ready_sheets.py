@@ -3,7 +3,8 @@
 
 import numpy as np
 import pytest
-from realmodel.core import Fault, Project, Rock, Surface
+from realmodel.core import Fault, InputRefused, Project, Rock, Surface
+from realmodel.core.project import check_project
 from realmodel.core.structures.closed_form import heights_at, nearest_side
 from structure_cases import closed_form_of, plane_fault, prepared
 
@@ -47,6 +48,40 @@ def assert_single_valued(sheet, area):
 def grid_of(low, high, n=37):
     x, y = np.meshgrid(np.linspace(low, high, n), np.linspace(0.05, 9.93, n))
     return np.column_stack([x.ravel(), y.ravel()])
+
+
+def beside_a_fault():
+    """A mesh in two parts that end before the fault at x = 5."""
+    return together(
+        strip(np.arange(0, 4.1), lambda x, y: 0.1 * x), strip(np.arange(6, 10.1), lambda x, y: 0.1 * x - 1)
+    )
+
+
+def test_the_method_by_which_a_mesh_is_continued():
+    fault = Fault("F", *plane_fault())
+    heights = {}
+    for method, options in ((None, {}), ("plane", {}), ("constant", {"value": 0.75})):
+        entry = made(beside_a_fault(), fault, method=method, options=options)
+        (west,) = sheets_by_place(entry, [1, 5, 0])
+        heights[method, *options] = heights_at(np.array([[4.9, 5.0]]), *west)[0]
+    assert heights[None,] == pytest.approx(0.4, abs=0.02)
+    assert heights["plane",] == pytest.approx(0.49)
+    assert heights["constant", "value"] == pytest.approx(0.4 + 0.45 * 0.35)  # 0.75 at x = 6
+
+
+@pytest.mark.parametrize(
+    ("method", "options", "says"),
+    [
+        (None, {"extrapolate": "none"}, "gives no heights where the mesh is continued"),
+        ("parallel", {"to": "S"}, "'to' names a surface; a mesh is continued from its own vertices"),
+        ("dsi", {"above": "S"}, "'above' names a surface"),
+        (None, {"neighbours": 4}, "'neighbours' belongs to kriging, not to natural_neighbour"),
+    ],
+)
+def test_refused_continuations(method, options, says):
+    surface = Surface("S", *beside_a_fault(), method=method, options=options)
+    with pytest.raises(InputRefused, match=says):
+        check_project(Project("p", [Rock("r", [surface])], faults=[Fault("F", *plane_fault())]))
 
 
 def test_no_fault_near_leaves_the_mesh_as_it_is():

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sections and fences as drawings: where things are on the page, and the files of the command line."""
 
+import csv
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
 from conftest import grid_surface
-from realmodel.core import Library, Project, Property, Rock, Surface, UsageError, build
-from realmodel.core.drawing.drawing import Polygon, Text
+from realmodel.core import Fault, Library, Project, Property, Rock, Surface, UsageError, build
+from realmodel.core.drawing.drawing import Line, Polygon, Text
 from realmodel.core.section_drawing import block_outlines, draw_section, flattened
+from structure_cases import plane_fault
 from test_batch import names, out, refused, run  # noqa: F401 - out is a fixture
 
 ORIGIN = np.array([431000.0, 5398000.0, 0.0])
@@ -128,6 +130,40 @@ def test_drawings_of_the_command_line(layers, out):  # noqa: F811
     wrong = run(project, "--exaggeration", "2")
     assert "goes with --section or --fence" in wrong.stderr and wrong.returncode == 2
     assert "not a number above 0" in run(project, "--exaggeration", "0").stderr
-    assert "use one of .vtu, .obj, .csv, .npz, .svg, .dxf, .png" in refused(
+    assert "use one of .vtu, .obj, .ply, .stl, .glb, .ts, .csv, .npz, .svg, .dxf, .png" in refused(
         run(project, "--section", "0,0,0,1,0,0=a.x"), 2
     )
+
+
+def test_faults_are_lines_with_their_names(tmp_path):
+    """A fault that leans by 0.5 in two layers, on a plane across it, a map, and a fence with a bend."""
+    levels = [Surface(f"S{k}", *grid_surface(3, lambda x, y, k=k: 2.0 * k + 0 * x, 10.0)) for k in range(3)]
+    fault = Fault("F", *plane_fault(x=5.0, lean=0.5))
+    model = build(Project("p", [Rock("r", levels)], faults=[fault]))
+    across = model.section((0.0, 3.0, 0.0), (0.0, -1.0, 0.0))
+    (trace,) = across.faults
+    length = np.linalg.norm(np.diff(trace.ends, axis=1)[:, 0], axis=1).sum()
+    assert trace.name == "F" and length == pytest.approx(np.hypot(4.0, 2.0))
+    assert trace.ends[..., 0] == pytest.approx(5.0 - 0.5 * trace.ends[..., 2])
+    assert sorted(across.compartment_names) == ["above F", "below F"]
+    level = model.section((0.0, 0.0, 1.0), (0.0, 0.0, 1.0)).faults[0]
+    assert level.ends[..., 0] == pytest.approx(4.5) and level.ends[..., 2] == pytest.approx(1.0)
+    fence = model.fence([(0.0, 5.0), (4.0, 5.0), (4.0, 2.0), (9.0, 2.0)])
+    (trace,) = fence.faults
+    assert set(trace.panel.tolist()) <= {0, 1, 2}  # on the bend it is on the way of two panels
+    for panel, x, z in ((0, (3.0, 4.0), (2.0, 4.0)), (2, (4.0, 5.0), (0.0, 2.0))):
+        ends = trace.ends[trace.panel == panel]
+        assert (ends[..., 0].min(), ends[..., 0].max()) == pytest.approx(x)
+        assert (ends[..., 2].min(), ends[..., 2].max()) == pytest.approx(z)
+    for section in (across, fence):
+        drawing = draw_section(section)
+        lines = [item for item in drawing.items if isinstance(item, Line) and item.layer == "F"]
+        assert len(lines) == len(section.faults[0].ends)
+        assert [item.text for item in drawing.items if isinstance(item, Text) and item.layer == "F"] == ["F"]
+        section.save(tmp_path / "s.csv")
+        rows = list(csv.DictReader((tmp_path / "s.csv").read_text().splitlines()))
+        assert {row["compartment"] for row in rows} == set(model.compartment_names)
+        section.save(tmp_path / "s.npz")
+        with np.load(tmp_path / "s.npz") as read:
+            assert len(read["compartment"]) == len(section)
+            assert read["compartment_names"].tolist() == model.compartment_names

@@ -10,7 +10,7 @@ from structure_cases import SQUARE, closed_form_of, plane_fault, prepared
 
 
 def side_of(shape, *points):
-    return nearest_side(np.array(points, float), *shape)
+    return nearest_side(np.array(points, float), *shape[:2])
 
 
 def points_of(height, seed=1, count=300):
@@ -212,3 +212,53 @@ def test_a_fault_that_dies_out_between_others():
     nodes = one[0]
     far = (nodes[:, 0] > 7.5) & (np.abs(nodes[:, 1] - 5) < 0.3)
     assert far.sum() > 3 and np.array_equal(nodes[far, 2], other[0][far, 2])
+
+
+def test_points_on_both_sides_of_a_fault_that_dies_out_at_one_position_in_plan():
+    """A reverse fault: each position has a point on either side, and beyond the tip one point."""
+    shape = plane_fault(lean=-1.0, y=(-5.0, 6.0))
+    plan = np.random.default_rng(3).uniform(0.0, 10.0, (600, 2))
+    both = np.abs(plan[:, 0] - 5) < 0.5 * np.sqrt(np.clip(6.0 - plan[:, 1], 0, None) / 6.0)
+    points = np.concatenate(
+        [
+            np.column_stack([plan, dying_height(*plan.T)]),
+            np.column_stack([plan[both], -dying_height(*plan[both].T)]),
+        ]
+    )
+    assert both.sum() > 20
+    surface = Surface("S", points=points)
+    project = Project("p", [rock(surface, edge_length=0.4)], faults=[Fault("F", *shape, dies_out=True)])
+    (entry,) = prepared(project)
+    low, high = entry.structure.sheets[0][0], entry.structure.sheets[1][0]
+    apart = np.abs(heights_at(np.array([[5.0, 1.0]]), *high) - heights_at(np.array([[5.0, 1.0]]), *low))
+    assert 1.4 < apart[0] < 2.2
+    far = low[0][:, 1] > 7.0
+    assert np.array_equal(
+        low[0][far & (np.abs(low[0][:, 0] - 5) < 0.2), 2], high[0][far & (np.abs(low[0][:, 0] - 5) < 0.2), 2]
+    )
+
+
+def test_picks_that_reach_beyond_a_fault_contradict_those_of_the_other_side():
+    """Of two points above one another that which fits the other side is left out, and told."""
+    shape = plane_fault()
+    points = points_of(lambda x, y: np.where(x < 5, -1.0, 1.0))
+    wrong = points[(points[:, 0] > 5) & (points[:, 0] < 5.5)] * [1, 1, -1]
+    assert len(wrong) > 5
+    surface = Surface("S", points=np.concatenate([points, wrong]))
+    (entry,) = prepared(Project("p", [rock(surface)], faults=[Fault("F", *shape)]))
+    for sheet in by_side(entry, 0).values():
+        assert np.ptp(sheet[0][:, 2]) < 1e-6
+    (warning,) = [w for _, w in entry.structure.warnings if "left out" in w.text]
+    assert warning.text.startswith(f"{len(wrong)} of its {len(points) + len(wrong)} points are left out")
+
+
+def test_many_faults_that_die_out_take_no_sheet_for_each_combination_of_sides():
+    """Twelve of them one beside another: 4096 combinations, of which few are there."""
+    faults = []
+    for number in range(12):
+        shape = plane_fault(x=number * 0.8 + 0.6, y=(-5.0, 2.0 + number % 3))
+        faults.append(Fault(f"F{number}", *shape, dies_out=True))
+    surface = Surface("S", points=points_of(lambda x, y: 0.1 * x), method="plane")
+    (entry,) = prepared(Project("p", [rock(surface)], faults=faults))
+    assert 12 < len(entry.structure.compartments) < 100
+    assert np.abs(joined(entry.structure.distinct(0))[0] @ [0.1, 0, -1.0]).max() < 1e-9

@@ -8,7 +8,7 @@ import pytest
 from realmodel.core.rules import RULES
 from realmodel.core.structures import closed_form as form
 from realmodel.core.structures.exact import orient2d, orient3d
-from realmodel.core.structures.sides import RockFaults
+from realmodel.core.structures.sides import FaultShape, RockFaults
 
 BOX_TRIANGLES = np.array(
     [
@@ -103,7 +103,7 @@ def vertical_fault(x=0.0, low=-20.0, high=20.0):
 
 
 def test_a_fault_until_an_unconformity():
-    faults = RockFaults(["F"], [vertical_fault()], [1], [False], [0], [[]])
+    faults = RockFaults(["F"], [FaultShape(*vertical_fault())], [1], [False], [0], [[]])
     left, right = [level(0), level(4), level(6)], [level(-2), level(2), level(6)]
     sides = form.nearest_side(np.array([[1.0, 0, 0], [-1, 0, 0]]), *vertical_fault())
     assert sorted(sides.tolist()) == [-1, 1]
@@ -117,7 +117,9 @@ def test_a_branch_is_dropped_beyond():
     main = vertical_fault()
     branch = np.array([[-5, 0, -20], [20, 0, -20], [20, 0, 20], [-5, 0, 20]], float), main[1]
     kept = int(form.nearest_side(np.array([[5.0, 3, 0]]), *main)[0])
-    faults = RockFaults(["M", "B"], [main, branch], [1, 1], [False] * 2, [0, 1], [[], [(0, kept)]])
+    faults = RockFaults(
+        ["M", "B"], [FaultShape(*main), FaultShape(*branch)], [1, 1], [False] * 2, [0, 1], [[], [(0, kept)]]
+    )
     rows = np.array([[kept, 1], [kept, -1], [-kept, 0]], np.int8)
     closed = form.ClosedForm(["erosional"] * 2, faults, rows, [[level(0), level(1)]] * 3, [0, 1])
     found = closed.compartments_of(np.array([[-3, 2, 0], [-3, -2, 0], [3, 2, 0], [3, -2, 0.0]]))

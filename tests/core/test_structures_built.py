@@ -325,6 +325,18 @@ def test_the_proof_finds_what_is_wrong():
     assert tests["surfaces"].failed > 10 and tests["surfaces"].passed is False
 
 
+def test_the_proof_of_bodies_that_stand_on_the_base():
+    deep = Body("deep", *box_body([8, 4, -10], [12, 6, 1]))
+    model = build(Project("p", [rock(surfaces(*FAULTED))], bodies=[deep]))
+    assert (model.face_surface == -2).any() and model.validate(2000).passed
+    tops = [Surface(f"T{k}", points=points_of(level(2 * k)) + EAST) for k in range(2)]
+    east = Rock("east", tops, region=SQUARE + EAST[:2], edge_length=2.0, base_elevation=-3.0)
+    model = build(Project("p", [rock(surfaces(*FAULTED)), east], bodies=[deep]))
+    assert model.validate(2000).passed
+    model.vertices[:, 2] = np.where(model.vertices[:, 2] == -6.0, -6.5, model.vertices[:, 2])
+    assert not model.validate(2000).passed
+
+
 def test_eroded_volumes_with_faults_and_bodies():
     given = surfaces(level(-1), level(2), level(1))
     fault, ore = (

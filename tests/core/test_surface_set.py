@@ -7,8 +7,9 @@ import sys
 
 import numpy as np
 import pytest
-from conftest import ROOT
-from realmodel.core import Project, Rock, Surface, UsageError, build, build_surfaces, interpolate
+from conftest import ROOT, grid_surface
+from realmodel.core import Fault, Project, Rock, Surface, UsageError, build, build_surfaces, interpolate
+from structure_cases import plane_fault
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
@@ -157,3 +158,18 @@ def test_from_the_command_line(tmp_path, write):
         assert refused.returncode == 2
         assert "--surfaces-only goes without" in refused.stderr
     assert command(path, "--surfaces-only", "--export", tmp_path / "s.obj").returncode == 2
+
+
+def test_the_sheets_of_a_surface_that_a_fault_displaces(tmp_path):
+    levels = [Surface(f"S{k}", *grid_surface(3, lambda x, y, k=k: 2.0 * k + 0 * x)) for k in range(2)]
+    fault = Fault("F", *plane_fault(x=0.5), youngest="S0")
+    project = Project("p", [Rock("r", levels)], faults=[fault])
+    surfaces, model = build_surfaces(project), build(project)
+    sheet = surfaces.surface_triangle_sheet
+    first = surfaces.surface(0)[1]
+    assert set(sheet[: len(first)].tolist()) == {0, 1} and not sheet[len(first) :].any()
+    assert np.array_equal(model.surface_triangle_sheet[: len(sheet)], sheet)
+    assert not model.surface_triangle_sheet[len(sheet) :].any()
+    surfaces.save(tmp_path / "s.npz")
+    with np.load(tmp_path / "s.npz") as read:
+        assert np.array_equal(read["surface_triangle_sheet"], sheet)

@@ -112,7 +112,7 @@ def test_fits_that_mean_nothing_warn(method):
     well = np.column_stack([noise[:, :2], np.sin(noise[:, 0] / 5)])
     assert interpolate(well, [[50.0, 50.0]], method).warnings == ()
     far = interpolate(well, NODES[:1], "universal_kriging").warnings
-    assert any("go far beyond those of its points" in w for w in far), "its drift goes on for kilometres"
+    assert any("go far beyond those of its points" in w for w in far), "its drift goes on for kilometers"
 
 
 def test_semivariance_of_a_variogram():

@@ -5,7 +5,8 @@ import bpy
 import numpy as np
 from realmodel.bl import compartments, meshes
 from realmodel.bl.display import bodies, shades
-from steps_1_panel import idle
+from realmodel.ui.panel import TabPanel
+from steps_1_panel import idle, open_the_tab
 from steps_2_view import in_the_viewport
 from steps_3_import import invoked
 
@@ -63,4 +64,46 @@ def compartments_apart(walk):
         assert (np.abs(ratio - wanted).max(axis=2) < 0.06).sum() > 500, number
 
 
-STEPS = (compartments_apart,)
+def _show_alone(wanted):
+    """Registers these panels of the tab alone, unfolded; returns all that there were."""
+    found = [cls for cls in TabPanel.__subclasses__() if cls.is_registered]
+    found.sort(key=lambda cls: hasattr(cls, "bl_parent_id"))
+    for cls in reversed(found):
+        bpy.utils.unregister_class(cls)
+    for cls in found:
+        if cls.__name__ in wanted:
+            cls.bl_options = set(getattr(cls, "bl_options", ())) - {"DEFAULT_CLOSED"}
+            bpy.utils.register_class(cls)
+    return found
+
+
+def lists_of_faults_and_bodies(walk):
+    """The lists of the example with faults: the copy of a row, and a new name that others follow."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True)
+    yield walk.redrawn(2)
+    panels = _show_alone({"REALMODEL_PT_start", "REALMODEL_PT_structures"})
+    try:
+        yield from open_the_tab(walk)
+        with in_the_viewport(walk):
+            bpy.ops.realmodel.open_sample(sample="fault_blocks")
+        yield lambda: idle() and len(bpy.context.scene.realmodel.results) > 0
+        group = bpy.context.scene.realmodel
+        group.structure_kind, group.active_fault = "FAULT", 1
+        yield walk.redrawn(3)
+        walk.shot("faults")
+        group.faults[0].name = "East fault"
+        assert group.faults[1].ends_at[0].name == "East fault"
+        with in_the_viewport(walk):
+            bpy.ops.realmodel.fault_body_copy()
+        yield walk.redrawn(3)
+        walk.shot("faults_copied")
+        group.structure_kind = "BODY"
+        yield walk.redrawn(3)
+        walk.shot("bodies")
+    finally:
+        for cls in panels:
+            if not cls.is_registered:
+                bpy.utils.register_class(cls)
+
+
+STEPS = (compartments_apart, lists_of_faults_and_bodies)

@@ -161,7 +161,10 @@ class BooleanJob:
             job.step(len(made) / count)
         for loop in found.loops:
             name = f"Loop, {loop.kind.replace('_', ' ').title()}"
-            made.append(_Loop(name, found.vertices[loop.vertices], loop.kind != "open"))
+            rows, is_closed = loop.vertices, loop.kind == "hard_closed"
+            if not is_closed and rows[0] == rows[-1]:
+                rows, is_closed = rows[:-1], True
+            made.append(_Loop(name, found.vertices[rows], is_closed))
         return made
 
     def _surface_name(self, found, part):

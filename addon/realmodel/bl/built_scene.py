@@ -247,7 +247,7 @@ def _keep(current, prepared):
         else:
             project_settings.keep_shape(row, text, stamp)
     current.realmodel.view.compartments = prepared.compartments
-    rows = [row for _, row in settings.surface_rows(current)]
+    rows = [row for _, row in settings.interface_rows(current)]
     for row, figures in zip(rows, prepared.figures, strict=True):
         row.figures = figures
 

@@ -8,6 +8,7 @@ from . import (
     library_rows,
     live,
     method_settings,
+    names,
     project_settings,
     reading_text,
     region_size,
@@ -35,6 +36,13 @@ boreholes = _unless_filling(display.boreholes_changed)
 residuals = _unless_filling(display.residuals_changed)
 exaggeration = _unless_filling(display.exaggeration_changed)
 section = _unless_filling(display.section_changed)  # another plane, or none
+
+
+def name(row, _context):
+    """Another name of a rock mass, a surface, a fault or a body."""
+    if not settings.is_filling():
+        names.follow(row)
+        live.touch(row.id_data)
 
 
 def model_unit(group, _context):

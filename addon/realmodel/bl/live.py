@@ -13,7 +13,7 @@ import bpy
 
 from .. import preferences
 from ..core import Cancelled
-from . import build_job, built_scene, caches, plan_mesh, problems, region_size, settings, viewports
+from . import build_job, built_scene, caches, names, plan_mesh, problems, region_size, settings, viewports
 from .debounce import DebouncedJob
 
 _SHORT_SECONDS = 0.5  # of the last rebuild: the next may take all processors
@@ -24,6 +24,7 @@ measured = caches.new()  # by the name of a scene: seconds from the last change 
 
 def touch(scene):
     """Something that the model of a scene depends on was changed."""
+    names.know(scene)
     if scene.realmodel.live:
         _work.touch(scene.name)
 

@@ -18,6 +18,14 @@ def interpolates(rock):
     return not len(rock.surfaces) or any(row.source not in READY_MESHES for row in rock.surfaces)
 
 
+def has_method(row):
+    """Whether a surface's method counts: it is interpolated, or a ready mesh that is continued to faults by a
+    method of its own."""
+    if row.source not in READY_MESHES:
+        return True
+    return row.use_continuation and len(row.id_data.realmodel.faults) > 0
+
+
 def value(row, key, settings):
     """A setting of a row as realmodel.core takes it; None where it is not given."""
     setting, name = settings[key], property_name(key, settings[key])

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ..core import InputRefused, MeshFile, PointFile, Project, Rock, Surface
+from ..core.methods import CONTINUATION
 from ..core.project import rock_item, surface_item
 from ..core.rock_input import read_rocks
 from ..core.schema import MESH_READING, READING, ROCK, SURFACE
@@ -21,6 +22,7 @@ from . import (
     built_models,
     library_rows,
     method_settings,
+    names,
     plan_mesh,
     reading_text,
     settings,
@@ -116,9 +118,10 @@ def compose(scene, depsgraph, whole=True):
 def _plain_surface(row):
     """A surface with everything but its shape."""
     surface = Surface(row.name, rule=row.rule, property=row.property_id, block=row.block or None)
-    if row.source not in method_settings.READY_MESHES:
+    if method_settings.has_method(row):
         surface.method = row.method
         surface.options = method_settings.options_of(row)
+    if row.source not in method_settings.READY_MESHES:
         surface.minimum_thickness = method_settings.value(row, "minimum_thickness", SURFACE)
     return surface
 
@@ -171,6 +174,8 @@ def _shape(scene, composed, place, surface, row, depsgraph, whole):
         if shapes.digest(given, triangles) != row.interface_digest:
             composed.edited.append(place)
             composed.objects.add(place)
+            if isinstance(surface, Surface) and row.source not in method_settings.READY_MESHES:
+                surface.method, surface.options, surface.minimum_thickness = None, {}, None
             base = _made_of(scene, place, row)
             _take_mesh(composed, surface, row.interface, given, triangles, base)
             return
@@ -259,8 +264,6 @@ def _made_of(scene, place, row):
 def _take_mesh(composed, surface, item, given, triangles, base):
     if not len(triangles):
         raise InputRefused(f"object '{item.name}' has no faces", advice="choose a mesh that has faces")
-    if isinstance(surface, Surface):
-        surface.method, surface.options, surface.minimum_thickness = None, {}, None
     if hasattr(surface, "points"):
         surface.points = None
     surface.vertices = shapes.with_full_digits(
@@ -336,6 +339,7 @@ def fill(scene, project):
             add_rock(group, rock)
         structure_settings.fill(scene, project)
         group.stage = settings.last_stage(scene)
+    names.know(scene)
     units.set_up(scene, project.units)
     library_rows.fill(scene, project.library)
 
@@ -363,7 +367,10 @@ def fill_surface(row, surface):
     with settings.filling():
         for key in ("name", "rule", "property", "block", "minimum_thickness"):
             method_settings.set_value(row, key, SURFACE, getattr(surface, key))
-        method_settings.set_options(row, surface.method, surface.options)
+        given = surface.method is not None or surface.options
+        row.use_continuation = bool(given) and not surface.interpolated
+        method = CONTINUATION if row.use_continuation and surface.method is None else surface.method
+        method_settings.set_options(row, method, surface.options)
         if surface.input_file is not None:
             row.source = "POINTS_FILE" if surface.interpolated else "MESH_FILE"
             row.filepath = str(surface.input_file)

@@ -13,6 +13,12 @@ _LABELS = {
     "two_layers": ("Two Layers", "The smallest project: two surfaces from points, one erosion"),
     "haut_barr": ("Haut-Barr", "A castle hill of eleven surfaces, cut by erosion into separate bodies"),
     "gravel_plain": ("Gravel Plain", "A valley filled with gravel, from boreholes"),
+    "fault_blocks": (
+        "Fault Blocks",
+        "Faults from sticks: a branch, one that dies out, a younger cover",
+    ),
+    "intrusion": ("Intrusion", "A granite and a dike in lifted layers, cut by erosion"),
+    "tunnel": ("Tunnel", "A tunnel and a shaft through a hill: the rock that they take of each layer"),
 }
 _items = []  # Blender does not keep the texts of dynamic enums itself
 

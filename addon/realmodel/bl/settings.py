@@ -112,9 +112,11 @@ def row_at(scene, place):
 
 
 def kind_of(row):
-    """ "surface", "fault" or "body"."""
+    """ "surface", "fault", "body" or "rock"."""
     path = row.path_from_id()
-    return "fault" if ".faults[" in path else "body" if ".bodies[" in path else "surface"
+    if ".surfaces[" in path:
+        return "surface"
+    return "fault" if ".faults[" in path else "body" if ".bodies[" in path else "rock"
 
 
 def active_structure(scene):

@@ -12,7 +12,7 @@ def of_model(model):
     """For each surface of a model a JSON text: points, triangles, low, high, area (in plan, of what survives,
     model units squared), deviation (the largest standard deviation of its heights; null where it is not
     known), variogram (as a project file writes it, where one was fitted) and share (of the surface itself;
-    null where the region cuts it off)."""
+    null where the region cuts it off). Of faults and bodies, which follow, area and share are null."""
     areas = _surviving_areas(model)
     found, number = [], 0
     for rock in model.project.rocks:
@@ -32,6 +32,11 @@ def of_model(model):
             }
             found.append(json.dumps(figures))
             number += 1
+    for fault_or_body in range(number, len(model.surface_names)):
+        vertices, triangles = model.surface(fault_or_body)
+        low, high = vertices[:, 2].min(), vertices[:, 2].max()
+        figures = {"points": None, "triangles": len(triangles), "low": float(low), "high": float(high)}
+        found.append(json.dumps(figures | {"area": None, "share": None}))
     return found
 
 

@@ -3,10 +3,10 @@
 
 import math
 
-from ..core.units import METRES, UNIT_NAMES
+from ..core.units import METERS, UNIT_NAMES
 from . import results
 
-ITEMS = tuple((unit, unit, UNIT_NAMES[unit]) for unit in METRES)  # of a menu
+ITEMS = tuple((unit, unit, UNIT_NAMES[unit]) for unit in METERS)  # of a menu
 
 # What Blender shows lengths in. It has no yards; of a survey foot it only knows the size.
 _LENGTH_UNITS = {
@@ -28,7 +28,7 @@ _POWERS = ("", "", "²", "³")
 def set_up(scene, unit):
     """Makes one unit of a scene one unit of its model: Blender then shows and reads lengths right. Where it
     is that already, what the user has chosen to see stays."""
-    shown, scale = scene.unit_settings, float(METRES[unit])
+    shown, scale = scene.unit_settings, float(METERS[unit])
     if math.isclose(shown.scale_length, scale, rel_tol=1e-6):
         return
     shown.scale_length = scale
@@ -97,4 +97,4 @@ def _shown(scene, power):
         shown = "m"
     elif system == "IMPERIAL" and unit not in _IMPERIAL:
         shown = "ft"
-    return f"{_SYMBOLS.get(shown, shown)}{_POWERS[power]}", float((METRES[unit] / METRES[shown]) ** power)
+    return f"{_SYMBOLS.get(shown, shown)}{_POWERS[power]}", float((METERS[unit] / METERS[shown]) ** power)

@@ -29,6 +29,7 @@ from .point_file import MeshFile, PointFile
 from .project import Project, Rock, Surface
 from .project_file import load_project
 from .section import Fence, Section
+from .simulation import SimulationMesh
 from .structures.entries import Body, Fault
 from .surface_set import SurfaceSet, build_surfaces
 from .validation import ValidationReport
@@ -64,6 +65,7 @@ __all__ = [
     "RealModelError",
     "Rock",
     "Section",
+    "SimulationMesh",
     "Structure",
     "Surface",
     "SurfaceSet",

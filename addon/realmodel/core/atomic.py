@@ -12,7 +12,7 @@ import os
 import secrets
 import shutil
 import weakref
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
@@ -31,10 +31,12 @@ class Outputs:
     ...         file.write(b"...")
     """
 
-    def __init__(self):
-        self._written: list[tuple[Path, Path]] = []  # (where it waits, its target)
+    def __init__(self, inputs: Iterable[str | Path] = ()):
+        """inputs: files that are read, which no output may replace."""
+        self._inputs = {Path(os.path.realpath(file)) for file in inputs}
+        self._written: list[tuple[Path, Path]] = []  # (where it waits, its target), files and folders
         self._folders: list[Path] = []
-        weakref.finalize(self, _remove, self._folders)  # a Ctrl-C may come while drop() runs
+        weakref.finalize(self, _remove, self._folders)  # a Ctrl-C may come before drop()
 
     def __enter__(self) -> Outputs:
         return self
@@ -57,11 +59,12 @@ class Outputs:
         """A path of the same name for software that writes files by name (Blender). Raises OutputFailed
         in the place of OSError, and where nothing was written."""
         target = writable_target(target)
+        if target in self._inputs:
+            raise OutputFailed(f"{target}: this is a file that is read; choose another name")
+        if any(target == other for _, other in self._written):
+            raise OutputFailed(f"{target}: two outputs have this name")
         with _explained(target):
-            folder = target.parent / f".realmodel-{secrets.token_hex(8)}"
-            self._folders.append(folder)  # first, so that a Ctrl-C leaves no folder that is not known
-            folder.mkdir()
-            path = folder / target.name
+            path = self._waiting_folder(target) / target.name
             yield path
             if not path.is_file():
                 raise OutputFailed(f"{target}: nothing was written")
@@ -69,29 +72,75 @@ class Outputs:
                 os.fsync(file.fileno())
         self._written.append((path, target))
 
+    @contextmanager
+    def folder(self, target: str | Path, renewed: str) -> Iterator[Path]:
+        """A folder to write into. `renewed` is a folder in it: if an earlier run left the target, only that
+        is replaced, and of the rest what is missing is added, so that what a user changed stays.
+
+        Raises OutputFailed in the place of OSError, and where the target is a folder without `renewed`.
+        """
+        target = writable_folder(target, renewed)
+        with _explained(target):
+            waiting = self._waiting_folder(target)
+            path = waiting / target.name
+            path.mkdir()
+            yield path
+            for file in sorted(path.rglob("*")):
+                if file.is_file():
+                    with file.open("r+b") as opened:
+                        os.fsync(opened.fileno())
+        if not target.exists():
+            self._written.append((path, target))
+            return
+        self._written.append((path / renewed, target / renewed))
+        for file in sorted(path.rglob("*")):
+            inside = file.relative_to(path)
+            if file.is_file() and not inside.is_relative_to(renewed) and not (target / inside).exists():
+                self._written.append((file, target / inside))
+
+    def _waiting_folder(self, target: Path) -> Path:
+        folder = target.parent / f".realmodel-{secrets.token_hex(8)}"
+        self._folders.append(folder)  # first, so that a Ctrl-C leaves no folder that is not known
+        folder.mkdir()
+        return folder
+
     def _publish(self) -> None:
-        new: list[Path] = []
+        undone: list[tuple[Path | None, Path]] = []  # (what stood there or None, where)
         try:
             for path, target in self._written:
                 with _explained(target):
-                    if not target.exists():
-                        new.append(target)
+                    target.parent.mkdir(parents=True, exist_ok=True)
+                    before = None
+                    if path.is_dir() and target.is_dir():
+                        before = path.with_name(f"{path.name}.before")
+                        os.rename(target, before)
+                    if before is not None or not target.exists():
+                        undone.append((before, target))
                     os.replace(path, target)
         except BaseException:
-            for target in new:
+            for before, target in reversed(undone):
                 with suppress(OSError):
-                    target.unlink()
+                    shutil.rmtree(target) if target.is_dir() else target.unlink(missing_ok=True)
+                    if before is not None:
+                        os.rename(before, target)
             raise
 
     def drop(self) -> None:
         """Gives up all that is not published."""
         self._written.clear()
-        _remove(self._folders)
+        try:
+            _remove(self._folders)
+        except KeyboardInterrupt:  # it may keep this object alive, so that it is not finalized
+            _remove(self._folders)
+            raise
 
 
 def _remove(folders: list[Path]) -> None:
     while folders:
-        shutil.rmtree(folders[-1], ignore_errors=True)
+        try:
+            shutil.rmtree(folders[-1], ignore_errors=True)
+        except OSError as error:  # where a Ctrl-C follows a close, rmtree closes again and tells of that
+            raise error.__context__ or error from None
         folders.pop()
 
 
@@ -103,11 +152,30 @@ def writable_target(target: str | Path) -> Path:
             raise OutputFailed(f"{target}: this is a folder; give a file name")
         if resolved.exists() and not resolved.is_file():
             raise OutputFailed(f"{target}: this is not an ordinary file")
-        if not resolved.parent.is_dir():
-            raise OutputFailed(f"{target}: there is no folder {resolved.parent}; make it first")
-        if not os.access(resolved.parent, os.W_OK | os.X_OK):
-            raise OutputFailed(f"{target}: you may not write in {resolved.parent}; choose another folder")
+        _require_writable(target, resolved.parent)
     return resolved
+
+
+def writable_folder(target: str | Path, renewed: str) -> Path:
+    """The path, links followed, where a folder of outputs will stand: a new one, an empty one, or one that
+    has the folder `renewed`. Raises OutputFailed where it cannot."""
+    with _explained(target):
+        resolved = Path(os.path.realpath(target))
+        if resolved.is_dir():
+            if any(resolved.iterdir()) and not (resolved / renewed).is_dir():
+                raise OutputFailed(f"{target}: a folder with other content (no {renewed}); choose a new name")
+            _require_writable(target, resolved)
+        elif resolved.exists():
+            raise OutputFailed(f"{target}: this is a file, and a folder is to be written; choose a new name")
+        _require_writable(target, resolved.parent)
+    return resolved
+
+
+def _require_writable(target: str | Path, folder: Path) -> None:
+    if not folder.is_dir():
+        raise OutputFailed(f"{target}: there is no folder {folder}; make it first")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise OutputFailed(f"{target}: you may not write in {folder}; choose another folder")
 
 
 @contextmanager

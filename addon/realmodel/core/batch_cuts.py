@@ -11,7 +11,7 @@ import numpy as np
 
 from .build import build
 from .errors import InputRefused, UsageError
-from .exporters import write_model, writer_for
+from .exporters import format_for, write_model
 from .exporters.sections import section_writer
 from .project_file import load_project
 from .readers import MESH_ENDINGS, read_mesh
@@ -108,8 +108,7 @@ class CutRequest:
             text = f"by block '{block}'"
         for half, path in ((cut.below, self.below), (cut.above, self.above)):
             if path is not None:
-                with outputs.file(path) as file:
-                    write_model(half, path, file)
+                write_model(half, path, outputs)
         low, high = ("inside", "outside") if isinstance(self.cutter, tuple) else ("below", "above")
         return f"cut {text}: volume {cut.below.volume:.2f} {low}, {cut.above.volume:.2f} {high}"
 
@@ -145,7 +144,7 @@ def cut_request(text: str) -> CutRequest:
     below, above = (Path(half) if half else None for half in (*halves, "")[:2])
     for path in (below, above):
         if path is not None:
-            writer_for(path)
+            format_for(path)
     if _numbers(what) is not None:
         return CutRequest(_plane("--cut", what), below, above)
     project, colon, block = what.rpartition(":")

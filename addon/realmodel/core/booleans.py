@@ -31,9 +31,9 @@ _ADVICE = {
 class Loop:
     """Edges along which the surfaces meet, one after another.
 
-    kind: "open", "hard_closed" (each vertex has two intersection edges) or "soft_closed" (it begins and ends
-    in a vertex that has more). vertices: (N,) int32 in their order; of a closed loop the first is not
-    repeated.
+    kind: "hard_closed" (each vertex has two intersection edges), "soft_closed" (its first and its last vertex
+    have more, and may be the same) or "open" (one of these has one alone). vertices: (N,) int32 in their
+    order; of a hard closed loop the first is not repeated.
     """
 
     kind: str

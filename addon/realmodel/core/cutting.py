@@ -15,6 +15,7 @@ from .errors import InputRefused, UsageError, number_list, place_text
 from .method_options import check_threads
 from .rock_input import checked_triangulation
 from .section import Fence, Section
+from .section_faults import traces_on_fence, traces_on_plane
 from .work import Cancel, Progress, Work, native_module, run
 
 if TYPE_CHECKING:
@@ -177,7 +178,11 @@ def section(
             found = work.native(
                 native_module().section_by_plane, _native_arrays(model), point, normal, threads=threads
             )
-        return Section(**_section_arrays(model, found), plane=(point, normal))
+        return Section(
+            **_section_arrays(model, found),
+            plane=(point, normal),
+            faults=traces_on_plane(model, point, normal),
+        )
 
     return run(task, progress, cancel)
 
@@ -218,7 +223,10 @@ def fence(
                 )
         numbers = [np.full(len(panel["cells"]), k, np.int32) for k, panel in enumerate(panels)]
         return Fence(
-            **_section_arrays(model, _joined(panels)), polyline=polyline, panel=np.concatenate(numbers)
+            **_section_arrays(model, _joined(panels)),
+            polyline=polyline,
+            panel=np.concatenate(numbers),
+            faults=traces_on_fence(model, polyline),
         )
 
     return run(task, progress, cancel)
@@ -263,6 +271,7 @@ def _section_arrays(model: Model, found: dict) -> dict:
     cells = found["cells"]
     blocks = np.append(model.cell_block, np.int32(-1))[cells].astype(np.int32, copy=False)
     block = np.where(blocks[:, 0] >= 0, blocks[:, 0], blocks[:, 1])
+    compartment = np.append(model.cell_compartment, np.int32(-1))[cells].astype(np.int32, copy=False)
     library_ids = np.array([entry.property for entry in model.blocks], np.int32)
     return {
         "vertices": found["vertices"],
@@ -272,7 +281,9 @@ def _section_arrays(model: Model, found: dict) -> dict:
         "blocks": blocks,
         "block": block,
         "property": library_ids[block] if len(block) else np.empty(0, np.int32),
+        "compartment": np.where(blocks[:, 0] >= 0, compartment[:, 0], compartment[:, 1]),
         "block_names": [entry.name for entry in model.blocks],
+        "compartment_names": list(model.compartment_names),
         "block_colors": model.block_colors,
         "name": model.project.name,
         "unit": model.project.units,

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from .point_file import ReadingRefused, check_where
-from .units import METRES
+from .units import METERS
 
 _WKT = re.compile(
     r"\s*(?:SRID\s*=\s*\d+\s*;\s*)?(?:MULTI)?(?:POLYGON|LINESTRING|POINT|GEOMETRYCOLLECTION)(?:ZM?|M)?\b",
@@ -45,5 +45,5 @@ class MapLayer:
         if self.layer is not None and not (isinstance(self.layer, str) and self.layer.strip()):
             raise ReadingRefused("layer", f"'layer' must be a name, not {self.layer!r}")
         check_where(self.where)
-        if self.units is not None and self.units not in METRES:
-            raise ReadingRefused("units", f"unknown unit {self.units!r}", f"there are {', '.join(METRES)}")
+        if self.units is not None and self.units not in METERS:
+            raise ReadingRefused("units", f"unknown unit {self.units!r}", f"there are {', '.join(METERS)}")

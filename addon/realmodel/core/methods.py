@@ -18,6 +18,8 @@ from .setting import Setting, Settings, Words
 from .variogram import VARIOGRAMS
 
 DEFAULT_METHOD = "kriging"
+# how a ready mesh is continued to faults that it does not reach, unless it has a method
+CONTINUATION, CONTINUATION_OPTIONS = "natural_neighbour", {"extrapolate": "nearest"}
 DEFAULT_NEIGHBOURS = 16
 NEIGHBOURS_OF_FITTED = 32
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import colorsys
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -20,8 +21,9 @@ from .exporters import save_model
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
+from .simulation import simulation_mesh
 from .structures.parts import Structures
-from .surface_set import vertex_attributes
+from .surface_set import triangle_sheets, vertex_attributes
 from .validation import PLACES_OF_CHECK, ValidationReport, validate
 from .work import Cancel, Progress, native_module
 
@@ -109,15 +111,9 @@ class Model:
     @property
     def surface_triangle_sheet(self) -> np.ndarray:
         """(Ts,) int32: of each of `surface_triangles` the sheet of its surface that it is of, from 0."""
-        if self.structures is None:
-            return np.zeros(len(self.surface_triangles), np.int32)
-        sizes = [
-            [len(triangles) for _, triangles in entry.structure.distinct(k)]
-            for entry in self.rock_inputs
-            for k in range(len(entry.surfaces))
-        ]
-        sizes += [[len(self.surface(number)[1])] for number in np.flatnonzero(self.surface_kind)]
-        return np.concatenate([np.repeat(np.arange(len(each)), each) for each in sizes]).astype(np.int32)
+        structures = np.flatnonzero(self.surface_kind)
+        count = sum(len(self.surface(number)[1]) for number in structures)
+        return np.append(triangle_sheets(self.rock_inputs), np.zeros(count, np.int32))
 
     def sheet_triangles(self, number: int) -> list[np.ndarray]:
         """The triangles (T, 3) of each sheet of a surface, by its global index; a surface that no fault
@@ -127,12 +123,15 @@ class Model:
         sheet = self.surface_triangle_sheet[begin:end]
         return [np.ascontiguousarray(triangles[sheet == each]) for each in np.unique(sheet)]
 
-    def save(self, path: str | Path) -> None:
-        """Writes the model to a file, by its ending (.npz, .vtu). It appears whole or not at all.
+    def save(self, path: str | Path, cell_size: float | Sequence[float] | None = None) -> None:
+        """Writes the model to a file or folder, by its ending: those of exporters.FORMATS. It appears whole
+        or not at all.
 
-        Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
+        cell_size: of regular grids (.csv, .vti, .tif, .asc), one number, two (in plan, in height) or three;
+        None: a hundredth of the longest side. Raises UsageError for an ending that is not known,
+        OutputFailed where it cannot be written.
         """
-        save_model(self, path)
+        save_model(self, path, cell_size=cell_size)
 
     def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
         """The model as it was just after surface m (from 0) of each rock mass. Raises UsageError where no
@@ -168,6 +167,7 @@ class Model:
         """
         return validate(self, places, seed, threads, progress, cancel)
 
+    simulation_mesh = simulation_mesh
     cut_by_plane = cutting.cut_by_plane
     cut_by_surface = cutting.cut_by_surface
     cut_by_block = cutting.cut_by_block

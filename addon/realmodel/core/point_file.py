@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .units import METRES, factor
+from .units import METERS, factor
 
 
 class ReadingRefused(ValueError):
@@ -151,8 +151,8 @@ def check_units(units) -> None:
         if part not in ("xy", "z"):
             what = f"'units' has a part {part!r}"
             raise ReadingRefused("units", what, 'its parts are xy and z: units = { z = "ft" }')
-        if unit is not None and unit not in METRES:
-            raise ReadingRefused("units", f"unknown unit {unit!r}", f"there are {', '.join(METRES)}")
+        if unit is not None and unit not in METERS:
+            raise ReadingRefused("units", f"unknown unit {unit!r}", f"there are {', '.join(METERS)}")
 
 
 def check_z_axis(axis) -> None:

@@ -18,6 +18,8 @@ from .mesh_sizes import AUTO, local_lengths
 from .meshers import DEFAULT_MESHER
 from .method_options import OptionRefused, checked, is_name
 from .methods import (
+    CONTINUATION,
+    CONTINUATION_OPTIONS,
     DEFAULT_METHOD,
     METHODS,
     SURFACE_OPTIONS,
@@ -33,7 +35,7 @@ from .schema import ROCK, SURFACE
 from .structures.check import check_structures
 from .structures.entries import Body, Fault
 from .toml_table import TomlDocument
-from .units import METRES, MODEL_UNIT
+from .units import METERS, MODEL_UNIT
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,10 @@ class Surface:
         return None, None
 
     def method_options(self) -> tuple[str, dict]:
-        """The method and its complete options. Raises OptionRefused."""
+        """The method and its complete options; of a ready mesh those by which it is continued to faults.
+        Raises OptionRefused."""
+        if self.method is None and not self.interpolated:
+            return CONTINUATION, checked_options(CONTINUATION, {**CONTINUATION_OPTIONS, **self.options})
         method = self.method or DEFAULT_METHOD
         return method, checked_options(method, self.options)
 
@@ -253,9 +258,9 @@ def check_project(project: Project) -> None:
     """Refuses a project that cannot be built, before anything is read. Raises InputRefused."""
     if not is_name(project.name):
         raise InputRefused("a project needs a name", file=project.path)
-    if project.units not in METRES:
+    if project.units not in METERS:
         what = f"unknown unit {project.units!r}"
-        raise InputRefused(what, file=project.path, item="units", advice=f"there are {', '.join(METRES)}")
+        raise InputRefused(what, file=project.path, item="units", advice=f"there are {', '.join(METERS)}")
     if not project.rocks:
         raise InputRefused("there is no rock mass", file=project.path, item=f"project '{project.name}'")
     seen: set[str] = set()
@@ -404,6 +409,7 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
             raise refuse(f"'{given[0]}' has no effect, as a mesh is not interpolated", given[0])
         if continues:
             _check_method(surface, refuse)
+            _check_continuation(surface, refuse)
         return
     try:
         if surface.point_file is not None:
@@ -419,6 +425,17 @@ def _check_shape(rock: Rock, surface: Surface, refuse, continues: bool) -> None:
                 "points",
                 f"give the rock mass {'an' if key == 'edge_length' else 'a'} {key}",
             )
+
+
+def _check_continuation(surface: Surface, refuse) -> None:
+    """Refuses options that give a ready mesh no heights where it does not reach its faults."""
+    for option in SURFACE_OPTIONS:
+        if isinstance(surface.options.get(option), str):
+            what = f"'{option}' names a surface; a mesh is continued from its own vertices"
+            raise refuse(what, option, "choose another method, or a number")
+    if surface.options.get("extrapolate") == "none":
+        what = 'extrapolate = "none" gives no heights where the mesh is continued to the faults'
+        raise refuse(what, "extrapolate", 'use "nearest" or "method"')
 
 
 def _check_method(surface: Surface, refuse, no_points: bool = False) -> None:

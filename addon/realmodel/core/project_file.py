@@ -21,7 +21,7 @@ from .schema import BODY, FAULT, MESH_READING, PROJECT, READING, ROCK, SURFACE
 from .setting import Settings
 from .structures.entries import Body, Fault
 from .toml_table import Table, TomlDocument
-from .units import METRES, MODEL_UNIT
+from .units import METERS, MODEL_UNIT
 
 FORMAT = 1
 _BOREHOLES = 'write boreholes = { collars = "collars.csv", picks = "picks.csv" }'
@@ -50,8 +50,8 @@ def load_project(path: str | Path) -> Project:
     faults = [_read_fault(table, path.parent) for table in _optional(top, "fault")]
     bodies = [_read_body(table, path.parent) for table in _optional(top, "body")]
     units = top.text("units") or MODEL_UNIT
-    if units not in METRES:
-        raise top.refuse(f"unknown unit '{units}'", "units", f"there are {', '.join(METRES)}")
+    if units not in METERS:
+        raise top.refuse(f"unknown unit '{units}'", "units", f"there are {', '.join(METERS)}")
     project = Project(name, rocks, library, path, units, faults, bodies)
     check_project(project)
     return project

@@ -148,8 +148,8 @@ def _surface_lines(surface: Surface, shape: tuple[str, str] | None) -> list[str]
     values = {"name": given.name}
     if shape is not None:
         values[shape[0]] = shape[1]
-    if given.interpolated:
-        values |= {"method": given.method, **given.options, "minimum_thickness": given.minimum_thickness}
+    # of a ready mesh the method is that by which it is continued to faults
+    values |= {"method": given.method, **given.options, "minimum_thickness": given.minimum_thickness}
     values |= {
         "rule": given.rule if given.rule != DEFAULT_RULE else None,
         "property": given.property or None,

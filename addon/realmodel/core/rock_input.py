@@ -222,11 +222,10 @@ def _read_surface(
             )
         if surface.mesh is not None:
             mesh = read_mesh(surface.input_file, step)
-            vertices, triangles, faces = mesh.vertices, mesh.triangles, mesh.face_of_triangle
-            plan_scale, height_scale = surface.mesh_file.scale(units)
-            if (plan_scale, height_scale) != (1.0, 1.0):
-                vertices = vertices * (plan_scale, plan_scale, height_scale)
+            triangles, faces = mesh.triangles, mesh.face_of_triangle
+            vertices, told = mesh.in_model(surface.mesh_file, units)
         else:
+            told = []
             vertices, triangles = checked_triangulation(surface.vertices, surface.triangles)
     except InputRefused as error:
         raise error.within(surface_item(rock, surface)) from error
@@ -237,7 +236,7 @@ def _read_surface(
         mesh=None,
         shape_file=shape_file,
     )
-    return surface, (vertices, triangles), faces, []
+    return surface, (vertices, triangles), faces, told
 
 
 def checked_triangulation(vertices, triangles) -> Triangulation:

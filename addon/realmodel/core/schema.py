@@ -8,7 +8,7 @@ from .method_options import OptionRefused
 from .methods import DEFAULT_METHOD, METHODS, OPTIONS
 from .rules import DEFAULT_RULE, RULES
 from .setting import Setting
-from .units import METRES, UNIT_NAMES
+from .units import METERS, UNIT_NAMES
 
 _OTHER = Setting(kind="other")  # with its row in the document alone
 
@@ -28,7 +28,7 @@ def _without(fault):
     return check
 
 
-_UNITS = {"": ("Model Unit", "The unit of the model")} | {unit: (unit, UNIT_NAMES[unit]) for unit in METRES}
+_UNITS = {"": ("Model Unit", "The unit of the model")} | {unit: (unit, UNIT_NAMES[unit]) for unit in METERS}
 
 PROJECT = dict.fromkeys(("format", "name", "units", "library", "rock", "fault", "body"), _OTHER)
 

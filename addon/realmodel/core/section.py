@@ -11,6 +11,7 @@ import numpy as np
 
 from .atomic import Outputs
 from .exporters.sections import section_writer
+from .section_faults import FaultTrace
 
 
 @dataclass(eq=False)
@@ -21,9 +22,10 @@ class Section:
     offsets (K + 1,) int64, polygon_vertices int32. cells: (K, 2) int32, the model's cells below and above
     (inside and outside): the same where a cell is cut, two where the cutter runs between cells, -1 where
     one side is outside of the model. blocks: (K, 2) int32, their blocks. block, property: (K,) int32, the
-    block below, or above where there is none below, and its library id. block_names: (B,) of the model's,
-    from the oldest of each rock mass; block_colors (B, 3), sRGB from 0 to 1. name: of the model; unit: of its
-    lengths. plane: its point and normal, where the cutter is one.
+    block below, or above where there is none below, and its library id; compartment: (K,) int32, its
+    compartment, of compartment_names. block_names: (B,) of the model's, from the oldest of each rock mass;
+    block_colors (B, 3), sRGB from 0 to 1. name: of the model; unit: of its lengths. plane: its point and
+    normal, where the cutter is one. faults: where they are on planes and fences.
     """
 
     vertices: np.ndarray
@@ -38,6 +40,9 @@ class Section:
     name: str = field(kw_only=True)
     unit: str = field(kw_only=True)
     plane: tuple | None = field(default=None, kw_only=True)
+    compartment: np.ndarray = field(kw_only=True)
+    compartment_names: list[str] = field(kw_only=True)
+    faults: list[FaultTrace] = field(default_factory=list, kw_only=True)
 
     def __len__(self) -> int:
         return len(self.block)
@@ -71,11 +76,13 @@ class Section:
     def arrays(self) -> dict[str, np.ndarray]:
         """All arrays by name, as save writes them."""
         names = ("vertices", "offsets", "polygon_vertices", "cells", "blocks", "block", "property")
-        return {name: getattr(self, name) for name in names} | {"block_names": np.array(self.block_names)}
+        arrays = {name: getattr(self, name) for name in (*names, "compartment")}
+        lists = ("block_names", "compartment_names")
+        return arrays | {name: np.array(getattr(self, name)) for name in lists}
 
     def save(self, path: str | Path, exaggeration: float = 1.0) -> None:
-        """Writes the polygons, with block and property, to a .vtu, .obj, .csv or .npz, or a drawing of them
-        to a .svg, .dxf or .png, heights exaggerated. The file appears whole or not at all. Raises
+        """Writes the polygons, with block and property, to a file whose ending says the format, or a drawing
+        of them to a .svg, .dxf or .png, heights exaggerated. The file appears whole or not at all. Raises
         UsageError, OutputFailed."""
         writer = section_writer(path, exaggeration)
         with Outputs() as outputs, outputs.file(path) as file:
@@ -101,10 +108,15 @@ class Fence(Section):
 
     def corner_distances(self) -> np.ndarray:
         """(len(polygon_vertices),) float64: distance along the polyline of each polygon's corners."""
-        steps = np.diff(self.polyline, axis=0)
         panel = np.repeat(self.panel, np.diff(self.offsets))
-        away = self.vertices[self.polygon_vertices, :2] - self.polyline[panel]
-        return self.bends[panel] + (away * steps[panel]).sum(axis=1) / np.hypot(*steps.T)[panel]
+        return self.along_panels(self.vertices[self.polygon_vertices], panel)[:, 0]
+
+    def along_panels(self, points: np.ndarray, panel: np.ndarray) -> np.ndarray:
+        """(N, 2) float64: distance along the polyline and height of points (N, 3) on its panels."""
+        steps = np.diff(self.polyline, axis=0)
+        away = points[:, :2] - self.polyline[panel]
+        along = self.bends[panel] + (away * steps[panel]).sum(axis=1) / np.hypot(*steps.T)[panel]
+        return np.column_stack([along, points[:, 2]])
 
     @property
     def bends(self) -> np.ndarray:

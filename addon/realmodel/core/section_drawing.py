@@ -12,7 +12,7 @@ from .drawing.charts import Axes, legend, legend_size, tick_texts
 from .drawing.drawing import BLACK, Drawing
 from .drawing.glyphs import text_width
 from .errors import UsageError
-from .units import METRES
+from .units import METERS
 
 if TYPE_CHECKING:
     from .section import Section
@@ -22,6 +22,7 @@ _POINT = 0.0254 / 72  # meters
 _PLOT = (560.0, 360.0)  # the most that the section takes of the page, in points
 _LEFT, _BELOW, _ABOVE, _GAP = 62.0, 44.0, 58.0, 16.0  # around it
 _SIZE = 8.0
+_FAULT_WIDTH = 1.4
 _SKY = 0.05  # of the height, left free above vertical sections
 _SAME = 1e9  # of the extent of a section: places nearer than one part are the same
 _LEGEND = "Block"  # what the names in the legend are; views have those of properties
@@ -70,6 +71,7 @@ def draw_section(section: Section, exaggeration: float = 1.0, title: str | None 
         rings = [axes.at(ring) for ring in block_outlines(section, flat, block)]
         color, name = tuple(section.block_colors[block]), section.block_names[block]
         drawing.polygon(rings, color, BLACK, 0.35, layer=name)
+    _draw_faults(drawing, axes, section)
     axes.frame(*_axis_names(section), layer="Axes")
     _ends(drawing, axes, section, flat)
     legend(drawing, _LEFT + width + _GAP, base + height, _LEGEND, entries, _SIZE, layer="Legend")
@@ -90,16 +92,36 @@ def flattened(section: Section) -> np.ndarray:
     Of a fence and a vertical plane the distance from its left end and the elevation, of a level plane x and
     y, of others distances along strike and up dip. Planes are seen from where their normal points.
     """
-    if _is_fence(section):
-        return section.unrolled()
+    return section.unrolled() if _is_fence(section) else _flat(section, section.vertices)
+
+
+def _flat(section: Section, points: np.ndarray) -> np.ndarray:
+    """(N, 2) points (N, 3) on the plane of a section as it is drawn."""
     right, up = _directions(section)
     if right is None:
-        return section.vertices[:, :2]
+        return points[:, :2]
     if is_vertical(section):
-        along = section.vertices @ right
-        return np.column_stack([along - along.min(), section.vertices[:, 2]])
-    flat = (section.vertices - section.plane[0]) @ np.column_stack([right, up])
-    return flat - flat.min(axis=0)
+        return np.column_stack([points @ right - (section.vertices @ right).min(), points[:, 2]])
+    axes = np.column_stack([right, up])
+    return (points - section.plane[0]) @ axes - ((section.vertices - section.plane[0]) @ axes).min(axis=0)
+
+
+def _draw_faults(drawing: Drawing, axes: Axes, section: Section) -> None:
+    """Faults as thick lines, and the name of each at its lower end."""
+    right = axes.box[0] + axes.box[2]
+    for trace in section.faults:
+        points = trace.ends.reshape(-1, 3)
+        if _is_fence(section):
+            flat = section.along_panels(points, np.repeat(trace.panel, 2))
+        else:
+            flat = _flat(section, points)
+        lines = axes.at(flat).reshape(-1, 2, 2)
+        for line in lines:
+            drawing.line(line, BLACK, _FAULT_WIDTH, layer=trace.name)
+        left, low = lines.reshape(-1, 2)[lines.reshape(-1, 2)[:, 1].argmin()].tolist()
+        fits = left + text_width(trace.name, _SIZE) + 8 < right
+        at = left + 4 if fits else left - 4
+        drawing.text(at, low + 4, trace.name, _SIZE, anchor="start" if fits else "end", layer=trace.name)
 
 
 def block_outlines(section: Section, flat: np.ndarray, block: int) -> list[np.ndarray]:
@@ -162,10 +184,10 @@ def _directions(section: Section) -> tuple[np.ndarray | None, np.ndarray | None]
 
 def _scale(extent: np.ndarray, unit: str) -> tuple[float, float]:
     """The ratio N of a scale 1 : N at which the extent fits the page, and points for a unit."""
-    least = float((extent * float(METRES[unit]) / (np.array(_PLOT) * _POINT)).max())
+    least = float((extent * float(METERS[unit]) / (np.array(_PLOT) * _POINT)).max())
     power = 10.0 ** np.floor(np.log10(least))
     ratio = next(f * power for f in (1.0, 2.0, 2.5, 5.0, 10.0) if f * power >= least * (1 - 1e-9))
-    return ratio, float(METRES[unit]) / ratio / _POINT
+    return ratio, float(METERS[unit]) / ratio / _POINT
 
 
 def _subtitle(section: Section, ratio: float, exaggeration: float) -> str:

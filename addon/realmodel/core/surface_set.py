@@ -45,6 +45,11 @@ class SurfaceSet:
         """Vertices (V, 3) float64 and triangles (T, 3) int32 of one surface."""
         return [shape for entry in self.rock_inputs for shape in entry.surfaces][number]
 
+    @property
+    def surface_triangle_sheet(self) -> np.ndarray:
+        """As Model.surface_triangle_sheet."""
+        return triangle_sheets(self.rock_inputs)
+
     def surface_attributes(self, number: int) -> dict[str, np.ndarray]:
         """As Model.surface_attributes."""
         return vertex_attributes(self.rock_inputs, number, self.surface(number)[0])
@@ -55,6 +60,19 @@ class SurfaceSet:
         Raises UsageError for an ending that is not known, OutputFailed where it cannot be written.
         """
         save_surfaces(self, path)
+
+
+def triangle_sheets(inputs: list[RockInput]) -> np.ndarray:
+    """(Ts,) int32: of each triangle of all surfaces the sheet of its surface that it is of, from 0; a surface
+    that no fault displaces has one."""
+    found = [np.zeros(0, np.int64)]
+    for entry in inputs:
+        for number, (_, triangles) in enumerate(entry.surfaces):
+            sizes = [len(triangles)]
+            if entry.structure is not None:
+                sizes = [len(own) for _, own in entry.structure.distinct(number)]
+            found.append(np.repeat(np.arange(len(sizes)), sizes))
+    return np.concatenate(found).astype(np.int32)
 
 
 def vertex_attributes(inputs: list[RockInput], number: int, vertices: np.ndarray) -> dict[str, np.ndarray]:

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 MODEL_UNIT = "m"  # of a project that does not say
 # Metres in each, exactly. Coordinates of old surveys in the United States are in survey feet.
-METRES = {
+METERS = {
     "mm": Fraction(1, 1000),
     "cm": Fraction(1, 100),
     "m": Fraction(1),
@@ -33,12 +33,12 @@ UNIT_NAMES = {
 
 def factor(unit: str | None, model_unit: str = MODEL_UNIT) -> float:
     """What lengths in a unit are multiplied by; 1 where none is given."""
-    return 1.0 if unit is None else float(METRES[unit] / METRES[model_unit])
+    return 1.0 if unit is None else float(METERS[unit] / METERS[model_unit])
 
 
 def length_text(value: float, unit: str) -> str:
     """A length in a unit for a person: "3,430 km"."""
     long = "mi" if unit in ("in", "ft", "us-ft", "yd", "mi") else "km"
-    if value * float(METRES[unit]) >= 10_000.0:
+    if value * float(METERS[unit]) >= 10_000.0:
         value, unit = value * factor(unit, long), long
     return f"{value:,.0f} {unit}" if value >= 100.0 else f"{value:.3g} {unit}"

@@ -254,19 +254,30 @@ def _wrong_arrays(model) -> list[str]:
 
 def _native_model(model) -> dict:
     """What the native tests take."""
-    bases = [rock.base_elevation for rock in model.project.rocks]
-    oldest = np.cumsum([0, *(len(rock.surfaces) for rock in model.project.rocks)])
-    stands = [
-        bases[block.rock] if block.surface == oldest[block.rock] and bases[block.rock] is not None else np.nan
-        for block in model.blocks
-    ]
     return {
         **{name: getattr(model, name) for name in _DTYPES},
         "block_volume": np.array([block.volume for block in model.blocks], np.float64),
-        "block_base": np.array(stands, np.float64),
+        "block_base": _bases(model),
         "surfaces": len(model.surface_names),
         "cells_are_blocks": model.cell_kind == "blocks",
     }
+
+
+def _bases(model) -> np.ndarray:
+    """(B,) float64 the base elevation that each block may stand on, NaN for none; (0,), not known, where a
+    body stands on several."""
+    bases = [np.nan if rock.base_elevation is None else rock.base_elevation for rock in model.project.rocks]
+    oldest = np.cumsum([0, *(len(rock.surfaces) for rock in model.project.rocks)])
+    found = []
+    for block in model.blocks:
+        rocks = [block.rock] if block.surface == oldest[block.rock] else []
+        if block.surface >= oldest[-1]:
+            rocks = model.structures.times[block.surface - oldest[-1] - len(model.structures.faults)]
+        stands = {bases[rock] for rock in rocks} - {np.nan}
+        if len(stands) > 1:
+            return np.empty(0)
+        found.append(min(stands, default=np.nan))
+    return np.array(found, np.float64)
 
 
 def _block_of_surface(model) -> np.ndarray:

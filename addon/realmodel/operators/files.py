@@ -4,20 +4,20 @@
 from pathlib import Path
 
 import bpy
-from bpy.props import EnumProperty, StringProperty
+from bpy.props import EnumProperty, FloatVectorProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ..bl import results
 from ..bl.display import shown_models
 from ..core import UsageError
 from ..core.atomic import Outputs
-from ..core.exporters import save_model
+from ..core.exporters import FORMATS, save_model
 from ..core.exporters.report import write_report
 from .reporting import Reporting, a_model, chosen_path
 
-_MODELS = (
-    ("NPZ", "NumPy (.npz)", "All arrays of the model, for Python"),
-    ("VTU", "VTK Unstructured Grid (.vtu)", "The polyhedral cells, for ParaView and simulation"),
+_MODELS = tuple(
+    (known.ending[1:].upper(), f"{known.label} ({known.ending})", known.description)
+    for known in FORMATS.values()
 )
 _REPORTS = (
     ("JSON", "Report (.json)", "Volumes, settings, warnings, and the proof of the model"),
@@ -33,6 +33,10 @@ SECTIONS = (
     *DRAWINGS,
     ("VTU", "VTK Unstructured Grid (.vtu)", "Polygons that know their block, for ParaView"),
     ("OBJ", "Wavefront OBJ (.obj)", "Polygons, a group for each block"),
+    ("PLY", "PLY (.ply)", "Triangles that know their block"),
+    ("STL", "STL (.stl)", "Triangles, a solid for each block"),
+    ("GLB", "glTF Binary (.glb)", "Triangles in the colors of the properties, for the web"),
+    ("TS", "GOCAD TSurf (.ts)", "Triangles, an object for each block"),
     ("CSV", "Table of Corners (.csv)", "The corners of the polygons"),
     ("NPZ", "NumPy (.npz)", "All arrays of the section, for Python"),
 )
@@ -89,9 +93,18 @@ class REALMODEL_OT_export(Exporting, bpy.types.Operator):
 
     format: format_menu(_MODELS)
     filter_glob: format_filter(_MODELS)
+    cell_size: FloatVectorProperty(
+        name="Cell Size",
+        description="Of regular grids (block models, GeoTIFF, ESRI ASCII), in model units; 0: automatic",
+        size=3,
+        min=0.0,
+        default=(0.0, 0.0, 0.0),
+        subtype="XYZ",
+    )
 
     def write(self, context, path):
-        save_model(shown_models.whole(context.scene), path)
+        size = self.cell_size[:] if any(self.cell_size) else None
+        save_model(shown_models.whole(context.scene), path, cell_size=size)
 
 
 class REALMODEL_OT_report(Exporting, bpy.types.Operator):

@@ -246,9 +246,8 @@ def _read(surface, unit):
     chosen once the surface is there."""
     if surface.source == "MESH_FILE":
         mesh = read_mesh(surface.path)
-        scale = MeshFile(surface.path).scale(unit)
-        surface.places = mesh.vertices * (scale[0], scale[0], scale[1])
-        return []
+        surface.places, told = mesh.in_model(MeshFile(surface.path), unit)
+        return told
     given = PointFile(surface.path, **surface.reading)
     try:
         given.check()

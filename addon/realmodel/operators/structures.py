@@ -25,6 +25,7 @@ from .reporting import (
     selected_meshes,
 )
 from .surfaces import library_items
+from .view import edit_interface
 
 _KINDS = (
     ("AUTO", "By Shape", "A closed mesh is a body, an open one a fault, and so are points"),
@@ -34,9 +35,28 @@ _KINDS = (
 _STICK_ENDINGS = (".pol",)
 
 
+def _surface_of(row):
+    """The object with the shape of a fault or a body; None before there is one."""
+    return row.object if row.source == "MESH_OBJECT" else row.interface
+
+
+def _its_surface(context):
+    item = _surface_of(settings.active_structure(context.scene))
+    there = item is not None and item.name in context.view_layer.objects
+    return None if there else "it has no surface in the scene yet; choose its object, or press Build first"
+
+
 def _is_surface(scene, item):
     """Whether an object is a surface of the model already, or of its structures."""
     return any(item in (row.object, row.interface) for _, row in settings.interface_rows(scene))
+
+
+def _active_in_its_list(scene):
+    """(kind, list, number in it) of the active fault or body."""
+    row = settings.active_structure(scene)
+    kind = settings.kind_of(row)
+    rows = settings.structures_of(scene, kind)
+    return kind, rows, list(rows).index(row)
 
 
 def _add(scene, kind, name, source):
@@ -127,7 +147,9 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
     filename_ext = ""
 
     def invoke(self, context, event):
-        return self.execute(context) if self.empty else ImportHelper.invoke(self, context, event)
+        if self.empty or self._paths():  # with a path, as of a dropped file, no file browser opens
+            return self.execute(context)
+        return ImportHelper.invoke(self, context, event)
 
     def check(self, _context):
         return True
@@ -165,8 +187,8 @@ class REALMODEL_OT_fault_body_add(Reporting, bpy.types.Operator, ImportHelper):
             points, _ = read_fault_points(PointFile(path), None, units)
             whole = points if isinstance(points, np.ndarray) else np.concatenate(points)
             return "fault", "POINTS_FILE", path, whole
-        mesh, scale = read_mesh(path), MeshFile(path).scale(units)
-        vertices = mesh.vertices * (scale[0], scale[0], scale[1])
+        mesh = read_mesh(path)
+        vertices, _ = mesh.in_model(MeshFile(path), units)
         return _kind_of_shape(self.kind, vertices, mesh.triangles), "MESH_FILE", path, vertices
 
 
@@ -178,10 +200,9 @@ class REALMODEL_OT_fault_body_remove(Reporting, bpy.types.Operator):
     needs = (a_structure,)
 
     def act(self, context):
-        scene, row = context.scene, settings.active_structure(context.scene)
-        kind = settings.kind_of(row)
-        rows = settings.structures_of(scene, kind)
-        number = list(rows).index(row)
+        scene = context.scene
+        kind, rows, number = _active_in_its_list(scene)
+        row = rows[number]
         with settings.filling():
             if kind == "body":
                 library_rows.remove_made(scene, row)
@@ -192,6 +213,29 @@ class REALMODEL_OT_fault_body_remove(Reporting, bpy.types.Operator):
             built_scene.release_surface(scene, row)
             rows.remove(number)
             setattr(scene.realmodel, f"active_{kind}", max(0, min(number, len(rows) - 1)))
+        live.touch(scene)
+
+
+class REALMODEL_OT_fault_body_copy(Reporting, bpy.types.Operator):
+    """Add a copy of the active fault or body just below it in the list, from the same source"""
+
+    bl_idname = "realmodel.fault_body_copy"
+    bl_label = "Copy Fault or Body"
+    needs = (a_structure,)
+
+    def act(self, context):
+        scene = context.scene
+        kind, rows, number = _active_in_its_list(scene)
+        row = rows.add()
+        source = rows[number]
+        settings.copy_row(source, row)
+        with settings.filling():
+            row.name = settings.free_name(rows, source.name, own=row)
+            row.interface, row.interface_digest, row.figures = None, "", ""
+            if row.source != "MESH_OBJECT":
+                row.object = None
+            rows.move(len(rows) - 1, number + 1)
+            setattr(scene.realmodel, f"active_{kind}", number + 1)
         live.touch(scene)
 
 
@@ -209,10 +253,8 @@ class REALMODEL_OT_fault_body_move(Reporting, bpy.types.Operator):
     )
 
     def act(self, context):
-        scene, row = context.scene, settings.active_structure(context.scene)
-        kind = settings.kind_of(row)
-        rows = settings.structures_of(scene, kind)
-        number = list(rows).index(row)
+        scene = context.scene
+        kind, rows, number = _active_in_its_list(scene)
         target = number + (-1 if self.direction == "UP" else 1)
         if not 0 <= target < len(rows):
             return {"CANCELLED"}
@@ -220,6 +262,30 @@ class REALMODEL_OT_fault_body_move(Reporting, bpy.types.Operator):
         setattr(scene.realmodel, f"active_{kind}", target)
         live.touch(scene)
         return {"FINISHED"}
+
+
+class REALMODEL_OT_fault_body_hide(Reporting, bpy.types.Operator):
+    """Hide the surface of the active fault or body in the viewport, or show it again; it is built all the
+    same"""
+
+    bl_idname = "realmodel.fault_body_hide"
+    bl_label = "Hide or Show Fault or Body"
+    needs = (a_structure,)
+
+    def act(self, context):
+        row = settings.active_structure(context.scene)
+        row.hide = not row.hide
+
+
+class REALMODEL_OT_fault_body_edit(Reporting, bpy.types.Operator):
+    """Edit the surface of the active fault or body: show the blocks with it and enter Edit Mode"""
+
+    bl_idname = "realmodel.fault_body_edit"
+    bl_label = "Edit Fault or Body"
+    needs = (a_structure, _its_surface)
+
+    def act(self, context):
+        edit_interface(context, _surface_of(settings.active_structure(context.scene)))
 
 
 class REALMODEL_OT_body_property(Reporting, bpy.types.Operator):
@@ -274,8 +340,28 @@ CLASSES = (
     REALMODEL_OT_fault_body_from_selected,
     REALMODEL_OT_fault_body_add,
     REALMODEL_OT_fault_body_remove,
+    REALMODEL_OT_fault_body_copy,
     REALMODEL_OT_fault_body_move,
+    REALMODEL_OT_fault_body_hide,
+    REALMODEL_OT_fault_body_edit,
     REALMODEL_OT_body_property,
     REALMODEL_OT_fault_list_add,
     REALMODEL_OT_fault_list_remove,
 )
+
+
+if hasattr(bpy.types, "FileHandler"):  # from Blender 4.1 on
+
+    class REALMODEL_FH_faults_and_bodies(bpy.types.FileHandler):
+        """Meshes and fault sticks that are dropped into the viewport become faults and bodies"""
+
+        bl_idname = "REALMODEL_FH_faults_and_bodies"
+        bl_label = "RealModel faults and bodies"
+        bl_import_operator = "realmodel.fault_body_add"
+        bl_file_extensions = ";".join((*MESH_ENDINGS, *_STICK_ENDINGS))
+
+        @classmethod
+        def poll_drop(cls, context):
+            return context.area is not None and context.area.type == "VIEW_3D"
+
+    CLASSES = (*CLASSES, REALMODEL_FH_faults_and_bodies)

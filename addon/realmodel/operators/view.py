@@ -183,14 +183,18 @@ class REALMODEL_OT_edit_surface(Reporting, bpy.types.Operator):
     needs = (a_surface, an_interface)
 
     def act(self, context):
-        item = settings.active_surface(context.scene).interface
-        if context.mode != "OBJECT":
-            bpy.ops.object.mode_set(mode="OBJECT")
-        context.scene.realmodel.display = "BLOCKS"
-        visible.show(context.scene, item, True)
-        visible.select_alone(context, item)
-        bpy.ops.object.mode_set(mode="EDIT")
-        display.mode_changed(context.scene)
+        edit_interface(context, settings.active_surface(context.scene).interface)
+
+
+def edit_interface(context, item):
+    """Enters Edit Mode of an interface, with the blocks in view."""
+    if context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    context.scene.realmodel.display = "BLOCKS"
+    visible.show(context.scene, item, True)
+    visible.select_alone(context, item)
+    bpy.ops.object.mode_set(mode="EDIT")
+    display.mode_changed(context.scene)
 
 
 class REALMODEL_OT_edit_done(Reporting, bpy.types.Operator):

@@ -30,16 +30,21 @@ class REALMODEL_UL_rocks(bpy.types.UIList):
         count.label(text=str(len(item.surfaces)))
 
 
+def draw_swatch(row, context, item):
+    """The color of the property of a surface or a body."""
+    entry = library_rows.find(context.scene, item.property_id)
+    if entry is not None:
+        swatch = row.row()
+        swatch.scale_x = 0.3
+        swatch.prop(entry, "color", text="")
+
+
 class REALMODEL_UL_surfaces(YoungestOnTop, bpy.types.UIList):
     """Surfaces, the youngest on top, as in the field."""
 
     def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_name):
         row = layout.row(align=True)
-        entry = library_rows.find(context.scene, item.property_id)
-        if entry is not None:
-            swatch = row.row()
-            swatch.scale_x = 0.3
-            swatch.prop(entry, "color", text="")
+        draw_swatch(row, context, item)
         row.prop(item, "name", text="", emboss=False)
         if item.rule != "erosional":
             row.label(text=item.bl_rna.properties["rule"].enum_items[item.rule].name)

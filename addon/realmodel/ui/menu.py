@@ -10,7 +10,7 @@ from ..bl.boolean_job import OPERATIONS
 _SURFACE_OF_OBJECT = ("surface_add", "Surface from Active Object", {"use_object": True})
 _EXPORT = (
     ("save_project", "RealModel Project (.toml)", {}),
-    ("export", "RealModel Model (.npz/.vtu)", {}),
+    ("export", "RealModel Model (cells, meshes, shapes)", {}),
     ("report", "RealModel Report (.json/.csv)", {}),
 )
 _IMPORT = (
@@ -44,6 +44,7 @@ class REALMODEL_MT_add(_Menu, bpy.types.Menu):
         yield "rock_add", "Rock Mass", {}
         yield "surface_add", "Surfaces from Files...", {}
         yield _SURFACE_OF_OBJECT
+        yield "fault_body_add", "Faults and Bodies from Files...", {}
         yield "boreholes_read", "Boreholes from File...", {}
         yield "region_around", None, {}
         yield None
@@ -69,6 +70,7 @@ class REALMODEL_MT_object(_Menu, bpy.types.Menu):
         yield "size_add", "Refinement at Active Object", {}
         yield None
         yield "edit_surface", "Edit Active Surface", {}
+        yield "fault_body_edit", "Edit Active Fault or Body", {}
         yield "assign_property", "Assign Active Property", {}
         yield None
         for operation, name, *_ in OPERATIONS:
@@ -90,6 +92,7 @@ class REALMODEL_MT_view(_Menu, bpy.types.Menu):
         yield "section_flip", None, {}
         yield "section_remove", None, {}
         yield "surface_hide", "Hide or Show Active Surface", {}
+        yield "fault_body_hide", "Hide or Show Active Fault or Body", {}
         yield "hide_property", "Show Blocks of All Properties", {"action": "ALL"}
         yield None
         yield "coordinates", None, {}

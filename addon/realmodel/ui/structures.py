@@ -6,8 +6,9 @@ import bpy
 from ..bl import settings
 from ..core.schema import BODY, FAULT, MESH_READING, READING
 from . import setting_rows
+from .lists import draw_swatch
 from .panel import OfAModel, TabPanel, file_field, hint
-from .surfaces import draw_filters, draw_property
+from .surfaces import draw_figures, draw_filters, draw_property
 
 _EMPTY = {
     "FAULT": "Faults displace the layers. Select open meshes, or import meshes or fault sticks.",
@@ -30,10 +31,12 @@ class REALMODEL_PT_structures(OfAModel, TabPanel, bpy.types.Panel):
         rows, name = ("faults", "faults") if kind == "FAULT" else ("bodies", "bodies")
         row = layout.row()
         active = f"active_{kind.lower()}"
-        row.template_list("REALMODEL_UL_structures", name, group, rows, group, active, rows=3)
+        row.template_list("REALMODEL_UL_structures", name, group, rows, group, active, rows=4)
         buttons = row.column(align=True)
         buttons.operator("realmodel.fault_body_add", text="", icon="ADD").empty = True
         buttons.operator("realmodel.fault_body_remove", text="", icon="REMOVE")
+        buttons.operator("realmodel.fault_body_copy", text="", icon="DUPLICATE")
+        buttons.separator()
         buttons.operator("realmodel.fault_body_move", text="", icon="TRIA_UP").direction = "UP"
         buttons.operator("realmodel.fault_body_move", text="", icon="TRIA_DOWN").direction = "DOWN"
         entry = settings.active_structure(context.scene)
@@ -56,6 +59,12 @@ class REALMODEL_PT_structures(OfAModel, TabPanel, bpy.types.Panel):
             _draw_fault(layout, entry)
         else:
             _draw_body(layout, context, entry)
+        if context.mode == "EDIT_MESH":
+            layout.operator("realmodel.edit_done", icon="CHECKMARK")
+        else:
+            text = "Edit Fault" if kind == "FAULT" else "Edit Body"
+            layout.operator("realmodel.fault_body_edit", text=text, icon="EDITMODE_HLT")
+        draw_figures(layout, context, entry)
 
 
 def _draw_fault(layout, fault):
@@ -115,8 +124,10 @@ class REALMODEL_PT_structure_reading(TabPanel, bpy.types.Panel):
 class REALMODEL_UL_structures(bpy.types.UIList):
     """Faults, or bodies."""
 
-    def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_name):
+    def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_name):
         row = layout.row(align=True)
+        if settings.kind_of(item) == "body" and not item.void:
+            draw_swatch(row, context, item)
         row.prop(item, "name", text="", emboss=False)
         said = row.row()
         said.alignment = "RIGHT"

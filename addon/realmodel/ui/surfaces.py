@@ -60,10 +60,16 @@ def _draw_surface(layout, context, surface):
     if surface.source not in method_settings.READY_MESHES:
         layout.prop(surface, "method")
         setting_rows.draw(layout, surface, "minimum_thickness", SURFACE)
+    elif len(context.scene.realmodel.faults):
+        line = layout.row(heading="Continue By")
+        line.prop(surface, "use_continuation", text="")
+        field = line.row()
+        field.active = surface.use_continuation
+        field.prop(surface, "method", text="")
     layout.prop(surface, "rule")
     draw_property(layout, context, surface, "realmodel.surface_property")
     layout.prop(surface, "block")
-    _draw_figures(layout, context, surface)
+    draw_figures(layout, context, surface)
 
 
 def draw_property(layout, context, row, operator):
@@ -77,7 +83,7 @@ def draw_property(layout, context, row, operator):
     split.operator_menu_enum(operator, "property_id", text=known)
 
 
-def _draw_figures(layout, context, surface):
+def draw_figures(layout, context, surface):
     figures = surface_figures.read(surface)
     if figures is None:
         return
@@ -95,6 +101,8 @@ def _figures(scene, figures):
     yield f"Elevation {low} to {high}"
     if figures.get("deviation"):
         yield f"Standard deviation up to {units.length_text(scene, figures['deviation'])}"
+    if figures["area"] is None:
+        return
     if figures["area"] > 0.0:
         share = "" if figures["share"] is None else f" ({100 * figures['share']:.0f} %)"
         yield f"Survives over {units.area_text(scene, figures['area'])}{share}"
@@ -120,7 +128,7 @@ class _OfTheMethod(_OfASurface):
 
     @classmethod
     def shown(cls, surface):
-        return surface.source not in method_settings.READY_MESHES and any(cls.options(surface))
+        return method_settings.has_method(surface) and any(cls.options(surface))
 
     @classmethod
     def options(cls, surface):

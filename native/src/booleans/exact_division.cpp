@@ -7,8 +7,8 @@
 
 #include "base/key_table.hpp"
 #include "base/parallel.hpp"
+#include "base/parallel_sort.hpp"
 #include "cutting/triangulate.hpp"
-#include "exact/sign_filters.hpp"
 #include "exact/space_predicates.hpp"
 
 namespace realmodel::booleans {
@@ -77,25 +77,18 @@ ExactDivision::ExactDivision(Pieces& pieces, std::vector<PieceId>&& chosen, int 
     find_meetings();
 }
 
-/// False where filters in doubles can tell that two pieces meet in what they share only.
-bool ExactDivision::may_meet(const Corners& a, const Corners& b) const {
-    const std::size_t shared = shared_corners(a, b);
-    if (shared == 3) return false;
-    // whether all corners that are not shared are known to be on one side, of one plane or the
-    // other
-    const auto is_aside = [&](const Corners& own, const Corners& plane) {
-        int side = 0;
-        for (const SpacePointId p : own) {
-            if (p == plane[0] || p == plane[1] || p == plane[2]) continue;
-            const auto found = exact::orient3d_filter(
-                pieces_.points.rounded(plane[0]), pieces_.points.rounded(plane[1]),
-                pieces_.points.rounded(plane[2]), pieces_.points.rounded(p));
-            if (!found || (side != 0 && *found != side)) return false;
-            side = *found;
-        }
-        return true;
-    };
-    return !is_aside(a, b) && !is_aside(b, a);
+/// Whether a filter in doubles can tell that the corners that a piece does not share with another
+/// one are on one side of the plane of that: then the two meet in what they share only.
+bool ExactDivision::is_aside(const Corners& own, const Corners& other,
+                             const exact::SideFilter& plane_of_other) const {
+    int side = 0;
+    for (const SpacePointId p : own) {
+        if (p == other[0] || p == other[1] || p == other[2]) continue;
+        const auto found = plane_of_other(pieces_.points.rounded(p));
+        if (!found || (side != 0 && *found != side)) return false;
+        side = *found;
+    }
+    return true;
 }
 
 void ExactDivision::find_candidates() {
@@ -106,28 +99,37 @@ void ExactDivision::find_candidates() {
             boxes[i] = pieces_.box(pieces_[chosen_[i]].corners);
     });
     // the tree of the inputs is that of their pieces, as long as none is divided
-    const bool all = count == pieces_.input_count();
+    const bool all = pieces_.are_whole() && count == pieces_.input_count();
     const std::optional<BoxTree> own =
         all ? std::nullopt : std::optional<BoxTree>(std::in_place, boxes);
     const BoxTree& tree = own ? *own : pieces_.tree();
-    std::vector<std::vector<std::array<std::int32_t, 2>>> found((count + kChunk - 1) / kChunk);
-    parallel_ranges(count, kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
-        auto& pairs = found[begin / kChunk];
-        for (std::size_t i = begin; i < end; ++i) {
-            const Piece& piece = pieces_[chosen_[i]];
-            if (!piece.is_fresh || has_equal_corners(piece.corners)) continue;
-            const std::size_t first = pairs.size();
-            tree.find(boxes[i], [&](std::int32_t j) {
-                const Piece& other = pieces_[chosen_[index(j)]];
-                if (other.is_fresh && j <= static_cast<std::int32_t>(i)) return;
-                if (!has_equal_corners(other.corners) && may_meet(piece.corners, other.corners))
-                    pairs.push_back({static_cast<std::int32_t>(i), j});
+    std::vector<std::vector<std::array<std::int32_t, 2>>> found((tree.leaf_count() + kChunk - 1) /
+                                                                kChunk);
+    const auto filter_of = [&](const Corners& c) {
+        return exact::SideFilter(pieces_.points.rounded(c[0]), pieces_.points.rounded(c[1]),
+                                 pieces_.points.rounded(c[2]));
+    };
+    parallel_ranges(
+        tree.leaf_count(), kChunk, threads_, progress_, [&](std::size_t begin, std::size_t end) {
+            auto& pairs = found[begin / kChunk];
+            std::int32_t last = -1;  // the pairs of a piece follow one another
+            std::optional<exact::SideFilter> plane;
+            tree.find_pairs(begin, end, [&](std::int32_t i, std::int32_t j) {
+                const Piece &one = pieces_[chosen_[index(i)]], &other = pieces_[chosen_[index(j)]];
+                const Corners &a = one.corners, &b = other.corners;
+                if (!(one.is_fresh || other.is_fresh) || has_equal_corners(a) ||
+                    has_equal_corners(b) || shared_corners(a, b) == 3)
+                    return;
+                if (i != last) plane.emplace(filter_of(a));
+                last = i;
+                if (is_aside(b, a, *plane) || is_aside(a, b, filter_of(b))) return;
+                const bool in_order = one.is_fresh && other.is_fresh ? i < j : one.is_fresh;
+                pairs.push_back(in_order ? std::array{i, j} : std::array{j, i});
             });
-            std::sort(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end());
-        }
-    });
+        });
     for (const auto& pairs : found)
         candidates_.insert(candidates_.end(), pairs.begin(), pairs.end());
+    parallel_sort(candidates_, std::less<>(), threads_, progress_);
 }
 
 void ExactDivision::find_meetings() {

@@ -7,6 +7,7 @@
 
 #include "arrangement/triangle_arrangement.hpp"
 #include "booleans/pieces.hpp"
+#include "exact/sign_filters.hpp"
 
 namespace realmodel::booleans {
 
@@ -30,7 +31,8 @@ public:
 
 private:
     void find_candidates();
-    bool may_meet(const Corners& a, const Corners& b) const;
+    bool is_aside(const Corners& own, const Corners& other,
+                  const exact::SideFilter& plane_of_other) const;
     void find_meetings();
     bool is_contact(const Meeting& met) const;
     bool meet_in_plane(std::int32_t one, std::int32_t other) const;

@@ -61,12 +61,15 @@ private:
             result_.of_edge[index(edge)] = number;
             const auto& ends = mesh_.edges[index(edge)];
             at = ends[0] == at ? ends[1] : ends[0];
-            if (at == start) {
-                loop.kind = degree(at) == 2 ? LoopKind::kHardClosed : LoopKind::kSoftClosed;
+            if (at == start && degree(at) == 2) {
+                loop.kind = LoopKind::kHardClosed;
                 break;
             }
             loop.vertices.push_back(at);
-            if (degree(at) != 2) break;
+            if (degree(at) != 2) {
+                if (degree(start) > 2 && degree(at) > 2) loop.kind = LoopKind::kSoftClosed;
+                break;
+            }
             const auto first = first_of(at);
             edge = first->second == edge ? std::next(first)->second : first->second;
         }

@@ -35,6 +35,8 @@ public:
     SpacePoints points;
 
     std::size_t input_count() const { return whole_.size(); }
+    /// Whether none has been divided.
+    bool are_whole() const { return lists_.empty(); }
     std::uint8_t source(std::int32_t input) const { return index(input) < second_ ? 0 : 1; }
     /// The row of a triangle in its surface.
     std::int32_t row(std::int32_t input) const {

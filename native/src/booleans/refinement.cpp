@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "base/parallel.hpp"
@@ -146,11 +147,12 @@ void Refiner::find_fresh(const std::vector<std::int32_t>& among) {
 bool Refiner::round() {
     drop_flat();
     auto near = pieces_near_fresh();
-    std::vector<std::int32_t> touched = fresh_;
-    for (const PieceId& id : near)
-        touched.push_back(id.input);
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    std::vector<std::int32_t> inputs, touched;
+    for (const PieceId& id : near) {
+        if (inputs.empty() || inputs.back() != id.input) inputs.push_back(id.input);
+    }
+    std::set_union(fresh_.begin(), fresh_.end(), inputs.begin(), inputs.end(),
+                   std::back_inserter(touched));
     ExactDivision division(pieces_, std::move(near), threads_, progress_);
     const auto& meetings = division.meetings();
     for (const std::int32_t input : fresh_) {

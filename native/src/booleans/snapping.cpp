@@ -210,24 +210,32 @@ bool Snapping::is_between(SpacePointId p, const Edge& edge) const {
     return std::min(from, to) < x && x < std::max(from, to);
 }
 
+bool Snapping::is_near_edge(SpacePointId p, const Edge& edge, double within) const {
+    if (p == edge[0] || p == edge[1] || !is_between(p, edge)) return false;
+    const Position &at = pieces_.points.rounded(p), &a = pieces_.points.rounded(edge[0]),
+                   &b = pieces_.points.rounded(edge[1]);
+    const Position line = minus(b, a);
+    const double share = std::clamp(dot(minus(at, a), line) / dot(line, line), 0.0, 1.0);
+    return length(minus(at, along(a, b, share))) <= within;
+}
+
 /// Whether a vertex is near edges of a triangle, which then get it.
 bool Snapping::find_near_edges(SpacePointId p, const Corners& t, double within) {
     bool found = false;
-    const Position& at = pieces_.points.rounded(p);
     for (const Edge& edge : edges_of(t)) {
-        if (p == edge[0] || p == edge[1] || !is_between(p, edge)) continue;
-        const Position &a = pieces_.points.rounded(edge[0]), &b = pieces_.points.rounded(edge[1]);
-        const Position line = minus(b, a);
-        const double share = std::clamp(dot(minus(at, a), line) / dot(line, line), 0.0, 1.0);
-        if (length(minus(at, along(a, b, share))) > within) continue;
+        if (!is_near_edge(p, edge, within)) continue;
         on_edges_[edge].push_back(p);
         found = true;
     }
     return found;
 }
 
-/// Two edges that pass each other get a common vertex.
+/// Two edges that pass each other get a common vertex, unless the end of one is near the other:
+/// then that gets this end, and a new vertex would only make more edges that are nearly parallel.
 void Snapping::find_crossing(const Edge& e, const Edge& f, double within, bool& found) {
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (is_near_edge(e[k], f, within) || is_near_edge(f[k], e, within)) return;
+    }
     const auto& points = pieces_.points;
     const Position &a = points.rounded(e[0]), &b = points.rounded(e[1]), &c = points.rounded(f[0]),
                    &d = points.rounded(f[1]);
@@ -327,7 +335,8 @@ bool Snapping::find_near(const FacetPair& pair) {
     for (const Edge& e : edges_of(pair[0])) {
         for (const Edge& f : edges_of(pair[1])) {
             if (e[0] == f[0] || e[0] == f[1] || e[1] == f[0] || e[1] == f[1]) continue;
-            find_crossing(e, f, within, found);
+            // one place for two edges, whichever triangles they are of
+            find_crossing(std::min(e, f), std::max(e, f), within, found);
         }
     }
     found = found || at_edges;

@@ -51,6 +51,7 @@ private:
     bool find_merges(const FacetPair& pair);
     void merge_vertices();
     bool find_near(const FacetPair& pair);
+    bool is_near_edge(SpacePointId p, const Edge& edge, double within) const;
     bool find_near_edges(SpacePointId p, const Corners& t, double within);
     void find_crossing(const Edge& e, const Edge& f, double within, bool& found);
     SpacePointId vertex_near(const exact::SpacePosition& at, double within);

@@ -8,7 +8,7 @@
 
 namespace realmodel::cutting {
 
-Position free_position_beside(const Position& p, Freedom freedom, std::set<Position>& taken) {
+Position free_position_beside(const Position& p, Freedom freedom, Positions& taken) {
     constexpr int kUpright = 4;  // units up or down that are tried before a point is moved aside
     for (int reach = 1;; ++reach) {
         const int aside = freedom == Freedom::kUpright && reach <= kUpright ? 0 : reach;

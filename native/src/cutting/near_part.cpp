@@ -8,99 +8,56 @@
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "base/ulp.hpp"
-#include "cutting/nearest_side.hpp"
-#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
 
-using spatial::Box;
-using spatial::BoxTree;
-
-namespace {
-
-Position corner(const CutterSurface& surface, std::int32_t triangle, std::size_t i) {
-    return surface.vertices[index(surface.triangles[index(triangle)][i])];
-}
-
-/// Whether the plane of a triangle may pass through a box.
-bool plane_meets(const CutterSurface& surface, std::int32_t triangle, const Box& box) {
-    constexpr double kRounding = 0x1p-40;
-    const Position a = corner(surface, triangle, 0);
-    const Position normal =
-        polygon_normal(std::array{a, corner(surface, triangle, 1), corner(surface, triangle, 2)});
-    double distance = 0, reach = 0, size = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const double off = (box.low[k] + box.high[k]) / 2 - a[k];
-        distance += normal[k] * off;
-        reach += std::abs(normal[k]) * (box.high[k] - box.low[k]) / 2;
-        size += std::abs(normal[k] * off);
-    }
-    return std::abs(distance) <= reach + kRounding * size;
-}
-
-}  // namespace
-
-std::vector<std::uint8_t> cells_near(const ComplexView& model, const CutterSurface& surface,
-                                     int threads, const Progress* progress) {
-    double margin = rounding_of(surface.vertices);
+CellBoxes::CellBoxes(const ComplexView& model, const Progress* progress)
+    : boxes(model.cell_count()), vertex(model.cell_count(), -1) {
+    double largest = 0;
     for (const double x : model.vertices)
-        margin = std::max(margin, 4 * kComputedUlps * ulp(x));
-    margin *= 16;
-    std::vector<Box> cells(model.cell_count());
+        largest = std::max(largest, std::abs(x));
+    rounding = 4 * kComputedUlps * ulp(largest);
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(progress, f);
-        Box box;
+        spatial::Box box;
         for (const NodeId v : model.face(f))
             box.include(model.vertex(v));
         for (std::size_t k = 0; k < 2; ++k) {
-            if (model.cell(f, k) >= 0) cells[index(model.cell(f, k))].include(box);
+            if (model.cell(f, k) < 0) continue;
+            boxes[index(model.cell(f, k))].include(box);
+            vertex[index(model.cell(f, k))] = model.face(f)[0];
         }
     }
-    std::vector<Box> boxes;
-    for (std::int32_t t = 0; index(t) < surface.triangles.size(); ++t) {
-        Box& box = boxes.emplace_back();
-        for (std::size_t i = 0; i < 3; ++i)
-            box.include(corner(surface, t, i));
-        box.widen(margin);
-    }
-    const BoxTree tree(std::move(boxes));
-    std::vector<std::uint8_t> is_near(cells.size(), 0);
-    parallel_ranges(cells.size(), 1 << 12, threads, progress,
+}
+
+std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& surface,
+                                     int threads, const Progress* progress) {
+    const double margin = 16 * std::max(rounding_of(surface.surface().vertices), cells.rounding);
+    std::vector<std::uint8_t> is_near(cells.boxes.size(), 0);
+    parallel_ranges(is_near.size(), 1 << 12, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t c = begin; c < end; ++c) {
-                            Box box = cells[c];
-                            box.widen(margin);
-                            tree.find(box, [&](std::int32_t t) {
-                                if (is_near[c] == 0 && plane_meets(surface, t, box)) is_near[c] = 1;
-                            });
-                        }
+                        for (std::size_t c = begin; c < end; ++c)
+                            is_near[c] = surface.is_near(cells.boxes[c], margin) ? 1 : 0;
                     });
     return is_near;
 }
 
-std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const CutterSurface& surface,
+std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const CellBoxes& cells,
+                                            const NearestSide& surface,
                                             std::span<const std::uint8_t> is_near,
                                             const Progress* progress) {
-    const NearestSide side(surface);
     DisjointSets joined(model.cell_count());
-    std::vector<NodeId> vertex(model.cell_count(), -1);  // one of each cell
     const auto is_far = [&](std::int32_t c) { return c >= 0 && is_near[index(c)] == 0; };
     for (std::size_t f = 0; f < model.face_count(); ++f) {
         poll(progress, f);
-        for (std::size_t k = 0; k < 2; ++k) {
-            if (model.cell(f, k) >= 0) vertex[index(model.cell(f, k))] = model.face(f)[0];
-        }
         if (is_far(model.cell(f, 0)) && is_far(model.cell(f, 1)))
             joined.join(model.cell(f, 0), model.cell(f, 1));
     }
     std::vector<std::int8_t> sides(model.cell_count(), kOn), known(model.cell_count(), kOn);
     for (std::int32_t c = 0; index(c) < sides.size(); ++c) {
-        if (!is_far(c) || vertex[index(c)] < 0) continue;
+        if (!is_far(c) || cells.vertex[index(c)] < 0) continue;
         auto& own = known[index(joined.find(c))];
-        if (own == kOn) {
-            const Position p = model.vertex(vertex[index(c)]);
-            own = surface.is_closed ? side.within(p) : side(p);
-        }
+        if (own == kOn) own = surface.side(model.vertex(cells.vertex[index(c)]));
         sides[index(c)] = own;
     }
     return sides;

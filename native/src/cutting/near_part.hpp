@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "cutting/cutter_surface.hpp"
+#include "cutting/nearest_side.hpp"
 #include "cutting/pieces.hpp"
 #include "realmodel/complex.hpp"
 
@@ -40,14 +40,24 @@ private:
     std::vector<std::int32_t> beyond_;
 };
 
+/// Where the cells of a model are.
+struct CellBoxes {
+    explicit CellBoxes(const ComplexView& model, const Progress* progress = nullptr);
+
+    std::vector<spatial::Box> boxes;
+    std::vector<NodeId> vertex;  ///< one of each cell, -1 of those without faces
+    double rounding = 0;         ///< what its vertices may be off by
+};
+
 /// Of cells: 1 where they come near a surface, farther than SurfaceOverlay takes to be near.
-std::vector<std::uint8_t> cells_near(const ComplexView& model, const CutterSurface& surface,
+std::vector<std::uint8_t> cells_near(const CellBoxes& cells, const NearestSide& surface,
                                      int threads, const Progress* progress);
 
 /// Of cells that are not near a surface, the side of it that they are on; kOn of the others. What
 /// is connected beside the surface is on one side.
 /// @param is_near  of cells, not 0: near, or not asked for
-std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const CutterSurface& surface,
+std::vector<std::int8_t> sides_of_far_cells(const ComplexView& model, const CellBoxes& cells,
+                                            const NearestSide& surface,
                                             std::span<const std::uint8_t> is_near,
                                             const Progress* progress);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "exact/sign_filters.hpp"
 #include "exact/space_predicates.hpp"
@@ -52,6 +53,21 @@ std::int8_t side_of(const std::array<Position, 3>& t, const Position& p) {
     return *side < 0 ? kBelow : kAbove;
 }
 
+/// Whether the plane of a triangle may pass through a box.
+bool plane_meets(const std::array<Position, 3>& triangle, const Box& box) {
+    constexpr double kRounding = 0x1p-40;
+    const Position& a = triangle[0];
+    const Position normal = polygon_normal(triangle);
+    double distance = 0, reach = 0, size = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double off = (box.low[k] + box.high[k]) / 2 - a[k];
+        distance += normal[k] * off;
+        reach += std::abs(normal[k]) * (box.high[k] - box.low[k]) / 2;
+        size += std::abs(normal[k] * off);
+    }
+    return std::abs(distance) <= reach + kRounding * size;
+}
+
 std::vector<Box> boxes_of(const CutterSurface& surface) {
     std::vector<Box> boxes;
     for (const auto& t : surface.triangles) {
@@ -65,7 +81,21 @@ std::vector<Box> boxes_of(const CutterSurface& surface) {
 }  // namespace
 
 NearestSide::NearestSide(const CutterSurface& surface)
-    : surface_(surface), tree_(boxes_of(surface)) {}
+    : surface_(surface), tree_(boxes_of(surface)), border_(surface.triangles.size(), 0) {
+    std::map<std::array<NodeId, 2>, std::pair<std::size_t, int>> last;  // user of each edge, count
+    for (std::size_t t = 0; t < border_.size(); ++t) {
+        const auto& own = surface.triangles[t];
+        for (std::size_t i = 0; i < 3; ++i) {
+            auto& [user, count] = last[unordered(own[i], own[(i + 1) % 3])];
+            user = 3 * t + i;
+            ++count;
+        }
+    }
+    for (const auto& [edge, use] : last) {
+        if (use.second == 1)
+            border_[use.first / 3] |= static_cast<std::uint8_t>(1U << (use.first % 3));
+    }
+}
 
 std::array<Position, 3> NearestSide::corners(std::int32_t triangle) const {
     const auto& t = surface_.triangles[index(triangle)];
@@ -73,11 +103,25 @@ std::array<Position, 3> NearestSide::corners(std::int32_t triangle) const {
             surface_.vertices[index(t[2])]};
 }
 
-std::int8_t NearestSide::operator()(const Position& p) const {
+/// Whether a point of a triangle is on one of its border edges, but for rounding.
+bool NearestSide::is_on_border(std::int32_t triangle, const Position& q) const {
+    constexpr double kOnEdge = 1e-12;  // of its squared length: squared distance
+    const auto own = corners(triangle);
+    for (std::size_t i = 0; i < 3; ++i) {
+        if ((border_[index(triangle)] & (1U << i)) == 0) continue;
+        const Position line = minus(own[(i + 1) % 3], own[i]), off = minus(q, own[i]);
+        const double square = dot(line, line), share = dot(off, line) / square;
+        if (dot(off, off) - share * share * square <= kOnEdge * square) return true;
+    }
+    return false;
+}
+
+std::int8_t NearestSide::operator()(const Position& p, bool* at_border) const {
     constexpr double kAlike = 1e-9;  // squared distances that differ by less count as equal
     struct Near {
         double distance, square;
         std::int32_t triangle;
+        Position at;
     };
     std::vector<Near> near;
     double least = HUGE_VAL;
@@ -85,24 +129,33 @@ std::int8_t NearestSide::operator()(const Position& p) const {
         p, [&least] { return least * (1 + kAlike); },
         [&](std::int32_t t) {
             const auto own = corners(t);
-            const Position away = minus(p, nearest_in_triangle(p, own[0], own[1], own[2]));
+            const Position at = nearest_in_triangle(p, own[0], own[1], own[2]);
+            const Position away = minus(p, at);
             const double distance = dot(away, away);
             if (distance > least * (1 + kAlike)) return;
             const Position normal = polygon_normal(own);
             near.push_back(
                 {distance,
-                 std::abs(dot(normal, away)) / std::sqrt(std::max(dot(normal, normal), 1e-300)),
-                 t});
+                 std::abs(dot(normal, away)) / std::sqrt(std::max(dot(normal, normal), 1e-300)), t,
+                 at});
             least = std::min(least, distance);
         });
     const Near* best = nullptr;
     for (const Near& one : near) {
         if (one.distance > least * (1 + kAlike)) continue;
+        if (at_border != nullptr && is_on_border(one.triangle, one.at)) *at_border = true;
         if (best == nullptr || one.square > best->square ||
             (one.square == best->square && one.triangle < best->triangle))
             best = &one;
     }
     return best == nullptr ? kAbove : side_of(corners(best->triangle), p);
+}
+
+bool NearestSide::is_near(const Box& box, double margin) const {
+    Box around = box, wide = box;
+    around.widen(margin);
+    wide.widen(2 * margin);
+    return tree_.any(wide, [&](std::int32_t t) { return plane_meets(corners(t), around); });
 }
 
 std::int8_t NearestSide::within(const Position& p) const {

@@ -13,15 +13,26 @@ public:
 
     /// Of any surface: the side of the triangle that is nearest; of several that are, of the one
     /// seen most squarely. Exact with regard to that triangle; on its plane is above.
-    std::int8_t operator()(const Position& p) const;
+    /// @param at_border  set to whether a border edge is nearest, of triangles that share vertices
+    std::int8_t operator()(const Position& p, bool* at_border = nullptr) const;
     /// Of a closed surface: below is inside, where a ray leaves it an odd number of times. Exact.
     std::int8_t within(const Position& p) const;
+    /// One of the two: `within` of a closed surface.
+    std::int8_t side(const Position& p) const {
+        return surface_.is_closed ? within(p) : (*this)(p);
+    }
+    /// Whether a triangle may come as near to a box as `margin`.
+    bool is_near(const spatial::Box& box, double margin) const;
+
+    const CutterSurface& surface() const { return surface_; }
 
 private:
     std::array<Position, 3> corners(std::int32_t triangle) const;
+    bool is_on_border(std::int32_t triangle, const Position& q) const;
 
     const CutterSurface& surface_;
     spatial::BoxTree tree_;
+    std::vector<std::uint8_t> border_;  ///< of triangles: bit i for the edge after corner i
 };
 
 }  // namespace realmodel::cutting

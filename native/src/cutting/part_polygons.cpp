@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "cutting/distinct.hpp"
 #include "cutting/part_rounding.hpp"
 
 namespace realmodel::cutting {
@@ -69,15 +68,7 @@ bool PartRounding::glue(std::span<const std::size_t> equal, std::int8_t half, Pi
 /// between them: they are glued. Where they face the same way, for parts that overlap, one of them
 /// is to be divided.
 void PartRounding::glue_doubled() {
-    std::vector<std::pair<std::vector<NodeId>, std::size_t>> order;  // sorted nodes, piece
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        const auto nodes = pieces_.polygons[p];
-        if (!std::ranges::all_of(nodes, [this](NodeId node) { return is_near_[index(node)] != 0; }))
-            continue;
-        auto& key = order.emplace_back(std::vector<NodeId>(nodes.begin(), nodes.end()), p).first;
-        std::sort(key.begin(), key.end());
-    }
-    std::sort(order.begin(), order.end());
+    const auto order = find_doubled();
     Pieces glued;
     is_doubled_.assign(pieces_.size(), 0);
     bool any = false;

@@ -2,12 +2,12 @@
 #include "cutting/part_rounding.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numeric>
-
-#include "cutting/distinct.hpp"
-#include "spatial/box_tree.hpp"
+#include <set>
+#include <unordered_map>
 
 namespace realmodel::cutting {
 
@@ -73,8 +73,11 @@ void PartRounding::find_pieces_of_parts() {
     on_wall_.assign(nodes, 0);
     is_near_.assign(nodes, 0);
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        const bool changed = std::ranges::any_of(
-            pieces_[p].parts, [this](std::int32_t part) { return part >= 0 && is_changed(part); });
+        // of joined models whole cells, too, get new polygons where they end at a structure
+        const bool changed = (joins_models_ && (pieces_[p].face < 0 || pieces_[p].is_level)) ||
+                             std::ranges::any_of(pieces_[p].parts, [this](std::int32_t part) {
+                                 return part >= 0 && is_changed(part);
+                             });
         if (!changed) continue;
         for (const NodeId node : pieces_.polygons[p])
             is_near_[index(node)] = 1;
@@ -108,19 +111,6 @@ void PartRounding::level_base() {
     }
 }
 
-/// A piece without the nodes that became the one before; empty where it vanishes.
-std::vector<NodeId> PartRounding::contracted(std::size_t piece) const {
-    std::vector<NodeId> loop;
-    for (const NodeId node : pieces_.polygons[piece]) {
-        const NodeId now = becomes_[index(node)];
-        if (loop.empty() || loop.back() != now) loop.push_back(now);
-    }
-    while (loop.size() > 1 && loop.front() == loop.back())
-        loop.pop_back();
-    if (loop.size() < 3) loop.clear();
-    return loop;
-}
-
 namespace {
 
 /// Which way round a loop goes from its least node to its second least.
@@ -131,62 +121,109 @@ int winding_of(std::span<const NodeId> nodes) {
     return nodes[(least + 1) % n] < nodes[(least + n - 1) % n] ? 1 : -1;
 }
 
+/// The same for equal nodes in any order.
+std::uint64_t hash_of(std::span<const NodeId> nodes) {
+    std::uint64_t hash = nodes.size();
+    for (const NodeId node : nodes)
+        hash += KeyTable::hash(std::array{static_cast<std::uint64_t>(node)});
+    return hash;
+}
+
 }  // namespace
 
-/// How often a part uses an edge beyond twice, as contractions leave the polygons around it. None
-/// where a polygon passes a node twice, two are the same, or it has no extent. Where models are
-/// joined, two that are the same and face each other make up for each other.
-std::optional<std::size_t> PartRounding::touches_of(std::int32_t part) const {
-    std::map<std::vector<NodeId>, std::pair<int, std::vector<NodeId>>> faces;  // by sorted nodes
-    for (const std::int32_t own : pieces_of_[index(part)]) {
-        std::vector<NodeId> loop = contracted(index(own));
-        if (loop.empty()) continue;
-        std::vector<NodeId> sorted = loop;
-        std::sort(sorted.begin(), sorted.end());
-        if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) return std::nullopt;
-        const int facing = pieces_[index(own)].parts[0] == part ? 1 : -1;
-        const int winding = facing * winding_of(loop);
-        const auto [known, is_new] = faces.try_emplace(std::move(sorted));
-        if (!is_new && (!joins_models_ || known->second.first + winding != 0)) return std::nullopt;
-        known->second.first += winding;
-        known->second.second = std::move(loop);
+/// Adds a piece's nodes without those that became the one before; none where it vanishes.
+void PartRounding::add_contracted(std::size_t piece, std::vector<NodeId>& nodes) const {
+    const std::size_t begin = nodes.size();
+    for (const NodeId node : pieces_.polygons[piece]) {
+        const NodeId now = becomes_[index(node)];
+        if (nodes.size() == begin || nodes.back() != now) nodes.push_back(now);
     }
-    std::vector<std::array<NodeId, 2>> uses;
-    std::size_t count = 0;
-    Box box;
-    for (const auto& [sorted, face] : faces) {
-        if (face.first == 0) continue;
-        ++count;
-        const std::vector<NodeId>& loop = face.second;
-        for (std::size_t k = 0; k < loop.size(); ++k) {
-            uses.push_back(unordered(loop[k], loop[(k + 1) % loop.size()]));
-            box.include(at(loop[k]));
+    while (nodes.size() > begin + 1 && nodes[begin] == nodes.back())
+        nodes.pop_back();
+    if (nodes.size() < begin + 3) nodes.resize(begin);
+}
+
+/// What some of the polygons of a part are like, as contractions leave them. None where a polygon
+/// passes a node twice, or two are the same. Where models are joined, two that are the same and
+/// face each other make up for each other.
+std::optional<PartRounding::Around> PartRounding::around(std::span<const std::int32_t> pieces,
+                                                         std::int32_t part) const {
+    struct Face {
+        std::uint64_t hash;
+        std::size_t begin, size;
+        int winding;
+    };
+    std::vector<Face> faces;
+    std::vector<NodeId> nodes, sorted;  // of all, the latter of each in order
+    for (const std::int32_t own : pieces) {
+        const std::size_t begin = nodes.size();
+        add_contracted(index(own), nodes);
+        const std::size_t size = nodes.size() - begin;
+        if (size == 0) continue;
+        const std::span loop(nodes.data() + begin, size);
+        sorted.insert(sorted.end(), loop.begin(), loop.end());
+        const auto first = sorted.begin() + static_cast<std::ptrdiff_t>(begin);
+        std::sort(first, sorted.end());
+        if (std::adjacent_find(first, sorted.end()) != sorted.end()) return std::nullopt;
+        const int facing = pieces_[index(own)].parts[0] == part ? 1 : -1;
+        faces.push_back({hash_of(loop), begin, size, facing * winding_of(loop)});
+    }
+    std::ranges::stable_sort(faces, {}, &Face::hash);
+    const auto are_equal = [&sorted](const Face& f, const Face& g) {
+        return std::ranges::equal(std::span(sorted).subspan(f.begin, f.size),
+                                  std::span(sorted).subspan(g.begin, g.size));
+    };
+    std::vector<std::uint8_t> is_repeated(faces.size(), 0);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        for (std::size_t j = i; j-- > 0 && faces[j].hash == faces[i].hash;) {
+            if (is_repeated[j] != 0 || !are_equal(faces[i], faces[j])) continue;
+            if (!joins_models_ || faces[j].winding + faces[i].winding != 0) return std::nullopt;
+            faces[j].winding = 0;
+            is_repeated[i] = 1;
+            break;
         }
     }
-    if (count < 4) return std::nullopt;
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (box.low[k] == box.high[k]) return std::nullopt;
+    Around found;
+    std::vector<std::array<NodeId, 2>> uses;
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        if (is_repeated[i] != 0 || faces[i].winding == 0) continue;
+        ++found.count;
+        const auto loop = std::span(nodes).subspan(faces[i].begin, faces[i].size);
+        for (std::size_t k = 0; k < loop.size(); ++k) {
+            uses.push_back(unordered(loop[k], loop[(k + 1) % loop.size()]));
+            found.box.include(at(loop[k]));
+        }
     }
     std::sort(uses.begin(), uses.end());
-    std::size_t touches = 0;
     for (std::size_t i = 2; i < uses.size(); ++i)
-        touches += uses[i] == uses[i - 2];
-    return touches;
+        found.touches += uses[i] == uses[i - 2];
+    return found;
+}
+
+/// The same of a whole part; none where it has no extent, either.
+std::optional<PartRounding::Around> PartRounding::around(std::int32_t part) const {
+    const auto found = around(pieces_of_[index(part)], part);
+    if (!found || found->count < 4) return std::nullopt;
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (found->box.low[k] == found->box.high[k]) return std::nullopt;
+    }
+    return found;
 }
 
 /// Whether a part would still be closed, with polygons that pass no node twice, none of them twice
 /// there, and an extent.
 bool PartRounding::stays_sound(std::int32_t part) const {
-    const auto touches = touches_of(part);
-    return touches && (*touches == 0 || model_.cell_kind == CellKind::kBlocks ||
-                       touches_[half_cells_[index(part)].side == kAbove ? 1 : 0]);
+    const auto found = around(part);
+    return found && (found->touches == 0 || model_.cell_kind == CellKind::kBlocks ||
+                     touches_[half_cells_[index(part)].side == kAbove ? 1 : 0]);
 }
 
 /// Notes of new nodes that came to lie where a vertex of the model or an earlier new node is that
 /// they become it.
 /// @return these nodes
 std::vector<NodeId> PartRounding::find_contractions() {
-    std::map<Position, NodeId> first_at;  // the model's vertex, or the first new node; -1 neither
+    std::unordered_map<Position, NodeId, PositionHash>
+        first_at;  // the model's vertex, or the first new node; -1 neither
     for (const Position& p : new_positions_)
         first_at.try_emplace(p, -1);
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
@@ -248,100 +285,65 @@ void PartRounding::keep_sound(const std::vector<NodeId>& contracted) {
     }
 }
 
-/// Contracts edges of new nodes that are as short as rounding, one after another, where no part
-/// comes to touch itself for it: what two models have in common was rounded in each by itself.
-bool PartRounding::join_short_edges() {
-    const double allowed = rounding_of(vertices_);
-    std::set<std::array<NodeId, 2>> edges;
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        const std::vector<NodeId> loop = contracted(p);
-        for (std::size_t i = 0; i < loop.size(); ++i) {
-            const auto edge = unordered(loop[i], loop[(i + 1) % loop.size()]);
-            const Position away = minus(at(edge[0]), at(edge[1]));
-            if (is_new(edge[1]) &&
-                std::ranges::all_of(away, [allowed](double x) { return std::abs(x) <= allowed; }))
-                edges.insert(edge);
-        }
-    }
-    if (edges.empty()) return false;
-    std::map<NodeId, std::set<NodeId>> group;  // by the node that they became
-    std::map<NodeId, std::set<std::int32_t>> parts_at;
-    for (const auto& edge : edges) {
-        for (const NodeId node : edge)
-            group[node], parts_at[node];
-    }
-    for (NodeId node = 0; index(node) < becomes_.size(); ++node) {
-        const auto found = group.find(becomes_[index(node)]);
-        if (found != group.end()) found->second.insert(node);
-    }
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        for (const NodeId node : pieces_.polygons[p]) {
-            const auto found = parts_at.find(becomes_[index(node)]);
-            if (found == parts_at.end()) continue;
-            for (const std::int32_t part : pieces_[p].parts) {
-                if (part >= 0) found->second.insert(part);
-            }
-        }
-    }
-    bool any = false;
-    for (const auto& edge : edges) {
-        const NodeId a = becomes_[index(edge[0])], b = becomes_[index(edge[1])];
-        const NodeId from = std::max(a, b), to = std::min(a, b);
-        if (from == to || !is_new(from)) continue;
-        std::map<std::int32_t, std::size_t> before;
-        bool is_known = true;
-        for (const std::int32_t part : parts_at[from]) {
-            const auto touches = touches_of(part);
-            is_known = is_known && touches;
-            before[part] = touches.value_or(0);
-        }
-        for (const NodeId node : group[from])
-            becomes_[index(node)] = to;
-        const bool sound = is_known && std::ranges::all_of(before, [this](const auto& was) {
-                               const auto touches = touches_of(was.first);
-                               return touches && *touches <= was.second;
-                           });
-        if (!sound) {
-            for (const NodeId node : group[from])
-                becomes_[index(node)] = from;
-            continue;
-        }
-        group[to].merge(group[from]);
-        parts_at[to].merge(parts_at[from]);
-        any = true;
-    }
-    return any;
-}
-
 void PartRounding::contract() {
     const std::vector<NodeId> nodes = find_contractions();
-    if (!nodes.empty()) keep_sound(nodes);
-    const bool any_near = joins_models_ && join_short_edges();
-    if (nodes.empty() && !any_near) return;
+    if (!nodes.empty()) {
+        keep_sound(nodes);
+        contract_pieces();
+    }
+    if (joins_models_ && join_short_edges()) contract_pieces();
+}
+
+void PartRounding::contract_pieces() {
     Pieces kept;
+    std::vector<NodeId> loop;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        const std::vector<NodeId> loop = contracted(p);
+        loop.clear();
+        add_contracted(p, loop);
         if (!loop.empty()) kept.add(loop, pieces_[p]);
     }
     pieces_ = std::move(kept);
     find_pieces_of_parts();
 }
 
-/// Of polygons that are the same, those that face each other within one part make up for each
-/// other: what is left is between the others.
-void PartRounding::cancel_doubled() {
-    std::map<std::vector<NodeId>, std::vector<std::size_t>> equal;  // pieces by sorted nodes
+/// Pieces near the cutter with their sorted nodes, in the order of these: among them all that are
+/// equal to others.
+std::vector<std::pair<std::vector<NodeId>, std::size_t>> PartRounding::find_doubled() const {
+    // how many have the same hash, up to 2
+    std::vector<std::uint8_t> count(std::bit_ceil(8 * pieces_.size() + 1), 0);
+    constexpr std::size_t kFar = SIZE_MAX;
+    std::vector<std::size_t> slot(pieces_.size(), kFar);
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const auto nodes = pieces_.polygons[p];
         if (!std::ranges::all_of(nodes, [this](NodeId node) { return is_near_[index(node)] != 0; }))
             continue;
-        std::vector<NodeId> sorted(nodes.begin(), nodes.end());
-        std::sort(sorted.begin(), sorted.end());
-        equal[std::move(sorted)].push_back(p);
+        slot[p] = hash_of(nodes) & (count.size() - 1);
+        auto& own = count[slot[p]];
+        own = static_cast<std::uint8_t>(std::min(own + 1, 2));
     }
+    std::vector<std::pair<std::vector<NodeId>, std::size_t>> found;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        if (slot[p] == kFar || count[slot[p]] < 2) continue;
+        const auto nodes = pieces_.polygons[p];
+        auto& key = found.emplace_back(std::vector<NodeId>(nodes.begin(), nodes.end()), p).first;
+        std::sort(key.begin(), key.end());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+/// Of polygons that are the same, those that face each other within one part make up for each
+/// other: what is left is between the others.
+void PartRounding::cancel_doubled() {
+    const auto order = find_doubled();
     std::vector<std::uint8_t> is_gone(pieces_.size(), 0);
+    bool any = false;
     Pieces fresh;
-    for (const auto& [sorted, same] : equal) {
+    std::vector<std::size_t> same;
+    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+        same.clear();
+        for (; end < order.size() && order[end].first == order[begin].first; ++end)
+            same.push_back(order[end].second);
         if (same.size() < 2) continue;
         std::map<std::int32_t, int> facing;  // of parts: how often a polygon faces away from each
         std::size_t before = 0;
@@ -357,6 +359,7 @@ void PartRounding::cancel_doubled() {
         for (const auto& [part, times] : facing)
             left[times > 0 ? 0 : 1].insert(left[times > 0 ? 0 : 1].end(), std::abs(times), part);
         if (left[0].size() + left[1].size() == before) continue;
+        any = true;
         const Piece first = pieces_[same[0]];
         std::vector<NodeId> nodes(pieces_.polygons[same[0]].begin(),
                                   pieces_.polygons[same[0]].end());
@@ -374,11 +377,13 @@ void PartRounding::cancel_doubled() {
         for (const std::size_t p : same)
             is_gone[p] = 1;
     }
-    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    for (std::size_t p = 0; any && p < pieces_.size(); ++p) {
         if (is_gone[p] == 0) fresh.add(pieces_.polygons[p], pieces_[p]);
     }
-    pieces_ = std::move(fresh);
-    find_pieces_of_parts();
+    if (any) {
+        pieces_ = std::move(fresh);
+        find_pieces_of_parts();
+    }
     drop_hollow();
 }
 

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <optional>
-#include <set>
 #include <span>
 #include <vector>
 
 #include "base/counting_sort.hpp"
+#include "cutting/distinct.hpp"
 #include "cutting/halves.hpp"
+#include "spatial/box_tree.hpp"
 
 namespace realmodel::cutting {
 
@@ -43,9 +44,19 @@ private:
     std::vector<NodeId> find_contractions();
     bool join_short_edges();
     void keep_sound(const std::vector<NodeId>& contracted);
-    std::optional<std::size_t> touches_of(std::int32_t part) const;
+    /// Of polygons of a part: how often they use an edge beyond twice, how many there are, and
+    /// where.
+    struct Around {
+        std::size_t touches = 0, count = 0;
+        spatial::Box box;
+    };
+    std::optional<Around> around(std::span<const std::int32_t> pieces, std::int32_t part) const;
+    std::optional<Around> around(std::int32_t part) const;
     bool stays_sound(std::int32_t part) const;
-    std::vector<NodeId> contracted(std::size_t piece) const;
+    void add_contracted(std::size_t piece, std::vector<NodeId>& nodes) const;
+    void contract_pieces();
+    class ShortEdges;
+    std::vector<std::pair<std::vector<NodeId>, std::size_t>> find_doubled() const;
     void cancel_doubled();
     void set_touching_apart();
     void set_apart();
@@ -76,7 +87,7 @@ private:
     std::vector<std::uint8_t> is_near_;     ///< of nodes: of a part that is less than its cell
     std::vector<std::uint8_t> is_doubled_;  ///< of pieces: another of a half has its nodes
     Buckets<std::int32_t> pieces_of_;       ///< the pieces around each part
-    std::set<Position> taken_;              ///< positions of nodes
+    Positions taken_;                       ///< positions of nodes
 };
 
 }  // namespace realmodel::cutting

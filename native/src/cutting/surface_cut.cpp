@@ -17,8 +17,8 @@ namespace {
 
 /// The cut where only the cells that are near take part; nothing where rounding went beyond them.
 std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface,
-                       std::span<const std::uint8_t> is_near, int threads, Progress* progress) {
-    const auto sides_beside = sides_of_far_cells(model, surface, is_near, progress);
+                       std::span<const std::uint8_t> is_near,
+                       std::span<const std::int8_t> sides_beside, int threads, Progress* progress) {
     const NearPart part(model, is_near);
     const ComplexView near = part.view();
     SurfaceOverlay overlay(near, surface, threads, progress);
@@ -39,10 +39,19 @@ std::optional<Cut> cut(const ComplexView& model, const CutterSurface& surface,
 }
 
 Cut cut(const ComplexView& model, const CutterSurface& surface, int threads, Progress* progress) {
-    std::vector<std::uint8_t> is_near = cells_near(model, surface, threads, progress);
-    if (auto halves = cut(model, surface, is_near, threads, progress)) return *std::move(halves);
+    std::vector<std::uint8_t> is_near;
+    std::vector<std::int8_t> sides;
+    {
+        const CellBoxes cells(model, progress);
+        const NearestSide nearest(surface);
+        is_near = cells_near(cells, nearest, threads, progress);
+        sides = sides_of_far_cells(model, cells, nearest, is_near, progress);
+    }
+    if (auto halves = cut(model, surface, is_near, sides, threads, progress))
+        return *std::move(halves);
     is_near.assign(is_near.size(), 1);
-    return *cut(model, surface, is_near, threads, progress);
+    sides.assign(sides.size(), kOn);
+    return *cut(model, surface, is_near, sides, threads, progress);
 }
 
 bool is_same(const ComplexView& one, const ComplexView& other) {

@@ -32,31 +32,60 @@ public:
             include(p);
     }
 
-    /// Whether all points are given by doubles or constructed of such.
+    /// Whether all points are given in a way that these whole numbers allow for.
     bool are_known() const { return are_known_; }
     Point point(SpacePointId p) const {
         if (const auto* construction = points_.construction(p)) return point(construction->of);
+        if constexpr (std::is_same_v<Integer, mpz_class>) {
+            if (const auto* fractions = points_.fractions(p)) return point(*fractions);
+        }
         return {minus(points_.rounded(p), origin_), Integer(1)};
     }
     Point point(const Intersection& of) const {
         const auto [p, q, a, b, c] = of.of;
+        const bool of_doubles = std::ranges::all_of(
+            of.of, [this](SpacePointId corner) { return points_.is_double(corner); });
+        if (!of_doubles) {
+            const Point o = point(a);
+            const auto u = minus(point(b), o), v = minus(point(c), o);
+            return divided(point(p), point(q), o, cross(u, v));
+        }
         const auto from = [&](SpacePointId end, SpacePointId o) {
             return minus(points_.rounded(end), points_.rounded(o));
         };
-        const auto u = from(b, a), v = from(c, a), start = from(p, a), line = from(q, p);
-        const std::array<Integer, 3> normal{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                                            u[0] * v[1] - u[1] * v[0]};
-        const auto dot = [&normal](const std::array<Integer, 3>& w) -> Integer {
-            return normal[0] * w[0] + normal[1] * w[1] + normal[2] * w[2];
-        };
-        const Integer ratio = dot(start);
+        const auto start = from(p, a), line = from(q, p), normal = cross(from(b, a), from(c, a));
+        const Integer ratio = dot(normal, start);
         Point point;
         point.is_whole = false;
-        point.weight = dot(line);
+        point.weight = dot(normal, line);
         const auto first = minus(points_.rounded(p), origin_);
         for (std::size_t k = 0; k < 3; ++k)
             point.at[k] = first[k] * point.weight - ratio * line[k];
         return point;
+    }
+    /// Where the lines through p and q and through a and b cross, in the view along `axis`.
+    Point crossing(std::size_t axis, SpacePointId p, SpacePointId q, SpacePointId a,
+                   SpacePointId b) const {
+        const std::size_t k = (axis + 1) % 3, l = (axis + 2) % 3;
+        const Point o = point(a);
+        const auto along = minus(point(b), o);
+        std::array<Integer, 3> normal;
+        normal[axis] = 0;
+        normal[k] = -along[l];
+        normal[l] = along[k];
+        return divided(point(p), point(q), o, normal);
+    }
+    /// A point relative to no origin, in units of 1.
+    Point absolute(Point p) const {
+        const bool is_finer = unit_ < 0;
+        const auto size = static_cast<unsigned>(std::abs(unit_));
+        for (std::size_t k = 0; k < 3; ++k) {
+            p.at[k] += whole_number(origin_[k], unit_) * p.weight;
+            if (!is_finer) p.at[k] <<= size;
+        }
+        if (is_finer) p.weight <<= size;
+        p.is_whole = false;
+        return p;
     }
     /// The difference of two points, times both weights.
     static std::array<Integer, 3> minus(const Point& p, const Point& other) {
@@ -93,14 +122,45 @@ public:
     }
 
 private:
+    using Vector = std::array<Integer, 3>;
+
+    static Vector cross(const Vector& u, const Vector& v) {
+        return {Integer(u[1] * v[2] - u[2] * v[1]), Integer(u[2] * v[0] - u[0] * v[2]),
+                Integer(u[0] * v[1] - u[1] * v[0])};
+    }
+    static Integer dot(const Vector& u, const Vector& v) {
+        return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+    }
+    /// Where the line through p and q passes through the plane through o with this normal.
+    static Point divided(const Point& p, const Point& q, const Point& o, const Vector& normal) {
+        const auto line = minus(q, p);
+        const Integer from = dot(normal, minus(p, o)), change = times(dot(normal, line), o);
+        Point point;
+        point.is_whole = false;
+        for (std::size_t k = 0; k < 3; ++k)
+            point.at[k] = p.at[k] * change - from * line[k];
+        point.weight = times(change, p);
+        return point;
+    }
+    Point point(const SpacePoints::Fractions& p) const {
+        Point point;
+        point.is_whole = false;
+        point.weight = p.weight;
+        for (std::size_t k = 0; k < 3; ++k) {
+            point.at[k] = p.at[k] << static_cast<unsigned>(-unit_);
+            point.at[k] -= whole_number(origin_[k], unit_) * p.weight;
+        }
+        return point;
+    }
     void include(SpacePointId p) {
         if (const auto* construction = points_.construction(p)) {
             for (const SpacePointId q : construction->of.of)
                 include(q);
             return;
         }
-        if (!points_.is_double(p)) {
-            are_known_ = false;
+        if (points_.fractions(p) != nullptr) {
+            are_known_ = are_known_ && std::is_same_v<Integer, mpz_class>;
+            unit_ = std::min(unit_, 0);
             return;
         }
         if (!has_origin_) origin_ = points_.rounded(p);
@@ -126,15 +186,14 @@ private:
     int unit_ = 1024;
 };
 
-/// The answer ask(in) of points in whole numbers, short ones first; nothing where a point is given
-/// by rational numbers.
+/// The answer ask(in) of points in whole numbers, short ones first.
 template <class Ask>
 auto by_integers(const SpacePoints& points, std::span<const SpacePointId> asked, const Ask& ask) {
     HomogeneousPoints<Int126> in(points, asked);
-    decltype(ask(in)) answer;
-    if (!in.are_known()) return answer;
-    answer = ask(in);
-    return answer ? answer : ask(HomogeneousPoints<mpz_class>(points, asked));
+    if (in.are_known()) {
+        if (const auto answer = ask(in)) return *answer;
+    }
+    return *ask(HomogeneousPoints<mpz_class>(points, asked));
 }
 
 }  // namespace realmodel::exact

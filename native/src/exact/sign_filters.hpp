@@ -52,33 +52,55 @@ inline std::optional<int> orient2d_filter(const std::array<double, 2>& a,
     return std::nullopt;
 }
 
-/// Which side of the plane of a, b, c has d: 1 where a, b, c turn counter-clockwise seen from d,
-/// -1 the other, nothing where it cannot tell. `off` as in orient2d_filter.
+/// The plane of a, b, c, to ask for the sides of several points.
+class SideFilter {
+public:
+    using Position = std::array<double, 3>;
+
+    SideFilter(const Position& a, const Position& b, const Position& c) : a_(a) {
+        std::array<double, 3> u, v;
+        for (std::size_t k = 0; k < 3; ++k) {
+            u[k] = b[k] - a[k];
+            v[k] = c[k] - a[k];
+            largest_ = std::max({largest_, std::abs(u[k]), std::abs(v[k])});
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+            const double left = u[l] * v[m], right = u[m] * v[l];
+            normal_[k] = left - right;
+            sizes_[k] = std::abs(left) + std::abs(right);
+        }
+    }
+
+    /// Which side of the plane has d: 1 where a, b, c turn counter-clockwise seen from d, -1 the
+    /// other, nothing where it cannot tell. `off` as in orient2d_filter.
+    std::optional<int> operator()(const Position& d, double off = 0) const {
+        double value = 0, size = 0, largest = largest_;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double w = d[k] - a_[k];
+            value += normal_[k] * w;
+            size += sizes_[k] * std::abs(w);
+            largest = std::max(largest, std::abs(w));
+        }
+        const double reach = largest + off;
+        const double error = kRounding3d * size + kInexact3d * off * reach * reach +
+                             kInnerUnderflow * largest + kUnderflow;
+        if (value > error) return 1;
+        if (value < -error) return -1;
+        return std::nullopt;
+    }
+
+private:
+    Position a_, normal_, sizes_;
+    double largest_ = 0;
+};
+
+/// The same for one point.
 inline std::optional<int> orient3d_filter(const std::array<double, 3>& a,
                                           const std::array<double, 3>& b,
                                           const std::array<double, 3>& c,
                                           const std::array<double, 3>& d, double off = 0) {
-    std::array<double, 3> u, v, w;
-    double largest = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        u[k] = b[k] - a[k];
-        v[k] = c[k] - a[k];
-        w[k] = d[k] - a[k];
-        largest = std::max({largest, std::abs(u[k]), std::abs(v[k]), std::abs(w[k])});
-    }
-    double value = 0, size = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
-        const double left = u[l] * v[m], right = u[m] * v[l];
-        value += (left - right) * w[k];
-        size += (std::abs(left) + std::abs(right)) * std::abs(w[k]);
-    }
-    const double reach = largest + off;
-    const double error = kRounding3d * size + kInexact3d * off * reach * reach +
-                         kInnerUnderflow * largest + kUnderflow;
-    if (value > error) return 1;
-    if (value < -error) return -1;
-    return std::nullopt;
+    return SideFilter(a, b, c)(d, off);
 }
 
 }  // namespace realmodel::exact

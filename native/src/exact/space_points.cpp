@@ -8,6 +8,7 @@
 
 #include "base/index.hpp"
 #include "exact/arithmetic.hpp"
+#include "exact/error_bounds.hpp"
 #include "exact/homogeneous_points.hpp"
 #include "exact/space_predicates.hpp"
 
@@ -38,7 +39,7 @@ SpacePointId SpacePoints::enter(const SpacePosition& rounded, Source source) {
     rounded_.pop_back();
     source_.pop_back();
     if (source.kind == Source::Kind::kConstruction) constructions_.pop_back();
-    if (source.kind == Source::Kind::kRational) rationals_.pop_back();
+    if (source.kind == Source::Kind::kFractions) fractions_.pop_back();
     return SpacePointId(found.number);
 }
 
@@ -48,30 +49,68 @@ SpacePointId SpacePoints::add(const SpacePosition& p) {
 }
 
 SpacePointId SpacePoints::add(RationalPoint&& p) {
-    SpacePosition rounded;
-    bool doubles = true;
-    for (std::size_t k = 0; k < 3; ++k) {
-        p[k].canonicalize();
-        rounded[k] = nearest_double(p[k].get_num(), p[k].get_den(), 0);
-        doubles = doubles && mpq_class(rounded[k]) == p[k];
+    Fractions fractions;
+    fractions.weight = 1;
+    for (mpq_class& x : p) {
+        x.canonicalize();
+        fractions.weight = lcm(fractions.weight, x.get_den());
     }
-    if (doubles) return enter(rounded, {});
-    rationals_.push_back(std::move(p));
+    for (std::size_t k = 0; k < 3; ++k)
+        fractions.at[k] = p[k].get_num() * (fractions.weight / p[k].get_den());
+    return enter(std::move(fractions));
+}
+
+/// The number of a point of which `at`, `weight` and `lines` are set.
+SpacePointId SpacePoints::enter(Fractions&& p) {
+    mpz_class common = gcd(p.weight, p.at[0]);
+    for (std::size_t k = 1; k < 3; ++k) {
+        if (common != 1) common = gcd(common, p.at[k]);
+    }
+    if (p.weight < 0) common = -common;
+    p.weight /= common;
+    SpacePosition rounded;
+    bool are_doubles = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        p.at[k] /= common;
+        rounded[k] = nearest_double(p.at[k], p.weight, 0);
+        const mpq_class high(rounded[k]);
+        const mpz_class rest = p.at[k] * high.get_den() - high.get_num() * p.weight;
+        p.interval[k] = DoubleDoubleInterval(rounded[k]);
+        if (rest == 0) continue;
+        are_doubles = false;
+        const double low = nearest_double(rest, p.weight * high.get_den(), 0);
+        p.interval[k] = {rounded[k], low, std::abs(low) * kEpsilon + kDoubleDoubleUnderflow};
+    }
+    if (are_doubles) return enter(rounded, {});
+    fractions_.push_back(std::move(p));
     return enter(rounded,
-                 {Source::Kind::kRational, static_cast<std::int32_t>(rationals_.size()) - 1});
+                 {Source::Kind::kFractions, static_cast<std::int32_t>(fractions_.size()) - 1});
 }
 
 RationalPoint SpacePoints::exact(SpacePointId p) const {
-    const Source& of = source(p);
-    if (of.kind == Source::Kind::kRational) return rationals_[index(of.number)];
-    if (const Construction* own = construction(p)) return rational(own->of);
     const SpacePosition& r = rounded(p);
-    return {mpq_class(r[0]), mpq_class(r[1]), mpq_class(r[2])};
+    if (is_double(p)) return {mpq_class(r[0]), mpq_class(r[1]), mpq_class(r[2])};
+    const HomogeneousPoints<mpz_class> in(*this, std::array{p});
+    const auto found = in.absolute(in.point(p));
+    RationalPoint result;
+    for (std::size_t k = 0; k < 3; ++k) {
+        result[k] = mpq_class(found.at[k], found.weight);
+        result[k].canonicalize();
+    }
+    return result;
+}
+
+std::array<SpacePoints::Line, 2> SpacePoints::lines(SpacePointId p) const {
+    if (const Fractions* own = fractions(p)) return own->lines;
+    const Line none{kNone, kNone};
+    const Construction* own = construction(p);
+    return {own == nullptr ? none : Line{own->of.of[0], own->of.of[1]}, none};
 }
 
 bool SpacePoints::was_constructed_on(SpacePointId p, SpacePointId a, SpacePointId b) const {
-    const Construction* own = construction(p);
-    return own != nullptr && own->of.is_on_line(std::min(a, b), std::max(a, b));
+    const Line line{std::min(a, b), std::max(a, b)};
+    const auto own = lines(p);
+    return own[0] == line || own[1] == line;
 }
 
 SpacePointId SpacePoints::intersection(SpacePointId p, SpacePointId q, SpacePointId a,
@@ -94,20 +133,20 @@ SpacePointId SpacePoints::intersection(SpacePointId p, SpacePointId q, SpacePoin
 SpacePointId SpacePoints::construct(const Intersection& of) {
     const bool of_doubles =
         std::all_of(of.of.begin(), of.of.end(), [this](SpacePointId p) { return is_double(p); });
-    if (!of_doubles) return add(rational(of));
+    if (!of_doubles) return in_fractions(of);
     const auto at = coordinates(of);
     SpacePosition rounded;
     bool may_be_doubles = true;
     for (std::size_t k = 0; k < 3; ++k) {
         const auto x = at[k].rounded();
-        if (!x) return add(rational(of));
+        if (!x) return in_fractions(of);
         rounded[k] = *x + 0.0;
         may_be_doubles = may_be_doubles && at[k].low == 0;
     }
     if (may_be_doubles) {
         const auto are_doubles =
             by_integers(*this, of.of, [&](auto&& in) { return in.is_at(of, rounded); });
-        if (*are_doubles) return enter(rounded, {});
+        if (are_doubles) return enter(rounded, {});
     }
     constructions_.push_back({of, at});
     return enter(rounded, {Source::Kind::kConstruction,
@@ -146,21 +185,21 @@ std::array<DoubleDoubleInterval, 3> SpacePoints::coordinates(const Intersection&
     return result;
 }
 
-RationalPoint SpacePoints::rational(const Intersection& of) const {
-    const auto [p, q, a, b, c] = of.of;
-    const RationalPoint o = exact(a), u = minus(exact(b), o), v = minus(exact(c), o);
-    const RationalPoint from = exact(p), to = exact(q);
-    const mpq_class change = determinant(u, v, minus(to, from));
-    assert(change != 0);
-    return interpolated(from, to, mpq_class(-determinant(u, v, minus(from, o)) / change));
+SpacePointId SpacePoints::in_fractions(const Intersection& of) {
+    const HomogeneousPoints<mpz_class> in(*this, of.of);
+    auto found = in.absolute(in.point(of));
+    const Line line{of.of[0], of.of[1]};
+    return enter({std::move(found.at), std::move(found.weight), {}, {line, Line{kNone, kNone}}});
 }
 
 SpacePointId SpacePoints::intersection(std::size_t axis, SpacePointId p, SpacePointId q,
                                        SpacePointId a, SpacePointId b) {
-    const RationalPoint o = exact(a), u = minus(exact(b), o), from = exact(p), to = exact(q);
-    const mpq_class change = cross(u, minus(to, from), axis);
-    assert(change != 0);
-    return add(interpolated(from, to, mpq_class(-cross(u, minus(from, o), axis) / change)));
+    const HomogeneousPoints<mpz_class> in(*this, std::array{p, q, a, b});
+    auto found = in.absolute(in.crossing(axis, p, q, a, b));
+    return enter({std::move(found.at),
+                  std::move(found.weight),
+                  {},
+                  {Line{std::min(p, q), std::max(p, q)}, Line{std::min(a, b), std::max(a, b)}}});
 }
 
 SpacePointId SpacePoints::projected(std::size_t axis, SpacePointId p, SpacePointId a,

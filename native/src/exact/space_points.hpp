@@ -39,6 +39,17 @@ public:
         std::array<DoubleDoubleInterval, 3> at;
     };
 
+    using Line = std::array<SpacePointId, 2>;
+    /// A point in fractions of one denominator, greater than 0, and its coordinates to twice the
+    /// precision of doubles.
+    struct Fractions {
+        std::array<mpz_class, 3> at;
+        mpz_class weight;
+        std::array<DoubleDoubleInterval, 3> interval;
+        /// Ends of lines that it was constructed on, ascending.
+        std::array<Line, 2> lines{Line{kNone, kNone}, Line{kNone, kNone}};
+    };
+
     /// The number of a point given by finite doubles.
     /// @throws InputError kind too_large, as everything that adds points
     SpacePointId add(const SpacePosition& p);
@@ -66,31 +77,43 @@ public:
     RationalPoint exact(SpacePointId p) const;
     /// Whether the doubles are the point.
     bool is_double(SpacePointId p) const { return source(p).kind == Source::Kind::kDoubles; }
-    /// How the point was constructed; nullptr where it is given by doubles or rational numbers.
+    /// How the point was constructed; nullptr where it is given by doubles or fractions.
     const Construction* construction(SpacePointId p) const {
         const Source& of = source(p);
         return of.kind == Source::Kind::kConstruction ? &constructions_[index(of.number)] : nullptr;
     }
+    /// The fractions that a point is given by; nullptr where it is not.
+    const Fractions* fractions(SpacePointId p) const {
+        const Source& of = source(p);
+        return of.kind == Source::Kind::kFractions ? &fractions_[index(of.number)] : nullptr;
+    }
+    /// The lines that a point was constructed on; kNone for none.
+    std::array<Line, 2> lines(SpacePointId p) const;
     /// Whether a point is known to lie on the line through a and b, as it was constructed there.
     bool was_constructed_on(SpacePointId p, SpacePointId a, SpacePointId b) const;
 
 private:
-    /// What a point is known by: its doubles, one of `constructions_`, or one of `rationals_`.
+    /// What a point is known by: its doubles, one of `constructions_`, or one of `fractions_`.
     struct Source {
-        enum class Kind : std::uint8_t { kDoubles, kConstruction, kRational } kind = Kind::kDoubles;
+        enum class Kind : std::uint8_t {
+            kDoubles,
+            kConstruction,
+            kFractions
+        } kind = Kind::kDoubles;
         std::int32_t number = 0;
     };
 
     const Source& source(SpacePointId p) const { return source_[index(p)]; }
     SpacePointId enter(const SpacePosition& rounded, Source source);
+    SpacePointId enter(Fractions&& p);
     SpacePointId construct(const Intersection& of);
+    SpacePointId in_fractions(const Intersection& of);
     std::array<DoubleDoubleInterval, 3> coordinates(const Intersection& of) const;
-    RationalPoint rational(const Intersection& of) const;
 
     std::vector<SpacePosition> rounded_;
     std::vector<Source> source_;
     std::vector<Construction> constructions_;
-    std::vector<RationalPoint> rationals_;
+    std::vector<Fractions> fractions_;
     KeyTable by_doubles_;       ///< points by their doubles
     KeyTable by_intersection_;  ///< positions in `intersections_`
     std::vector<std::pair<Intersection, SpacePointId>> intersections_;

@@ -38,14 +38,14 @@ double inexactness(const SpacePoints& points, const std::array<SpacePointId, kCo
 bool lie_on_one_line_by_construction(const SpacePoints& points,
                                      const std::array<SpacePointId, 3>& of) {
     for (const SpacePointId candidate : of) {
-        const Construction* own = points.construction(candidate);
-        if (own == nullptr) continue;
-        const SpacePointId from = own->of.of[0], to = own->of.of[1];
-        const bool all = std::all_of(of.begin(), of.end(), [&](SpacePointId p) {
-            const Construction* other = points.construction(p);
-            return other == nullptr ? p == from || p == to : other->of.is_on_line(from, to);
-        });
-        if (all) return true;
+        for (const SpacePoints::Line& line : points.lines(candidate)) {
+            if (line[0] == kNone) break;
+            const bool all = std::ranges::all_of(of, [&](SpacePointId p) {
+                return p == line[0] || p == line[1] ||
+                       points.was_constructed_on(p, line[0], line[1]);
+            });
+            if (all) return true;
+        }
     }
     return false;
 }
@@ -76,12 +76,11 @@ bool lie_on_one_plane_by_construction(const SpacePoints& points,
     return false;
 }
 
-/// A coordinate to twice the precision of doubles; nothing of points given by rational numbers.
-std::optional<DoubleDoubleInterval> interval(const SpacePoints& points, SpacePointId p,
-                                             std::size_t axis) {
+/// A coordinate to twice the precision of doubles.
+DoubleDoubleInterval interval(const SpacePoints& points, SpacePointId p, std::size_t axis) {
     if (const Construction* own = points.construction(p)) return own->at[axis];
-    if (points.is_double(p)) return DoubleDoubleInterval(points.rounded(p)[axis]);
-    return std::nullopt;
+    if (const SpacePoints::Fractions* own = points.fractions(p)) return own->interval[axis];
+    return points.rounded(p)[axis];
 }
 
 std::optional<int> orient3d_by_intervals(const SpacePoints& points,
@@ -89,12 +88,8 @@ std::optional<int> orient3d_by_intervals(const SpacePoints& points,
     std::array<std::array<DoubleDoubleInterval, 3>, 3> from_first;
     for (std::size_t k = 0; k < 3; ++k) {
         const auto first = interval(points, of[0], k);
-        if (!first) return std::nullopt;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const auto to = interval(points, of[i + 1], k);
-            if (!to) return std::nullopt;
-            from_first[i][k] = difference(*to, *first);
-        }
+        for (std::size_t i = 0; i < 3; ++i)
+            from_first[i][k] = difference(interval(points, of[i + 1], k), first);
     }
     const auto& [u, v, w] = from_first;
     return (w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
@@ -107,12 +102,8 @@ std::optional<int> orient2d_by_intervals(const SpacePoints& points, std::size_t 
     std::array<std::array<DoubleDoubleInterval, 2>, 2> from_first;
     for (std::size_t k = 0; k < 2; ++k) {
         const auto first = interval(points, of[0], (axis + 1 + k) % 3);
-        if (!first) return std::nullopt;
-        for (std::size_t i = 0; i < 2; ++i) {
-            const auto to = interval(points, of[i + 1], (axis + 1 + k) % 3);
-            if (!to) return std::nullopt;
-            from_first[i][k] = difference(*to, *first);
-        }
+        for (std::size_t i = 0; i < 2; ++i)
+            from_first[i][k] = difference(interval(points, of[i + 1], (axis + 1 + k) % 3), first);
     }
     const auto& [u, v] = from_first;
     return (u[0] * v[1] - u[1] * v[0]).sign();
@@ -176,11 +167,7 @@ int orient3d(const SpacePoints& points, SpacePointId a, SpacePointId b, SpacePoi
         return *sign;
     if (lie_on_one_plane_by_construction(points, of)) return 0;
     if (const auto sign = orient3d_by_intervals(points, of)) return *sign;
-    const auto sign = by_integers(points, of, [&](auto&& in) { return orient3d_in(in, of); });
-    if (sign) return *sign;
-    const RationalPoint o = points.exact(a);
-    const auto from_a = [&](SpacePointId p) { return minus(points.exact(p), o); };
-    return sgn(determinant(from_a(b), from_a(c), from_a(d)));
+    return by_integers(points, of, [&](auto&& in) { return orient3d_in(in, of); });
 }
 
 int orient2d(const SpacePoints& points, std::size_t axis, SpacePointId a, SpacePointId b,
@@ -194,10 +181,7 @@ int orient2d(const SpacePoints& points, std::size_t axis, SpacePointId a, SpaceP
         return *sign;
     if (lie_on_one_line_by_construction(points, of)) return 0;
     if (const auto sign = orient2d_by_intervals(points, axis, of)) return *sign;
-    const auto sign = by_integers(points, of, [&](auto&& in) { return orient2d_in(in, axis, of); });
-    if (sign) return *sign;
-    const RationalPoint o = points.exact(a);
-    return sgn(cross(minus(points.exact(b), o), minus(points.exact(c), o), axis));
+    return by_integers(points, of, [&](auto&& in) { return orient2d_in(in, axis, of); });
 }
 
 int compare(const SpacePoints& points, std::size_t axis, SpacePointId a, SpacePointId b) {
@@ -205,14 +189,10 @@ int compare(const SpacePoints& points, std::size_t axis, SpacePointId a, SpacePo
     const double x = points.rounded(a)[axis], y = points.rounded(b)[axis];
     if (x != y) return x < y ? -1 : 1;  // rounding keeps the order
     if (points.is_double(a) && points.is_double(b)) return 0;
-    const auto p = interval(points, a, axis), q = interval(points, b, axis);
-    if (p && q) {
-        if (const auto sign = difference(*p, *q).sign()) return *sign;
-    }
-    const auto sign = by_integers(points, std::array{a, b},
-                                  [&](auto&& in) { return compare_in(in, axis, a, b); });
-    if (sign) return *sign;
-    return sgn(mpq_class(points.exact(a)[axis] - points.exact(b)[axis]));
+    const auto apart = difference(interval(points, a, axis), interval(points, b, axis));
+    if (const auto sign = apart.sign()) return *sign;
+    return by_integers(points, std::array{a, b},
+                       [&](auto&& in) { return compare_in(in, axis, a, b); });
 }
 
 int compare(const SpacePoints& points, SpacePointId a, SpacePointId b) {

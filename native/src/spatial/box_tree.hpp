@@ -73,7 +73,12 @@ public:
     /// Calls visit(number) for each, in no particular but always the same order.
     template <class Visit>
     void find(const Box& box, const Visit& visit) const {
-        if (!nodes_.empty()) find(0, box, visit);
+        if (nodes_.empty()) return;
+        each_leaf(box, [&](const Node& leaf) {
+            for (std::size_t i = leaf.begin; i < leaf.end; ++i) {
+                if (boxes_[i].meets(box)) visit(order_[i]);
+            }
+        });
     }
     /// Calls visit(number) for each box whose squared distance from p is at most bound(), which may
     /// grow less with every visit; near ones come first on the whole, always in the same order.
@@ -81,10 +86,34 @@ public:
     void approach(const Box::Position& p, const Bound& bound, const Visit& visit) const {
         if (!nodes_.empty()) approach(0, p, bound, visit);
     }
+    /// Calls visit(number, other) for each two boxes that meet, once: those of which the first in
+    /// the order of the leaves is in some of them, from 0 to leaf_count() - 1. Always in the same
+    /// order, the pairs of a first box one after another.
+    template <class Visit>
+    void find_pairs(std::size_t first_leaf, std::size_t end_leaf, const Visit& visit) const {
+        std::vector<const Node*> near;
+        for (std::size_t leaf = first_leaf; leaf < end_leaf; ++leaf) {
+            const Node& own = nodes_[leaves_[leaf]];
+            near.clear();
+            each_leaf(
+                own.box, [&near](const Node& other) { near.push_back(&other); }, own.begin);
+            for (std::size_t i = own.begin; i < own.end; ++i) {
+                for (const Node* other : near) {
+                    for (std::size_t j = std::max(i + 1, other->begin); j < other->end; ++j) {
+                        if (boxes_[i].meets(boxes_[j])) visit(order_[i], order_[j]);
+                    }
+                }
+            }
+        }
+    }
+    std::size_t leaf_count() const { return leaves_.size(); }
     bool any(const Box& box) const {
-        bool found = false;
-        find(box, [&found](std::int32_t) { found = true; });
-        return found;
+        return any(box, [](std::int32_t) { return true; });
+    }
+    /// Whether accepts(number) holds for one of them.
+    template <class Accepts>
+    bool any(const Box& box, const Accepts& accepts) const {
+        return !nodes_.empty() && any(0, box, accepts);
     }
 
 private:
@@ -112,6 +141,7 @@ private:
                 whole.include(boxes_[i]);
             }
             nodes_[number].box = whole;
+            leaves_.push_back(number);
             return number;
         }
         Box middles;
@@ -165,23 +195,40 @@ private:
             if (away[i] <= bound()) approach(children[i], p, bound, visit);
         }
     }
-    template <class Visit>
-    void find(std::size_t number, const Box& box, const Visit& visit) const {
+    template <class Accepts>
+    bool any(std::size_t number, const Box& box, const Accepts& accepts) const {
         const Node& node = nodes_[number];
-        if (!node.box.meets(box)) return;
-        if (node.second == 0) {
-            for (std::size_t i = node.begin; i < node.end; ++i) {
-                if (boxes_[i].meets(box)) visit(order_[i]);
-            }
-            return;
+        if (!node.box.meets(box)) return false;
+        for (std::size_t i = node.begin; node.second == 0 && i < node.end; ++i) {
+            if (boxes_[i].meets(box) && accepts(order_[i])) return true;
         }
-        find(number + 1, box, visit);
-        find(node.second, box, visit);
+        return node.second != 0 &&
+               (any(number + 1, box, accepts) || any(node.second, box, accepts));
+    }
+    /// Calls visit(leaf) for the leaves that meet a box and do not end at a position or before it.
+    template <class Visit>
+    void each_leaf(const Box& box, const Visit& visit, std::size_t after = 0) const {
+        // of a node that meets it the second child waits; none of a tree of 2^31 boxes is deeper
+        std::array<std::size_t, 64> waiting;
+        std::size_t count = 0;
+        waiting[count++] = 0;
+        while (count > 0) {
+            const std::size_t number = waiting[--count];
+            const Node& node = nodes_[number];
+            if (node.end <= after || !node.box.meets(box)) continue;
+            if (node.second == 0) {
+                visit(node);
+                continue;
+            }
+            waiting[count++] = node.second;
+            waiting[count++] = number + 1;
+        }
     }
 
     std::vector<Box> boxes_;           ///< in the order of the leaves
     std::vector<std::int32_t> order_;  ///< their numbers
     std::vector<Node> nodes_;
+    std::vector<std::size_t> leaves_;  ///< their numbers among the nodes
 };
 
 }  // namespace realmodel::spatial

@@ -238,10 +238,11 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
         rock.include(box_of(own.model));
     }
     const StructureSurface surface = structure_surface(structures, rock);
+    const std::vector<cutting::NearestSide> nearest(surface.single.begin(), surface.single.end());
     begin(progress, 0, 0.1, "leaving out what is in other parts");
     for (std::size_t m = 0; m < models.size(); ++m) {
         together.add(models[m].model, static_cast<std::int32_t>(m),
-                     places_of_cells(models[m].model, models[m].sides, surface, threads, progress));
+                     places_of_cells(models[m].model, models[m].sides, nearest, threads, progress));
     }
     together.share_vertices(threads, progress);
     if (auto joined = join(together, surface, models, structures, acts, threads, progress))
@@ -255,14 +256,20 @@ std::vector<std::int8_t> sides_of_points(const Structure& structure, std::span<c
     Box box;
     for (std::size_t i = 0; i + 2 < points.size(); i += 3)
         box.include(Position{points[i], points[i + 1], points[i + 2]});
-    const StructureSurface surface = structure_surface(std::span(&structure, 1), box);
+    const StructureSurface surface = structure_surface(std::span(&structure, 1), box, true);
     const cutting::NearestSide nearest(surface.single[0]);
+    // what is beside the fault itself is on its side, wherever its continuation goes
+    const cutting::CutterSurface own = checked_surface(structure, 0);
+    const cutting::NearestSide beside(own);
     std::vector<std::int8_t> sides(points.size() / 3);
     parallel_ranges(sides.size(), 1 << 8, threads, progress,
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t i = begin; i < end; ++i) {
                             const Position p{points[3 * i], points[3 * i + 1], points[3 * i + 2]};
-                            sides[i] = structure.is_body ? nearest.within(p) : nearest(p);
+                            bool at_border = false;
+                            const std::int8_t side =
+                                structure.is_body ? nearest.within(p) : beside(p, &at_border);
+                            sides[i] = at_border ? nearest(p) : side;
                         }
                     });
     return sides;

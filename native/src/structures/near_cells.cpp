@@ -6,12 +6,12 @@
 namespace realmodel::structures {
 
 std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
-                                   const StructureSurface& surface, int threads,
+                                   std::span<const cutting::NearestSide> structures, int threads,
                                    const Progress* progress) {
+    const cutting::CellBoxes cells(model, progress);
     std::vector<Place> places(model.cell_count(), Place::kInside);
     for (std::size_t s = 0; s < sides.size(); ++s) {
-        const cutting::CutterSurface& single = surface.single[s];
-        auto is_near = cutting::cells_near(model, single, threads, progress);
+        auto is_near = cutting::cells_near(cells, structures[s], threads, progress);
         for (std::size_t c = 0; c < places.size(); ++c) {
             if (places[c] == Place::kElsewhere) {
                 is_near[c] = 1;  // not asked for
@@ -20,7 +20,8 @@ std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
             }
         }
         if (sides[s] == 0) continue;  // either side will do
-        const auto own = cutting::sides_of_far_cells(model, single, is_near, progress);
+        const auto own =
+            cutting::sides_of_far_cells(model, cells, structures[s], is_near, progress);
         for (std::size_t c = 0; c < places.size(); ++c) {
             if (own[c] != cutting::kOn && own[c] != sides[s]) places[c] = Place::kElsewhere;
         }

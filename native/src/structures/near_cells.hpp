@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "cutting/nearest_side.hpp"
 #include "structures/structure_surface.hpp"
 
 namespace realmodel::structures {
@@ -11,8 +13,9 @@ namespace realmodel::structures {
 /// that it comes near none and is on the sides that are asked for, or that it is elsewhere.
 enum class Place : std::uint8_t { kElsewhere, kInside, kNear };
 
+/// @param structures  of each where its sides are
 std::vector<Place> places_of_cells(const ComplexView& model, const Sides& sides,
-                                   const StructureSurface& surface, int threads,
+                                   std::span<const cutting::NearestSide> structures, int threads,
                                    const Progress* progress);
 
 }  // namespace realmodel::structures

@@ -117,9 +117,25 @@ bool StructureSides::is_known_in_rock_alone(std::span<const EdgeUse> uses) const
            std::ranges::any_of(count, [](const auto& one) { return one.second % 2 == 1; });
 }
 
+/// Of regions: those of the surface that reach away from the rock. There structures may end without
+/// crossing one another.
+std::vector<std::uint8_t> StructureSides::regions_beyond() const {
+    std::vector<std::uint8_t> found(overlay_.size(), 0);
+    for (std::size_t r = 0; r < found.size(); ++r) {
+        if (!overlay_.of_cutter(r) || !winding_.counts(r) || winding_.touches_model(r)) continue;
+        found[r] = std::ranges::any_of(overlay_.loops(r), [this](const auto& loop) {
+            return std::ranges::any_of(loop, [this](NodeId node) {
+                return !overlay_.model_box().contains(overlay_.position(node));
+            });
+        });
+    }
+    return found;
+}
+
 /// What bounds one sector around an edge is in one part. This is said of sectors beside the rock,
 /// too, for the sake of cells that rounding flattened away.
 void StructureSides::join_sectors(const Progress* progress) {
+    const std::vector<std::uint8_t> is_beyond = regions_beyond();
     cutting::join_beside_surface(overlay_, winding_, near_, progress,
                                  [this](std::int32_t a, std::int32_t b) { joined_.join(a, b); });
     const auto item_at = [this](const EdgeUse& use, std::size_t side) {
@@ -142,6 +158,7 @@ void StructureSides::join_sectors(const Progress* progress) {
                     const auto item = index(use.item);
                     const bool is_face = item >= overlay_.size() || !overlay_.of_cutter(item);
                     if (is_face && item < overlay_.size() && winding_.level(item) >= 0) continue;
+                    if (!is_face && is_beyond[item] != 0) continue;
                     const std::int32_t at = item_at(use, ahead ? use.ahead() : use.behind());
                     if (first < 0) {
                         first = at;

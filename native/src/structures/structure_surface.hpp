@@ -12,10 +12,10 @@
 namespace realmodel::structures {
 
 /// All structures as one surface that cuts, each triangle with the number of its structure. Faults
-/// turn counter-clockwise seen from above, on the whole. They are continued beyond their borders as
-/// far as the rock reaches: straight up or down where they end at a height, in their own plane
-/// where they end aside or die out. There they divide nothing, but every way from one side to the
-/// other crosses them.
+/// turn counter-clockwise seen from above, on the whole. Those that do not divide the rock by
+/// themselves are continued beyond their borders as far as it reaches: straight up or down where
+/// they end at a height, in their own plane where they end aside, along their mean plane where they
+/// die out. There they divide nothing, but every way from one side to the other crosses them.
 struct StructureSurface {
     cutting::CutterSurface surface;
     std::vector<std::int32_t> structure;         ///< of triangles
@@ -24,8 +24,10 @@ struct StructureSurface {
 };
 
 /// @param rock  a box around the rock
+/// @param continues_all  whether those are continued, too, that divide it by themselves
 /// @throws InputError  as parts_of does
-StructureSurface structure_surface(std::span<const Structure> structures, const spatial::Box& rock);
+StructureSurface structure_surface(std::span<const Structure> structures, const spatial::Box& rock,
+                                   bool continues_all = false);
 
 /// One structure alone, checked and oriented.
 cutting::CutterSurface checked_surface(const Structure& structure, std::int32_t number);

@@ -37,6 +37,12 @@ WantedParts::WantedParts(SurfaceOverlay& overlay, const CutterWinding& winding,
                                      ? -1
                                      : static_cast<std::int32_t>(found - model_sides.begin()));
     }
+    faces_on_.resize(overlay.size());
+    for (std::size_t r = 0; r < overlay.size(); ++r) {
+        if (!overlay.of_cutter(r) && winding.level(r) >= 0)
+            faces_on_[index(winding.level(r))].push_back(
+                static_cast<std::int32_t>(overlay.face_of(r)));
+    }
     for (std::size_t r = 0; r < overlay.size(); ++r) {
         if (overlay.of_cutter(r) && winding.counts(r) && winding.touches_model(r)) find_same(r);
     }
@@ -65,18 +71,30 @@ bool WantedParts::does_act(std::int32_t structure, std::int32_t cell) const {
     return cell >= 0 && acts_[index(structure) * blocks + index(overlay_.model().block(cell))] != 0;
 }
 
-/// The last structure that acts between two cells, -1 none. It must part their sides.
+/// Whether a cell at one side of a region of the surface ends there without the surface, too.
+bool WantedParts::ends_itself(std::int32_t cell, std::size_t region) const {
+    const auto is_at = [&](std::size_t side) {
+        return std::ranges::any_of(winding_.around(region, side),
+                                   [cell](const auto& one) { return one.first == cell; });
+    };
+    return cell < 0 || !is_at(0) || !is_at(1);
+}
+
+/// The last structure that acts between two cells, -1 none. It must part their sides. What a fault
+/// cuts off against no rock lies against what is below the oldest surface, which it displaces.
 std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int32_t high) const {
     const Sides& below = sides_.sides(sides_.part_at(region, 0));
     const Sides& above = sides_.sides(sides_.part_at(region, 1));
-    std::int32_t found = -1;
+    const bool is_cut_off =
+        (low < 0 || high < 0) && !(ends_itself(low, region) && ends_itself(high, region));
+    std::int32_t found = -1, last = -1;
     for (const RegionOf& of : sides_.structures_at(region)) {
         const auto s = index(of.structure);
-        if (of.is_own && below[s] != above[s] &&
-            (does_act(of.structure, low) || does_act(of.structure, high)))
-            found = of.structure;
+        if (!of.is_own || below[s] == above[s]) continue;
+        if (does_act(of.structure, low) || does_act(of.structure, high)) found = of.structure;
+        if (is_cut_off && sides_.is_fault(of.structure)) last = of.structure;
     }
-    return found;
+    return found >= 0 ? found : last;
 }
 
 bool WantedParts::separates(std::size_t /*region*/, std::int32_t low, std::int32_t high) const {
@@ -87,15 +105,26 @@ bool WantedParts::ends_at_outer_face(std::size_t region, std::int32_t cell) cons
     return acting(region, cell, -1) < 0;
 }
 
-/// Where nothing acts, in slivers that rounding left, there is a wall between cells of one block,
-/// and between blocks the surface that they meet at.
+/// Where nothing acts it is what the cells have there without the structures. In slivers that
+/// rounding left there is a wall between cells of one block, and between blocks the surface that
+/// they meet at.
 std::int32_t WantedParts::cap_face(std::size_t region, std::int32_t low, std::int32_t high) const {
     const std::int32_t structure = acting(region, low, high);
     const ComplexView& model = overlay_.model();
     if (structure >= 0) return -2 - (model.surfaces + structure);
+    for (const std::int32_t face : faces_on_[region]) {
+        const std::int32_t own = model.face_surface[index(face)];
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::int32_t cell = model.cell(index(face), k);
+            if (cell >= 0 && (cell == low || cell == high) && own != kBase) return -2 - own;
+        }
+    }
     if (model.block(low) == model.block(high)) return -2 - kWall;
     std::int32_t surface = std::max(model.block(low), model.block(high));
     if (low >= 0 && high >= 0) surface = std::min(model.block(low), model.block(high));
+    // bodies have a block for each rock mass
+    const auto count = static_cast<std::int32_t>(acts_.size() / model.blocks);
+    if (surface >= model.surfaces) surface = model.surfaces + (surface - model.surfaces) % count;
     return -2 - surface;
 }
 
@@ -152,11 +181,18 @@ void WantedParts::find_same(std::size_t region) {
         return;
     }
     const auto& structures = sides_.structures_at(region);
-    const auto fault = std::ranges::find_if(structures, [&](const RegionOf& of) {
+    const auto parts_sides = [&](const RegionOf& of) {
         const auto s = index(of.structure);
         return sides_.sides(sides_.part_at(region, 0))[s] !=
                sides_.sides(sides_.part_at(region, 1))[s];
-    });
+    };
+    // beyond its tip, surfaces that are torn on both sides are displaced still
+    const bool is_beyond_tip =
+        low >= 0 && high >= 0 && std::ranges::any_of(structures, [&](const RegionOf& of) {
+            return !of.is_own && sides_.dies_out(of.structure) && parts_sides(of);
+        });
+    if (!is_beyond_tip && ends_itself(low, region) && ends_itself(high, region)) return;
+    const auto fault = std::ranges::find_if(structures, parts_sides);
     sides_.refuse("ends_inside",
                   "the fault ends in the rock: what is beyond differs on its two sides",
                   fault == structures.end() ? -1 : fault->structure, region);

@@ -38,13 +38,15 @@ private:
     void refuse_unsaid_end(std::size_t region, std::int32_t cell) const;
     void find_same(std::size_t region);
     std::int32_t wanted_at(std::size_t region, std::size_t side) const;
+    bool ends_itself(std::int32_t cell, std::size_t region) const;
 
     SurfaceOverlay& overlay_;
     const CutterWinding& winding_;
     const StructureSides& sides_;
     std::span<const std::int32_t> model_of_cell_;
     std::span<const std::uint8_t> acts_;
-    std::vector<std::int32_t> model_of_part_;  ///< -1 none
+    std::vector<std::int32_t> model_of_part_;          ///< -1 none
+    std::vector<std::vector<std::int32_t>> faces_on_;  ///< faces that lie on each region
     /// Cells below and above that are parts of one.
     std::set<std::array<std::int32_t, 2>> same_;
 };

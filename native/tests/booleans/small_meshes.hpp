@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Meshes that tests of Booleans begin with.
+// Meshes that tests and the benchmark of Booleans begin with.
 #pragma once
 
 #include <array>
@@ -60,6 +60,7 @@ inline Mesh upright(const std::array<double, 3>& low, double size) {
     return {{x, y, z, x, y + size, z, x, y, z + size, x, y + size, z + size}, {0, 1, 2, 1, 3, 2}};
 }
 
+/// A sphere of 4 rings (rings - 1) triangles.
 inline Mesh sphere(const std::array<double, 3>& middle, double radius, int rings) {
     Mesh mesh;
     const auto add = [&](double latitude, double longitude) {

@@ -10,7 +10,7 @@ namespace {
 
 TEST(FreePosition, IsOneStepAwayAndTakenThen) {
     const Position p{1, 1, 1};
-    std::set<Position> taken{p};
+    Positions taken{p};
     for (int i = 0; i < 26; ++i) {
         const Position to = free_position_beside(p, Freedom::kAny, taken);
         for (std::size_t k = 0; k < 3; ++k)
@@ -23,13 +23,13 @@ TEST(FreePosition, IsOneStepAwayAndTakenThen) {
 }
 
 TEST(FreePosition, OnTheBaseItKeepsItsHeight) {
-    std::set<Position> taken{{2, 3, 4}};
+    Positions taken{{2, 3, 4}};
     for (int i = 0; i < 20; ++i)
         EXPECT_EQ(free_position_beside({2, 3, 4}, Freedom::kLevel, taken)[2], 4);
 }
 
 TEST(FreePosition, OnAWallItGoesUpOrDownFirst) {
-    std::set<Position> taken{{2, 3, 4}};
+    Positions taken{{2, 3, 4}};
     for (int i = 0; i < 8; ++i) {
         const Position to = free_position_beside({2, 3, 4}, Freedom::kUpright, taken);
         EXPECT_EQ(to[0], 2);

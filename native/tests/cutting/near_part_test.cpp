@@ -40,10 +40,15 @@ double middle_of(const CellComplex& model, std::int32_t cell) {
     return (low + high) / 2;
 }
 
+std::vector<std::uint8_t> near_cells(const CellComplex& model, double x, int threads) {
+    const CutterSurface surface = upright(x);
+    return cells_near(CellBoxes(model), NearestSide(surface), threads, nullptr);
+}
+
 TEST(NearPart, CellsThatTheSurfaceCrossesOrTouchesAreNear) {
     const CellComplex model = row();
-    const auto inside = cells_near(model, upright(1.5), 1, nullptr);
-    const auto between = cells_near(model, upright(2), 2, nullptr);
+    const auto inside = near_cells(model, 1.5, 1);
+    const auto between = near_cells(model, 2, 2);
     for (std::int32_t c = 0; c < 8; ++c) {
         const double x = middle_of(model, c);
         EXPECT_EQ(inside[index(c)] != 0, x == 1.5);
@@ -53,9 +58,11 @@ TEST(NearPart, CellsThatTheSurfaceCrossesOrTouchesAreNear) {
 
 TEST(NearPart, TheOthersAreOnOneSideEach) {
     const CellComplex model = row();
+    const CellBoxes cells(model);
     const CutterSurface surface = upright(1.5);
+    const NearestSide nearest(surface);
     const auto sides =
-        sides_of_far_cells(model, surface, cells_near(model, surface, 1, nullptr), nullptr);
+        sides_of_far_cells(model, cells, nearest, cells_near(cells, nearest, 1, nullptr), nullptr);
     for (std::int32_t c = 0; c < 8; ++c) {
         const double x = middle_of(model, c);
         EXPECT_EQ(sides[index(c)], x < 1 ? kAbove : x < 2 ? kOn : kBelow);
@@ -65,7 +72,7 @@ TEST(NearPart, TheOthersAreOnOneSideEach) {
 TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
     const CellComplex model = row();
     const ComplexView all = model;
-    const auto is_near = cells_near(model, upright(1.5), 1, nullptr);
+    const auto is_near = near_cells(model, 1.5, 1);
     const NearPart part(model, is_near);
     const ComplexView near = part.view();
     ASSERT_EQ(near.cell_count(), 2U);
@@ -99,7 +106,7 @@ TEST(NearPart, WhatIsPutBackUntouchedIsTheModel) {
 
 TEST(NearPart, AFaceBesideAnotherCellThatWasChangedIsTold) {
     const CellComplex model = row();
-    const auto is_near = cells_near(model, upright(1.5), 1, nullptr);
+    const auto is_near = near_cells(model, 1.5, 1);
     const NearPart part(model, is_near);
     Pieces pieces;  // none of the part's faces is left
     std::vector<HalfCell> cells;

@@ -27,6 +27,8 @@ std::vector<SpacePointId> some_points(SpacePoints& points, std::mt19937_64& rand
         const int from = orient3d(points, a, b, c, p), to = orient3d(points, a, b, c, q);
         if (from * to < 0) made.push_back(points.intersection(p, q, a, b, c));
         if (i == 6) made.push_back(points.middle({p, q, a}));
+        if (i % 4 == 3 && orient2d(points, 2, a, b, c) != 0)
+            made.push_back(points.intersection(2, a, points.middle({a, b, c}), b, c));
     }
     return made;
 }
@@ -97,6 +99,21 @@ TEST_F(AnEdgeAndATriangle, MeetWhereTheyDo) {
     EXPECT_EQ(orient3d(points, a, b, c, q), 0);
     EXPECT_EQ(orient2d(points, 0, at(1, 1, 0), at(1, 0, 2), q), 0);
     EXPECT_EQ(compare(points, 1, q, p), -1);
+}
+
+TEST_F(AnEdgeAndATriangle, LinesOfOnePlaneCrossInAPointOfBoth) {
+    const SpacePointId d = at(1, 2, 2), e = at(2, 0, 0);
+    const SpacePointId p = points.intersection(2, a, d, c, e);  // y = 2 x and y = 3 - 1.5 x
+    EXPECT_EQ(points.exact(p),
+              (RationalPoint{mpq_class(6, 7), mpq_class(12, 7), mpq_class(12, 7)}));
+    EXPECT_EQ(points.intersection(1, e, c, d, a), p);
+    EXPECT_TRUE(points.was_constructed_on(p, d, a));
+    EXPECT_TRUE(points.was_constructed_on(p, c, e));
+    EXPECT_FALSE(points.was_constructed_on(p, a, c));
+    EXPECT_EQ(orient2d(points, 2, a, d, p), 0);
+    EXPECT_EQ(orient3d(points, a, b, c, p), 0);
+    EXPECT_EQ(orient3d(points, a, b, at(0, 3, 4), p),
+              -orient3d(points, a, b, at(0, 3, 4), at(0, 3, 9)));
 }
 
 TEST_F(AnEdgeAndATriangle, ProjectionsLieInThePlaneAndOnTheLine) {

@@ -350,5 +350,50 @@ TEST(SidesOfPoints, AreThoseOfTheNearestTriangle) {
               (std::vector<std::int8_t>{-1, 1}));
 }
 
+TEST(TrianglesBeyond, AreMetWhereAFaultThatDiesOutWouldGoOn) {
+    const OwnedSurface upright = sheet(2, 0, -9, 2);  // x = 2 until y = 2
+    Structure dying = fault(upright);
+    dying.dies_out = true;
+    // beside the fault, across its tip, beyond it, and with an edge in its plane beyond it
+    const std::vector<double> low{1, 0, 0, 3, 0, 0, 1, 1, 0, 1, 3, 0, 3, 3, 0, 2, 4, 0, 2, 5, 0};
+    const std::vector<std::int32_t> triangles{0, 1, 2, 0, 1, 4, 2, 4, 3, 3, 5, 6};
+    EXPECT_EQ(triangles_beyond(dying, low, low, triangles, 1, nullptr),
+              (std::vector<std::uint8_t>{0, 0, 2, 1}));
+    std::vector<double> high = low;
+    for (std::size_t v = 0; v < 7; ++v)
+        high[3 * v + 2] = 100;  // its upper border is at 9
+    EXPECT_EQ(triangles_beyond(dying, low, high, triangles, 1, nullptr),
+              (std::vector<std::uint8_t>{2, 2, 2, 1}));
+}
+
+TEST(ContinuationOf, AFaultThatDiesOutDoesNotCrossItselfWhereItBends) {
+    OwnedSurface bent;  // an arc that leans outward: its lower border is longer than the upper one
+    constexpr int kSticks = 9;
+    for (int i = 0; i < kSticks; ++i) {
+        const double turn = (i - 4) * 0.25;
+        for (const double z : {1.0, -1.0}) {
+            const double radius = 5 + z;
+            bent.vertex(radius * std::sin(turn), radius * std::cos(turn), z);
+        }
+    }
+    for (int i = 0; i + 1 < kSticks; ++i) {
+        bent.triangle(2 * i, 2 * i + 1, 2 * i + 2);
+        bent.triangle(2 * i + 2, 2 * i + 1, 2 * i + 3);
+    }
+    Structure dying = fault(bent);
+    dying.dies_out = true;
+    const auto beyond = continuation_of(dying, {{{-9, -9, -9}, {9, 9, 9}}});
+    EXPECT_GT(beyond.size(), 0U);
+    // all that has the mean plane's normal on one side: a function over that plane
+    std::vector<std::array<double, 3>> normals;
+    for (const auto& t : beyond) {
+        const auto a = cutting::minus(t[1], t[0]), b = cutting::minus(t[2], t[0]);
+        normals.push_back(
+            {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]});
+    }
+    for (const auto& n : normals)
+        EXPECT_GT(cutting::dot(n, normals[0]), 0);
+}
+
 }  // namespace
 }  // namespace realmodel::structures

@@ -113,16 +113,16 @@ def _is_sliver(m, cell, frame, hair):
 def surface_failures(m):
     """Faces whose middle lies on no plane of a triangle, nearby in plan, of the surface that they name."""
     total = np.add.reduceat(m.vertices[m.face_vertices], m.face_offsets[:-1], axis=0)
-    centre = total / m.face_size[:, None]
+    center = total / m.face_size[:, None]
     for s, surface in enumerate(m.surfaces()):
         faces = np.flatnonzero(m.face_surface == s)
         if not len(faces):
             continue
         corners = surface.vertices[surface.triangles]
-        off = [f for f in faces if not _on_some_plane(corners, centre[f])]
+        off = [f for f in faces if not _on_some_plane(corners, center[f])]
         if off:
             f = off[0]
-            yield f"{len(off)} of {len(faces)} faces lie off surface {s}; first {f} at {centre[f].tolist()}"
+            yield f"{len(off)} of {len(faces)} faces lie off surface {s}; first {f} at {center[f].tolist()}"
 
 
 def _on_some_plane(corners, point):

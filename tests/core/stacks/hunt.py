@@ -33,28 +33,29 @@ def acceptable(stack):
     return stack.base_elevation is None or stack.base_elevation < lowest
 
 
-def _work(pipe):
+def _work(pipe, judge):
     while True:
         stack = pipe.recv()
         if stack is None:
             return
         try:
-            pipe.send(failures_of(stack))
+            pipe.send(judge(stack))
         except Exception as error:
             pipe.send([f"judge: {type(error).__name__}: {error}"])
 
 
 class Worker:
-    """A process that judges stacks; started again when one of them kills it."""
+    """A process that judges cases, stacks unless another judge is given; started again when one of them kills
+    it."""
 
-    def __init__(self):
-        self.process = None
+    def __init__(self, judge=failures_of):
+        self.process, self.judged_by = None, judge
 
     def judge(self, stack):
         """Failures of one stack, a crash and a hang among them."""
         if self.process is None or not self.process.is_alive():
             self.pipe, theirs = multiprocessing.Pipe()
-            self.process = multiprocessing.Process(target=_work, args=(theirs,), daemon=True)
+            self.process = multiprocessing.Process(target=_work, args=(theirs, self.judged_by), daemon=True)
             self.process.start()
             theirs.close()
         self.pipe.send(stack)

@@ -15,7 +15,7 @@ def apply(scene, amount, direction):
     """Moves the blocks apart.
 
     amount: 0 leaves them in place; at 1 the youngest is lifted by the model's height or a quarter of its
-    width ("Z"), the blocks are as far from the middle again as they were ("CENTRE"), or stand one beside the
+    width ("Z"), the blocks are as far from the middle again as they were ("CENTER"), or stand one beside the
     other ("BLOCK"). "COMPARTMENT" leaves the blocks in place: `modes` shows their parts in their stead.
     """
     rows = [row for row in scene.realmodel.results if row.object is not None]

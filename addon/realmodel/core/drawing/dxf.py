@@ -17,7 +17,7 @@ from .drawing import ANCHORS, BLACK, Drawing, Line, Polygon, Text
 
 _LONGEST_NAME = 31
 _ZERO_LAYER = "0"
-_CODE_PAGE = "cp1252"
+CODE_PAGE = "cp1252"
 # AutoCAD's colors with the numbers 10 to 249: hues in steps of 15 degrees, ten of each, from bright to dark.
 _HUES, _VALUES = 15.0 * np.arange(24), (1.0, 0.65, 0.5, 0.3, 0.15)
 
@@ -26,7 +26,7 @@ def write_dxf(drawing: Drawing, file: BinaryIO) -> None:
     layers = {"": _ZERO_LAYER}
     for item in drawing.items:
         if item.layer not in layers:
-            layers[item.layer] = _layer_name(item.layer, layers.values())
+            layers[item.layer] = layer_name(item.layer, layers.values())
     pairs = _Pairs(drawing)
     low, high = pairs.places([(0.0, 0.0), (drawing.width, drawing.height)])
     pairs.add(
@@ -42,7 +42,7 @@ def write_dxf(drawing: Drawing, file: BinaryIO) -> None:
     for item in drawing.items:
         pairs.item(item, layers[item.layer])
     pairs.add((0, "ENDSEC"), (0, "EOF"))
-    file.write("".join(pairs.lines).encode(_CODE_PAGE))
+    file.write("".join(pairs.lines).encode(CODE_PAGE))
 
 
 class _Pairs:
@@ -70,11 +70,11 @@ class _Pairs:
             self.text(item, layer)
         else:
             for at, radius in zip(self.places(item.points), item.radii / self.drawing.scale, strict=True):
-                color = (62, _number(item.color))
+                color = (62, color_number(item.color))
                 self.add((0, "CIRCLE"), (8, layer), color, *self.place(at), (40, float(radius)))
 
     def polyline(self, points, layer: str, color, closed: bool) -> None:
-        self.add((0, "POLYLINE"), (8, layer), (62, _number(color)), (66, 1), *self.place((0.0, 0.0)))
+        self.add((0, "POLYLINE"), (8, layer), (62, color_number(color)), (66, 1), *self.place((0.0, 0.0)))
         self.add((70, int(closed)))
         for at in self.places(points):
             self.add((0, "VERTEX"), (8, layer), *self.place(at))
@@ -83,7 +83,7 @@ class _Pairs:
     def text(self, item: Text, layer: str) -> None:
         ((x, y),) = self.places([(item.x, item.y)]).tolist()
         height = 0.72 * item.size / self.drawing.scale  # of capital letters
-        self.add((0, "TEXT"), (8, layer), (62, _number(item.color)), *self.place((x, y)), (40, height))
+        self.add((0, "TEXT"), (8, layer), (62, color_number(item.color)), *self.place((x, y)), (40, height))
         self.add((1, _escaped(item.text)), (50, item.angle))
         if ANCHORS[item.anchor]:  # then the second point counts
             self.add((72, round(2 * ANCHORS[item.anchor])), (11, x), (21, y), (31, 0.0))
@@ -91,11 +91,11 @@ class _Pairs:
 
 def _escaped(text: str) -> str:
     """With the codes that AutoCAD has for letters which the file's code page does not have."""
-    known = text.encode(_CODE_PAGE, "ignore").decode(_CODE_PAGE)
+    known = text.encode(CODE_PAGE, "ignore").decode(CODE_PAGE)
     return "".join(letter if letter in known else f"\\U+{ord(letter):04X}" for letter in text)
 
 
-def _layer_name(layer: str, taken) -> str:
+def layer_name(layer: str, taken) -> str:
     """A name of capital letters, digits, $, - and _, unlike those that are taken."""
     plain = unicodedata.normalize("NFKD", layer.upper())  # accents become signs of their own
     plain = "".join(letter for letter in plain if not unicodedata.combining(letter))
@@ -110,11 +110,13 @@ def _layer_name(layer: str, taken) -> str:
 def _layer_color(drawing: Drawing, layer: str) -> int:
     for item in drawing.items:
         if item.layer == layer:
-            return _number(item.fill or item.stroke or BLACK if isinstance(item, Polygon) else item.color)
-    return _number(BLACK)
+            return color_number(
+                item.fill or item.stroke or BLACK if isinstance(item, Polygon) else item.color
+            )
+    return color_number(BLACK)
 
 
-def _number(color) -> int:
+def color_number(color) -> int:
     """The color of AutoCAD that is most like one; 7 is black on white and white on black."""
     color = np.asarray(color[:3], np.float64)
     if color.max() < 0.1:

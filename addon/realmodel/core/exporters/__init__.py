@@ -1,46 +1,189 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files that a model is written to, by their ending."""
+"""Files that a model is written to, by their ending: one registry (docs/dev/extending.md)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
 
-from ..atomic import Outputs
-from ..errors import UsageError
+from ..atomic import Outputs, writable_folder, writable_target
+from ..simulation import PolyhedralMesh
+from .dxf import write_dxf
+from .endings import by_ending
+from .gltf import write_glb
+from .meshes import MESH_FORMATS, write_mesh
 from .npz import write_npz
-from .vtu import write_vtu
+from .obj import write_mtl, write_obj
+from .parts import model_parts
+from .ply import write_ply
+from .regular import write_ascii_grids, write_block_table, write_geotiff, write_vti
+from .stl import write_stl
+from .tsurf import write_tsurf
 
 Step = Callable[[float], None]
 
-WRITERS: dict[str, Callable] = {".npz": write_npz, ".vtu": write_vtu}
+
+@dataclass(frozen=True)
+class ModelFormat:
+    """A format that models are written in.
+
+    label, description: of the panel's menu. write(model, path, outputs, step) writes it by outputs.file or
+    outputs.folder; step(share) is called now and then, last with 1. folder: what is renewed where the format
+    is a folder, "" for a file. has_cell_size: it is a regular grid, and write takes the size of its cells
+    too,
+    as of regular_cells.checked_size.
+    """
+
+    ending: str
+    label: str
+    description: str
+    write: Callable[..., None]
+    folder: str = ""
+    has_cell_size: bool = False
 
 
-def writer_for(path: str | Path) -> Callable[..., None]:
-    """The function (model, file, step) that writes files of this ending. Raises UsageError."""
-    ending = Path(path).suffix.lower()
-    if ending not in WRITERS:
-        known = " or ".join(WRITERS)
-        what = f"files ending in '{ending}' are not supported" if ending else "the file name has no extension"
-        raise UsageError(f"{path}: {what}; use {known}")
-    return WRITERS[ending]
+def _file(write: Callable) -> Callable:
+    """write(model, file, step) as a ModelFormat has it."""
+
+    def write_it(model, path, outputs: Outputs, step: Step) -> None:
+        with outputs.file(path) as file:
+            write(model, file, step)
+
+    return write_it
+
+
+def _parts(write: Callable) -> Callable:
+    """write(parts, file, step) of the blocks of a model."""
+    return _file(lambda model, file, step: write(model_parts(model), file, step))
+
+
+def _write_obj(model, path, outputs: Outputs, step: Step) -> None:
+    parts, materials = model_parts(model), Path(path).with_suffix(".mtl")
+    with outputs.file(materials) as file:
+        write_mtl(parts, file)
+    with outputs.file(path) as file:
+        write_obj(parts, file, step, materials.name)
+
+
+def _cells(model, path, outputs: Outputs, step: Step) -> None:
+    """The exact cells as a mesh for simulation."""
+    write_mesh(PolyhedralMesh.of_model(model), path, outputs, step, model.project.units)
+
+
+FORMATS: dict[str, ModelFormat] = {
+    known.ending: known
+    for known in (
+        ModelFormat(".npz", "NumPy", "All arrays of the model, for Python", _file(write_npz)),
+        ModelFormat(
+            ".vtu",
+            "VTK Unstructured Grid",
+            "The polyhedral cells, for ParaView and simulation",
+            _cells,
+        ),
+        ModelFormat(
+            ".foam",
+            "OpenFOAM Case",
+            "A folder with the polyhedral cells as polyMesh, with zones of cells and patches",
+            _cells,
+            MESH_FORMATS[".foam"].folder,
+        ),
+        ModelFormat(".exo", "Exodus II", "The polyhedral cells, an element block for each block", _cells),
+        ModelFormat(
+            ".disu",
+            "MODFLOW 6 DISU",
+            "The polyhedral cells as an unstructured grid, and a table of the block of each",
+            _cells,
+        ),
+        ModelFormat(
+            ".obj", "Wavefront OBJ", "The closed boundary of every block, a group for each", _write_obj
+        ),
+        ModelFormat(
+            ".ply",
+            "PLY",
+            "The closed boundaries of the blocks; triangles know block and property",
+            _parts(write_ply),
+        ),
+        ModelFormat(".stl", "STL", "The closed boundary of every block, a solid for each", _parts(write_stl)),
+        ModelFormat(
+            ".glb",
+            "glTF Binary",
+            "The closed boundary of every block in the color of its property, for the web",
+            _parts(write_glb),
+        ),
+        ModelFormat(
+            ".dxf", "DXF", "The closed boundary of every block, a layer for each, for CAD", _parts(write_dxf)
+        ),
+        ModelFormat(
+            ".ts",
+            "GOCAD TSurf",
+            "The closed boundary of every block, an object for each",
+            _file(lambda model, file, step: write_tsurf(model_parts(model), file, step, model.project.units)),
+        ),
+        ModelFormat(
+            ".csv",
+            "Block Model",
+            "Regular cells with the share of each block, a row for each",
+            write_block_table,
+            has_cell_size=True,
+        ),
+        ModelFormat(
+            ".vti", "VTK Image", "Regular cells with the share of each block", write_vti, has_cell_size=True
+        ),
+        ModelFormat(
+            ".tif",
+            "GeoTIFF",
+            "Elevation, and top and thickness of every block, as bands",
+            write_geotiff,
+            has_cell_size=True,
+        ),
+        ModelFormat(
+            ".asc",
+            "ESRI ASCII Grids",
+            "Elevation, and top and thickness of every block, a file for each",
+            write_ascii_grids,
+            has_cell_size=True,
+        ),
+    )
+}
+
+
+def format_for(path: str | Path) -> ModelFormat:
+    """The format that this ending says. Raises UsageError."""
+    return by_ending(path, FORMATS, "files ending in {} are not supported")
+
+
+def output_target(path: str | Path) -> Path:
+    """The path, links followed, where an output will stand, of a model or another. Raises OutputFailed."""
+    known = FORMATS.get(Path(path).suffix.lower())
+    return writable_folder(path, known.folder) if known and known.folder else writable_target(path)
 
 
 def no_step(_share: float) -> None:
     """For callers that want no progress."""
 
 
-def write_model(model, path: str | Path, file: BinaryIO, step: Step = no_step) -> None:
-    """Writes a model to an open binary file, in the format of the path's ending."""
-    writer_for(path)(model, file, step)
+def write_model(
+    model,
+    path: str | Path,
+    outputs: Outputs,
+    step: Step = no_step,
+    cell_size: float | Sequence[float] | None = None,
+) -> None:
+    """Writes a model in the format of the path's ending; it appears with the other outputs. cell_size: of
+    regular grids."""
+    known = format_for(path)
+    known.write(model, path, outputs, step, *([cell_size] if known.has_cell_size else []))
 
 
-def save_model(model, path: str | Path, step: Step = no_step) -> None:
-    """Writes a model to a file that appears whole or not at all."""
-    writer_for(path)
-    with Outputs() as outputs, outputs.file(path) as file:
-        write_model(model, path, file, step)
+def save_model(
+    model, path: str | Path, step: Step = no_step, cell_size: float | Sequence[float] | None = None
+) -> None:
+    """Writes a model to a file, or a folder, that appears whole or not at all. cell_size: of regular
+    grids."""
+    format_for(path)
+    with Outputs() as outputs:
+        write_model(model, path, outputs, step, cell_size)
 
 
-__all__ = ["WRITERS", "save_model", "write_model", "write_npz", "write_vtu", "writer_for"]
+__all__ = ["FORMATS", "ModelFormat", "format_for", "output_target", "save_model", "write_model"]

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..erosion import Erosion
+from ..simulation import mesh_entry
 from ..structures.displacement import displacements
 from ..surface_heights import used_vertices
 from ..validation import PLACES_OF_REPORT, ValidationReport
@@ -25,11 +26,12 @@ def model_report(
     stage: int | None = None,
     validation: ValidationReport | None = None,
     erosion: Erosion | None = None,
+    mesh=None,
 ) -> dict:
     """The report's content. Volumes are in model units cubed, times in seconds, memory in bytes.
 
     validation: what Model.validate found; it is asked now where none is given. erosion: what Model.eroded
-    found; without it the report says nothing of that.
+    found; mesh: a SimulationMesh of it; without them the report says nothing of that.
     """
     validation = validation or model.validate(PLACES_OF_REPORT, threads=model.threads)
     total = model.volume
@@ -72,6 +74,8 @@ def model_report(
         report["bodies"] = _bodies(model)
     if erosion is not None:
         report["erosion"] = _erosion(model, erosion)
+    if mesh is not None:
+        report["mesh"] = mesh_entry(mesh)
     return report
 
 
@@ -258,7 +262,8 @@ def write_report(
     stage: int | None = None,
     validation: ValidationReport | None = None,
     erosion: Erosion | None = None,
+    mesh=None,
 ) -> None:
     """Writes the report as UTF-8 JSON to an open binary file."""
-    report = model_report(model, stage, validation, erosion)
+    report = model_report(model, stage, validation, erosion, mesh)
     file.write(f"{json.dumps(report, indent=2, ensure_ascii=False, allow_nan=False)}\n".encode())

@@ -3,8 +3,8 @@
 
 .vtu: VTK unstructured grid ("VTK File Formats", XML) of polygon cells, for ParaView, PyVista and meshio.
 .obj: Wavefront OBJ, a group for each block and a material for each property, for any modeller.
-.csv: one row for each corner of each polygon. .npz: the arrays of Section. .svg, .dxf, .png: drawings with
-axes and a legend (section_drawing.py).
+.ply, .stl, .glb, .ts: triangles, a part for each block. .csv: one row for each corner of each polygon.
+.npz: the arrays of Section. .svg, .dxf, .png: drawings with axes and a legend (section_drawing.py).
 """
 
 from __future__ import annotations
@@ -20,9 +20,11 @@ from typing import BinaryIO
 import numpy as np
 
 from .. import drawing
-from ..errors import UsageError
 from ..section_drawing import draw_section
+from .endings import by_ending
 from .npz import write_arrays
+from .part_formats import part_writers
+from .parts import section_parts
 from .vtk_xml import write_grid
 
 _POLYGON = 7
@@ -31,14 +33,11 @@ _POLYGON = 7
 def section_writer(path: str | Path, exaggeration: float = 1.0) -> Callable[..., None]:
     """The function (section, file) that writes files of this ending. exaggeration: of heights in drawings.
     Raises UsageError."""
-    ending = Path(path).suffix.lower()
-    if ending not in SECTION_WRITERS:
-        known = ", ".join(SECTION_WRITERS)
-        what = f"sections are not written as '{ending}'" if ending else "the file name has no extension"
-        raise UsageError(f"{path}: {what}; use one of {known}")
-    if ending in drawing.WRITERS:
-        return partial(write_section_drawing, write=drawing.WRITERS[ending], exaggeration=exaggeration)
-    return SECTION_WRITERS[ending]
+    writer = by_ending(path, SECTION_WRITERS, "sections are not written as {}")
+    if writer is write_section_drawing:
+        draw = drawing.WRITERS[Path(path).suffix.lower()]
+        return partial(writer, write=draw, exaggeration=exaggeration)
+    return writer
 
 
 def write_section_drawing(
@@ -54,7 +53,7 @@ def write_section_npz(section, file: BinaryIO) -> None:
 
 def write_section_vtu(section, file: BinaryIO) -> None:
     """Polygon cells with the cell arrays `block` (number in the model's list), `property` (library id, 0:
-    none), `cells` (the model's, below and above; -1: outside), and `panel` where it is a fence."""
+    none), `compartment`, `cells` (the model's, below and above; -1: outside), and `panel` of a fence."""
     arrays = [
         ("Points", "Points", section.vertices.astype("<f8")),
         ("Cells", "connectivity", section.polygon_vertices.astype("<i8")),
@@ -62,6 +61,7 @@ def write_section_vtu(section, file: BinaryIO) -> None:
         ("Cells", "types", np.full(len(section), _POLYGON, np.uint8)),
         ("CellData", "block", section.block.astype("<i4")),
         ("CellData", "property", section.property.astype("<i4")),
+        ("CellData", "compartment", section.compartment.astype("<i4")),
         ("CellData", "cells", section.cells.astype("<i4")),
     ]
     if hasattr(section, "panel"):
@@ -90,12 +90,15 @@ def write_section_obj(section, file: BinaryIO) -> None:
 
 def write_section_csv(section, file: BinaryIO) -> None:
     """polygon, block (number), block_name, property, x, y, z of every corner; of a fence also panel and the
-    distance along it, so that distance and z draw the unrolled picture."""
-    is_fence = hasattr(section, "panel")
+    distance along it, so that distance and z draw the unrolled picture; of a model that faults divide also
+    the name of the compartment."""
+    is_fence, is_divided = hasattr(section, "panel"), len(section.compartment_names) > 1
     text = io.StringIO(newline="")
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(
-        ["polygon", "block", "block_name", "property", "x", "y", "z", *(["panel", "distance"] * is_fence)]
+        ["polygon", "block", "block_name", "property", "x", "y", "z"]
+        + ["panel", "distance"] * is_fence
+        + ["compartment"] * is_divided
     )
     along = section.corner_distances() if is_fence else None
     for k in range(len(section)):
@@ -104,6 +107,7 @@ def write_section_csv(section, file: BinaryIO) -> None:
         for corner in range(int(section.offsets[k]), int(section.offsets[k + 1])):
             place = section.vertices[section.polygon_vertices[corner]].tolist()
             extra = [int(section.panel[k]), repr(float(along[corner]))] if is_fence else []
+            extra += [section.compartment_names[int(section.compartment[k])]] * is_divided
             rows.writerow([*told, *map(repr, place), *extra])
     file.write(text.getvalue().encode("utf-8"))
 
@@ -111,6 +115,7 @@ def write_section_csv(section, file: BinaryIO) -> None:
 SECTION_WRITERS: dict[str, Callable] = {
     ".vtu": write_section_vtu,
     ".obj": write_section_obj,
+    **{ending: writer for ending, writer in part_writers(section_parts).items() if ending != ".dxf"},
     ".csv": write_section_csv,
     ".npz": write_section_npz,
     **dict.fromkeys(drawing.WRITERS, write_section_drawing),

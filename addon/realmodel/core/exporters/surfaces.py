@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces with their heights, before they bound anything: .npz, .vtu of triangles, and a report."""
+"""Surfaces with their heights, before they bound anything: .npz, .vtu of triangles, shapes, and a report."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ import numpy as np
 from ..atomic import Outputs
 from ..errors import UsageError
 from .npz import joined_attributes, texts, write_arrays
+from .part_formats import part_writers
+from .parts import surface_parts
 from .report import SCHEMA, surface_entries, versions, warning_entries
 from .vtk_xml import write_grid
 
@@ -23,7 +25,8 @@ ATTRIBUTES = ("height", "variance", "distance")
 def surface_arrays(surfaces) -> dict[str, np.ndarray]:
     """By the names that the arrays of a model have: surface_vertices (Vs, 3), surface_triangles (Ts, 3)
     within their own surface, offsets (S+1,), surface_names, and for each vertex surface_height,
-    surface_variance and surface_distance (Vs,), NaN where there is none."""
+    surface_variance and surface_distance (Vs,), NaN where there is none; surface_triangle_sheet (Ts,), the
+    sheet of its surface that each triangle is of, from 0."""
     shapes = [surfaces.surface(number) for number in range(len(surfaces.surface_names))]
     arrays = {
         "surface_vertices": np.concatenate([vertices for vertices, _ in shapes]),
@@ -34,6 +37,7 @@ def surface_arrays(surfaces) -> dict[str, np.ndarray]:
     return {
         **arrays,
         **{f"surface_{name}": joined_attributes(surfaces, name) for name in ATTRIBUTES},
+        "surface_triangle_sheet": surfaces.surface_triangle_sheet,
         "surface_names": texts(surfaces.surface_names),
     }
 
@@ -45,7 +49,8 @@ def write_surfaces_npz(surfaces, file: BinaryIO) -> None:
 
 def write_surfaces_vtu(surfaces, file: BinaryIO) -> None:
     """Writes all triangles as one unstructured grid (VTK File Formats, XML), with the point arrays height,
-    variance and distance (NaN where there is none) and the cell array `surface`, the number of each one's."""
+    variance and distance (NaN where there is none) and the cell arrays `surface`, the number of each one's,
+    and `sheet`."""
     arrays = surface_arrays(surfaces)
     first = np.repeat(arrays["surface_vertex_offsets"][:-1], np.diff(arrays["surface_triangle_offsets"]))
     corners = arrays["surface_triangles"].astype("<i8") + first[:, None]
@@ -62,18 +67,23 @@ def write_surfaces_vtu(surfaces, file: BinaryIO) -> None:
             ("Cells", "types", np.full(count, _TRIANGLE, np.uint8)),
             *(("PointData", name, arrays[f"surface_{name}"].astype("<f8")) for name in ATTRIBUTES),
             ("CellData", "surface", number),
+            ("CellData", "sheet", arrays["surface_triangle_sheet"].astype("<i4")),
         ],
     )
 
 
-WRITERS: dict[str, Callable[..., None]] = {".npz": write_surfaces_npz, ".vtu": write_surfaces_vtu}
+WRITERS: dict[str, Callable[..., None]] = {
+    ".npz": write_surfaces_npz,
+    ".vtu": write_surfaces_vtu,
+    **part_writers(surface_parts),
+}
 
 
 def surface_writer_for(path: str | Path) -> Callable[..., None]:
     """The function (surfaces, file) that writes files of this ending. Raises UsageError."""
     ending = Path(path).suffix.lower()
     if ending not in WRITERS:
-        raise UsageError(f"{path}: surfaces are written to {' or '.join(WRITERS)} files")
+        raise UsageError(f"{path}: surfaces are written to {', '.join(WRITERS)} files")
     return WRITERS[ending]
 
 

@@ -12,6 +12,7 @@ from typing import BinaryIO
 
 import numpy as np
 
+from ..simulation import PolyhedralMesh
 from ..work import native_module
 from .vtk_xml import END, ArrayTag, write_array, write_header, write_length
 
@@ -19,17 +20,16 @@ _POLYHEDRON = 42
 _CELLS_AT_ONCE = 20_000
 
 
-def write_vtu(model, file: BinaryIO, step: Callable[[float], None]) -> None:
+def write_vtu(mesh: PolyhedralMesh, file: BinaryIO, step: Callable[[float], None]) -> None:
     """Writes every cell as a polyhedron, with the cell arrays `block` (number in the model's list),
     `property` (library id, 0: none) and `compartment`. Faces turn counter-clockwise seen from outside their
     cell."""
-    cells = CellFaces(model)
-    count = len(model.cell_block)
-    block_property = np.array([block.property for block in model.blocks], np.int32)
+    cells = CellFaces(mesh)
+    count = len(mesh.cell_block)
     streams = cells.stream_length()
     faces_size = 8 * int(streams.sum())
     tags = [  # connectivity is last: its length is found on the way
-        ArrayTag("Points", "Points", "f8", model.vertices.nbytes, 3),
+        ArrayTag("Points", "Points", "f8", mesh.points.nbytes, 3),
         ArrayTag("CellData", "block", "i4", 4 * count),
         ArrayTag("CellData", "property", "i4", 4 * count),
         ArrayTag("CellData", "compartment", "i4", 4 * count),
@@ -39,11 +39,11 @@ def write_vtu(model, file: BinaryIO, step: Callable[[float], None]) -> None:
         ArrayTag("Cells", "offsets", "i8", 8 * count),
         ArrayTag("Cells", "connectivity", "i8", 0),
     ]
-    write_header(file, len(model.vertices), count, tags)
-    write_array(file, np.ascontiguousarray(model.vertices, "<f8"))
-    write_array(file, model.cell_block.astype("<i4"))
-    write_array(file, block_property[model.cell_block].astype("<i4") if count else np.empty(0, "<i4"))
-    write_array(file, np.ascontiguousarray(model.cell_compartment, "<i4"))
+    write_header(file, len(mesh.points), count, tags)
+    write_array(file, np.ascontiguousarray(mesh.points, "<f8"))
+    write_array(file, mesh.cell_block.astype("<i4"))
+    write_array(file, mesh.block_property[mesh.cell_block].astype("<i4") if count else np.empty(0, "<i4"))
+    write_array(file, np.ascontiguousarray(mesh.cell_compartment, "<i4"))
     write_array(file, np.full(count, _POLYHEDRON, np.uint8))
     write_array(file, np.cumsum(streams).astype("<i8"))
     faces_at = file.tell()
@@ -72,10 +72,10 @@ def write_vtu(model, file: BinaryIO, step: Callable[[float], None]) -> None:
 class CellFaces:
     """The faces of each cell, from the two cells of each face."""
 
-    def __init__(self, model):
-        self.model = model
-        self.face_size = np.diff(model.face_offsets)
-        self.begin, sides = native_module().cell_sides(model.face_cells, len(model.cell_block))
+    def __init__(self, mesh: PolyhedralMesh):
+        self.mesh = mesh
+        self.face_size = np.diff(mesh.face_offsets)
+        self.begin, sides = native_module().cell_sides(mesh.face_cells, len(mesh.cell_block))
         self.face, self.turned = sides >> 1, (sides & 1).astype(bool)
 
     def stream_length(self) -> np.ndarray:
@@ -92,14 +92,14 @@ class CellFaces:
         owner = np.repeat(np.arange(len(face)), size)
         rank = np.arange(len(owner)) - np.repeat(np.cumsum(size) - size, size)
         rank = np.where(self.turned[side][owner], size[owner] - 1 - rank, rank)
-        corners = self.model.face_vertices[self.model.face_offsets[face][owner] + rank]
+        corners = self.mesh.face_vertices[self.mesh.face_offsets[face][owner] + rank]
         return cell, size, owner, corners
 
     def described(self, start: int, end: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Of the cells start..end: int64 for each its number of faces, and each face's number of corners and
         corners; the vertices of each, every one once and in order; and how many these are (a cell)."""
         cell, size, owner, corners = self._sides(start, end)
-        width = len(self.model.vertices)
+        width = len(self.mesh.points)
         key = np.sort(cell[owner].astype(np.int64) * width + corners)
         key = key[np.append(True, key[1:] != key[:-1])] if len(key) else key
         return (

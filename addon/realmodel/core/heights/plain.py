@@ -36,9 +36,9 @@ def plane(task: Task) -> Result:
     """
     points = np.unique(task.points, axis=0)
     base = points[0, 2]
-    centre = points[0, :2] + (points[:, :2] - points[0, :2]).mean(axis=0)
-    plan, z = points[:, :2] - centre, points[:, 2] - base
-    nodes = task.nodes - centre
+    center = points[0, :2] + (points[:, :2] - points[0, :2]).mean(axis=0)
+    plan, z = points[:, :2] - center, points[:, 2] - base
+    nodes = task.nodes - center
     dip = task.settings["dip"]
     if dip is not None:
         azimuth = math.radians(task.settings["dip_direction"])

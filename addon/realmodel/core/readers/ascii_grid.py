@@ -8,14 +8,11 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-
 from ..errors import InputRefused
-from ..work import native_module
-from .points import BYTES_AT_ONCE
+from .grid_text import grid_heights, read_grid_text
 from .raster import Raster, without_values
 from .table_layout import is_number
-from .text import Step, no_step, read_bytes, require_text
+from .text import Step, no_step
 
 _KEYS = (
     "ncols",
@@ -39,15 +36,12 @@ def is_ascii_grid(head: bytes) -> bool:
 
 
 def read_ascii_grid(file: str | Path, nodata: Sequence[float] = (), step: Step = no_step) -> Raster:
-    """A grid; heights stand at the centres of its cells. nodata: further numbers that mean no height.
+    """A grid; heights stand at the centers of its cells. nodata: further numbers that mean no height.
 
     Raises InputRefused naming file and line.
     """
     file = Path(file)
-    raw = read_bytes(file)
-    require_text(file, raw)
-    if b"\n" not in raw:
-        raw = raw.replace(b"\r", b"\n")
+    raw = read_grid_text(file)
     decimal = "," if b"," in raw[:_LONGEST_HEADER] and b"." not in raw[:_LONGEST_HEADER] else "."
     header, lines, body, body_line = _header(file, raw, decimal)
     columns, rows = (_count(file, header, lines, key) for key in ("ncols", "nrows"))
@@ -58,7 +52,8 @@ def read_ascii_grid(file: str | Path, nodata: Sequence[float] = (), step: Step =
         raise InputRefused("the header needs a cellsize above 0", file=file, line=line)
     west = _lower_left(file, header, "x", dx)
     south = _lower_left(file, header, "y", dy)
-    z = _heights(file, raw, body, body_line, decimal, rows * columns, (columns, rows), step)
+    shape = f"{columns} columns and {rows} rows"
+    z = grid_heights(file, raw, body, body_line, rows * columns, shape, step, decimal)
     none = [header["nodata_value"]] if "nodata_value" in header else []
     z = without_values(z.reshape(rows, columns), [*none, *nodata])
     return Raster(z, (west, south + (rows - 1) * dy), (dx, 0.0), (0.0, -dy))
@@ -101,38 +96,9 @@ def _count(file: Path, header: dict, lines: dict, key: str) -> int:
 
 
 def _lower_left(file: Path, header: dict, axis: str, size: float) -> float:
-    """The coordinate of the centre of the cell in the south-west."""
+    """The coordinate of the center of the cell in the south-west."""
     if f"{axis}llcenter" in header:
         return header[f"{axis}llcenter"]
     if f"{axis}llcorner" in header:
         return header[f"{axis}llcorner"] + 0.5 * size
     raise InputRefused(f"the header has neither {axis}llcorner nor {axis}llcenter", file=file)
-
-
-def _heights(file, raw, body, body_line, decimal, count, shape, step: Step) -> np.ndarray:
-    """The numbers behind the header, wherever its lines end."""
-    native = native_module()
-    one_a_line = bytes.maketrans(b" \t\r", b"\n\n\n")
-    found, at = [], body
-    while at < len(raw):
-        blank = re.compile(rb"\s").search(raw, min(at + BYTES_AT_ONCE, len(raw)))
-        end = len(raw) if blank is None else blank.end()
-        piece = raw[at:end].translate(one_a_line)
-        try:
-            found.append(native.read_numbers(piece, 0, len(piece), " ", decimal, [0], [], ([], []))[0][:, 0])
-        except native.InputError as error:
-            begin, stop = error.items[2:4]
-            line = body_line + raw.count(b"\n", body, at + begin)
-            entry = piece[begin:stop].decode("latin-1")
-            advice = "write the NODATA_value where there is no height" if error.kind == "not_finite" else None
-            raise InputRefused(f"not a height: '{entry:.40}'", file=file, line=line, advice=advice) from error
-        at = end
-        step(at / len(raw))
-    z = np.concatenate(found) if found else np.empty(0)
-    if len(z) != count:
-        raise InputRefused(
-            f"{shape[0]} columns and {shape[1]} rows need {count} heights; there are {len(z)}",
-            file=file,
-            advice="the file is cut off or its header is wrong",
-        )
-    return z

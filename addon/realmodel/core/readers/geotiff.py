@@ -47,7 +47,7 @@ def world_file(file: Path) -> Path | None:
 
 def read_geotiff(file: str | Path, nodata: Sequence[float] = (), step: Step = no_step) -> Raster:
     """The first image of a GeoTIFF with one number a pixel: whole or floating-point, in strips or tiles,
-    uncompressed or by LZW, DEFLATE or PackBits. Heights stand at the centres of pixels, or where the file
+    uncompressed or by LZW, DEFLATE or PackBits. Heights stand at the centers of pixels, or where the file
     says so at their corners. nodata: further numbers that mean no height.
 
     Raises InputRefused naming the file, BuildFailed where tifffile is not there.
@@ -221,7 +221,7 @@ def _place(file: Path, tags: dict, keys: dict):
 
 
 def _world(file: Path) -> tuple[float, ...]:
-    """A world file: a, d, b, e, and the place of the first pixel's centre."""
+    """A world file: a, d, b, e, and the place of the first pixel's center."""
     try:
         a, d, b, e, c, f = (float(word.replace(",", ".")) for word in file.read_text("latin-1").split())
     except ValueError as error:

@@ -4,40 +4,49 @@ detected from the content of the file."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import InputRefused
+from .dxf_mesh import begins_as_dxf, read_dxf
+from .gmsh_mesh import begins_as_msh, read_msh
+from .landxml import begins_as_landxml, read_landxml
 from .off import begins_as_off, read_off
-from .surface_meshes import read_obj, read_ply, read_stl, read_tsurf
+from .surface_meshes import begins_as_obj, begins_as_stl, read_obj, read_ply, read_stl, read_tsurf
 from .text import Step, no_step
 from .triangle_mesh import TriangleMesh
+from .vtk_mesh import begins_as_vtk_xml, read_vtk_xml
 
-_HEAD = 512
+_HEAD = 4096
 
 
 @dataclass(frozen=True)
 class MeshFormat:
-    """begins(head): whether a file that begins with these bytes is of this format. read(file, step) raises
-    InputRefused naming file and line."""
+    """begins(head, size): whether a file of so many bytes that begins with these is of this format.
+    read(file, step) raises InputRefused naming file and line."""
 
     name: str
     endings: tuple[str, ...]
-    begins: Callable[[bytes], bool]
+    begins: Callable[[bytes, int], bool]
     read: Callable[[Path, Step], TriangleMesh]
 
 
-def _by_ending(_head: bytes) -> bool:
-    return False
+def _by_head(begins: Callable[[bytes], bool]) -> Callable[[bytes, int], bool]:
+    return lambda head, _size: begins(head)
 
 
 MESH_FORMATS = (
-    MeshFormat("OFF", (".off",), begins_as_off, read_off),
-    MeshFormat("PLY", (".ply",), lambda head: head.startswith((b"ply\n", b"ply\r")), read_ply),
-    MeshFormat("GOCAD TSurf", (".ts",), lambda head: head.startswith(b"GOCAD TSurf"), read_tsurf),
-    MeshFormat("OBJ", (".obj",), _by_ending, read_obj),
-    MeshFormat("STL", (".stl",), _by_ending, read_stl),
+    MeshFormat("OFF", (".off",), _by_head(begins_as_off), read_off),
+    MeshFormat("PLY", (".ply",), _by_head(lambda head: head.startswith((b"ply\n", b"ply\r"))), read_ply),
+    MeshFormat("GOCAD TSurf", (".ts",), _by_head(lambda head: head.startswith(b"GOCAD TSurf")), read_tsurf),
+    MeshFormat("VTK XML", (".vtp", ".vtu"), _by_head(begins_as_vtk_xml), read_vtk_xml),
+    MeshFormat("Gmsh", (".msh",), _by_head(begins_as_msh), read_msh),
+    MeshFormat("LandXML", (".xml", ".landxml"), _by_head(begins_as_landxml), read_landxml),
+    MeshFormat("DXF", (".dxf",), _by_head(begins_as_dxf), read_dxf),
+    MeshFormat("STL", (".stl",), begins_as_stl, read_stl),
+    MeshFormat("OBJ", (".obj",), begins_as_obj, read_obj),
 )
 MESH_ENDINGS = tuple(ending for known in MESH_FORMATS for ending in known.endings)
 
@@ -48,10 +57,11 @@ def read_mesh(file: str | Path, step: Step = no_step) -> TriangleMesh:
     try:
         with file.open("rb") as opened:
             head = opened.read(_HEAD)
+            size = opened.seek(0, os.SEEK_END)
     except OSError as error:
         raise InputRefused(f"cannot be read: {error.strerror}", file=file, advice="check the path") from error
     by_ending = [known for known in MESH_FORMATS if file.suffix.lower() in known.endings]
-    found = [*(known for known in MESH_FORMATS if known.begins(head)), *by_ending]
+    found = [*(known for known in MESH_FORMATS if known.begins(head, size)), *by_ending]
     if not found:
         names = ", ".join(known.name for known in MESH_FORMATS)
         raise InputRefused(f"neither its content nor its extension is that of a mesh ({names})", file=file)

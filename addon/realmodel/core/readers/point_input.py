@@ -4,6 +4,7 @@ are one registry (docs/dev/extending.md)."""
 
 from __future__ import annotations
 
+import tokenize
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,14 +15,18 @@ from ..errors import InputRefused
 from ..point_file import PointFile
 from ..units import MODEL_UNIT, factor
 from .ascii_grid import is_ascii_grid, read_ascii_grid
+from .cps3_grid import is_cps3_grid, read_cps3_grid
 from .geotiff import is_tiff, read_geotiff, world_file
+from .irap_grid import is_irap_grid, read_irap_grid
 from .map_input import is_map_layer, map_companions
 from .map_points import read_map_points
 from .points import read_point_rows
 from .raster import Raster
+from .surfer_grid import is_surfer_grid, read_surfer_grid
 from .text import Step, no_step
+from .zmap_grid import is_zmap_grid, read_zmap_grid
 
-_HEAD = 512
+_HEAD = 4096  # comments may stand before what a grid begins with
 
 
 @dataclass(frozen=True)
@@ -37,8 +42,18 @@ class RasterFormat:
 RASTER_FORMATS = (
     RasterFormat((".tif", ".tiff"), is_tiff, read_geotiff),
     RasterFormat((".asc",), is_ascii_grid, read_ascii_grid),
+    RasterFormat((".grd",), is_surfer_grid, read_surfer_grid),
+    RasterFormat((".zmap", ".dat"), is_zmap_grid, read_zmap_grid),
+    RasterFormat((".cps3", ".cps"), is_cps3_grid, read_cps3_grid),
+    RasterFormat((".gri", ".irap"), is_irap_grid, read_irap_grid),
 )
 RASTER_ENDINGS = tuple(ending for known in RASTER_FORMATS for ending in known.endings)
+# What NumPy raises of a damaged header, which it reads as Python.
+_DAMAGED_ARRAY = (
+    *(ValueError, OSError, EOFError, SyntaxError, TypeError),
+    *(tokenize.TokenError, OverflowError, MemoryError, RecursionError),
+)
+_NUMPY = b"\x93NUMPY"
 # What grids and tables of many programs have for "no height".
 _OFTEN_NO_VALUE = (
     -9999.0,
@@ -67,6 +82,10 @@ def read_point_file(
     raster = next((known for known in RASTER_FORMATS if known.begins(head)), None)
     if raster is not None:
         points, warnings = _raster_points(given, file, raster, step)
+    elif head.startswith(_NUMPY):
+        chosen = ["where"] if given.where else []
+        _refuse_keys(file, "is an array", [*given.only_for_tables, *chosen, *given.only_for_shapes])
+        points, warnings = _array_points(file), []
     elif is_map_layer(file, head):
         _refuse_keys(file, "has shapes", given.only_for_tables)
         points, warnings = read_map_points(given, step)
@@ -86,6 +105,24 @@ def read_point_file(
             warnings.append(f"{file}: {rows.missing} points have no value and are left out")
     warnings += [f"{file}: {text}" for text in _like_no_value(points[:, 2])]
     return in_model(points, given, model_unit), warnings
+
+
+def _array_points(file: Path) -> np.ndarray:
+    """(P, 3) float64 of an array of NumPy, rows without a height left out. Raises InputRefused."""
+    try:
+        found = np.load(file, mmap_mode="r", allow_pickle=False)
+        if found.ndim != 2 or found.shape[1] != 3 or found.dtype.kind not in "iuf":
+            what = f"an array of shape {found.shape} of {found.dtype} is not one of points (x, y, z in a row)"
+            raise InputRefused(what, file=file)
+        points = np.array(found, np.float64)
+    except _DAMAGED_ARRAY as error:
+        raise InputRefused(f"a damaged array: {error}", file=file) from error
+    if not np.isfinite(points[:, :2]).all():
+        raise InputRefused("a place in plan is not finite", file=file)
+    points = points[np.isfinite(points[:, 2])]
+    if not len(points):
+        raise InputRefused("no point of the array has a height", file=file)
+    return points
 
 
 def in_model(points: np.ndarray, given: PointFile, model_unit: str) -> np.ndarray:

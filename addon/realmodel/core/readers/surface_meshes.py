@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputRefused
+from ..units import METERS
 from .text import LINES_AT_ONCE, Step, no_step, read_text
 from .triangle_mesh import TriangleMesh, mesh_of_faces
 
@@ -42,6 +44,23 @@ _PLY_TYPES = {
 _PLY_CORNERS = ("vertex_indices", "vertex_index")
 
 
+def begins_as_obj(head: bytes, _size: int = 0) -> bool:
+    """Whether a file that begins so is an OBJ: comments apart, its first line is one of that format."""
+    lines = (line.partition(b"#")[0].split() for line in head.removeprefix(b"\xef\xbb\xbf").splitlines())
+    words = next((words for words in lines if words), [b""])
+    if words[0] in (b"v", b"vt", b"vn"):
+        return len(words) >= 3 and all(re.fullmatch(rb"[-+.\deE]+", word) for word in words[1:])
+    return words[0] in (b"mtllib", b"usemtl", b"o", b"g") and len(words) > 1 and b"\nv " in head
+
+
+def begins_as_stl(head: bytes, size: int) -> bool:
+    """Whether a file of so many bytes that begins so is an STL, as text or binary."""
+    if head.lstrip().startswith(b"solid") and b"facet" in head:
+        return True
+    count = int.from_bytes(head[_STL_HEAD - 4 : _STL_HEAD], "little")
+    return len(head) >= _STL_HEAD and size == _STL_HEAD + count * _STL_FACET.itemsize
+
+
 def read_obj(file: str | Path, step: Step = no_step) -> TriangleMesh:
     """Reads all faces of a Wavefront OBJ. Raises InputRefused naming file and line."""
     file = Path(file)
@@ -63,12 +82,14 @@ def read_obj(file: str | Path, step: Step = no_step) -> TriangleMesh:
 
 
 def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
-    """Reads all surfaces of a GOCAD TSurf file as one. Depths that are positive downward become heights.
-    Raises InputRefused naming file and line."""
+    """Reads all surfaces of a GOCAD TSurf file as one. Depths that are positive downward become heights;
+    a word says that values at vertices are not read. Raises InputRefused naming file and line."""
     file = Path(file)
     vertices, faces, lines = [], [], []
     index: dict[int, int] = {}  # of a vertex by its number in the present surface
     up = 1.0
+    properties: dict[str, None] = {}
+    axis_units: set[str] = set()
     for number, words in _rows(file, step):
         try:
             if words[0] == "GOCAD":
@@ -78,6 +99,10 @@ def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
                     raise InputRefused(what, file=file, line=number, advice="export the TSurf alone")
             elif words[0] == "ZPOSITIVE":
                 up = -1.0 if words[1].lower() == "depth" else 1.0
+            elif words[0] == "PROPERTIES":
+                properties |= dict.fromkeys(words[1:])
+            elif words[0] == "AXIS_UNIT":
+                axis_units |= {word.strip('"').lower() for word in words[1:4]}
             elif words[0] in ("VRTX", "PVRTX"):
                 x, y, z = map(float, words[2:5])
                 index[int(words[1])] = len(vertices)
@@ -89,7 +114,10 @@ def read_tsurf(file: str | Path, step: Step = no_step) -> TriangleMesh:
                 lines.append(number)
         except _UNREADABLE as error:
             raise _unreadable_line(file, number, words) from error
-    return mesh_of_faces(file, vertices, faces, lines)
+    mesh = mesh_of_faces(file, vertices, faces, lines)
+    (unit,) = axis_units if len(axis_units) == 1 else (None,)
+    told = [f"its properties {', '.join(properties)} are not read"] if properties else []
+    return replace(mesh, unit=unit if unit in METERS else None, warnings=tuple(told))
 
 
 def read_stl(file: str | Path, step: Step = no_step) -> TriangleMesh:

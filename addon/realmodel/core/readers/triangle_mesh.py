@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from ..errors import InputRefused
+from ..point_file import MeshFile
 
 
 @dataclass(frozen=True)
@@ -18,11 +19,27 @@ class TriangleMesh:
     """vertices (V, 3) float64, triangles (T, 3) int32; polygons are fanned from their first corner.
 
     face_of_triangle (T,): the face of the file that a triangle is of, from 0; None where they are the same.
+    unit: of its lengths (units.METERS), where the file says one. warnings: sentences.
     """
 
     vertices: np.ndarray
     triangles: np.ndarray
     face_of_triangle: np.ndarray | None = None
+    unit: str | None = None
+    warnings: tuple[str, ...] = ()
+
+    def in_model(self, given: MeshFile, model_unit: str) -> tuple[np.ndarray, list[str]]:
+        """The vertices in the model's unit, z upward, and what to tell. given: what the user says of the
+        file;
+        without a unit of the user's the one of the file counts."""
+        told = [f"{given.file}: {text}" for text in self.warnings]
+        if given.units is None and self.unit not in (None, model_unit):
+            given = replace(given, units=self.unit)
+            told.append(f"{given.file}: its lengths are in {self.unit}, according to the file")
+        plan_scale, height_scale = given.scale(model_unit)
+        if (plan_scale, height_scale) == (1.0, 1.0):
+            return self.vertices, told
+        return self.vertices * (plan_scale, plan_scale, height_scale), told
 
 
 def mesh_of_faces(file: Path, vertices, faces: Sequence, lines: Sequence[int] | None = None) -> TriangleMesh:

@@ -1,6 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes for simulation, in the plain form that writers of solvers' formats take."""
 
+from .simulation_mesh import SimulationMesh, mesh_entry, simulation_mesh
 from .volume_mesh import CORNERS, PlanMesh, PolyhedralMesh, VolumeMesh
 
-__all__ = ["CORNERS", "PlanMesh", "PolyhedralMesh", "VolumeMesh"]
+__all__ = [
+    "CORNERS",
+    "PlanMesh",
+    "PolyhedralMesh",
+    "SimulationMesh",
+    "VolumeMesh",
+    "mesh_entry",
+    "simulation_mesh",
+]

@@ -68,6 +68,7 @@ class PolyhedralMesh:
 
     points: (N, 3) float64. face_offsets: (F + 1,) int64; face_vertices: int32; face_cells: (F, 2) int32;
     face_surface: (F,) int32; cell_block: (C,) int32. Names and kinds as of VolumeMesh.
+    cell_compartment: (C,) int32, 0 for all where none is given.
     """
 
     points: np.ndarray
@@ -80,6 +81,11 @@ class PolyhedralMesh:
     block_property: np.ndarray
     surface_names: list[str]
     surface_kind: np.ndarray
+    cell_compartment: np.ndarray | None = None
+
+    def __post_init__(self):
+        if self.cell_compartment is None:
+            object.__setattr__(self, "cell_compartment", np.zeros(len(self.cell_block), np.int32))
 
     @property
     def cells(self) -> int:
@@ -100,4 +106,5 @@ class PolyhedralMesh:
             np.array([block.property for block in model.blocks], np.int32),
             list(model.surface_names),
             model.surface_kind,
+            model.cell_compartment,
         )

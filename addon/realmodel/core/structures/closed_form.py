@@ -1,19 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is at a point of a rock mass with faults and bodies, from its sheets alone: nothing is built.
 
-An evaluation of its own, for tests and for the proof of a model: it shares nothing with the builder.
+An evaluation of its own, for tests and for the proof of a model: it shares nothing with the builder but how
+faults go on beyond their borders.
 """
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..rules import RULES
+from ..work import native_module
 from .exact import orient2d, orient3d
-from .sides import RockFaults
+from .sides import FaultShape, RockFaults
 from .triangles import distances_of_pairs
 
 Triangulation = tuple[np.ndarray, np.ndarray]
@@ -48,11 +51,20 @@ class ClosedForm:
     base_elevation: float | None = None
     bodies: Sequence[BodyOfRock] = ()
     region: Triangulation | None = None
+    grids: dict[tuple[int, int], PlanGrid] = field(default_factory=dict, compare=False)
+
+    def _grid(self, shape: Triangulation) -> PlanGrid:
+        """That of a shape of this object, made once."""
+        vertices, triangles = shape
+        key = id(vertices), id(triangles)
+        if key not in self.grids:
+            self.grids[key] = PlanGrid(vertices[triangles])
+        return self.grids[key]
 
     def compartments_of(self, points: np.ndarray) -> np.ndarray:
         """(N,) the compartment that each point lies in; -1 for none."""
         points = np.asarray(points, np.float64).reshape(-1, 3)
-        columns = [nearest_side(points, *shape) for shape in self.faults.shapes]
+        columns = [nearest_side(points, *self._continued(shape, points)) for shape in self.faults.shapes]
         sides = np.column_stack(columns) if columns else np.zeros((len(points), 0), np.int8)
         sides = self.faults.without_dropped(sides)
         found = np.full(len(points), -1, np.int64)
@@ -60,12 +72,24 @@ class ClosedForm:
             found[(sides == row).all(axis=1)] = number
         return found
 
+    @staticmethod
+    def _continued(shape: FaultShape, points: np.ndarray) -> Triangulation:
+        """A fault with what it is continued by beyond its border."""
+        if not len(points):
+            return shape.vertices, shape.triangles
+        box = np.array([points.min(axis=0), points.max(axis=0)])
+        beyond = native_module().structure_continuation(shape.native(), box).reshape(-1, 3)
+        numbers = np.arange(len(shape.vertices), len(shape.vertices) + len(beyond)).reshape(-1, 3)
+        return np.concatenate([shape.vertices, beyond]), np.concatenate([shape.triangles, numbers])
+
     def blocks_at(self, points: np.ndarray) -> np.ndarray:
         """(N,) the block at each point (N, 3); AIR for none. Points of no compartment are in none."""
         points = np.asarray(points, np.float64).reshape(-1, 3)
         where = self.compartments_of(points)
         blocks = np.full(len(points), AIR, np.int64)
-        insides = [winding_numbers(points, *body.shape) != 0 for body in self.bodies]
+        insides = [
+            winding_numbers(points, *body.shape, self._grid(body.shape)) % 2 != 0 for body in self.bodies
+        ]
         for number, sheets in enumerate(self.sheets):
             here = np.flatnonzero(where == number)
             if len(here):
@@ -73,21 +97,23 @@ class ClosedForm:
         if self.base_elevation is not None:
             blocks[points[:, 2] < self.base_elevation] = AIR
         if self.region is not None:
-            blocks[np.isnan(heights_at(points[:, :2], *_flat(self.region)))] = AIR
+            grid = self._grid(self.region)
+            blocks[np.isnan(heights_at(points[:, :2], *_flat(self.region), grid))] = AIR
         return blocks
 
     def _history(self, points: np.ndarray, sheets, insides) -> np.ndarray:
         """The events oldest first, at points of one compartment."""
+        has_base = self.base_elevation is not None
         state = np.full(len(points), AIR, np.int64)
         covered = np.zeros(len(points), bool)
         protected = np.zeros(len(points), bool)
         for k, (rule, sheet) in enumerate(zip(self.rules, sheets, strict=True)):
-            heights = heights_at(points[:, :2], *sheet)
+            heights = heights_at(points[:, :2], *sheet, self._grid(sheet))
             exists = ~np.isnan(heights)
             below, above = exists & (points[:, 2] < heights), exists & (points[:, 2] > heights)
             if RULES[rule].cuts:
                 state[above & ~protected] = AIR
-            oldest = self.blocks[0] if k == 0 and self.base_elevation is not None else _BASEMENT
+            oldest = self.blocks[0] if k == 0 and has_base else _BASEMENT
             filled = below & (state == AIR)
             state[filled] = np.where(covered, self.blocks[k], oldest)[filled]
             covered |= exists
@@ -95,7 +121,7 @@ class ClosedForm:
                 protected |= below | (exists & (state != AIR))
             for body, inside in zip(self.bodies, insides, strict=True):
                 if body.after == k:
-                    state[inside & (state != _BASEMENT)] = body.block
+                    state[inside & (has_base | (state != _BASEMENT))] = body.block
         state[state == _BASEMENT] = AIR
         return state
 
@@ -105,10 +131,13 @@ def _flat(region: Triangulation) -> Triangulation:
     return np.column_stack([vertices[:, :2], np.zeros(len(vertices))]), triangles
 
 
-def heights_at(plan: np.ndarray, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(N,) heights of a surface at plan points (N, 2); NaN where it has no triangle there (exact)."""
+def heights_at(
+    plan: np.ndarray, vertices: np.ndarray, triangles: np.ndarray, grid: PlanGrid | None = None
+) -> np.ndarray:
+    """(N,) heights of a surface at plan points (N, 2); NaN where it has no triangle there (exact). grid: of
+    its triangles, if there is one already."""
     heights = np.full(len(plan), np.nan)
-    for points, rows in plan_candidates(plan, vertices[triangles]):
+    for points, rows in (grid or PlanGrid(vertices[triangles])).over(plan):
         a, b, c = vertices[triangles[rows]].transpose(1, 0, 2)
         p = plan[points]
         turns = [orient2d(u[:, :2], v[:, :2], p) for u, v in ((a, b), (b, c), (c, a))]
@@ -126,46 +155,62 @@ def heights_in_plane(a, b, c, plan) -> np.ndarray:
     return a[:, 2] + ((x * vy - y * vx) * uz + (ux * y - uy * x) * vz) / area
 
 
-def plan_candidates(plan: np.ndarray, corners: np.ndarray):
-    """Pairs of plan points (N, 2) and polygons (T, K, 3) whose boxes they are in, some at a time: rows of the
-    points and of the polygons."""
-    if not len(plan) or not len(corners):
-        return
-    low, high = corners[:, :, :2].min(axis=1), corners[:, :, :2].max(axis=1)
-    origin, size = low.min(axis=0), np.ptp(np.concatenate([low, high]), axis=0)
-    count = np.clip(int(np.sqrt(len(corners))), 1, 512)
-    step = np.where(size > 0, size / count, 1.0)
-    first, last = ((np.clip((at - origin) / step, 0, count - 1)).astype(int) for at in (low, high))
-    spans = last - first + 1
-    each = spans[:, 0] * spans[:, 1]
-    owner = np.repeat(np.arange(len(corners)), each)
-    at = np.arange(each.sum()) - np.repeat(np.cumsum(each) - each, each)
-    cell = (first[owner, 0] + at // spans[owner, 1]) * count + first[owner, 1] + at % spans[owner, 1]
-    order = np.argsort(cell, kind="stable")
-    owner, begin = owner[order], np.searchsorted(cell[order], np.arange(count * count + 1))
-    inside = ((plan >= origin) & (plan <= origin + size)).all(axis=1)
-    places = np.clip((plan - origin) / step, 0, count - 1).astype(int)
-    places = places[:, 0] * count + places[:, 1]
-    number = np.where(inside, begin[places + 1] - begin[places], 0)
-    ends = np.cumsum(number)
-    start = 0
-    while start < len(plan):
-        stop = max(start + 1, int(np.searchsorted(ends, ends[start] - number[start] + _AT_ONCE, "right")))
-        some = np.arange(start, stop)
-        points = np.repeat(some, number[some])
-        at = np.arange(len(points)) - np.repeat(np.cumsum(number[some]) - number[some], number[some])
-        rows = owner[begin[places[points]] + at]
-        near = ((plan[points] >= low[rows]) & (plan[points] <= high[rows])).all(axis=1)
-        if near.any():
-            yield points[near], rows[near]
-        start = stop
+class PlanGrid:
+    """Polygons (T, K, D) in the cells of a grid in plan, so that those over points are found quickly."""
+
+    def __init__(self, corners: np.ndarray):
+        plan = [corners[:, k, :2] for k in range(corners.shape[1])]
+        self.low, self.high = functools.reduce(np.minimum, plan), functools.reduce(np.maximum, plan)
+        if not len(corners):
+            return
+        self.origin, self.last = self.low.min(axis=0), self.high.max(axis=0)
+        self.count = int(np.clip(int(np.sqrt(len(corners))), 1, 512))
+        size = self.last - self.origin
+        self.step = np.where(size > 0, size / self.count, 1.0)
+        first, last = (self._cells(at) for at in (self.low, self.high))
+        spans = last - first + 1
+        each = spans[:, 0] * spans[:, 1]
+        owner = np.repeat(np.arange(len(corners)), each)
+        at = np.arange(each.sum()) - np.repeat(np.cumsum(each) - each, each)
+        row, column = at // spans[owner, 1], at % spans[owner, 1]
+        cell = (first[owner, 0] + row) * self.count + first[owner, 1] + column
+        order = np.argsort(cell, kind="stable")
+        self.owner = owner[order]
+        self.begin = np.searchsorted(cell[order], np.arange(self.count**2 + 1))
+
+    def _cells(self, plan: np.ndarray) -> np.ndarray:
+        return np.clip((plan - self.origin) / self.step, 0, self.count - 1).astype(int)
+
+    def over(self, plan: np.ndarray):
+        """Pairs of plan points (N, 2) and polygons whose boxes they are in, some at a time: rows of the
+        points and of the polygons."""
+        if not len(plan) or not len(self.low):
+            return
+        inside = ((plan >= self.origin) & (plan <= self.last)).all(axis=1)
+        places = self._cells(plan)
+        places = places[:, 0] * self.count + places[:, 1]
+        number = np.where(inside, self.begin[places + 1] - self.begin[places], 0)
+        ends = np.cumsum(number)
+        start = 0
+        while start < len(plan):
+            stop = max(start + 1, int(np.searchsorted(ends, ends[start] - number[start] + _AT_ONCE, "right")))
+            some = np.arange(start, stop)
+            points = np.repeat(some, number[some])
+            at = np.arange(len(points)) - np.repeat(np.cumsum(number[some]) - number[some], number[some])
+            rows = self.owner[self.begin[places[points]] + at]
+            near = ((plan[points] >= self.low[rows]) & (plan[points] <= self.high[rows])).all(axis=1)
+            if near.any():
+                yield points[near], rows[near]
+            start = stop
 
 
-def winding_numbers(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+def winding_numbers(
+    points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray, grid: PlanGrid | None = None
+) -> np.ndarray:
     """(N,) how often a closed surface goes around each point: the signed count of its triangles above (exact;
     of points on an edge in plan as if they were moved by less than any distance)."""
     found = np.zeros(len(points), np.int64)
-    for rows, above in plan_candidates(points[:, :2], vertices[triangles]):
+    for rows, above in (grid or PlanGrid(vertices[triangles])).over(points[:, :2]):
         a, b, c = vertices[triangles[above]].transpose(1, 0, 2)
         p = points[rows]
         turns = [_moved_side(u[:, :2], v[:, :2], p[:, :2]) for u, v in ((a, b), (b, c), (c, a))]

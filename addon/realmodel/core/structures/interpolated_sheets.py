@@ -3,18 +3,22 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 
 import numpy as np
 
+from ..build_warning import BuildWarning
+from ..errors import place_text
+from ..methods import METHODS
+from ..mis_ties import contradictions, mean_heights
 from ..surface_heights import give_heights, needed_surfaces, where_known
 from ..work import Work
 from ..wrong_sides import heights_at
+from .beyond_faults import beyond_faults
 from .families import Family, are_within, keys_of
 from .rock_structure import Triangulation
 from .sides import sides_of
-from .tips import trace_of, with_equal_ends
+from .tips import shared, trace_of, with_equal_ends
 from .triangles import edges_of
 
 _RAMP = 4.0  # edges of the mesh: so far around its ends a fault that dies out is drawn together
@@ -30,11 +34,33 @@ class InterpolatedSurface:
         self.surface = entry.rock.surfaces[number]
         self.points = np.asarray(self.surface.points, np.float64).reshape(-1, 3)
         self.sides = sides_of(work, self.points, entry.structure.faults, threads)
+        self._leave_out_contradictions()
         self.keys = keys_of(entry.structure, number, self.sides)
         self.made: dict[
             int, tuple
         ] = {}  # the interpolation and the diagnostics of its vertices, by the id of a sheet
         self.most = (-1, None)
+
+    def _leave_out_contradictions(self) -> None:
+        """Leaves out points that others at their place in plan contradict, and tells."""
+        faults = self.entry.structure.faults
+        rows = np.where(faults.active(self.number), self.sides, 0)
+        beyond = beyond_faults(self.points, rows)
+        wrong = contradictions(np.column_stack([self.points, rows])[~beyond])
+        left_out = beyond.copy()
+        left_out[np.flatnonzero(~beyond)[wrong]] = True
+        if left_out.all() or not left_out.any():
+            return
+        first = self.points[np.flatnonzero(left_out)[0]]
+        text = (
+            f"{int(left_out.sum())} of its {len(left_out)} points are left out, one at {place_text(first)}: "
+            "others straight above or below them fit this side of the faults better; mostly picks of the "
+            "other side reach beyond a fault there"
+        )
+        warning = BuildWarning(text, "points", self.entry.rock.name, self.surface.name)
+        every = list(range(len(self.entry.structure.compartments)))
+        self.entry.structure.warnings.append((every, warning))
+        self.points, self.sides = self.points[~left_out], self.sides[~left_out]
 
     def own(self, family: Family) -> np.ndarray:
         """(P,) bool: the points in its compartments."""
@@ -51,6 +77,8 @@ class InterpolatedSurface:
         own = self.own(family)
         first = next(iter(family.members.values()))
         common = self._interpolated(family, first, own)
+        if not own.any() and not needed_surfaces(self.entry.rock, self.number):
+            return dict.fromkeys(family.members.values(), common)
         faults = [self.entry.structure.faults.shapes[fault] for fault in family.dying]
         nodes, triangles = self.entry.region
         z = self._on_nodes(common)
@@ -71,14 +99,16 @@ class InterpolatedSurface:
             for side in (-1, 1)
         }
         seen, told = {}, {}
-        for sides in itertools.product((-1, 1), repeat=len(met)):
+        settled = _settled(self.surface, self.made[id(common)][0])
+        for sides in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
             away = np.any([hidden[number, side] for number, side in zip(met, sides, strict=True)], axis=0)
             whole = list(first)
             for number, side in zip(met, sides, strict=True):
                 whole[number] = side
             visible = own & ~away
-            sheet = self._interpolated(family, tuple(whole), visible if visible.any() else own)
-            seen[sides], told[sides] = self._on_nodes(sheet), self.made[id(sheet)]
+            visible = visible if visible.any() else own
+            sheet = self._interpolated(family, tuple(whole), visible, settled)
+            seen[sides], told[sides] = self._on_nodes(sheet), self.made[id(sheet)][:2]
         ramp = _RAMP * float(np.median(_lengths(nodes, triangles)))
         equal = with_equal_ends(
             self.work,
@@ -86,23 +116,28 @@ class InterpolatedSurface:
             meshed,
             seen,
             [faults[number] for number in met],
-            [traces[number] for number in met],
             self._within(family),
             ramp,
             self.threads,
         )
-        found = {}
-        for sides, heights in equal.items():
-            sheet = where_known(nodes, triangles, heights)
-            found[sides] = sheet
+        found = shared({sides: where_known(nodes, triangles, z) for sides, z in equal.items()})
+        for sides, sheet in found.items():
             self.made[id(sheet)] = (*told[sides], sheet)
         return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
 
-    def _interpolated(self, family: Family, sides: tuple[int, ...], own: np.ndarray) -> Triangulation:
-        """The sheet from some points; surfaces that it needs are those on these sides."""
+    def _interpolated(
+        self,
+        family: Family,
+        sides: tuple[int, ...],
+        own: np.ndarray,
+        surface=None,
+    ) -> Triangulation:
+        """The sheet from some points; surfaces that it needs are those on these sides. surface: the same with
+        other options. Of heights on several sides of faults that die out, at one place, the mean counts."""
         entry = self.entry
         surfaces = list(entry.rock.surfaces)
-        surfaces[self.number] = replace(self.surface, points=self.points[own])
+        points = mean_heights(self.points[own]) if family.dying else self.points[own]
+        surfaces[self.number] = replace(surface or self.surface, points=points)
         if self.surface.minimum_thickness is not None:
             surfaces[self.number - 1] = self._with_own_points(family, surfaces[self.number - 1])
         shapes: list[Triangulation | None] = [None] * len(surfaces)
@@ -178,6 +213,16 @@ class InterpolatedSurface:
         self.entry.told[self.number] = {
             name: np.concatenate([each[name] for each in told]) for name in ("variance", "distance")
         }
+
+
+def _settled(surface, found):
+    """The surface with the variogram that was found once: so the two sides of a fault have the same."""
+    variogram = found.variogram
+    if variogram is None or not variogram.fitted:
+        return surface
+    options = {key: value for key, value in surface.options.items() if key in METHODS[found.method].options}
+    options |= {"variogram": variogram.settings(), "neighbours": found.neighbours}
+    return replace(surface, method=found.method, options=options)
 
 
 def _lengths(nodes: np.ndarray, triangles: np.ndarray) -> np.ndarray:

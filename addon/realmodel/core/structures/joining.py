@@ -9,7 +9,7 @@ import numpy as np
 
 from ..stack_refusals import refused_stack
 from ..work import Work, native_module
-from .part_models import NOTHING, Stack, inside_body, plain_stack
+from .part_models import NOTHING, Stack, distinct_plans, inside_body, plain_stack
 from .parts import Structures, compartment_of
 from .reach import Reach
 from .refusals import refused_structure
@@ -24,7 +24,9 @@ def build_joined(
     """As _native.build_rock_masses for rock masses (RockInput) with structures.
 
     Blocks have the numbers of the surfaces above them, and those of bodies the numbers of their structures,
-    counted after all surfaces; so have faces. `cell_part` (C,) int32 is the part of space of each cell.
+    counted after all surfaces; so have faces. `cell_part` (C,) int32 is the part of space of each cell,
+    `cell_own_block` (C,) int32 is its block with those of bodies as body_block numbers them,
+    `rock_of_own_block` (B,) int32 the rock mass of these, `own_block_divided` (S, B) as `acts` has it.
     Bodies that are not there yet divide nothing. Raises InputRefused.
     """
     there = structures.there()
@@ -45,14 +47,16 @@ def build_joined(
     if not models:
         return _nothing(inputs, structures)
     native = native_module()
+    divides = acts(inputs, structures)
     with work.phase(float(steps[-1]), end, "joining the compartments"):
         try:
             joined = work.native(
-                native.join_structured, models, structures.native(), acts(inputs, structures), threads=threads
+                native.join_structured, models, structures.native(), divides, threads=threads
             )
         except native.InputError as error:
             raise refused_structure(error, structures) from error
     joined["cell_part"] = np.array(parts, np.int32)[joined["cell_part"]]
+    _merge_blocks_of_bodies(joined, inputs, structures, divides)
     joined["warnings"] = list(warnings)
     return joined
 
@@ -74,6 +78,20 @@ def _renumbered(built: dict, there: np.ndarray, part: np.ndarray, count: int) ->
     }
 
 
+def _merge_blocks_of_bodies(joined: dict, inputs: list, structures: Structures, divides) -> None:
+    """Gives each body one block for all rock masses. divides: as `acts` has it."""
+    first, count = _first_surfaces(inputs), len(structures)
+    own, surfaces = joined["cell_block"], first[-1]
+    rocks = np.arange(len(inputs), dtype=np.int32)
+    joined["cell_own_block"] = own
+    joined["own_block_divided"] = divides
+    joined["rock_of_own_block"] = np.append(np.repeat(rocks, np.diff(first)), np.repeat(rocks, count))
+    body = own >= surfaces
+    joined["cell_block"] = np.where(body, surfaces + (own - surfaces) % max(1, count), own).astype(np.int32)
+    of_bodies = joined["volumes"][surfaces:].reshape(len(inputs), count).sum(axis=0)
+    joined["volumes"] = np.append(joined["volumes"][:surfaces], of_bodies)
+
+
 def _nothing(inputs: list, structures: Structures) -> dict:
     blocks = _first_surfaces(inputs)[-1] + len(structures)
     return {
@@ -84,6 +102,9 @@ def _nothing(inputs: list, structures: Structures) -> dict:
         "face_surface": np.empty(0, np.int32),
         "cell_block": np.empty(0, np.int32),
         "cell_part": np.empty(0, np.int32),
+        "cell_own_block": np.empty(0, np.int32),
+        "rock_of_own_block": np.empty(0, np.int32),
+        "own_block_divided": np.empty((len(structures), 0), np.uint8),
         "volumes": np.zeros(blocks),
         "warnings": [],
     }
@@ -112,7 +133,7 @@ def _part_model(
     for n in taken:
         stacks[n].sheets = [_narrowed(sheet, kept[id(sheet)]) for sheet in stacks[n].sheets]
     rocks = [(stacks[n].sheets, inputs[n].region, stacks[n].base_elevation, stacks[n].rules) for n in taken]
-    surfaces = [first[n] + own if own >= 0 else -1 for n in taken for own in stacks[n].surfaces]
+    surfaces = [first[n] + own if own >= 0 else own for n in taken for own in stacks[n].surfaces]
     native = native_module()
     try:
         built = work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)
@@ -122,7 +143,7 @@ def _part_model(
             error.surface = surfaces[error.surface]
         raise refused_stack(error, inputs) from error
     blocks = np.array([block for n in taken for block in stacks[n].blocks], np.int32)
-    # faces keep -1, a wall, and -2, the base; the level surfaces that only fill bodies are no surfaces
+    # faces keep -1, a wall, and -2, the base; surfaces that only fill bodies are none
     numbers = np.array([*surfaces, -2, -1], np.int32)
     model = {
         "vertices": built["vertices"],
@@ -131,7 +152,7 @@ def _part_model(
         "face_cells": built["face_cells"],
         "face_surface": numbers[built["face_surface"]],
         "cell_block": blocks[built["cell_block"]],
-        "blocks": first[-1] + len(structures),
+        "blocks": first[-1] + len(inputs) * len(structures),
         "surfaces": first[-1],
         "cell_kind": cells,
     }
@@ -162,19 +183,28 @@ def _stack(inputs: list, structures: Structures, part: int, number: int, first: 
     rules = [surface.rule for surface in entry.rock.surfaces]
     stack = plain_stack(sheets, rules, entry.rock.base_elevation, first)
     count = len(structures.faults)
-    inside = [
+    inside = sorted(
         (times[number], body)
         for body, times in enumerate(structures.times)
         if number in times and structures.sides[part, count + body] < 0
-    ]
+    )
     if not inside:
         return stack
     top = _above_all(sheets, structures)
-    for after, body in sorted(inside):
+    plans = [entry.region] if entry.region is not None else distinct_plans(sheets)
+    for at, (after, body) in enumerate(inside):
         given = structures.bodies[body]
-        block = NOTHING if given.void else surfaces + count + body
-        stack = inside_body(stack, after, block, top, given)
+        if given.void and at + 1 < len(inside) and inside[at + 1][0] == after:
+            continue  # what comes next leaves nothing of it
+        block = NOTHING if given.void else body_block(structures, surfaces, number, body)
+        stack = inside_body(stack, after, block, top, given, plans)
     return stack
+
+
+def body_block(structures: Structures, surfaces: int, rock: int, body: int) -> int:
+    """The number of a body's block in one rock mass, while models are made and joined: faults may divide it
+    there alone. surfaces: of all rock masses."""
+    return surfaces + rock * len(structures) + len(structures.faults) + body
 
 
 def _above_all(sheets, structures: Structures) -> float:
@@ -185,11 +215,12 @@ def _above_all(sheets, structures: Structures) -> float:
 
 
 def acts(inputs: list, structures: Structures) -> np.ndarray:
-    """(S, B) uint8: whether a structure divides a block. A fault divides what it displaces and the bodies
-    that were there by then; a body what was there before it, and is hidden in later ones."""
+    """(S, B) uint8: whether a structure divides a block, those of bodies as body_block numbers them. A fault
+    divides what it displaces and the bodies that were there by then; a body what was there before it, and is
+    hidden in later ones."""
     first = _first_surfaces(inputs)
     count = len(structures.faults)
-    found = np.zeros((len(structures), first[-1] + len(structures)), np.uint8)
+    found = np.zeros((len(structures), first[-1] + len(inputs) * len(structures)), np.uint8)
     ages = [(times, number) for number, times in enumerate(structures.times)]
     for fault, displaced in enumerate(structures.displaced):
         for rock, youngest in displaced.items():
@@ -197,13 +228,13 @@ def acts(inputs: list, structures: Structures) -> np.ndarray:
             found[fault, first[rock] : first[rock] + last + 1] = 1
             for times, body in ages:
                 if rock in times and times[rock] <= youngest:
-                    found[fault, first[-1] + count + body] = 1
+                    found[fault, body_block(structures, first[-1], rock, body)] = 1
     for times, body in ages:
         for rock, after in times.items():
             found[count + body, first[rock] : first[rock] + after + 1] = 1
             for others, other in ages:
                 if rock in others and (others[rock], other) <= (after, body):
-                    found[count + body, first[-1] + count + other] = 1
+                    found[count + body, body_block(structures, first[-1], rock, other)] = 1
     return found
 
 

@@ -6,7 +6,6 @@ from __future__ import annotations
 import numpy as np
 
 from ..build_warning import BuildWarning
-from .joining import acts
 from .parts import Structures, compartment_names, compartment_of
 
 
@@ -18,18 +17,24 @@ def cell_compartments(
     A compartment lies on one side of each fault that divides its blocks: where faults die out their two sides
     are one compartment, and what is younger than a fault is not divided by it.
     """
-    rock_of = np.concatenate([np.full(len(entry.surfaces), n, np.int32) for n, entry in enumerate(inputs)])
-    block = built["cell_block"]
     if structures is None:
-        rock = rock_of[block]
-        rows = rock[:, None]
+        rock_of = np.repeat(np.arange(len(inputs)), [len(entry.surfaces) for entry in inputs])
+        block, part, parts = built["cell_block"], np.zeros(len(built["cell_block"]), np.int32), 1
     else:
+        rock_of = built["rock_of_own_block"]
+        block, part, parts = built["cell_own_block"], built["cell_part"], len(structures.sides)
+    kind = block.astype(np.int64) * parts + part
+    has_cells = np.bincount(kind, minlength=1) > 0
+    kinds = np.flatnonzero(has_cells)
+    block, part = kinds // parts, kinds % parts
+    rows = rock_of[block][:, None]
+    if structures is not None:
         count = len(structures.faults)
-        divides = acts(inputs, structures)[:count].astype(bool) & ~_dying(structures)[:, None]
-        sides = np.where(divides.T[block], structures.sides[built["cell_part"], :count], 0)
-        rock_of = np.append(rock_of, [0] * count + [min(times, default=0) for times in structures.times])
-        rows = np.column_stack([rock_of[block], sides]).astype(np.int32)
+        divides = built["own_block_divided"][:count].astype(bool) & ~_dying(structures)[:, None]
+        rows = np.column_stack([rows, np.where(divides.T[block], structures.sides[part, :count], 0)])
+    rows = rows.astype(np.int32)
     distinct, label = np.unique(rows, axis=0, return_inverse=True)
+    label = label.ravel()[(np.cumsum(has_cells) - 1)[kind]]
     faults = [] if structures is None else [fault.name for fault in structures.faults]
     names = compartment_names(faults, distinct[:, 1:])
     rocks = [inputs[number].rock.name for number in distinct[:, 0].tolist()]
@@ -37,7 +42,7 @@ def cell_compartments(
         names = [f"{rock}: {name}" if name else rock for rock, name in zip(rocks, names, strict=True)]
     else:
         names = [name or rock for rock, name in zip(rocks, names, strict=True)]
-    return label.ravel().astype(np.int32), names
+    return label.astype(np.int32), names
 
 
 def _dying(structures: Structures) -> np.ndarray:

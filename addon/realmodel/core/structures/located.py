@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .closed_form import heights_in_plane, plan_candidates
+from .closed_form import PlanGrid, heights_in_plane
 from .exact import orient2d, orient3d
 
 OUTSIDE = -1
@@ -31,6 +31,7 @@ class Locator:
         turn = np.zeros(len(corners), np.int8)
         turn[~flat] = orient2d(*plan[~flat].transpose(1, 0, 2))
         self.corners, self.turn = corners[turn != 0], turn[turn != 0]
+        self.grid = PlanGrid(self.corners)
         self.below = model.face_cells[face[turn != 0], np.where(self.turn > 0, 0, 1)]
 
     def cells(self, points: np.ndarray) -> np.ndarray:
@@ -38,7 +39,7 @@ class Locator:
         into which faces are divided; points on a face are in a cell beside it."""
         found = np.full(len(points), OUTSIDE, np.int64)
         nearest = np.full(len(points), np.inf)
-        for rows, above in plan_candidates(points[:, :2], self.corners):
+        for rows, above in self.grid.over(points[:, :2]):
             a, b, c = self.corners[above].transpose(1, 0, 2)
             p, turn = points[rows], self.turn[above]
             turns = [orient2d(u[:, :2], v[:, :2], p[:, :2]) for u, v in ((a, b), (b, c), (c, a))]

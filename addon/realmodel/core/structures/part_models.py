@@ -13,13 +13,14 @@ from .entries import body_item
 from .rock_structure import Triangulation
 
 NOTHING = -1
+FILLER, FLOOR = -1, -2  # surfaces that only fill a body, or lie in the place of the base elevation
 _DEPOSITS = "conformable"
 
 
 @dataclass
 class Stack:
     """A stack as the builder takes it. blocks: of each surface the number of the block beneath it, NOTHING
-    for none. surfaces: of each surface its number in the rock mass, -1 for one that only fills a body."""
+    for none. surfaces: of each surface its number in the rock mass, FILLER or FLOOR."""
 
     sheets: list[Triangulation]
     rules: list[str]
@@ -48,35 +49,13 @@ def plain_stack(sheets: list[Triangulation], rules: list[str], base: float | Non
     return Stack(list(sheets), list(rules), base, blocks, numbers)
 
 
-def inside_body(stack: Stack, after: int, block: int, top: float, body) -> Stack:
-    """The stack inside of a body that came after surface `after`: all that was there, air and rock, is the
-    body, block `block`, or NOTHING in a void. top: a height above all sheets and bodies. Raises InputRefused.
-    """
-    older = sum(number <= after for number in stack.surfaces)  # with fillers of earlier bodies
-    if block == NOTHING:
-        return _emptied(stack, older, body)
-    kept = _that_bound(stack, older)
-    filler = _level(stack.sheets[0], top)
-    return Stack(
-        [*(stack.sheets[k] for k in kept), filler, *stack.sheets[older:]],
-        [*(stack.rules[k] for k in kept), _DEPOSITS, *stack.rules[older:]],
-        stack.base_elevation,
-        [
-            *(NOTHING if stack.blocks[k] == NOTHING and k == 0 else block for k in kept),
-            block,
-            *stack.blocks[older:],
-        ],
-        [*(stack.surfaces[k] for k in kept), -1, *stack.surfaces[older:]],
-    )
-
-
-def _that_bound(stack: Stack, older: int) -> list[int]:
-    """Of the older surfaces those that still tell where rock begins, or what is protected: the others vanish
-    in the body."""
-    first = stack.sheets[0]
-    if stack.base_elevation is not None and all(_same_plan(first, sheet) for sheet in stack.sheets[:older]):
-        return [k for k in range(older) if RULES[stack.rules[k]].protects]
-    return list(range(older))
+def distinct_plans(sheets: list[Triangulation]) -> list[Triangulation]:
+    """Of sheets, one of each that cover the same triangles in plan."""
+    found: list[Triangulation] = []
+    for sheet in sheets:
+        if not any(_same_plan(sheet, other) for other in found):
+            found.append(sheet)
+    return found
 
 
 def _same_plan(one: Triangulation, other: Triangulation) -> bool:
@@ -85,30 +64,74 @@ def _same_plan(one: Triangulation, other: Triangulation) -> bool:
     )
 
 
-def _emptied(stack: Stack, older: int, body) -> Stack | None:
-    """Inside of a void: what came before is air, and younger surfaces fill it from the base."""
-    if older == len(stack.sheets):
-        return Stack([], [], None, [], [])
-    if stack.base_elevation is None:
-        if not RULES[stack.rules[older]].cuts:
-            raise InputRefused(
-                "younger surfaces fill this void, and there is no base elevation that they fill it from",
-                item=body_item(body),
-                advice="give the rock mass a base_elevation, or leave out 'after'",
-            )
-        blocks = [NOTHING, *[stack.blocks[older]] * (older - 1), *stack.blocks[older:]]
-        return Stack(stack.sheets, stack.rules, None, blocks, stack.surfaces)
-    floor = _level(stack.sheets[0], stack.base_elevation)
-    return Stack(
-        [floor, *stack.sheets[older:]],
-        [_DEPOSITS, *stack.rules[older:]],
+def inside_body(
+    stack: Stack,
+    after: int,
+    block: int,
+    top: float,
+    body,
+    plans: list[tuple[np.ndarray, np.ndarray]],
+) -> Stack:
+    """The stack inside of a body that came after surface `after`: all that was there, air and rock, is the
+    body, block `block`, or NOTHING in a void. top: a height above all sheets and bodies. plans:
+    triangulations that together cover the rock mass in plan. Raises InputRefused.
+    """
+    older = sum(number <= after for number in stack.surfaces)  # with floors, and fillers of earlier bodies
+    base = stack.base_elevation
+    if FLOOR in stack.surfaces:
+        base = float(stack.sheets[0][0][0, 2])
+    if block == NOTHING:
+        return _emptied(stack, older, base, body)
+    # what is protected depends on all that was there
+    protects = any(RULES[rule].protects for rule in stack.rules[:older])
+    kept = [k for k in range(older) if stack.surfaces[k] != FLOOR] if protects or base is None else []
+    inside = Stack(
+        [*(stack.sheets[k] for k in kept), *(_level(plan, top) for plan in plans)],
+        [*(stack.rules[k] for k in kept), *[_DEPOSITS] * len(plans)],
         None,
-        [NOTHING, *stack.blocks[older:]],
-        [-1, *stack.surfaces[older:]],
+        [block] * (len(kept) + len(plans)),
+        [*(stack.surfaces[k] for k in kept), *[FILLER] * len(plans)],
+    )
+    if base is None:
+        inside.blocks[0] = NOTHING
+    return _upon(base, plans, inside, stack, older)
+
+
+def _upon(base: float | None, plans, lower: Stack, stack: Stack, older: int) -> Stack:
+    """Floors at a base elevation, which all else lies on, then one stack, then the younger surfaces of
+    another."""
+    floors = [] if base is None else [_level(plan, base) for plan in plans]
+    return Stack(
+        [*floors, *lower.sheets, *stack.sheets[older:]],
+        [*[_DEPOSITS] * len(floors), *lower.rules, *stack.rules[older:]],
+        None,
+        [*[NOTHING] * len(floors), *lower.blocks, *stack.blocks[older:]],
+        [*[FLOOR] * len(floors), *lower.surfaces, *stack.surfaces[older:]],
     )
 
 
-def _level(sheet: Triangulation, height: float) -> Triangulation:
-    """A level surface over what a sheet covers."""
-    vertices, triangles = sheet
+def _emptied(stack: Stack, older: int, base: float | None, body) -> Stack:
+    """Inside of a void: what came before is air, and younger surfaces fill it from the base."""
+    if base is not None:
+        # where no older surface was, none that comes later forms a block
+        plans = distinct_plans(stack.sheets[:older])
+        return _upon(base, plans, Stack([], [], None, [], []), stack, older)
+    if older == len(stack.sheets):
+        return Stack([], [], None, [], [])
+    if not RULES[stack.rules[older]].cuts:
+        source = body.source
+        raise InputRefused(
+            "younger surfaces fill this void, and there is no base elevation that they fill it from",
+            file=source.document.file if source else body.shape_file,
+            line=source.line("after") if source else None,
+            item=body_item(body),
+            advice="give the rock mass a base_elevation, or leave out 'after'",
+        )
+    blocks = [NOTHING, *[stack.blocks[older]] * (older - 1), *stack.blocks[older:]]
+    return Stack(stack.sheets, stack.rules, None, blocks, stack.surfaces)
+
+
+def _level(plan: tuple[np.ndarray, np.ndarray], height: float) -> Triangulation:
+    """A level surface over what a sheet or a region covers."""
+    vertices, triangles = plan
     return np.column_stack([vertices[:, :2], np.full(len(vertices), height)]), triangles

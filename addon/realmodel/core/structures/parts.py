@@ -13,7 +13,7 @@ from .entries import Body, Fault
 from .history import body_times, displaced_surfaces
 from .refusals import refused_structure
 from .rock_structure import RockStructure
-from .sides import RockFaults
+from .sides import FaultShape, RockFaults
 
 _BEYOND = 0.25  # of the range of heights of the data: how far above and below there may be rock
 
@@ -63,7 +63,7 @@ class Structures:
         faults = [self.faults[number] for number in numbers]
         return RockFaults(
             [fault.name for fault in faults],
-            [(fault.vertices, fault.triangles) for fault in faults],
+            [FaultShape(fault.vertices, fault.triangles, fault.dies_out) for fault in faults],
             [self.displaced[number][rock] for number in numbers],
             [fault.dies_out for fault in faults],
             numbers,
@@ -170,7 +170,11 @@ def box_around(inputs: list, structures: Structures) -> np.ndarray:
     made = all(shape is not None for entry in inputs for shape in entry.surfaces)
     margin = np.array([0.0, 0.0, 0.0 if made else _BEYOND * (high[2] - low[2])])
     margin = margin if low[2] < high[2] else np.array([0.0, 0.0, 1.0])
-    return np.array([low - margin, high + margin])
+    box = np.array([low - margin, high + margin])
+    bases = [entry.rock.base_elevation for entry in inputs]
+    if None not in bases:  # no rock is lower
+        box[0, 2] = min(bases)
+    return box
 
 
 def add_compartments(structures: Structures, inputs: list) -> None:

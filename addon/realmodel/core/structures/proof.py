@@ -11,7 +11,7 @@ from ..errors import place_text
 from ..work import Work
 from .closed_form import AIR, BodyOfRock, ClosedForm, heights_at
 from .located import OUTSIDE, Locator
-from .triangles import distances_of_pairs
+from .triangles import crossing_pairs, distances_of_pairs
 
 _ROUNDING = 64  # units in the last place of the largest coordinate: what is nearer is left undecided
 _LOOKED_AT = 200  # points that do not agree: whether rounding may be the cause
@@ -149,6 +149,7 @@ def _check_faces(model, places: int, random) -> dict:
     corner = model.face_vertices[first[:, None] + np.arange(3)[None] * np.maximum(size // 3, 1)[:, None]]
     points = model.vertices[corner].mean(axis=1)
     away = np.full(len(faces), np.inf)
+    allowed = _ROUNDING * np.spacing(np.abs(model.vertices).max()) * (1 + _steepness(model))
     for number in np.unique(model.face_surface[faces]):
         own = np.flatnonzero(model.face_surface[faces] == number)
         vertices, triangles = model.surface(number)
@@ -157,11 +158,10 @@ def _check_faces(model, places: int, random) -> dict:
                 off = np.abs(heights_at(points[own, :2], vertices, sheet) - points[own, 2])
                 away[own] = np.fmin(away[own], off)
         else:
-            for n in own:
-                at = np.broadcast_to(points[n], (len(triangles), 3))
-                away[n] = distances_of_pairs(at, vertices[triangles]).min()
-    allowed = _ROUNDING * np.spacing(np.abs(model.vertices).max()) * (1 + _steepness(model))
+            away[own] = _distances_within(points[own], vertices[triangles], allowed)
     wrong = np.flatnonzero(away > allowed)
+    slivers = np.array([_width(model, faces[n]) <= allowed for n in wrong], bool)
+    wrong = wrong[~slivers]
     names = [model.surface_names[number] for number in model.face_surface[faces]]
     offenders = [
         {
@@ -174,7 +174,27 @@ def _check_faces(model, places: int, random) -> dict:
         }
         for n in wrong[:_SHOWN]
     ]
-    return _entry("surfaces", "faces", len(faces), len(wrong), 0, began, offenders)
+    return _entry("surfaces", "faces", len(faces), len(wrong), int(slivers.sum()), began, offenders)
+
+
+def _width(model, face: int) -> float:
+    """The mean width of a face: its area by its longest extent."""
+    corners = model.vertices[model.face_vertices[model.face_offsets[face] : model.face_offsets[face + 1]]]
+    apart = corners - corners[0]
+    area = np.linalg.norm(np.cross(apart[1:-1], apart[2:]).sum(axis=0)) / 2
+    return float(area / np.linalg.norm(apart, axis=1).max())
+
+
+def _distances_within(points: np.ndarray, triangles: np.ndarray, allowed: float) -> np.ndarray:
+    """(N,) how far points (N, 3) are from the nearest of triangles (T, 3, 3), up to rounding; of those that
+    are farther than `allowed` only some are measured, and the others infinitely far."""
+    boxes = np.stack([points - allowed, points, points + allowed], axis=1)
+    pairs = crossing_pairs(boxes, triangles)
+    found = np.full(len(points), np.inf)
+    np.minimum.at(found, pairs[:, 0], distances_of_pairs(points[pairs[:, 0]], triangles[pairs[:, 1]]))
+    for n in np.flatnonzero(found > allowed)[:_SHOWN]:
+        found[n] = distances_of_pairs(np.broadcast_to(points[n], (len(triangles), 3)), triangles).min()
+    return found
 
 
 def _steepness(model) -> float:

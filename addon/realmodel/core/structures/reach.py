@@ -7,10 +7,10 @@ import itertools
 
 import numpy as np
 
-from ..work import Work
+from ..work import Work, native_module
 from .parts import Structures
-from .sides import Triangulation, fault_sides
-from .triangles import edges_of, welded
+from .sides import FaultShape, Triangulation, fault_sides
+from .triangles import extents
 
 _CELLS = (64, 64, 16)  # of the grid, at most
 _BELOW, _ABOVE, _BOTH = 1, 2, 3  # on which sides of a fault a cell may have points
@@ -30,8 +30,10 @@ class Reach:
         step = self.size[:2].max() / _CELLS[0]
         self.cells = np.maximum(1, np.minimum(_CELLS, np.ceil(self.size / step))).astype(int)
         self.step = self.size / self.cells
+        self.ranges: dict[int, tuple] = {}  # of sheets: the sheet, first and last cells of its triangles
         self.masks = [
-            self._sides(work, (fault.vertices, fault.triangles), threads) for fault in structures.faults
+            self._sides(work, FaultShape(fault.vertices, fault.triangles, fault.dies_out), threads)
+            for fault in structures.faults
         ]
 
     def columns(self, part: int) -> np.ndarray:
@@ -47,8 +49,9 @@ class Reach:
 
     def over(self, columns: np.ndarray, sheet: Triangulation) -> np.ndarray:
         """(T,) bool: the triangles of a sheet whose boxes in plan meet some of these columns."""
-        corners = sheet[0][sheet[1], :2]
-        first, last = self._range(corners.min(axis=1), corners.max(axis=1))
+        if id(sheet) not in self.ranges:
+            self.ranges[id(sheet)] = sheet, *self._range(*extents(sheet[0][sheet[1], :2]))
+        _, first, last = self.ranges[id(sheet)]
         total = np.zeros(np.array(columns.shape) + 1, np.int64)
         total[1:, 1:] = columns.cumsum(axis=0).cumsum(axis=1)
         (x0, y0), (x1, y1) = first.T, last.T + 1
@@ -63,8 +66,9 @@ class Reach:
         limit = self.cells[:n] - 1
         return np.clip(first, 0, limit).astype(int), np.clip(last, 0, limit).astype(int)
 
-    def _sides(self, work: Work, fault: Triangulation, threads: int) -> np.ndarray:
-        own, beyond = self._passed(fault[0][fault[1]]), self._passed(self._continuation(fault))
+    def _sides(self, work: Work, fault: FaultShape, threads: int) -> np.ndarray:
+        beyond = native_module().structure_continuation(fault.native(), self.structures.box)
+        own, beyond = self._passed(fault.vertices[fault.triangles]), self._passed(beyond)
         part = _hanging_together(~(own | beyond))
         middles = self._middles()
         side = fault_sides(work, middles.reshape(-1, 3), fault, threads).reshape(self.cells)
@@ -80,41 +84,12 @@ class Reach:
         axes = [self.low[k] + self.step[k] * (np.arange(self.cells[k]) + 0.5) for k in range(3)]
         return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
 
-    def _continuation(self, fault: Triangulation) -> np.ndarray:
-        """(K, 3, 3) triangles beyond the border of a fault, where the native part may continue it: in the
-        plane of its border triangles, and straight up or down; with all that lies between neighbors."""
-        vertices, triangles = fault
-        same = welded(vertices)[triangles]
-        edges = edges_of(same)
-        corner = np.concatenate([same[:, 2], same[:, 0], same[:, 1]])
-        _, number, count = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
-        border = count[number.ravel()] == 1
-        edges, corner = edges[border], corner[border]
-        a, b, c = vertices[edges[:, 0]], vertices[edges[:, 1]], vertices[corner]
-        along = b - a
-        share = ((c - a) * along).sum(axis=1) / (along * along).sum(axis=1)
-        away = a + share[:, None] * along - c
-        away /= np.linalg.norm(away, axis=1)[:, None]
-        length = 4 * np.linalg.norm(np.ptp(np.concatenate([vertices, self.structures.box]), axis=0))
-        straight = np.where(away[:, 2:] > 0, [[0.0, 0, 1]], [[0.0, 0, -1]])
-        found, ways = [], {}
-        for way in (away, straight):
-            far_a, far_b = a + length * way, b + length * way
-            found += [np.stack([a, b, far_b], axis=1), np.stack([a, far_b, far_a], axis=1)]
-            for vertex, direction in zip(edges.ravel().tolist(), np.repeat(way, 2, axis=0), strict=True):
-                ways.setdefault(vertex, []).append(direction)
-        for vertex, directions in ways.items():
-            at = vertices[vertex]
-            for one, other in itertools.combinations(np.unique(directions, axis=0), 2):
-                found.append(np.stack([at, at + length * one, at + length * other])[None])
-        return np.concatenate(found)
-
     def _passed(self, corners: np.ndarray) -> np.ndarray:
         """(nx, ny, nz) bool: the cells that triangles (K, 3, 3) pass, or come near."""
         passed = np.zeros(self.cells, bool)
         pieces = _divided(corners, float(self.step.max()), self.low, self.low + self.size)
         if len(pieces):
-            first, last = self._range(pieces.min(axis=1), pieces.max(axis=1))
+            first, last = self._range(*extents(pieces))
             for move in itertools.product(*(range(int(most) + 1) for most in (last - first).max(axis=0))):
                 at = first + move
                 passed[tuple(at[(at <= last).all(axis=1)].T)] = True

@@ -103,8 +103,8 @@ def _mesh_of(entry, units: str, warnings: list[BuildWarning], item: str) -> Tria
         vertices, triangles = checked_triangulation(entry.vertices, entry.triangles)
     else:
         mesh = read_mesh(entry.input_file)
-        plan_scale, height_scale = entry.mesh_file.scale(units)
-        vertices = mesh.vertices * (plan_scale, plan_scale, height_scale)
+        vertices, told = mesh.in_model(entry.mesh_file, units)
+        warnings += [BuildWarning(text, "mesh_file") for text in told]
         triangles = mesh.triangles
     kept = without_flat(vertices, triangles)
     if len(kept) < len(triangles):

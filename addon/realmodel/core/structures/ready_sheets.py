@@ -3,21 +3,16 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 
 from ..heights import heights
-from ..methods import checked_options
 from ..work import Work
 from .families import Family, are_within
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
 from .rock_structure import Triangulation
-from .sides import fault_sides
-from .tips import on_fault, trace_of, with_equal_ends
+from .sides import FaultShape, fault_sides
+from .tips import on_fault, shared, trace_of, with_equal_ends
 from .triangles import meet, welded
-
-_METHOD, _OPTIONS = "natural_neighbour", {"extrapolate": "nearest"}
 
 
 class ReadyMesh:
@@ -29,9 +24,7 @@ class ReadyMesh:
         self.work, self.entry, self.number, self.threads = work, entry, number, threads
         surface = entry.rock.surfaces[number]
         self.vertices, self.triangles = surface.vertices, surface.triangles
-        self.method = surface.method or _METHOD
-        options = surface.options if surface.method else {**_OPTIONS, **surface.options}
-        self.settings = checked_options(self.method, options)
+        self.method, self.settings = surface.method_options()
         faults = entry.structure.faults
         self.active = faults.active(number)
         self.masks = np.full((len(self.triangles), len(faults)), LEFT | RIGHT, np.uint8)
@@ -39,7 +32,7 @@ class ReadyMesh:
             self._divide(int(fault), faults.shapes[fault])
         self.tiling: PlanTiling | None = None
 
-    def _divide(self, fault: int, shape: Triangulation) -> None:
+    def _divide(self, fault: int, shape: FaultShape) -> None:
         """On which sides of a fault each triangle has a part."""
         side = fault_sides(self.work, self.vertices, shape, self.threads)
         on = on_fault(self.vertices, shape)
@@ -86,35 +79,38 @@ class ReadyMesh:
         def within(points: np.ndarray) -> np.ndarray:
             return are_within(self.work, self.entry, self.number, family, points, self.threads)
 
-        traces = [
-            trace_of(self.work, (np.column_stack([plan, common]), triangles), fault, within, self.threads)
-            for fault in faults
-        ]
+        def traces_on(sheet: Triangulation) -> list:
+            return [trace_of(self.work, sheet, fault, within, self.threads) for fault in faults]
+
+        traces = traces_on((np.column_stack([plan, common]), triangles))
         met = [number for number, trace in enumerate(traces) if len(trace.points)]
         if not met:
             sheet = np.column_stack([plan, common]), triangles
             return dict.fromkeys(family.members.values(), sheet)
-        plan, triangles = self.tiling.nodes, self.tiling.tiles
+        if not self.tiling.is_mesh:
+            plan, triangles = self.tiling.nodes, self.tiling.tiles
+            common = self._continued(plan, self.tiling.heights(own), triangles)
+            traces = traces_on((np.column_stack([plan, common]), triangles))
         beside = {n: traces[n].beside(self.vertices[:, :2])[self.triangles].any(axis=1) for n in met}
         seen = {}
-        for given in itertools.product((-1, 1), repeat=len(met)):
+        for given in sorted({tuple(row[number] for number in met) for row in family.members.values()}):
             hidden = np.zeros(len(self.triangles), bool)
             for number, side in zip(met, given, strict=True):
                 other = LEFT if side > 0 else RIGHT
                 hidden |= (self.masks[:, family.dying[number]] == other) & beside[number]
-            seen[given] = self._continued(plan, self.tiling.heights(own & ~hidden), triangles)
+            left = own & ~hidden if (own & ~hidden).any() else own  # what hides all hides nothing
+            seen[given] = self._continued(plan, self.tiling.heights(left), triangles)
         equal = with_equal_ends(
             self.work,
             plan,
             triangles,
             seen,
             [faults[number] for number in met],
-            [traces[number] for number in met],
             within,
             0.0,
             self.threads,
         )
-        found = {given: (np.column_stack([plan, z]), triangles) for given, z in equal.items()}
+        found = shared({given: (np.column_stack([plan, z]), triangles) for given, z in equal.items()})
         return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
 
     def _continued(self, plan: np.ndarray, known: np.ndarray, triangles: np.ndarray) -> np.ndarray:

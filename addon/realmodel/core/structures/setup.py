@@ -14,7 +14,7 @@ from .entries import Body, Fault
 from .parts import Structures, add_compartments, box_around, divide, structures_of
 from .refusals import refused_structure
 from .sheets import make_sheets
-from .sides import fault_sides
+from .sides import FaultShape, fault_sides
 
 _DIVIDED = 0.1  # of the time: until the parts of space are known
 _ROUNDS = 4  # in which sheets may reach beyond what was divided
@@ -68,7 +68,7 @@ def _facing_up(work: Work, fault: Fault) -> Fault:
     beside = corners[largest].mean(axis=0) + normals[largest] / size * 1e-3 * np.sqrt(size)
     native = native_module()
     try:
-        side = fault_sides(work, beside[None], (fault.vertices, fault.triangles))
+        side = fault_sides(work, beside[None], FaultShape(fault.vertices, fault.triangles))
     except native.InputError as error:
         error.surface = 0
         raise refused_structure(error, structures_of(Project("", []), [fault], [])) from error

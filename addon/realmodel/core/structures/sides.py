@@ -4,12 +4,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from ..work import Work, native_module
 
 Triangulation = tuple[np.ndarray, np.ndarray]
+
+
+class FaultShape(NamedTuple):
+    """vertices (V, 3) float64 and triangles (T, 3) int32 of a fault; dies_out: how it is continued beyond its
+    border."""
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    dies_out: bool = False
+
+    def native(self) -> tuple:
+        """As the native part takes it."""
+        return self.vertices, self.triangles, False, [], self.dies_out
 
 
 @dataclass(frozen=True)
@@ -21,7 +35,7 @@ class RockFaults:
     """
 
     names: list[str]
-    shapes: list[Triangulation]
+    shapes: list[FaultShape]
     youngest: list[int]
     dies_out: list[bool] = field(default_factory=list)
     numbers: list[int] = field(default_factory=list)
@@ -57,12 +71,12 @@ class RockFaults:
         return np.array([youngest >= surface for youngest in self.youngest], bool)
 
 
-def fault_sides(work: Work, points: np.ndarray, shape: Triangulation, threads: int = 0) -> np.ndarray:
-    """(N,) int8: +1 above a fault, -1 below it; beyond its border it goes on along the nearest triangle."""
+def fault_sides(work: Work, points: np.ndarray, shape: FaultShape, threads: int = 0) -> np.ndarray:
+    """(N,) int8: +1 above a fault, -1 below it; beyond its border it is continued as the parts have it."""
     points = np.ascontiguousarray(points, np.float64)
     if not len(points):
         return np.zeros(0, np.int8)
-    return work.native(native_module().structure_sides, (*shape, False, [], False), points, threads=threads)
+    return work.native(native_module().structure_sides, shape.native(), points, threads=threads)
 
 
 def sides_of(work: Work, points: np.ndarray, faults: RockFaults, threads: int = 0) -> np.ndarray:

@@ -12,13 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..work import Work
-from .sides import Triangulation, fault_sides
+from ..work import Work, native_module
+from .sides import FaultShape, Triangulation, fault_sides
 from .triangles import crossing_pairs, distances_of_pairs, edges_of, segments_hit
 
 _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
 _AT_ONCE = 1 << 21
 _HALVINGS = 30  # a billionth of an edge
+_PASSES = 2
 
 Within = Callable[[np.ndarray], np.ndarray]
 
@@ -40,9 +41,7 @@ class Trace:
         return ~self.is_end[nearest(plan, self.points)[0]]
 
 
-def trace_of(
-    work: Work, sheet: Triangulation, fault: Triangulation, within: Within, threads: int = 0
-) -> Trace:
+def trace_of(work: Work, sheet: Triangulation, fault: FaultShape, within: Within, threads: int = 0) -> Trace:
     """Where a sheet meets a fault, edge by edge. within: which points (K, 3) lie in the compartment; a fault
     that ends elsewhere does not die out."""
     vertices, triangles = sheet
@@ -69,7 +68,7 @@ def trace_of(
 
 
 def _where_sides_change(
-    work: Work, begin: np.ndarray, end: np.ndarray, fault: Triangulation, threads: int
+    work: Work, begin: np.ndarray, end: np.ndarray, fault: FaultShape, threads: int
 ) -> np.ndarray:
     """(K, 3) a point on each segment at which the side of a fault changes, by bisection."""
     low, high = np.zeros(len(begin)), np.ones(len(begin))
@@ -81,23 +80,26 @@ def _where_sides_change(
     return begin + high[:, None] * (end - begin)
 
 
-def on_fault(points: np.ndarray, fault: Triangulation) -> np.ndarray:
+def on_fault(points: np.ndarray, fault: FaultShape) -> np.ndarray:
     """(N,) bool: the points on a fault up to the precision of files (a millionth of its extent)."""
-    vertices, triangles = fault
+    vertices, triangles, _ = fault
     near = _ON * float(np.linalg.norm(np.ptp(vertices[np.unique(triangles)], axis=0)))
     boxes = np.stack([points - near, points + near, points], axis=1)
     found = np.zeros(len(points), bool)
     low, high = vertices[triangles].min(axis=(0, 1)) - near, vertices[triangles].max(axis=(0, 1)) + near
-    some = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
+    inside = np.ones(len(points), bool)
+    for axis in range(3):
+        inside &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
+    some = np.flatnonzero(inside)
     pairs = crossing_pairs(boxes[some], vertices[triangles])
     away = distances_of_pairs(points[some[pairs[:, 0]]], vertices[triangles[pairs[:, 1]]])
     found[some[pairs[away <= near, 0]]] = True
     return found
 
 
-def _hit_shares(begin: np.ndarray, end: np.ndarray, fault: Triangulation) -> np.ndarray:
+def _hit_shares(begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.ndarray:
     """(K,) where each segment meets the fault, from 0 to 1 of its length; NaN where it does not."""
-    vertices, triangles = fault
+    vertices, triangles, _ = fault
     corners = vertices[triangles]
     found = np.full(len(begin), np.nan)
     pairs = crossing_pairs(np.stack([begin, end, end], axis=1), corners)
@@ -124,22 +126,24 @@ def nearest(plan: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return number, away
 
 
-def blended(heights: dict[tuple[int, ...], np.ndarray], weights: list[np.ndarray]) -> dict:
+def blended(
+    heights: dict[tuple[int, ...], np.ndarray], near: dict[tuple[int, ...], np.ndarray], weights: list
+) -> dict:
     """(N,) heights by the sides (+1 or -1 of each fault that dies out), different only as the weights say.
 
-    heights: what is seen from each combination of sides. weights: of each fault (N,), 1 where its sides have
-    sheets of their own, 0 where they have the same.
+    heights: what is seen from each combination of sides that there is. near: (N,) bool, the nodes near its
+    compartment, where it counts. weights: of each fault (N,), 1 where its sides have sheets of their own, 0
+    where they have the same.
     """
     result = {}
-    for sides in heights:
-        total = None
+    for sides, own in heights.items():
+        total, whole = np.zeros(len(own)), np.zeros(len(own))
         for other, z in heights.items():
-            share = 1.0
+            share = near[other].astype(float)
             for side, its, weight in zip(sides, other, weights, strict=True):
                 share = share * np.where(side == its, 0.5 + 0.5 * weight, 0.5 - 0.5 * weight)
-            part = np.where(share == 0.0, 0.0, share * z)
-            total = part if total is None else total + part
-        result[sides] = total
+            total, whole = total + np.where(share == 0.0, 0.0, share * z), whole + share
+        result[sides] = np.where(near[sides], total / np.where(whole > 0, whole, 1.0), own)
     return result
 
 
@@ -148,8 +152,7 @@ def with_equal_ends(
     plan: np.ndarray,
     triangles: np.ndarray,
     heights: dict[tuple[int, ...], np.ndarray],
-    faults: list[Triangulation],
-    traces: list[Trace],
+    faults: list[FaultShape],
     within: Within,
     ramp: float,
     threads: int = 0,
@@ -157,19 +160,98 @@ def with_equal_ends(
     """The heights (N,) of the sheets on each combination of sides, equal to the bit at all nodes of
     triangles through which a fault would go on beyond its ends. Within the distance `ramp` of these they are
     drawn together."""
-    weights = [_weight(plan, trace.beyond, ramp) for trace in traces]
+    first = next(iter(heights.values()))
+    if all(np.array_equal(z, first, equal_nan=True) for z in heights.values()):
+        return dict.fromkeys(heights, first)
+    on_side = {
+        sides: [
+            fault_sides(work, np.nan_to_num(np.column_stack([plan, z])), fault, threads) == side
+            for fault, side in zip(faults, sides, strict=True)
+        ]
+        for sides, z in heights.items()
+    }
+    passed = [np.zeros(len(plan), bool) for _ in faults]
+    for _ in range(2):  # what is passed between nodes alone is near, too
+        near = {
+            sides: np.isfinite(z) & _near(triangles, on_side[sides], passed) for sides, z in heights.items()
+        }
+        low, high = _range(plan, heights, near)
+        known = np.isfinite(low[:, 2])
+        low[:, 2], high[:, 2] = (np.where(known, each[:, 2], 0.0) for each in (low, high))
+        inside = known & within(low) & within(high)
+        entire = np.ascontiguousarray(triangles[inside[triangles].all(axis=1)])
+        doubtful = [entire[_met(work, fault, low, high, entire, threads) > 0] for fault in faults]
+        for nodes, some in zip(passed, doubtful, strict=True):
+            nodes[some] = True
+    crossed = np.ascontiguousarray(triangles[(known & ~inside)[triangles].any(axis=1)])
+    crossed = crossed[known[crossed].all(axis=1)]
+    weights = [np.ones(len(plan)) for _ in faults]
     while True:
-        found = blended(heights, weights)
+        found = blended(heights, near, weights)
         settled = True
         for number, fault in enumerate(faults):
-            for z in found.values():
-                trace = trace_of(work, (np.column_stack([plan, z]), triangles), fault, within, threads)
-                late = trace.beyond & (weights[number] > 0)
-                if late.any():
-                    weights[number] = np.where(late, 0.0, weights[number])
-                    settled = False
+            beyond = np.zeros(len(plan), bool)
+            for sides, z in found.items():
+                some = doubtful[number]
+                some = np.ascontiguousarray(some[near[sides][some].any(axis=1)])
+                sheet = np.column_stack([plan, np.where(known, z, 0.0)])
+                met = _met(work, fault, sheet, sheet, some, threads)
+                beyond[some[met == _PASSES]] = True
+                touched = np.unique(some[met > 0]).astype(np.int32)
+                alone = np.repeat(touched[:, None], 3, axis=1)
+                beyond[touched[_met(work, fault, sheet, sheet, alone, threads) > 0]] = True
+                if len(crossed):
+                    beyond |= _beyond(work, plan, z, crossed, fault, within, threads)
+            if (beyond & (weights[number] > 0)).any():
+                before = weights[number] == 0
+                weights[number] = _weight(plan, beyond | before, ramp)
+                settled = False
         if settled:
             return found
+
+
+def _met(work: Work, fault: FaultShape, low, high, triangles, threads: int) -> np.ndarray:
+    """(T,) uint8: the triangles that a fault touches or passes beyond its ends, between two heights."""
+    triangles = np.ascontiguousarray(triangles)
+    return work.native(
+        native_module().structure_beyond, fault.native(), low, high, triangles, threads=threads
+    )
+
+
+def _near(triangles: np.ndarray, on_side: list[np.ndarray], passed: list[np.ndarray]) -> np.ndarray:
+    """(N,) bool: the nodes that are on given sides of all faults, or near such a place."""
+    found = np.ones(len(on_side[0]), bool)
+    for own, also in zip(on_side, passed, strict=True):
+        on = own | also
+        for _ in range(2):
+            on[triangles[on[triangles].any(axis=1)]] = True
+        found &= on
+    return found
+
+
+def _range(plan: np.ndarray, heights: dict, near: dict) -> tuple[np.ndarray, np.ndarray]:
+    """(N, 3) the lowest and the highest place of the sheets near each node; infinite where there is none."""
+    low, high = np.full(len(plan), np.inf), np.full(len(plan), -np.inf)
+    for sides, z in heights.items():
+        low = np.fmin(low, np.where(near[sides], z, low))
+        high = np.fmax(high, np.where(near[sides], z, high))
+    return np.column_stack([plan, low]), np.column_stack([plan, high])
+
+
+def shared(sheets: dict[tuple[int, ...], Triangulation]) -> dict[tuple[int, ...], Triangulation]:
+    """The same with one object for all sheets that are equal to the bit."""
+    known: dict[bytes, Triangulation] = {}
+    return {sides: known.setdefault(sheet[0].tobytes(), sheet) for sides, sheet in sheets.items()}
+
+
+def _beyond(work: Work, plan, z, triangles, fault: FaultShape, within: Within, threads: int) -> np.ndarray:
+    """(N,) bool: the nodes of those of some triangles through which a fault would go on in a compartment
+    whose border passes them."""
+    used, numbers = np.unique(triangles, return_inverse=True)
+    sheet = np.column_stack([plan[used], z[used]]), numbers.reshape(-1, 3)
+    found = np.zeros(len(plan), bool)
+    found[used[trace_of(work, sheet, fault, within, threads).beyond]] = True
+    return found
 
 
 def _weight(plan: np.ndarray, beyond: np.ndarray, ramp: float) -> np.ndarray:

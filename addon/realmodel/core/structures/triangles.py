@@ -12,8 +12,18 @@ _EDGES = ((0, 1), (1, 2), (2, 0))
 
 def welded(vertices: np.ndarray) -> np.ndarray:
     """(V,) the least vertex at the same position as each."""
-    _, first, same = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
-    return first[same.ravel()]
+    order = np.lexsort(vertices.T)  # of equal ones the least comes first
+    is_first = np.ones(len(order), bool)
+    is_first[1:] = (vertices[order[1:]] != vertices[order[:-1]]).any(axis=1)
+    same = np.empty_like(order)
+    same[order] = order[is_first][np.cumsum(is_first) - 1]
+    return same
+
+
+def extents(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The least and the greatest coordinates (T, D) of triangles (T, 3, D)."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
 def without_flat(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -38,9 +48,12 @@ def open_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 def border_loops(triangles: np.ndarray) -> list[np.ndarray]:
     """The rings of vertices along edges that one triangle alone has, with the triangles on their left."""
     edges = edges_of(triangles)
-    _, number, count = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True, return_counts=True)
+    keys = edges.min(axis=1) * (int(triangles.max(initial=0)) + 1) + edges.max(axis=1)
+    order = np.argsort(keys, kind="stable")
+    differs = np.ones(len(order) + 1, bool)
+    differs[1:-1] = keys[order[1:]] != keys[order[:-1]]
     following: dict[int, list[int]] = {}
-    for a, b in edges[count[number.ravel()] == 1].tolist():
+    for a, b in edges[np.sort(order[differs[:-1] & differs[1:]])].tolist():
         following.setdefault(a, []).append(b)
     loops = []
     for start in sorted(following):
@@ -84,11 +97,11 @@ def crossing_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """(K, 2) rows of triangles (N, 3, 3) and (M, 3, 3) whose boxes touch."""
     if len(first) > len(second):
         return crossing_pairs(second, first)[:, ::-1]
-    low, high = second.min(axis=1), second.max(axis=1)
+    low, high = extents(second)
     order = np.argsort(low[:, 0], kind="stable")
     low, high = low[order], high[order]
     widest = (high[:, 0] - low[:, 0]).max(initial=0.0)
-    lowest, highest = first.min(axis=1), first.max(axis=1)
+    lowest, highest = extents(first)
     begin = np.searchsorted(low[:, 0], lowest[:, 0] - widest, "left")
     end = np.searchsorted(low[:, 0], highest[:, 0], "right")
     found = []

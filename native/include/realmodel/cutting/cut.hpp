@@ -84,4 +84,20 @@ Cut cut_by_block(const ComplexView& model, const ComplexView& other, std::int32_
 Section fence_panel(const ComplexView& model, const std::array<double, 2>& start,
                     const std::array<double, 2>& end, int threads, Progress* progress);
 
+/// Faces divided into triangles of their corners; those of face f are triangles offsets[f] to
+/// offsets[f + 1].
+struct FaceTriangles {
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    std::vector<std::int64_t> offsets{0};
+};
+
+/// The faces of a complex divided into triangles, turned as their faces are; always the same ones
+/// for the same face. A face may have corners in one line. Each of its edges is an edge of one of
+/// its triangles, so what faces close, the triangles close.
+/// @throws InputError kind bad_index (items: the face); Cancelled
+FaceTriangles triangulate_faces(std::span<const double> vertices,
+                                std::span<const std::int64_t> face_offsets,
+                                std::span<const std::int32_t> face_vertices, int threads,
+                                Progress* progress);
+
 }  // namespace realmodel::cutting

@@ -71,4 +71,20 @@ Joined join_models(std::span<const PartModel> models, std::span<const Structure>
 std::vector<std::int8_t> sides_of_points(const Structure& structure, std::span<const double> points,
                                          int threads, const Progress* progress);
 
+/// Which triangles of a sheet a fault's continuation beyond its border may touch, 1, or pass, 2,
+/// wherever the sheet lies between two heights: none too few, perhaps some too many.
+/// @param low, high  3 N coordinates of its vertices, equal in plan
+/// @param triangles  3 T
+/// @throws InputError  as parts_of does
+std::vector<std::uint8_t> triangles_beyond(const Structure& fault, std::span<const double> low,
+                                           std::span<const double> high,
+                                           std::span<const std::int32_t> triangles, int threads,
+                                           const Progress* progress);
+
+/// The triangles by which a fault is continued beyond its border, farther than a box around the
+/// rock (two corners) reaches.
+/// @throws InputError  as parts_of does
+std::vector<std::array<std::array<double, 3>, 3>> continuation_of(
+    const Structure& fault, const std::array<std::array<double, 3>, 2>& corners);
+
 }  // namespace realmodel::structures

@@ -23,7 +23,7 @@ TEST(InverseDistance, ByHand) {
                 (1 + 5 / 4.0 + 1000 * w) / (1.25 + w), 1e-12);
 }
 
-TEST(InverseDistance, HonoursTheDataAndStaysBetween) {
+TEST(InverseDistance, HonorsTheDataAndStaysBetween) {
     Points points = hills(100, 1000, {4e5, 5e6});
     points.push_back(points[3]);
     Nodes nodes;

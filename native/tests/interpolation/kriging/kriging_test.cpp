@@ -103,7 +103,7 @@ TEST(Kriging, AzimuthCountsClockwiseFromNorth) {
               krige(points, Nodes{{0, 0}}, other_way, {}).z[0]);
 }
 
-TEST(Kriging, HonoursTheDataAndMergesRepeats) {
+TEST(Kriging, HonorsTheDataAndMergesRepeats) {
     Points points = hills(50, 10, {5e5, 5e6});
     Nodes nodes;
     for (const auto& p : points)

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Names by which settings refer to surfaces, faults and rock masses: who renames one renames it there."""
+
+from ..core.methods import OPTIONS
+from ..core.setting import property_name
+from . import settings
+
+_OF_SURFACES = [property_name(key, option) for key, option in OPTIONS.items() if option.kind == "surface"]
+
+
+def know(scene):
+    """Remembers the names that all rows have now."""
+    for row in _named(scene):
+        if row.known_name != row.name:
+            row.known_name = row.name
+
+
+def follow(row):
+    """What refers to a row by the name that it had refers to it by its new one, unless another row has the
+    old name."""
+    scene, old = row.id_data, row.known_name
+    row.known_name = row.name
+    kind = settings.kind_of(row)
+    alike = [other for other in _named(scene) if settings.kind_of(other) == kind]
+    if not old or any(other.name == old for other in alike):
+        return
+    with settings.filling():
+        for owner, key in _references(scene, row, kind):
+            if getattr(owner, key) == old:
+                setattr(owner, key, row.name)
+
+
+def _named(scene):
+    yield from scene.realmodel.rocks
+    yield from (row for _, row in settings.interface_rows(scene))
+
+
+def _references(scene, row, kind):
+    """(row, property) of all that may refer to a row."""
+    group = scene.realmodel
+    if kind == "surface":
+        rock = settings.rock_of(row)
+        yield from ((other, key) for other in rock.surfaces for key in _OF_SURFACES)
+        yield from ((fault, "youngest") for fault in group.faults)
+        yield from ((body, "after") for body in group.bodies)
+    elif kind == "fault":
+        yield from ((end, "name") for fault in group.faults for end in fault.ends_at)
+    elif kind == "rock":
+        yield from ((rock, "name") for fault in group.faults for rock in fault.rocks)
+        yield from ((body, "rock") for body in group.bodies)

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The mesh for simulation that build_model.py writes: --mesh and what goes with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .exporters.meshes import mesh_target, write_mesh
+from .simulation import SimulationMesh, mesh_entry
+
+EDGES_ACROSS = 50  # of the model, where no edge length is given
+EDGE_OVER_THICKNESS = 10  # where no minimum thickness is given
+
+
+@dataclass(frozen=True)
+class BatchMesh:
+    """What is asked for. edge, thickness: None: by the size of the model, and by the edge length."""
+
+    path: Path
+    edge: float | None = None
+    thickness: float | None = None
+    layers: int | None = None
+    layer_thickness: float | None = None
+    elements: str = "prisms"
+
+    def target(self) -> Path:
+        """Where it will stand. Raises UsageError, OutputFailed."""
+        return mesh_target(self.path)
+
+    def make(self, model, threads: int, progress) -> SimulationMesh:
+        """The mesh. Raises as Model.simulation_mesh."""
+        extent = np.ptp(model.vertices[:, :2], axis=0) if len(model.vertices) else np.zeros(2)
+        edge = float(extent.max()) / EDGES_ACROSS if self.edge is None else self.edge
+        return model.simulation_mesh(
+            edge,
+            edge / EDGE_OVER_THICKNESS if self.thickness is None else self.thickness,
+            layers=self.layers,
+            elements=self.elements,
+            layer_thickness=self.layer_thickness,
+            threads=threads,
+            progress=lambda _share, text: progress(1.0, text),
+        )
+
+    def write(self, mesh: SimulationMesh, outputs, unit: str, progress) -> None:
+        """Writes the mesh in the format of its file's ending."""
+        write_mesh(mesh, self.path, outputs, lambda _: progress(1.0, f"writing {self.path.name}"), unit)
+
+    def line(self, mesh: SimulationMesh) -> str:
+        """What is printed of it."""
+        entry = mesh_entry(mesh)
+        counts = ", ".join(f"{count:,} {kind}s" for kind, count in entry["elements"].items())
+        counts = counts.replace("tetrahedrons", "tetrahedra")
+        return f"{self.path}: {counts or 'no elements'}; {_change_text(mesh)}"
+
+
+def _change_text(mesh: SimulationMesh) -> str:
+    change = mesh.volumes - mesh.exact_volumes
+    if not change.any():
+        return "all volumes are exact"
+    share = np.abs(change) / np.maximum(mesh.exact_volumes, np.finfo(float).tiny)
+    most = int(np.where(mesh.exact_volumes > 0, share, 0).argmax())
+    return (
+        f"volumes differ from the exact ones by {100 * share[most]:.2g} % at most "
+        f"({mesh.block_names[most]}), together by {100 * abs(change.sum()) / mesh.exact_volumes.sum():.2g} %"
+    )

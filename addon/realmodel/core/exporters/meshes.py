@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Files that meshes for simulation are written to, by their ending: one registry (docs/dev/extending.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..atomic import Outputs, writable_folder, writable_target
+from ..errors import UsageError
+from ..simulation import PolyhedralMesh, VolumeMesh
+from ..simulation.element_faces import ElementFaces
+from ..units import MODEL_UNIT
+from .cdb import write_cdb
+from .endings import by_ending
+from .exodus import write_exodus
+from .f3grid import write_f3grid
+from .gmsh import write_msh
+from .inp import write_inp
+from .modflow import write_disu, write_disv
+from .openfoam import POLY_MESH, write_openfoam
+from .vtu import write_vtu
+from .vtu_elements import write_vtu_elements
+
+Mesh = VolumeMesh | PolyhedralMesh
+Step = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class MeshFormat:
+    """A format of meshes for simulation.
+
+    write(mesh, path, outputs, step, unit) writes it by outputs.file or outputs.folder. polyhedra: whether it
+    takes them. folder: as of ModelFormat.
+    """
+
+    ending: str
+    label: str
+    write: Callable[..., None]
+    polyhedra: bool = False
+    folder: str = ""
+
+
+def _file(write: Callable) -> Callable:
+    def write_it(mesh: Mesh, path, outputs: Outputs, step: Step, _unit: str) -> None:
+        with outputs.file(path) as file:
+            write(mesh, file, step)
+
+    return write_it
+
+
+def _write_vtu(mesh: Mesh, file, step: Step) -> None:
+    (write_vtu if isinstance(mesh, PolyhedralMesh) else write_vtu_elements)(mesh, file, step)
+
+
+def _write_openfoam(mesh: Mesh, path, outputs: Outputs, step: Step, _unit: str) -> None:
+    with outputs.folder(path, POLY_MESH) as folder:
+        write_openfoam(_polyhedral(mesh), folder, step)
+
+
+def _modflow(write: Callable, prepare: Callable) -> Callable:
+    """A grid, and beside it NAME_block.txt with the block of each cell."""
+
+    def write_it(mesh: Mesh, path, outputs: Outputs, step: Step, unit: str) -> None:
+        path = Path(path)
+        with (
+            outputs.file(path) as file,
+            outputs.file(path.with_name(f"{path.stem}_block.txt")) as blocks,
+        ):
+            write(prepare(mesh), file, blocks, step, unit)
+
+    return write_it
+
+
+def _polyhedral(mesh: Mesh) -> PolyhedralMesh:
+    return mesh if isinstance(mesh, PolyhedralMesh) else ElementFaces(mesh).polyhedral()
+
+
+MESH_FORMATS: dict[str, MeshFormat] = {
+    known.ending: known
+    for known in (
+        MeshFormat(".vtu", "VTK Unstructured Grid, OpenGeoSys", _file(_write_vtu), True),
+        MeshFormat(".foam", "OpenFOAM Case", _write_openfoam, True, POLY_MESH),
+        MeshFormat(".msh", "Gmsh", _file(write_msh)),
+        MeshFormat(".inp", "Abaqus, CalculiX", _file(write_inp)),
+        MeshFormat(".cdb", "ANSYS", _file(write_cdb)),
+        MeshFormat(".exo", "Exodus II", _file(write_exodus), True),
+        MeshFormat(".f3grid", "FLAC3D", _file(write_f3grid)),
+        MeshFormat(".disv", "MODFLOW 6 DISV", _modflow(write_disv, lambda mesh: mesh)),
+        MeshFormat(".disu", "MODFLOW 6 DISU", _modflow(write_disu, _polyhedral), True),
+    )
+}
+
+
+def mesh_format_for(path: str | Path) -> MeshFormat:
+    """The format that this ending says. Raises UsageError."""
+    return by_ending(path, MESH_FORMATS, "meshes are not written as {}")
+
+
+def mesh_target(path: str | Path) -> Path:
+    """The path, links followed, where a mesh will stand. Raises UsageError, OutputFailed."""
+    known = mesh_format_for(path)
+    return writable_folder(path, known.folder) if known.folder else writable_target(path)
+
+
+def write_mesh(
+    mesh: Mesh, path: str | Path, outputs: Outputs, step: Step = lambda _: None, unit: str = MODEL_UNIT
+) -> None:
+    """Writes a mesh in the format of the path's ending; it appears with the other outputs. unit: of its
+    lengths. Raises UsageError where the format has no polyhedra."""
+    known = mesh_format_for(path)
+    if isinstance(mesh, PolyhedralMesh) and not known.polyhedra:
+        able = ", ".join(each.ending for each in MESH_FORMATS.values() if each.polyhedra)
+        raise UsageError(
+            f"{path}: {known.label} has no polyhedra; use one of {able}, or prisms or tetrahedra"
+        )
+    known.write(mesh, path, outputs, step, unit)
+
+
+def save_mesh(mesh: Mesh, path: str | Path, step: Step = lambda _: None, unit: str = MODEL_UNIT) -> None:
+    """Writes a mesh to a file, or a folder, that appears whole or not at all."""
+    mesh_format_for(path)
+    with Outputs() as outputs:
+        write_mesh(mesh, path, outputs, step, unit)

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The formats of shapes that are one file: functions (parts, file, step) by ending."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from .dxf import write_dxf
+from .gltf import write_glb
+from .ply import write_ply
+from .stl import write_stl
+from .tsurf import write_tsurf
+
+PART_WRITERS: dict[str, Callable[..., None]] = {
+    ".ply": write_ply,
+    ".stl": write_stl,
+    ".glb": write_glb,
+    ".dxf": write_dxf,
+    ".ts": write_tsurf,
+}
+
+
+def part_writers(parts_of: Callable) -> dict[str, Callable[..., None]]:
+    """Functions (item, file) by ending that write parts_of(item)."""
+    return {
+        ending: lambda item, file, write=write: write(parts_of(item), file, lambda _: None)
+        for ending, write in PART_WRITERS.items()
+    }

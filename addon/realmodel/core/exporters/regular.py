@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A model on a regular grid: block models as table (.csv) and VTK image (.vti), heights and thicknesses as
+GeoTIFF
+and ESRI ASCII grids."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from ..atomic import Outputs
+from ..regular_cells import plan_grids, regular_cells
+from ..simulation.patches import solver_names
+from .parts import distinct_names
+from .text_rows import write_rows
+
+_NO_HEIGHT = -9999.0
+_TIFF_TYPES = {"s": 2, "H": 3, "I": 4, "d": 12, "Q": 16}
+
+
+def write_block_table(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
+    """A row for each cell that has rock: its center, its size, the name of the block with the largest
+    share, and
+    the share of each block in it."""
+    cells = regular_cells(model, size)
+    step(0.5)
+    shares = cells.shares
+    names = distinct_names(block.name for block in model.blocks)
+    z, y, x = np.nonzero(shares.sum(axis=0) > 0)
+    own = shares[:, z, y, x]
+    center = cells.origin + cells.size * (np.column_stack([x, y, z]) + 0.5)
+    columns = ["x", "y", "z", "dx", "dy", "dz", "block", *(f"share {name}" for name in names)]
+    quoted = [_quoted(name) for name in names]
+    largest = np.array(quoted, object)[own.argmax(axis=0)] if len(names) else np.empty(0, object)
+    with outputs.file(path) as file:
+        file.write((",".join(map(_quoted, columns)) + "\n").encode())
+        form = "%r,%r,%r,%r,%r,%r,%s" + ",%.9g" * len(names)
+        write_rows(file, form, center, np.tile(cells.size, (len(center), 1)), largest, own.T)
+    step(1.0)
+
+
+def _quoted(text: str) -> str:
+    return '"' + text.replace('"', '""') + '"' if any(c in text for c in ',"\n') else text
+
+
+def write_vti(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
+    """A VTK image with the cell arrays `block` (number in the model's list of the block with the largest
+    share,
+    -1: none) and `share NAME` of each block."""
+    cells = regular_cells(model, size)
+    step(0.5)
+    names = distinct_names(block.name for block in model.blocks)
+    shares = cells.shares
+    block = (
+        np.where(shares.sum(axis=0) > 0, shares.argmax(axis=0), -1) if len(names) else np.zeros(cells.counts)
+    )
+    arrays = [
+        ("block", block.astype("<i4")),
+        *((f"share {n}", s) for n, s in zip(names, shares, strict=True)),
+    ]
+    extent = " ".join(f"0 {count}" for count in cells.counts)
+    origin, spacing = (" ".join(map(repr, a.tolist())) for a in (cells.origin, cells.size))
+    tags, at = [], 0
+    for name, values in arrays:
+        kind = "Int32" if values.dtype.kind == "i" else "Float64"
+        text = name.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+        tags.append(f'<DataArray type="{kind}" Name="{text}" format="appended" offset="{at}"/>')
+        at += 8 + values.nbytes
+    with outputs.file(path) as file:
+        file.write(
+            f"""<?xml version="1.0" encoding="UTF-8"?>
+<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+<ImageData WholeExtent="{extent}" Origin="{origin}" Spacing="{spacing}">
+<Piece Extent="{extent}">
+<CellData Scalars="block">
+""".encode()
+        )
+        file.write(("\n".join(tags) + "\n</CellData>\n</Piece>\n</ImageData>\n").encode())
+        file.write(b'<AppendedData encoding="raw">\n_')
+        for _, values in arrays:
+            file.write(np.array([values.nbytes], "<u8").tobytes())
+            file.write(np.ascontiguousarray(values))
+        file.write(b"\n</AppendedData>\n</VTKFile>\n")
+    step(1.0)
+
+
+def _grids(model, size) -> tuple:
+    """The grids, and (name, heights (ny, nx)) of each: the ground, then of each block its top and
+    thickness."""
+    grids = plan_grids(model, size)
+    bands = [("elevation", grids.top)]
+    for number, name in enumerate(distinct_names(block.name for block in model.blocks)):
+        bands.append((f"top of {name}", grids.upper[number]))
+        bands.append((f"thickness of {name}", grids.thickness[number]))
+    return grids, bands
+
+
+def write_ascii_grids(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
+    """ESRI ASCII grids: the elevation in the file itself; beside it NAME_top_of_BLOCK and
+    NAME_thickness_of_BLOCK."""
+    grids, bands = _grids(model, size)
+    step(0.5)
+    path = Path(path)
+    (west, north), (dx, dy) = grids.north_west, grids.size
+    rows, columns = grids.top.shape
+    head = f"ncols {columns}\nnrows {rows}\nxllcorner {west!r}\nyllcorner {north - rows * dy!r}\n"
+    head += f"cellsize {dx!r}\n" if dx == dy else f"dx {dx!r}\ndy {dy!r}\n"
+    words = solver_names([name for name, _ in bands])
+    for number, ((_, values), word) in enumerate(zip(bands, words, strict=True)):
+        target = path if number == 0 else path.with_name(f"{path.stem}_{word}{path.suffix}")
+        with outputs.file(target) as file:
+            file.write(f"{head}NODATA_value {_NO_HEIGHT:g}\n".encode())
+            write_rows(file, " ".join(["%r"] * columns), np.where(np.isfinite(values), values, _NO_HEIGHT))
+    step(1.0)
+
+
+def write_geotiff(model, path, outputs: Outputs, step: Callable[[float], None], size) -> None:
+    """A GeoTIFF (OGC 19-008) with a band for each grid, 64-bit numbers, uncompressed, named by GDAL's
+    metadata.
+    It has no coordinate system: a project has none."""
+    grids, bands = _grids(model, size)
+    step(0.5)
+    rows, columns = grids.top.shape
+    (west, north), (dx, dy) = grids.north_west, grids.size
+    items = "".join(
+        f'<Item name="DESCRIPTION" sample="{k}" role="description">{_xml(name)}</Item>'
+        for k, (name, _) in enumerate(bands)
+    )
+    count, plane = len(bands), 8 * rows * columns
+    tags = [
+        (256, "I", [columns]),
+        (257, "I", [rows]),
+        (258, "H", [64] * count),
+        (259, "H", [1]),
+        (262, "H", [1]),
+        (273, "Q", [0] * count),  # filled in below
+        (277, "H", [count]),
+        (278, "I", [rows]),
+        (279, "Q", [plane] * count),
+        (284, "H", [2]),  # band after band
+        (338, "H", [0] * (count - 1)),
+        (339, "H", [3] * count),
+        (33550, "d", [dx, dy, 0.0]),
+        (33922, "d", [0.0, 0.0, 0.0, west, north, 0.0]),
+        (34735, "H", [1, 1, 0, 1, 1025, 0, 1, 1]),  # heights are of areas
+        (42112, "s", f"<GDALMetadata>{items}</GDALMetadata>\0".encode()),
+        (42113, "s", b"nan\0"),
+    ]
+    tags = [tag for tag in tags if len(tag[2])]
+    size_of = 16 + 8 + 20 * len(tags) + 8
+    for _ in range(2):  # BigTIFF: the second time with the places that the first one found
+        directory, more = b"", b""
+        for code, kind, values in tags:
+            raw = (
+                values
+                if kind == "s"
+                else np.array(
+                    values, {"H": "<u2", "I": "<u4"}.get(kind, f"<{'u8' if kind == 'Q' else 'f8'}")
+                ).tobytes()
+            )
+            entry = (
+                np.array([code, _TIFF_TYPES[kind]], "<u2").tobytes()
+                + np.array([len(values)], "<u8").tobytes()
+            )
+            if len(raw) <= 8:
+                entry += raw.ljust(8, b"\0")
+            else:
+                entry += np.array([size_of + len(more)], "<u8").tobytes()
+                more += raw + b"\0" * (-len(raw) % 8)
+            directory += entry
+        begin = size_of + len(more)
+        tags = [(c, k, [begin + plane * n for n in range(count)] if c == 273 else v) for c, k, v in tags]
+    with outputs.file(path) as file:
+        file.write(b"II+\0" + np.array([8, 0], "<u2").tobytes() + np.array([16, len(tags)], "<u8").tobytes())
+        file.write(directory + bytes(8) + more)
+        for _, values in bands:
+            file.write(np.ascontiguousarray(values, "<f8"))
+    step(1.0)
+
+
+def _xml(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rows of numbers as text, many at a time."""
+
+from __future__ import annotations
+
+from typing import BinaryIO
+
+import numpy as np
+
+_AT_ONCE = 50_000
+
+
+def write_rows(file: BinaryIO, form: str, *columns: np.ndarray, ends: str = "\n") -> None:
+    """Writes a line a row. form: of the whole row, as of the operator %, "%r" for the shortest number that is
+    the same float64. columns: arrays (N,) or (N, K), side by side."""
+    count = len(columns[0])
+    line = form + ends
+    for begin in range(0, count, _AT_ONCE):
+        cells = []
+        for column in columns:
+            values = column[begin : begin + _AT_ONCE]
+            cells += [values.tolist()] if values.ndim == 1 else [part.tolist() for part in values.T]
+        rows = min(_AT_ONCE, count - begin)
+        flat = [None] * (rows * len(cells))
+        for place, values in enumerate(cells):
+            flat[place :: len(cells)] = values
+        file.write((line * rows % tuple(flat)).encode("utf-8"))

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Triangulated surfaces in DXF (text, any release): 3DFACE entities, polyface meshes and polygon meshes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputRefused
+from .text import LINES_AT_ONCE, Step, no_step, read_text
+from .triangle_mesh import TriangleMesh, mesh_of_faces
+
+_BEGINNING = re.compile(rb"(?:\s*999\s*\n[^\n]*\n)*\s*0\s*\n\s*SECTION\s*\n", re.IGNORECASE)
+_BINARY = b"AutoCAD Binary DXF"
+_CLOSED_M, _POLYGON_MESH, _CLOSED_N, _POLYFACE = 1, 16, 32, 64
+
+
+def begins_as_dxf(head: bytes) -> bool:
+    """Whether a file that begins so is one."""
+    return head.startswith(_BINARY) or bool(
+        _BEGINNING.match(head.replace(b"\r", b"\n").replace(b"\n\n", b"\n"))
+    )
+
+
+def read_dxf(file: str | Path, step: Step = no_step) -> TriangleMesh:
+    """The faces of all entities of the drawing as one mesh; corners at the same place become one vertex.
+    Faces
+    in blocks that are inserted are not read. Raises InputRefused naming file and line."""
+    file = Path(file)
+    with file.open("rb") as opened:
+        if opened.read(len(_BINARY)) == _BINARY:
+            raise InputRefused("binary DXF is not read", file=file, advice="save it as text (ASCII)")
+    faces: list[list[tuple[float, ...]]] = []
+    for entity, number, codes in _entities(file, step):
+        try:
+            if entity == "3DFACE":
+                corners = [_place(codes, corner) for corner in range(4 if 13 in codes else 3)]
+                faces.append(_without_repeats(corners))
+            elif entity == "POLYLINE":
+                faces += _polyline_faces(codes)
+        except (ValueError, KeyError, IndexError) as error:
+            raise InputRefused(f"a {entity} that cannot be read", file=file, line=number) from error
+    faces = [face for face in faces if len(face) > 2]
+    if not faces:
+        advice = "export the surface as 3D faces (3DFACE) or as a polyface mesh"
+        raise InputRefused("it has no 3D faces", file=file, advice=advice)
+    corners = np.array([place for face in faces for place in face])
+    vertices, index = np.unique(corners, axis=0, return_inverse=True)
+    index, ends = index.ravel().tolist(), np.cumsum([len(face) for face in faces]).tolist()
+    return mesh_of_faces(file, vertices, [index[begin:end] for begin, end in pairwise([0, *ends])])
+
+
+def _entities(file: Path, step: Step) -> Iterator[tuple[str, int, dict]]:
+    """Each entity of the section ENTITIES: its name, line, and values by group code. A POLYLINE has those of
+    its VERTEX entities under "vertices"."""
+    lines = read_text(file).split("\n")
+    within, section, polyline = False, False, None
+    name, begin, codes = "", 0, {}
+    for at in range(0, len(lines) - 1, 2):
+        if at % LINES_AT_ONCE == 0:
+            step(at / len(lines))
+        code, value = lines[at].strip(), lines[at + 1].strip()
+        if not code.lstrip("-").isdecimal():
+            raise InputRefused(f"'{code:.40}' is no group code", file=file, line=at + 1)
+        if code != "0":
+            if section and code == "2":
+                within, section = value.upper() == "ENTITIES", False
+            if within:
+                codes.setdefault(int(code[:9]), value)
+            continue
+        if within and name:
+            if name == "VERTEX" and polyline is not None:
+                polyline[2]["vertices"].append(codes)
+            elif name == "POLYLINE":
+                polyline = (name, begin, {**codes, "vertices": []})
+            elif name == "SEQEND" and polyline is not None:
+                yield polyline
+                polyline = None
+            else:
+                yield name, begin, codes
+        name, begin, codes = value.upper(), at + 2, {}
+        section = name == "SECTION"
+        within = within and name != "ENDSEC"
+        if name == "EOF":
+            return
+    raise InputRefused("the file has no EOF", file=file, line=len(lines), advice="it is cut off")
+
+
+def _place(codes: dict, corner: int) -> tuple[float, ...]:
+    return tuple(float(codes.get(10 * axis + corner, "0")) for axis in (1, 2, 3))
+
+
+def _without_repeats(corners: list) -> list:
+    return [corner for k, corner in enumerate(corners) if corner != corners[k - 1]]
+
+
+def _polyline_faces(codes: dict) -> list[list[tuple[float, ...]]]:
+    flags, vertices = int(codes.get(70, "0")), codes["vertices"]
+    if flags & _POLYFACE:
+        places = [_place(v, 0) for v in vertices if int(v.get(70, "0")) & 64]
+        numbers = [
+            [abs(int(v[code])) for code in (71, 72, 73, 74) if int(v.get(code, "0"))]
+            for v in vertices
+            if int(v.get(70, "0")) & 192 == 128
+        ]
+        return [_without_repeats([places[n - 1] for n in face]) for face in numbers]
+    if not flags & _POLYGON_MESH:
+        return []
+    rows, columns = int(codes[71]), int(codes[72])
+    places = [_place(v, 0) for v in vertices if not int(v.get(70, "0")) & 16]
+    if rows * columns != len(places):
+        raise ValueError
+    faces = []
+    for m in range(rows if flags & _CLOSED_M else rows - 1):
+        for n in range(columns if flags & _CLOSED_N else columns - 1):
+            around = [(m, n), (m + 1, n), (m + 1, n + 1), (m, n + 1)]
+            faces.append(_without_repeats([places[r % rows * columns + c % columns] for r, c in around]))
+    return faces

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The heights of grids in text files, wherever their lines end."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputRefused
+from ..work import native_module
+from .points import BYTES_AT_ONCE
+from .text import Step, read_bytes, require_text
+
+_WHOLE = re.compile(r"\d{1,9}")
+
+
+def read_grid_text(file: Path) -> bytes:
+    """A text file with lines that end in \\n. Raises InputRefused."""
+    raw = read_bytes(file)
+    require_text(file, raw)
+    return raw if b"\n" in raw else raw.replace(b"\r", b"\n")
+
+
+def grid_heights(
+    file: Path, raw: bytes, body: int, line: int, count: int, shape: str, step: Step, decimal: str = "."
+) -> np.ndarray:
+    """The numbers from byte `body`, which stands on this line, to the end: (count,) float64.
+
+    shape: what says that there are so many. Raises InputRefused naming the line."""
+    native = native_module()
+    one_a_line = bytes.maketrans(b" \t\r", b"\n\n\n")
+    found, at = [], body
+    while at < len(raw):
+        blank = re.compile(rb"\s").search(raw, min(at + BYTES_AT_ONCE, len(raw)))
+        end = len(raw) if blank is None else blank.end()
+        piece = raw[at:end].translate(one_a_line)
+        try:
+            found.append(native.read_numbers(piece, 0, len(piece), " ", decimal, [0], [], ([], []))[0][:, 0])
+        except native.InputError as error:
+            begin, stop = error.items[2:4]
+            number = line + raw.count(b"\n", body, at + begin)
+            entry = piece[begin:stop].decode("latin-1")
+            advice = "write the NODATA_value where there is no height" if error.kind == "not_finite" else None
+            what = f"not a height: '{entry:.40}'"
+            raise InputRefused(what, file=file, line=number, advice=advice) from error
+        at = end
+        step(at / len(raw))
+    z = np.concatenate(found) if found else np.empty(0)
+    if len(z) != count:
+        raise InputRefused(
+            f"{shape} need {count} heights; there are {len(z)}",
+            file=file,
+            advice="the file is cut off or its header is wrong",
+        )
+    return z
+
+
+def header_numbers(file: Path, text: str, line: int, count: int, what: str) -> list[float]:
+    """The first numbers of a line of a header. Raises InputRefused."""
+    words = text.replace(",", " ").split()
+    try:
+        found = [float(word) for word in words[:count]]
+        if len(found) < count or not np.isfinite(found).all():
+            raise ValueError
+    except ValueError as error:
+        raise InputRefused(
+            f"the header needs {what} here, not '{text.strip():.60}'", file=file, line=line
+        ) from error
+    return found
+
+
+def require_count(file: Path, value: float, name: str, line: int | None = None) -> int:
+    """A number of rows or columns. Raises InputRefused."""
+    if not (1 <= value < 1e9 and value == int(value)):
+        raise InputRefused(f"{name} must be a whole number from 1, not {value:g}", file=file, line=line)
+    return int(value)
+
+
+def require_spacing(
+    file: Path, low: float, high: float, count: int, axis: str, line: int | None = None
+) -> float:
+    """The distance of neighbors of a grid of so many between two ends. Raises InputRefused."""
+    spacing = (high - low) / (count - 1) if count > 1 else 1.0
+    if not (np.isfinite(spacing) and spacing > 0):
+        what = f"the grid must go from a lower to a higher {axis}, not from {low:g} to {high:g}"
+        raise InputRefused(what, file=file, line=line)
+    return spacing

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""ZMAP+ grids (Landmark), text: comments (!), a header between two @, then columns from west to east, each
+from
+north to south."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..errors import InputRefused
+from .grid_text import grid_heights, header_numbers, read_grid_text, require_count, require_spacing
+from .raster import Raster, without_values
+from .text import Step, no_step
+
+_BEGINNING = re.compile(rb"(?:\s*!.*\n)*\s*@[^\n]*,\s*GRID\s*,", re.IGNORECASE)
+
+
+def is_zmap_grid(head: bytes) -> bool:
+    """Whether a file that begins so is one."""
+    return bool(_BEGINNING.match(head.replace(b"\r", b"\n")))
+
+
+def read_zmap_grid(file: str | Path, nodata: Sequence[float] = (), step: Step = no_step) -> Raster:
+    """A grid. Raises InputRefused naming the line."""
+    file = Path(file)
+    raw = read_grid_text(file)
+    header, at, number = [], 0, 0  # (line, text) from the first @ to the second
+    while True:
+        end = raw.find(b"\n", at)
+        if end < 0:
+            raise InputRefused(
+                "the header has no second @", file=file, line=number, advice="the file is cut off"
+            )
+        text, at, number = raw[at:end].decode("latin-1").strip(), end + 1, number + 1
+        if text.startswith("@") and header:
+            break
+        if text and not text.startswith("!"):
+            header.append((number, text))
+    if len(header) < 3:
+        raise InputRefused("the header needs three lines between the two @", file=file, line=number)
+    line, text = header[1]
+    null = text.split(",")[1].strip() if text.count(",") else ""
+    none = header_numbers(file, null, line, 1, "the number for no height")
+    line, text = header[2]
+    numbers = header_numbers(file, text, line, 6, "rows, columns, and the ends of x and y")
+    rows, columns = (
+        require_count(file, numbers[0], "rows", line),
+        require_count(file, numbers[1], "columns", line),
+    )
+    west, east, south, north = numbers[2:]
+    dx = require_spacing(file, west, east, columns, "x", line)
+    dy = require_spacing(file, south, north, rows, "y", line)
+    shape = f"{columns} columns and {rows} rows"
+    z = grid_heights(file, raw, at, number + 1, rows * columns, shape, step)
+    z = without_values(z.reshape(columns, rows).T.copy(), [*none, *nodata])
+    return Raster(z, (west, north), (dx, 0.0), (0.0, -dy))

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The faces of elements: which two share one, and which belong to patches and surfaces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BuildFailed
+from .patches import boundary_patches, solver_names
+from .volume_mesh import PolyhedralMesh, VolumeMesh
+
+# The faces of each kind of element, counter-clockwise seen from outside, in the order in which Abaqus numbers
+# them.
+OUTWARD = {
+    "tetrahedron": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)),
+    "pyramid": ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
+    "prism": ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
+    "hexahedron": (
+        (0, 3, 2, 1),
+        (4, 5, 6, 7),
+        (0, 1, 5, 4),
+        (1, 2, 6, 5),
+        (2, 3, 7, 6),
+        (3, 0, 4, 7),
+    ),
+}
+SHAPES = {"triangle": 3, "quadrilateral": 4}
+
+
+@dataclass(frozen=True, eq=False)
+class FaceSet:
+    """Named faces of a mesh: a patch of the outside, or the inner faces on a surface.
+
+    corners: of each of SHAPES, (F, 3 or 4) int32. element, side: of each, (F,): an element with this face
+    (all
+    elements counted through), and the face's number in OUTWARD of its kind. group: of a patch, else "".
+    """
+
+    name: str
+    group: str
+    corners: dict[str, np.ndarray]
+    element: dict[str, np.ndarray]
+    side: dict[str, np.ndarray]
+
+
+class ElementFaces:
+    """The faces of all elements of a mesh. Raises BuildFailed where three elements share one."""
+
+    def __init__(self, mesh: VolumeMesh):
+        self.mesh = mesh
+        self._of = {shape: self._faces(shape) for shape in SHAPES}
+
+    def _faces(self, shape: str) -> _Faces:
+        corners, element, side = [], [], []
+        first = 0
+        for kind, elements in self.mesh.elements.items():
+            for number, local in enumerate(OUTWARD[kind]):
+                if len(local) == SHAPES[shape]:
+                    corners.append(elements[:, local])
+                    element.append(np.arange(first, first + len(elements), dtype=np.int32))
+                    side.append(np.full(len(elements), number, np.int8))
+            first += len(elements)
+        none = np.empty(0, np.int32)
+        return _Faces(
+            np.concatenate([*corners, np.empty((0, SHAPES[shape]), np.int32)]),
+            np.concatenate([*element, none]),
+            np.concatenate([*side, none.astype(np.int8)]),
+            len(self.mesh.points),
+        )
+
+    def polyhedral(self) -> PolyhedralMesh:
+        """The same mesh as polyhedra that share faces."""
+        mesh = self.mesh
+        corners, offsets, cells, surface = [], [np.zeros(1, np.int64)], [], []
+        for shape, size in SHAPES.items():
+            faces = self._of[shape]
+            corners.append(faces.corners[faces.first].ravel())
+            offsets.append(np.full(len(faces.first), size, np.int64))
+            second = np.where(faces.has_twin, faces.element[faces.second], -1)
+            cells.append(np.column_stack([faces.element[faces.first], second]))
+            on = np.full(len(faces.first), -1, np.int32)
+            if shape in mesh.faces and len(mesh.faces[shape]):
+                on[faces.find(mesh.faces[shape])] = mesh.face_surface[shape]
+            surface.append(on)
+        return PolyhedralMesh(
+            mesh.points,
+            np.cumsum(np.concatenate(offsets)),
+            np.concatenate(corners).astype(np.int32, copy=False),
+            np.concatenate(cells).astype(np.int32, copy=False),
+            np.concatenate(surface),
+            np.concatenate([*mesh.element_block.values(), np.empty(0, np.int32)]).astype(
+                np.int32, copy=False
+            ),
+            mesh.block_names,
+            mesh.block_property,
+            mesh.surface_names,
+            mesh.surface_kind,
+        )
+
+    def sets(self, longest: int = 64) -> list[FaceSet]:
+        """The patches of the outside (boundary_patches), then the inner faces on each surface. Their names
+        are
+        as of solver_names, and different from one another; longest: letters of a name."""
+        mesh = self.mesh
+        shapes = [shape for shape in SHAPES if shape in mesh.faces and len(mesh.faces[shape])]
+        found = {shape: self._of[shape].find(mesh.faces[shape]) for shape in shapes}
+        outside = {shape: ~self._of[shape].has_twin[found[shape]] for shape in shapes}
+        surface = [mesh.face_surface[shape][outside[shape]] for shape in shapes]
+        rise = [self._rises(shape, found[shape][outside[shape]]) for shape in shapes]
+        if not shapes:
+            return []
+        patches, number = boundary_patches(
+            np.concatenate(surface), np.concatenate(rise), mesh.surface_names, mesh.surface_kind
+        )
+        per_shape = np.split(number, np.cumsum([len(part) for part in surface])[:-1])
+        of_patch = {
+            shape: np.where(outside[shape], 0, -1) for shape in shapes
+        }  # the set of each named face, -1: of no patch
+        for shape, own in zip(shapes, per_shape, strict=True):
+            of_patch[shape][outside[shape]] = own
+        inner = np.unique(np.concatenate([mesh.face_surface[shape][~outside[shape]] for shape in shapes]))
+        inner = inner[inner >= 0]
+        for shape in shapes:
+            on = mesh.face_surface[shape]
+            within = ~outside[shape] & (on >= 0)
+            of_patch[shape][within] = len(patches) + np.searchsorted(inner, on[within])
+        groups = [patch.group for patch in patches] + [""] * len(inner)
+        names = [patch.name for patch in patches] + [mesh.surface_names[k] for k in inner.tolist()]
+        sets = []
+        for k, (name, group) in enumerate(zip(solver_names(names, longest), groups, strict=True)):
+            parts = {shape: self._part(shape, found[shape][of_patch[shape] == k]) for shape in shapes}
+            sets.append(
+                FaceSet(name, group, *({shape: part[j] for shape, part in parts.items()} for j in range(3)))
+            )
+        return sets
+
+    def _part(self, shape: str, numbers: np.ndarray):
+        faces = self._of[shape]
+        rows = faces.first[numbers]
+        return faces.corners[rows], faces.element[rows], faces.side[rows]
+
+    def _rises(self, shape: str, numbers: np.ndarray) -> np.ndarray:
+        """The upward parts of the normals of faces."""
+        faces = self._of[shape]
+        x, y = self.mesh.points[faces.corners[faces.first[numbers]], :2].transpose(2, 0, 1)
+        x, y = x - x[:, :1], y - y[:, :1]
+        return (x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1)).sum(axis=1)
+
+
+class _Faces:
+    """Faces of one shape: all that elements have, and which of them are the same.
+
+    corners (M, K), element (M,), side (M,). first, second: for each face the rows of the elements that have
+    it,
+    the lower element first; has_twin: whether there is a second one."""
+
+    def __init__(self, corners: np.ndarray, element: np.ndarray, side: np.ndarray, points: int):
+        self.corners, self.element, self.side, self._points = corners, element, side, points
+        key = self._key(corners)
+        order = np.argsort(key, kind="stable")
+        sorted_key = key[order]
+        begins = np.append(True, sorted_key[1:] != sorted_key[:-1])[: len(key)]
+        at = np.flatnonzero(begins)
+        uses = np.diff(np.append(at, len(key)))
+        if (uses > 2).any():
+            where = corners[order[at[uses > 2][0]]].tolist()
+            raise BuildFailed(f"the mesh is not valid: three elements share the face of the points {where}")
+        self._keys = sorted_key[at]
+        self.has_twin = uses == 2
+        self.first = order[at]
+        self.second = order[np.minimum(at + 1, max(len(key) - 1, 0))]
+        later = self.has_twin & (element[self.first] > element[self.second])
+        self.first, self.second = (
+            np.where(later, self.second, self.first),
+            np.where(later, self.first, self.second),
+        )
+
+    def _key(self, corners: np.ndarray):
+        """A number for each face: the same for the same three lowest corners. A conforming mesh has no two
+        faces of one shape with these in common."""
+        low = np.sort(corners, axis=1).astype(np.int64)
+        count = self._points
+        if count < 2_000_000:
+            return (low[:, 0] * count + low[:, 1]) * count + low[:, 2]
+        wide = np.empty(len(low), [("a", "<i8"), ("b", "<i8")])
+        wide["a"], wide["b"] = low[:, 0] * count + low[:, 1], low[:, 2]
+        return wide
+
+    def find(self, corners: np.ndarray) -> np.ndarray:
+        """The numbers of faces that are given by their corners, any way round. Raises BuildFailed."""
+        key = self._key(np.asarray(corners))
+        at = np.minimum(np.searchsorted(self._keys, key), max(len(self._keys) - 1, 0))
+        if len(key) and (not len(self._keys) or (self._keys[at] != key).any()):
+            raise BuildFailed("the mesh is not valid: a named face is of no element")
+        return at

@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes that solvers like, made from a model: Model.simulation_mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..build_warning import BuildWarning
+from ..errors import BuildFailed, InputRefused, UsageError
+from ..finite import is_number
+from ..mesh_sizes import check_mesher, local_lengths
+from ..method_options import check_threads
+from ..planar_mesh import mesh_rings
+from ..work import Cancel, Progress, Work, native_module, run
+from .tetrahedra import divided, divided_quadrilaterals
+from .volume_mesh import PlanMesh, VolumeMesh
+
+ELEMENTS = ("prisms", "tetrahedra")
+MESHER = "frontal"
+_MOST_CHANGE = 0.1  # of a block's volume, without a warning
+_THINNEST = 1e-9  # of the largest coordinate: nearer than this, doubles leave no room for a layer
+
+
+@dataclass(frozen=True, eq=False)
+class SimulationMesh(VolumeMesh):
+    """A mesh for solvers and what it changed.
+
+    volumes: (B,) float64, of the elements of each block; exact_volumes: (B,) float64, of the block itself;
+    model units cubed. warnings: blocks whose volume it changes by more than a tenth.
+    """
+
+    volumes: np.ndarray = field(default_factory=lambda: np.empty(0))
+    exact_volumes: np.ndarray = field(default_factory=lambda: np.empty(0))
+    warnings: list[BuildWarning] = field(default_factory=list)
+
+
+def simulation_mesh(
+    model,
+    edge_length: float,
+    minimum_thickness: float,
+    layers: int | Mapping[str, int] | Sequence[int] | None = None,
+    elements: str = "prisms",
+    *,
+    layer_thickness: float | None = None,
+    size: Iterable[Mapping] = (),
+    mesher: str = MESHER,
+    threads: int = 0,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> SimulationMesh:
+    """A mesh of the model for solvers: columns of prisms on one planar mesh, between its exact surfaces.
+
+    edge_length: of the planar mesh, model units. It contains the outline, the lines where layers end, steps
+    and walls as lines, simplified to this length. minimum_thickness: where a layer, or a part that it is
+    divided into, would be thinner, it ends, and its neighbors take the volume; prisms become pyramids and
+    tetrahedra there. So every element has a positive volume, and elements share whole faces, also between
+    blocks and rock masses.
+
+    layers: how many each block is divided into: one number, one for each block, or {block name: number}
+    (1 where none is given). layer_thickness: instead into layers no thicker than this; `layers` then bounds
+    their number. elements: "prisms", or "tetrahedra": the same mesh with every element divided.
+    size: where edges are shorter, as of mesh_region; "outline" and "constraints" mean all lines.
+    mesher: of the planar mesh.
+
+    Raises UsageError and InputRefused for what cannot be meshed so, BuildFailed, Cancelled.
+    """
+    threads = check_threads(threads)
+    check_mesher(mesher)
+    if elements not in ELEMENTS:
+        raise UsageError(f"elements {elements!r} is unknown; use {', '.join(map(repr, ELEMENTS))}")
+    for name, value in (("edge_length", edge_length), ("minimum_thickness", minimum_thickness)):
+        if not is_number(value) or value <= 0:
+            raise UsageError(f"{name} must be a finite number above 0, not {value!r}")
+    if layer_thickness is not None and not (is_number(layer_thickness) and layer_thickness > 0):
+        raise UsageError(f"layer_thickness must be a finite number above 0, not {layer_thickness!r}")
+    numbers = layer_numbers(model, layers, layer_thickness)
+    _refuse_what_has_no_columns(model)
+    largest = float(np.abs(model.vertices).max(initial=0.0))
+    if minimum_thickness < _THINNEST * largest:
+        raise UsageError(
+            f"minimum_thickness {minimum_thickness:g} is too small for coordinates of {largest:g}; "
+            f"use {_THINNEST * largest:g} or more"
+        )
+
+    def task(work: Work) -> SimulationMesh:
+        arrays = _arrays(model)
+        rocks = np.array([block.rock for block in model.blocks], np.int32)
+        sizes = local_lengths(size, [], None)
+        with work.phase(0.0, 0.2, "simplifying lines"):
+            lines = _native(
+                work, native_module().simulation_lines, arrays, rocks, float(edge_length), sizes, threads
+            )
+        inner = lines.inner_lines
+        with work.phase(0.2, 0.5, "meshing the plan"):
+            vertices, triangles = mesh_rings(
+                work,
+                lines.rings,
+                float(edge_length),
+                mesher,
+                size=_with_lines(size, inner),
+                constraints=inner,
+            )
+        with work.phase(0.5, 1.0, "filling columns"):
+            made = _native(
+                work,
+                native_module().layered_mesh,
+                arrays,
+                rocks,
+                lines,
+                vertices,
+                triangles,
+                float(minimum_thickness),
+                numbers,
+                0.0 if layer_thickness is None else float(layer_thickness),
+                threads,
+            )
+        return _assembled(model, made, elements)
+
+    return run(task, progress, cancel)
+
+
+def layer_numbers(model, layers, layer_thickness) -> list[int]:
+    """How many layers each block is divided into, at most; 0: as many as it takes. Raises UsageError."""
+    names = [block.name for block in model.blocks]
+    default = 1 if layer_thickness is None else 0
+    if layers is None:
+        return [default] * len(names)
+    if isinstance(layers, Mapping):
+        unknown = [name for name in layers if name not in names]
+        if unknown:
+            raise UsageError(f"layers: there is no block {unknown[0]!r}; blocks are {', '.join(names)}")
+        given = [layers.get(name, default) for name in names]
+    elif isinstance(layers, Sequence | np.ndarray) and not isinstance(layers, str):
+        given = list(layers)
+        if len(given) != len(names):
+            raise UsageError(f"layers: {len(given)} numbers for {len(names)} blocks")
+    else:
+        given = [layers] * len(names)
+    for value in given:
+        whole = is_number(value) and float(value).is_integer()
+        if not whole or not default <= value <= 10_000:
+            raise UsageError(f"layers must be whole numbers from 1 to 10000, not {value!r}")
+    return [int(value) for value in given]
+
+
+def _refuse_what_has_no_columns(model) -> None:
+    if not len(model.cell_block):
+        raise InputRefused("the model has no cells", advice="its surfaces enclose no block")
+    advice = "prisms need blocks that lie one above another"
+    if model.is_cut:
+        raise InputRefused("a cut model cannot be meshed in columns", advice=advice)
+    if model.structures is not None:
+        if model.structures.bodies:
+            raise InputRefused("a model with bodies cannot be meshed in columns", advice=advice)
+        for fault in model.structures.faults:
+            corners = fault.vertices[fault.triangles]
+            u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+            if (u[:, 0] * v[:, 1] != u[:, 1] * v[:, 0]).any():
+                raise InputRefused(
+                    f"fault '{fault.name}' is not vertical: the model cannot be meshed in columns",
+                    advice=advice,
+                )
+
+
+def _arrays(model) -> dict:
+    return {
+        name: getattr(model, name)
+        for name in ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
+    }
+
+
+def _with_lines(size, inner: list[np.ndarray]) -> list[Mapping]:
+    """`size` for the planar mesh; without lines inside there is nothing that "constraints" would mean."""
+    return [entry for entry in size if inner or entry.get("at") != "constraints"]
+
+
+def _native(work: Work, function, *arguments):
+    native = native_module()
+    try:
+        return work.native(function, *arguments[:-1], threads=arguments[-1])
+    except native.InputError as error:
+        if error.kind == "nothing":
+            raise InputRefused(str(error), advice="use a shorter edge length") from error
+        place = tuple(error.place[:2]) if error.place is not None else None
+        raise BuildFailed(f"the mesh cannot be made: {error}" + (f" at {place}" if place else "")) from error
+
+
+def _assembled(model, made: dict, wanted: str) -> SimulationMesh:
+    elements = {kind: made[kind] for kind in ("tetrahedron", "pyramid", "prism") if len(made[kind]["block"])}
+    faces = {kind: made[kind] for kind in ("triangle", "quadrilateral") if len(made[kind][1])}
+    if wanted == "tetrahedra":
+        elements = {"tetrahedron": divided(elements)}
+        triangles, surface = made["triangle"]
+        sides, side_surface = made["quadrilateral"]
+        faces = {
+            "triangle": (
+                np.concatenate([triangles, divided_quadrilaterals(sides)]),
+                np.concatenate([surface, np.repeat(side_surface, 2)]),
+            )
+        }
+    return SimulationMesh(
+        points=made["points"],
+        elements={kind: own["corners"] for kind, own in elements.items()},
+        element_block={kind: own["block"] for kind, own in elements.items()},
+        faces={kind: own[0] for kind, own in faces.items()},
+        face_surface={kind: own[1] for kind, own in faces.items()},
+        block_names=[block.name for block in model.blocks],
+        block_property=np.array([block.property for block in model.blocks], np.int32),
+        surface_names=list(model.surface_names),
+        surface_kind=model.surface_kind,
+        plan=PlanMesh(
+            made["plan_vertices"],
+            made["plan_triangles"],
+            {kind: own["column"] for kind, own in elements.items()},
+            {kind: own["layer"] for kind, own in elements.items()},
+            made["layers"],
+        ),
+        volumes=made["volumes"],
+        exact_volumes=np.array([block.volume for block in model.blocks]),
+        warnings=_changes(model, made["volumes"]),
+    )
+
+
+def _changes(model, volumes: np.ndarray) -> list[BuildWarning]:
+    return [
+        BuildWarning(
+            f"block '{block.name}' has a volume of {volume:.6g} in the mesh, and of {block.volume:.6g} in "
+            "the model; a shorter edge length or a smaller minimum thickness changes less",
+            "mesh_volume",
+            model.rock_inputs[block.rock].rock.name,
+        )
+        for block, volume in zip(model.blocks, volumes, strict=True)
+        if abs(volume - block.volume) > _MOST_CHANGE * block.volume
+    ]
+
+
+def mesh_entry(mesh: SimulationMesh) -> dict:
+    """What the report says of a mesh: volumes are in model units cubed."""
+    return {
+        "elements": {kind: len(corners) for kind, corners in mesh.elements.items()},
+        "points": len(mesh.points),
+        "blocks": [
+            {"block": name, "volume": float(volume), "exact_volume": float(exact)}
+            for name, volume, exact in zip(mesh.block_names, mesh.volumes, mesh.exact_volumes, strict=True)
+        ],
+    }

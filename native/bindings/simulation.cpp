@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// simulation_lines, layered_mesh.
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "complex_arrays.hpp"
+#include "realmodel/base/progress.hpp"
+#include "realmodel/simulation/layered_mesh.hpp"
+#include "rows.hpp"
+
+namespace py = pybind11;
+
+namespace realmodel::bindings {
+
+namespace {
+
+using simulation::LayeredMesh;
+using simulation::PlanLines;
+
+/// (places or None for all lines, length, distance)
+using Size = std::tuple<std::optional<Array<double>>, double, double>;
+
+template <class T>
+std::span<const T> view_of(const Array<T>& array) {
+    return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+std::unique_ptr<PlanLines> simulation_lines(const py::dict& model, const Indices& block_rock,
+                                            double edge_length, const std::vector<Size>& sizes,
+                                            int threads, Progress* control) {
+    ComplexArrays arrays(model);
+    arrays.complex.blocks = static_cast<std::size_t>(block_rock.size());
+    std::vector<simulation::LineLength> lengths;
+    for (const auto& [line, length, distance] : sizes) {
+        simulation::LineLength& own = lengths.emplace_back();
+        if (line) {
+            const auto places = rows<2, double>(*line, "sizes");
+            own.line.assign(places.begin(), places.end());
+        }
+        own.length = length;
+        own.distance = distance;
+    }
+    const py::gil_scoped_release unlocked;
+    return std::make_unique<PlanLines>(simulation::plan_lines(
+        arrays.complex, view_of(block_rock), edge_length, lengths, threads, control));
+}
+
+py::list rings_of(const PlanLines& lines) {
+    py::list rings;
+    for (meshing::Ring ring : lines.rings)
+        rings.append(to_array(std::move(ring)));
+    return rings;
+}
+
+std::vector<std::array<std::int32_t, 5>> segment_rows(const PlanLines& lines) {
+    std::vector<std::array<std::int32_t, 5>> rows;
+    for (const simulation::PlanSegment& s : lines.segments)
+        rows.push_back({s.from, s.to, s.left_rock, s.right_rock, s.is_step ? 1 : 0});
+    return rows;
+}
+Array<std::int32_t> segments_of(const PlanLines& lines) {
+    return to_array(segment_rows(lines));
+}
+
+/// Lines inside the region, (2, 2) each.
+py::list inner_lines(const PlanLines& lines) {
+    py::list found;
+    for (const simulation::PlanSegment& s : lines.segments) {
+        if (s.left_rock < 0 || s.right_rock < 0) continue;
+        found.append(to_array(
+            std::vector<meshing::PlanPoint>{lines.points[static_cast<std::size_t>(s.from)],
+                                            lines.points[static_cast<std::size_t>(s.to)]}));
+    }
+    return found;
+}
+
+template <std::size_t N>
+py::dict elements_dict(LayeredMesh::Elements<N>& elements) {
+    py::dict made;
+    made["corners"] = to_array(std::move(elements.corners));
+    made["block"] = to_array(std::move(elements.block));
+    made["column"] = to_array(std::move(elements.column));
+    made["layer"] = to_array(std::move(elements.layer));
+    return made;
+}
+
+template <std::size_t N>
+py::tuple faces_tuple(LayeredMesh::Faces<N>& faces) {
+    return py::make_tuple(to_array(std::move(faces.corners)), to_array(std::move(faces.surface)));
+}
+
+py::dict layered_mesh(const py::dict& model, const Indices& block_rock, const PlanLines& lines,
+                      const Array<double>& vertices, const Indices& triangles,
+                      double minimum_thickness, const std::vector<std::int32_t>& layers,
+                      double layer_thickness, int threads, Progress* control) {
+    ComplexArrays arrays(model);
+    arrays.complex.blocks = static_cast<std::size_t>(block_rock.size());
+    if (layers.size() != arrays.complex.blocks) throw py::value_error("layers: one for each block");
+    const auto plan_vertices = rows<2, double>(vertices, "vertices");
+    const auto plan_triangles = rows<3, std::int32_t>(triangles, "triangles");
+    LayeredMesh mesh;
+    {
+        const py::gil_scoped_release unlocked;
+        mesh = simulation::layered_mesh(arrays.complex, view_of(block_rock), lines,
+                                        {{plan_vertices.begin(), plan_vertices.end()},
+                                         {plan_triangles.begin(), plan_triangles.end()}},
+                                        {minimum_thickness, layers, layer_thickness}, threads,
+                                        control);
+    }
+    py::dict made;
+    made["points"] = to_array(std::move(mesh.points));
+    made["tetrahedron"] = elements_dict(mesh.tetrahedra);
+    made["pyramid"] = elements_dict(mesh.pyramids);
+    made["prism"] = elements_dict(mesh.prisms);
+    made["triangle"] = faces_tuple(mesh.triangles);
+    made["quadrilateral"] = faces_tuple(mesh.quadrilaterals);
+    made["plan_vertices"] = to_array(std::move(mesh.plan.vertices));
+    made["plan_triangles"] = to_array(std::move(mesh.plan.triangles));
+    made["layers"] = mesh.layers;
+    made["volumes"] = to_array(std::move(mesh.volumes));
+    return made;
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+    py::class_<PlanLines>(module, "PlanLines",
+                          "The lines of a model in plan, simplified to an edge length.")
+        .def_property_readonly("rings", &rings_of, "(N, 2) float64 each: what bounds the region.")
+        .def_property_readonly(
+            "points", [](const PlanLines& lines) { return to_array(std::vector(lines.points)); },
+            "(P, 2) float64: where lines begin, end and meet.")
+        .def_property_readonly("segments", &segments_of,
+                               "(S, 5) int32: both ends, rock masses left and right (-1 outside), "
+                               "whether heights may differ on both sides.")
+        .def_property_readonly("inner_lines", &inner_lines,
+                               "(2, 2) float64 each: lines that the planar mesh must contain.");
+    module.def("simulation_lines", &simulation_lines, py::arg("model"), py::arg("block_rock"),
+               py::arg("edge_length"), py::arg("sizes"), py::arg("threads") = 0,
+               py::arg("control") = nullptr,
+               R"(The lines of a model in plan for a mesh of columns, simplified to an edge length.
+
+model: dict of the arrays of docs/dev/geometry.md. block_rock: (B,) int32, the rock mass of each block.
+sizes: (places (N, 2) or None for all lines, length, distance): where edges are shorter. Returns PlanLines.
+Raises InputError kinds "nothing", "bad_index"; Cancelled.)");
+    module.def("layered_mesh", &layered_mesh, py::arg("model"), py::arg("block_rock"),
+               py::arg("lines"), py::arg("vertices"), py::arg("triangles"),
+               py::arg("minimum_thickness"), py::arg("layers"), py::arg("layer_thickness"),
+               py::arg("threads") = 0, py::arg("control") = nullptr,
+               R"(Columns of prisms, pyramids and tetrahedra on a planar mesh that contains `lines`.
+
+vertices (V, 2) float64, triangles (T, 3) int32: the planar mesh. layers: of each block, how many it is
+divided into (at most, where layer_thickness is above 0; 0: no limit). Returns a dict: points (P, 3);
+tetrahedron, pyramid, prism: dicts of corners, block, column, layer; triangle, quadrilateral: (corners,
+surface) of the faces outside and between blocks; plan_vertices, plan_triangles, layers, volumes (B,).
+Raises InputError kinds "bad_index", "too_large"; Cancelled.)");
+}
+
+}  // namespace realmodel::bindings

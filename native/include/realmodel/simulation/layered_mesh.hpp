@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// Meshes of prisms for solvers, made from a model (docs/dev/simulation.md): lines of the plan are
+/// simplified, a planar mesh is made with them (realmodel/meshing), and columns of elements stand
+/// on it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "realmodel/base/progress.hpp"
+#include "realmodel/complex.hpp"
+#include "realmodel/meshing/triangulation.hpp"
+
+namespace realmodel::simulation {
+
+using meshing::PlanPoint;
+
+/// The edges of the planar mesh are `length` long within `distance` of these points or line; no
+/// points: along all lines.
+struct LineLength {
+    std::vector<PlanPoint> line;
+    double length, distance;
+};
+
+/// A straight line between two points of PlanLines that the planar mesh must contain.
+struct PlanSegment {
+    std::int32_t from, to;
+    std::int32_t left_rock, right_rock;  ///< rock masses on both sides, -1 outside
+    bool is_step;                        ///< heights may differ on both sides
+};
+
+/// The lines of a model in plan, simplified to an edge length: its outline, lines where layers end,
+/// steps and walls. Segments meet in their ends only, at angles of 28 degrees and more, and are
+/// about as long as edges of the planar mesh.
+struct PlanLines {
+    std::vector<PlanPoint> points;
+    std::vector<PlanSegment> segments;
+    std::vector<meshing::Ring> rings;             ///< bound the region; even-odd
+    std::vector<std::int32_t> ending_offsets;     ///< one more than segments
+    std::vector<std::int32_t> ending_blocks;      ///< the blocks that end at each segment
+    std::vector<std::array<PlanPoint, 2>> steps;  ///< steps and walls as the model has them
+};
+
+/// @param block_rock  the rock mass of each block; blocks of one rock mass stand together, oldest
+/// first
+/// @throws InputError kinds not_layered (place), nothing; Cancelled
+PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> block_rock,
+                     double edge_length, std::span<const LineLength> lengths, int threads,
+                     Progress* progress);
+
+/// How columns are divided.
+struct Layering {
+    double minimum_thickness = 0;
+    std::vector<std::int32_t> layers;  ///< of each block, at most
+    double layer_thickness = 0;        ///< 0: each block into `layers` everywhere; else into layers
+                                       ///< no thicker than this, as far as there are that many
+};
+
+/// Columns of prisms, of pyramids and tetrahedra where layers end. Corners as VolumeMesh of
+/// addon/realmodel/core/simulation/volume_mesh.py has them.
+struct LayeredMesh {
+    std::vector<std::array<double, 3>> points;
+    template <std::size_t N>
+    struct Elements {
+        std::vector<std::array<std::int32_t, N>> corners;
+        std::vector<std::int32_t> block, column, layer;  ///< layer 0: the highest
+    };
+    Elements<4> tetrahedra;
+    Elements<5> pyramids;
+    Elements<6> prisms;
+    template <std::size_t N>
+    struct Faces {
+        std::vector<std::array<std::int32_t, N>> corners;
+        std::vector<std::int32_t> surface;
+    };
+    Faces<3> triangles;
+    Faces<4> quadrilaterals;
+    meshing::PlanarMesh plan;
+    std::int32_t layers = 0;      ///< of the rock mass that has most
+    std::vector<double> volumes;  ///< of each block
+};
+
+/// @param plan  a mesh of the region that contains the segments of `lines`
+/// @throws InputError kinds not_layered (place), too_large; Cancelled
+LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t> block_rock,
+                         const PlanLines& lines, meshing::PlanarMesh plan, const Layering& layering,
+                         int threads, Progress* progress);
+
+}  // namespace realmodel::simulation

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nodes of joined models that are as near as rounding become one.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+#include "cutting/part_rounding.hpp"
+
+namespace realmodel::cutting {
+
+/// Contracts edges one after another. What a contraction does to a part is known from the polygons
+/// around it: of parts with many polygons only those are looked at that share nodes with one at
+/// either end. The others stay as they are.
+class PartRounding::ShortEdges {
+public:
+    ShortEdges(PartRounding& of, double allowed) : of_(of), allowed_(allowed) {
+        pieces_at_ = bucketize<std::int32_t>(of.becomes_.size(), [&of](const auto& put) {
+            for (std::size_t p = 0; p < of.pieces_.size(); ++p) {
+                for (const NodeId node : of.pieces_.polygons[p])
+                    put(index(node), static_cast<std::int32_t>(p));
+            }
+        });
+    }
+
+    /// Makes the greater node the lesser one where no part comes to touch itself for it.
+    bool contract(NodeId to, NodeId from) {
+        std::map<std::int32_t, std::optional<Around>> after;
+        for (const NodeId node : nodes_of(from)) {
+            for (const std::int32_t p : pieces_at_[index(node)]) {
+                for (const std::int32_t part : of_.pieces_[index(p)].parts) {
+                    if (part >= 0) after[part];
+                }
+            }
+        }
+        if (std::ranges::any_of(after, [this](const auto& own) { return !now(own.first); }))
+            return false;
+        for (auto& [part, found] : after) {
+            found = contracted(part, to, from);
+            if (!found || found->touches > now(part)->touches) return false;
+        }
+        become(from, to);
+        auto& nodes = nodes_[to] = nodes_of(to);
+        const std::vector<NodeId> added = nodes_of(from);
+        nodes.insert(nodes.end(), added.begin(), added.end());
+        nodes_.erase(from);
+        for (auto& [part, found] : after)
+            now_[part] = found;
+        return true;
+    }
+
+private:
+    static constexpr std::size_t kMany = 200;
+
+    /// The nodes that became one.
+    std::vector<NodeId> nodes_of(NodeId node) const {
+        const auto found = nodes_.find(node);
+        return found == nodes_.end() ? std::vector{node} : found->second;
+    }
+    void become(NodeId from, NodeId to) {
+        for (const NodeId node : nodes_of(from))
+            of_.becomes_[index(node)] = to;
+    }
+    /// What a part is like now.
+    const std::optional<Around>& now(std::int32_t part) {
+        const auto [at, is_new] = now_.try_emplace(part);
+        if (is_new) at->second = of_.around(part);
+        return at->second;
+    }
+    /// What a part, which is sound, would be like.
+    std::optional<Around> contracted(std::int32_t part, NodeId to, NodeId from) {
+        Around known = *now(part);
+        bool is_large = of_.pieces_of_[index(part)].size() > kMany;
+        for (std::size_t k = 0; k < 3; ++k)
+            is_large = is_large && known.box.high[k] - known.box.low[k] > 1000 * allowed_;
+        if (!is_large) {
+            become(from, to);
+            auto found = of_.around(part);
+            become(from, from);
+            return found;
+        }
+        const std::vector<std::int32_t> pieces = pieces_near(part, to, from);
+        const auto before = of_.around(pieces, part);
+        become(from, to);
+        const auto found = of_.around(pieces, part);
+        become(from, from);
+        if (!before || !found) return std::nullopt;
+        known.touches += found->touches - before->touches;
+        known.count += found->count - before->count;
+        return known.count < 4 ? std::nullopt : std::optional(known);
+    }
+    /// The polygons of a part that share nodes with those at one of two nodes.
+    std::vector<std::int32_t> pieces_near(std::int32_t part, NodeId to, NodeId from) const {
+        std::set<std::int32_t> found;
+        std::set<NodeId> around;
+        const auto visit = [&](NodeId node, const auto& visit_piece) {
+            for (const NodeId own : nodes_of(node)) {
+                for (const std::int32_t p : pieces_at_[index(own)]) {
+                    if (std::ranges::count(of_.pieces_[index(p)].parts, part) > 0) visit_piece(p);
+                }
+            }
+        };
+        for (const NodeId end : {to, from}) {
+            visit(end, [&](std::int32_t p) {
+                for (const NodeId node : of_.pieces_.polygons[index(p)])
+                    around.insert(of_.becomes_[index(node)]);
+            });
+        }
+        for (const NodeId node : around)
+            visit(node, [&found](std::int32_t p) { found.insert(p); });
+        std::vector<std::int32_t> pieces;
+        for (const std::int32_t p : found) {
+            pieces.insert(pieces.end(),
+                          index(std::ranges::count(of_.pieces_[index(p)].parts, part)), p);
+        }
+        return pieces;
+    }
+
+    PartRounding& of_;
+    double allowed_;
+    Buckets<std::int32_t> pieces_at_;  ///< of nodes
+    std::unordered_map<NodeId, std::vector<NodeId>> nodes_;
+    std::unordered_map<std::int32_t, std::optional<Around>> now_;
+};
+
+/// Contracts edges of new nodes that are as short as rounding, one after another, where no part
+/// comes to touch itself for it: what two models have in common was rounded in each by itself.
+bool PartRounding::join_short_edges() {
+    const double allowed = rounding_of(vertices_);
+    std::set<std::array<NodeId, 2>> edges;
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+        const auto nodes = pieces_.polygons[p];
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const auto edge = unordered(nodes[i], nodes[(i + 1) % nodes.size()]);
+            if (!is_new(edge[1])) continue;
+            const Position away = minus(at(edge[0]), at(edge[1]));
+            if (std::ranges::all_of(away, [allowed](double x) { return std::abs(x) <= allowed; }))
+                edges.insert(edge);
+        }
+    }
+    if (edges.empty()) return false;
+    ShortEdges short_edges(*this, allowed);
+    bool any = false;
+    for (const auto& edge : edges) {
+        const NodeId a = becomes_[index(edge[0])], b = becomes_[index(edge[1])];
+        if (a == b || !is_new(std::max(a, b))) continue;
+        any = short_edges.contract(std::min(a, b), std::max(a, b)) || any;
+    }
+    return any;
+}
+
+}  // namespace realmodel::cutting

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation/column_heights.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/counting_sort.hpp"
+#include "base/index.hpp"
+#include "base/parallel.hpp"
+#include "exact/orient2d.hpp"
+#include "realmodel/base/errors.hpp"
+#include "spatial/point_bins.hpp"
+
+namespace realmodel::simulation {
+
+namespace {
+
+constexpr std::size_t kFacesOfChunk = 4096;
+
+struct Hit {
+    std::int32_t point, below, above, surface;
+    double height;
+};
+
+/// Twice the area in plan, counter-clockwise, and the box of a face.
+struct PlanShape {
+    double area = 0;
+    spatial::PlanBox box = spatial::kNoBox;
+
+    PlanShape(const ComplexView& model, std::span<const std::int32_t> loop) {
+        const auto origin = model.vertex(loop[0]);
+        auto last = model.vertex(loop.back());
+        for (const std::int32_t v : loop) {
+            const auto p = model.vertex(v);
+            area += (last[0] - origin[0]) * (p[1] - origin[1]) -
+                    (last[1] - origin[1]) * (p[0] - origin[0]);
+            box = box.united({p[0], p[1], p[0], p[1]});
+            last = p;
+        }
+    }
+    bool is_vertical() const {
+        return std::abs(area) <=
+               1e-14 * (box.width() + box.height()) * (box.width() + box.height());
+    }
+};
+
+/// Whether a point lies in a polygon, exactly; on the border of two it lies in one of them.
+bool contains(const ComplexView& model, std::span<const std::int32_t> loop, const PlanPoint& p) {
+    const auto plan = [&](std::int32_t v) {
+        const auto at = model.vertex(v);
+        return PlanPoint{at[0], at[1]};
+    };
+    int turns = 0;
+    PlanPoint a = plan(loop.back());
+    for (const std::int32_t v : loop) {
+        const PlanPoint b = plan(v);
+        if (a[1] <= p[1]) {
+            if (b[1] > p[1] && exact::orient2d(a, b, p) > 0) ++turns;
+        } else if (b[1] <= p[1] && exact::orient2d(a, b, p) < 0) {
+            --turns;
+        }
+        a = b;
+    }
+    return turns != 0;
+}
+
+/// The height of a face's plane, given by the largest triangle of its fan, within its own heights.
+double height(const ComplexView& model, std::span<const std::int32_t> loop, const PlanPoint& p) {
+    const auto o = model.vertex(loop[0]);
+    double low = o[2], high = o[2], largest = 0, at = o[2];
+    for (std::size_t i = 1; i < loop.size(); ++i) {
+        const auto b = model.vertex(loop[i]);
+        low = std::min(low, b[2]);
+        high = std::max(high, b[2]);
+        if (i + 1 == loop.size()) break;
+        const auto c = model.vertex(loop[i + 1]);
+        const double bx = b[0] - o[0], by = b[1] - o[1], cx = c[0] - o[0], cy = c[1] - o[1];
+        const double area = bx * cy - by * cx;
+        if (std::abs(area) <= largest) continue;
+        largest = std::abs(area);
+        const double px = p[0] - o[0], py = p[1] - o[1];
+        at = o[2] + (px * cy - py * cx) / area * (b[2] - o[2]) +
+             (bx * py - by * px) / area * (c[2] - o[2]);
+    }
+    return std::clamp(at, low, high);
+}
+
+}  // namespace
+
+RockBlocks::RockBlocks(std::span<const std::int32_t> block_rock)
+    : first{0}, rock(block_rock.begin(), block_rock.end()) {
+    std::int32_t block = 0;
+    for (const std::int32_t of : rock) {
+        while (static_cast<std::int32_t>(first.size()) <= of)
+            first.push_back(block);
+        if (of + 1 != static_cast<std::int32_t>(first.size()))
+            throw InputError("bad_index", "blocks of one rock mass must stand together", -1,
+                             {block});
+        ++block;
+    }
+    first.push_back(block);
+}
+
+std::int32_t RockBlocks::blocks_of(std::int32_t of_rock) const {
+    return first[index(of_rock) + 1] - first[index(of_rock)];
+}
+
+std::int32_t RockBlocks::most() const {
+    std::int32_t most = 0;
+    for (std::size_t r = 0; r < count(); ++r)
+        most = std::max(most, blocks_of(static_cast<std::int32_t>(r)));
+    return most;
+}
+
+bool is_vertical(const ComplexView& model, std::size_t face) {
+    return model.face_surface[face] == kWall || PlanShape(model, model.face(face)).is_vertical();
+}
+
+bool faces_up(const ComplexView& model, std::size_t face) {
+    return PlanShape(model, model.face(face)).area > 0;
+}
+
+ColumnHeights::ColumnHeights(const ComplexView& model, const RockBlocks& blocks,
+                             std::span<const PlanPoint> points, int threads,
+                             const Progress* progress)
+    : stride_(index(blocks.most()) + 1),
+      rock_(points.size(), kOutside),
+      height_(points.size() * stride_),
+      surface_(points.size() * stride_) {
+    const std::vector<PlanPoint> places(points.begin(), points.end());
+    if (places.empty()) return;
+    const spatial::PointBins bins(places);
+    const std::size_t chunks = (model.face_count() + kFacesOfChunk - 1) / kFacesOfChunk;
+    std::vector<std::vector<Hit>> found(chunks);
+    parallel_chunks(chunks, threads, progress, [&](std::size_t chunk) {
+        const std::size_t end = std::min(model.face_count(), (chunk + 1) * kFacesOfChunk);
+        for (std::size_t f = chunk * kFacesOfChunk; f < end; ++f) {
+            if (model.face_surface[f] == kWall) continue;
+            std::int32_t below = model.block(model.cell(f, 0)),
+                         above = model.block(model.cell(f, 1));
+            if (below == above) continue;
+            const auto loop = model.face(f);
+            const PlanShape shape(model, loop);
+            if (shape.is_vertical()) continue;
+            if (shape.area < 0) std::swap(below, above);
+            bins.within(shape.box, [&](std::size_t i, const PlanPoint& p) {
+                if (contains(model, loop, p))
+                    found[chunk].push_back({static_cast<std::int32_t>(i), below, above,
+                                            model.face_surface[f], height(model, loop, p)});
+            });
+        }
+    });
+    const Buckets<Hit> hits = bucketize<Hit>(places.size(), [&](const auto& put) {
+        for (const auto& part : found) {
+            for (const Hit& hit : part)
+                put(index(hit.point), hit);
+        }
+    });
+    found.clear();
+    parallel_ranges(
+        places.size(), 4096, threads, progress, [&](std::size_t begin, std::size_t end) {
+            std::vector<const Hit*> top, bottom;
+            for (std::size_t i = begin; i < end; ++i) {
+                if (hits[i].empty()) continue;
+                const std::int32_t any = std::max(hits[i][0].below, hits[i][0].above);
+                const std::int32_t rock = blocks.rock[index(any)];
+                const auto count = index(blocks.blocks_of(rock));
+                const std::int32_t first = blocks.first[index(rock)];
+                top.assign(count, nullptr);
+                bottom.assign(count, nullptr);
+                bool whole = true;
+                for (const Hit& hit : hits[i]) {
+                    for (const bool is_top : {true, false}) {
+                        const std::int32_t block = is_top ? hit.below : hit.above;
+                        if (block < 0) continue;
+                        const auto at = static_cast<std::size_t>(block - first);
+                        if (block < first || at >= count) {
+                            whole = false;
+                            continue;
+                        }
+                        const Hit*& kept = (is_top ? top : bottom)[at];
+                        whole = whole && kept == nullptr;
+                        kept = &hit;
+                    }
+                }
+                double* const z = &height_[i * stride_];
+                std::int32_t* const surface = &surface_[i * stride_];
+                const Hit* under =
+                    nullptr;  // the face between the last block present and what follows
+                std::size_t level = 0;
+                for (std::size_t b = 0; b < count && whole; ++b) {
+                    if (top[b] == nullptr && bottom[b] == nullptr) continue;
+                    whole = top[b] != nullptr && bottom[b] != nullptr &&
+                            (under == nullptr || bottom[b] == under);
+                    if (!whole) break;
+                    const Hit* const below = under == nullptr ? bottom[b] : under;
+                    for (; level <= b; ++level) {
+                        z[level] = below->height;
+                        surface[level] = below->surface;
+                    }
+                    under = top[b];
+                    z[level] = std::max(under->height, z[level - 1]);
+                    surface[level] = under->surface;
+                    ++level;
+                }
+                whole = whole && under != nullptr;
+                rock_[i] = whole ? rock : kIncomplete;
+                for (; whole && level < stride_; ++level) {
+                    z[level] = z[level - 1];
+                    surface[level] = surface[level - 1];
+                }
+            }
+        });
+}
+
+void ColumnHeights::copy(std::size_t to, const ColumnHeights& other, std::size_t from) {
+    rock_[to] = other.rock_[from];
+    std::copy_n(&other.height_[from * stride_], stride_, &height_[to * stride_]);
+    std::copy_n(&other.surface_[from * stride_], stride_, &surface_[to * stride_]);
+}
+
+}  // namespace realmodel::simulation

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lines are moved to anchors by nearness: what lies nearest to an anchor goes to it. A line then
+// runs from anchor to anchor along edges of their Delaunay triangulation, so lines cannot cross
+// after they were moved, whatever they were; and anchors are apart, so no angle between two is
+// sharp.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/disjoint_sets.hpp"
+#include "base/index.hpp"
+#include "base/parallel.hpp"
+#include "realmodel/base/errors.hpp"
+#include "realmodel/simulation/layered_mesh.hpp"
+#include "simulation/column_heights.hpp"
+#include "simulation/line_anchors.hpp"
+#include "simulation/traces.hpp"
+
+namespace realmodel::simulation {
+
+namespace {
+
+constexpr double kAnchorSpacing = 0.8;  ///< of an edge length
+constexpr double kGradation = 0.25;     ///< as in realmodel/meshing
+
+double squared_distance(const PlanPoint& a, const PlanPoint& b) {
+    const double x = a[0] - b[0], y = a[1] - b[1];
+    return x * x + y * y;
+}
+
+double distance_to_line(const PlanPoint& p, std::span<const PlanPoint> line) {
+    double nearest = HUGE_VAL;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const PlanPoint &a = line[i], &b = line[std::min(i + 1, line.size() - 1)];
+        const double dx = b[0] - a[0], dy = b[1] - a[1], square = dx * dx + dy * dy;
+        const double along =
+            square > 0 ? std::clamp(((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / square, 0.0, 1.0)
+                       : 0;
+        nearest = std::min(nearest,
+                           std::sqrt(squared_distance(p, {a[0] + along * dx, a[1] + along * dy})));
+    }
+    return nearest;
+}
+
+double local_length(const PlanPoint& p, double edge_length, std::span<const LineLength> lengths) {
+    double least = edge_length;
+    for (const LineLength& own : lengths) {
+        const double beyond =
+            own.line.empty() ? 0 : std::max(0.0, distance_to_line(p, own.line) - own.distance);
+        least = std::min(least, own.length + kGradation * beyond);
+    }
+    return least;
+}
+
+using Link = std::array<std::int32_t, 2>;
+struct Met {
+    bool is_step = false;
+    std::vector<std::int32_t> ending;
+};
+
+/// The anchors that lines run along, and what ends along each pair.
+std::map<Link, Met> linked_anchors(const Traces& traces, std::span<const PlanPoint> anchors,
+                                   const meshing::ConstrainedTriangulation& delaunay,
+                                   const Progress* progress) {
+    std::vector<std::vector<std::int32_t>> neighbors(anchors.size());
+    for (const auto& t : delaunay.triangles) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            neighbors[index(t[i])].push_back(t[(i + 1) % 3]);
+            neighbors[index(t[i])].push_back(t[(i + 2) % 3]);
+        }
+    }
+    for (auto& own : neighbors) {
+        std::sort(own.begin(), own.end());
+        own.erase(std::unique(own.begin(), own.end()), own.end());
+    }
+    const auto nearest = [&](std::int32_t from, const PlanPoint& p) {
+        double best = squared_distance(anchors[index(from)], p);
+        for (bool moved = true; moved;) {
+            moved = false;
+            for (const std::int32_t n : neighbors[index(from)]) {
+                const double own = squared_distance(anchors[index(n)], p);
+                if (own < best || (own == best && n < from)) {
+                    best = own;
+                    from = n;
+                    moved = true;
+                    break;
+                }
+            }
+        }
+        return from;
+    };
+    std::map<Link, Met> links;
+    std::int32_t at = 0;
+    std::size_t count = 0;
+    for (const Traces::Segment& segment : traces.segments) {
+        poll(progress, count++);
+        const PlanPoint &u = traces.points[index(segment.ends[0])],
+                        &v = traces.points[index(segment.ends[1])];
+        at = nearest(at, u);
+        for (std::int32_t here = at;;) {
+            const PlanPoint& a = anchors[index(here)];
+            const double at_u = squared_distance(a, u), at_v = squared_distance(a, v);
+            std::int32_t next = -1;
+            double first = HUGE_VAL;
+            for (const std::int32_t n : neighbors[index(here)]) {
+                const double before = squared_distance(anchors[index(n)], u) - at_u,
+                             after = squared_distance(anchors[index(n)], v) - at_v;
+                // of two that are as near the first is taken, here and where lines go on
+                if (after > 0 || (after == 0 && n > here)) continue;
+                const double where = after < 0 ? before / (before - after) : 1;
+                if (where < first) {
+                    first = where;
+                    next = n;
+                }
+            }
+            if (next < 0) break;
+            Met& met = links[{std::min(here, next), std::max(here, next)}];
+            if (segment.block < 0) {
+                met.is_step = true;
+            } else if (std::find(met.ending.begin(), met.ending.end(), segment.block) ==
+                       met.ending.end()) {
+                met.ending.push_back(segment.block);
+            }
+            here = next;
+        }
+    }
+    return links;
+}
+
+/// The rock mass of each triangle of anchors: that of most of the area that no line divides.
+std::vector<std::int32_t> rocks_of(const ComplexView& model, const RockBlocks& blocks,
+                                   std::span<const PlanPoint> anchors,
+                                   const meshing::ConstrainedTriangulation& delaunay,
+                                   const std::map<Link, Met>& links, int threads,
+                                   const Progress* progress) {
+    constexpr std::array<std::array<double, 3>, 7> kShares{{{1. / 3, 1. / 3, 1. / 3},
+                                                            {.6, .2, .2},
+                                                            {.2, .6, .2},
+                                                            {.2, .2, .6},
+                                                            {.1, .45, .45},
+                                                            {.45, .1, .45},
+                                                            {.45, .45, .1}}};
+    const auto& triangles = delaunay.triangles;
+    std::vector<PlanPoint> samples;
+    for (const auto& t : triangles) {
+        for (const auto& share : kShares) {
+            PlanPoint p{};
+            for (std::size_t i = 0; i < 3; ++i) {
+                for (std::size_t axis = 0; axis < 2; ++axis)
+                    p[axis] += share[i] * anchors[index(t[i])][axis];
+            }
+            samples.push_back(p);
+        }
+    }
+    const ColumnHeights columns(model, blocks, samples, threads, progress);
+    DisjointSets faces(triangles.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::int32_t a = triangles[t][i], b = triangles[t][(i + 1) % 3],
+                               n = delaunay.neighbors[t][i];
+            if (n >= 0 && !links.contains({std::min(a, b), std::max(a, b)}))
+                faces.join(static_cast<std::int32_t>(t), n);
+        }
+    }
+    std::vector<std::vector<double>> area(triangles.size());  // of each rock mass, then outside
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const auto face = index(faces.find(static_cast<std::int32_t>(t)));
+        area[face].resize(blocks.count() + 1);
+        const auto &a = anchors[index(triangles[t][0])], &b = anchors[index(triangles[t][1])],
+                   &c = anchors[index(triangles[t][2])];
+        const double own = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        for (std::size_t s = 0; s < kShares.size(); ++s) {
+            const std::int32_t rock = columns.rock(t * kShares.size() + s);
+            area[face][rock < 0 ? blocks.count() : index(rock)] += own;
+        }
+    }
+    // what no line divides from beyond the anchors lies outside
+    std::vector<std::uint8_t> is_open(triangles.size(), 0);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::int32_t a = triangles[t][i], b = triangles[t][(i + 1) % 3];
+            if (delaunay.neighbors[t][i] < 0 && !links.contains({std::min(a, b), std::max(a, b)}))
+                is_open[index(faces.find(static_cast<std::int32_t>(t)))] = 1;
+        }
+    }
+    std::vector<std::int32_t> rocks(triangles.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const auto face = index(faces.find(static_cast<std::int32_t>(t)));
+        const auto& own = area[face];
+        const auto most =
+            static_cast<std::size_t>(std::max_element(own.begin(), own.end()) - own.begin());
+        rocks[t] =
+            is_open[face] != 0 || most == blocks.count() ? -1 : static_cast<std::int32_t>(most);
+    }
+    return rocks;
+}
+
+/// The closed lines that the region lies to the left of.
+std::vector<meshing::Ring> border_rings(const PlanLines& lines) {
+    std::map<std::int32_t, std::vector<std::int32_t>> next;
+    for (const PlanSegment& s : lines.segments) {
+        if (s.left_rock >= 0 && s.right_rock < 0) next[s.from].push_back(s.to);
+        if (s.right_rock >= 0 && s.left_rock < 0) next[s.to].push_back(s.from);
+    }
+    const auto direction = [&](std::int32_t a, std::int32_t b) {
+        return std::atan2(lines.points[index(b)][1] - lines.points[index(a)][1],
+                          lines.points[index(b)][0] - lines.points[index(a)][0]);
+    };
+    std::vector<meshing::Ring> rings;
+    while (!next.empty()) {
+        const std::int32_t start = next.begin()->first;
+        std::int32_t before = -1, here = start;
+        meshing::Ring ring;
+        do {
+            auto& choices = next[here];
+            std::size_t best = 0;
+            if (choices.size() > 1 && before >= 0) {
+                // the sharpest turn to the left keeps what touches in a point apart
+                double sharpest = HUGE_VAL;
+                for (std::size_t i = 0; i < choices.size(); ++i) {
+                    double turn = direction(here, before) - direction(here, choices[i]);
+                    while (turn <= 0)
+                        turn += 2 * M_PI;
+                    if (turn < sharpest) {
+                        sharpest = turn;
+                        best = i;
+                    }
+                }
+            }
+            ring.push_back(lines.points[index(here)]);
+            before = here;
+            here = choices[best];
+            choices.erase(choices.begin() + static_cast<std::ptrdiff_t>(best));
+            if (choices.empty()) next.erase(before);
+        } while (here != start && next.contains(here));
+        rings.push_back(std::move(ring));
+    }
+    return rings;
+}
+
+}  // namespace
+
+PlanLines plan_lines(const ComplexView& model, std::span<const std::int32_t> block_rock,
+                     double edge_length, std::span<const LineLength> lengths, int threads,
+                     Progress* progress) {
+    const RockBlocks blocks(block_rock);
+    const Traces traces = traces_of(model, progress);
+    const auto spacing = [&](const PlanPoint& p) {
+        return kAnchorSpacing * local_length(p, edge_length, lengths);
+    };
+    PlanLines lines;
+    lines.points = line_anchors(traces, spacing, progress);
+    const auto delaunay = meshing::constrained_delaunay(lines.points, {});
+    if (delaunay.triangles.empty()) {
+        throw InputError("nothing", "the model is smaller in plan than the edge length");
+    }
+    auto links = linked_anchors(traces, lines.points, delaunay, progress);
+    const auto rocks = rocks_of(model, blocks, lines.points, delaunay, links, threads, progress);
+    std::map<Link, Link> sides;  // the rock masses left and right of each link
+    for (std::size_t t = 0; t < delaunay.triangles.size(); ++t) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::int32_t a = delaunay.triangles[t][i], b = delaunay.triangles[t][(i + 1) % 3];
+            auto& own =
+                sides.try_emplace({std::min(a, b), std::max(a, b)}, Link{-1, -1}).first->second;
+            own[a < b ? 0 : 1] = rocks[t];
+        }
+    }
+    lines.ending_offsets.push_back(0);
+    for (auto& [link, met] : links) {
+        const auto& [left, right] = sides.at(link);
+        if (left < 0 && right < 0) continue;
+        lines.segments.push_back({link[0], link[1], left, right, met.is_step || left != right});
+        std::sort(met.ending.begin(), met.ending.end());
+        lines.ending_blocks.insert(lines.ending_blocks.end(), met.ending.begin(), met.ending.end());
+        lines.ending_offsets.push_back(static_cast<std::int32_t>(lines.ending_blocks.size()));
+    }
+    for (const Traces::Segment& s : traces.segments) {
+        if (s.block < 0)
+            lines.steps.push_back(
+                {traces.points[index(s.ends[0])], traces.points[index(s.ends[1])]});
+    }
+    lines.rings = border_rings(lines);
+    if (lines.rings.empty()) {
+        throw InputError("nothing", "the model is smaller in plan than the edge length");
+    }
+    return lines;
+}
+
+}  // namespace realmodel::simulation

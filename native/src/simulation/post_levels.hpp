@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "simulation/column_heights.hpp"
+#include "simulation/plan_topology.hpp"
+
+namespace realmodel::simulation {
+
+/// The heights of all posts once layers are divided and nothing thin is left. The posts of a node
+/// share its heights, which ascend by the minimum thickness at least. Level l of a post is the
+/// bottom of layer l of its rock mass, counted upward through its blocks.
+class PostLevels {
+public:
+    /// @throws InputError kind too_large
+    PostLevels(const PlanTopology& plan, const PlanLines& lines, const RockBlocks& blocks,
+               const ColumnHeights& columns, const Layering& layering);
+
+    /// How many layers a rock mass has, and the block of each.
+    std::span<const std::int32_t> layer_blocks(std::int32_t rock) const {
+        return layer_block_[static_cast<std::size_t>(rock)];
+    }
+    /// Which of its node's heights each level of a post is.
+    std::span<const std::int32_t> levels(std::size_t post) const {
+        return {&level_[offset_[post]], offset_[post + 1] - offset_[post]};
+    }
+    /// Where these stand among the levels of all posts.
+    std::size_t level_offset(std::size_t post) const { return offset_[post]; }
+    std::size_t level_count() const { return level_.size(); }
+    std::span<const double> heights(std::int32_t node) const {
+        const auto n = static_cast<std::size_t>(node);
+        return {&height_[node_offset_[n]], node_offset_[n + 1] - node_offset_[n]};
+    }
+    std::size_t node_offset(std::size_t node) const { return node_offset_[node]; }
+    std::size_t height_count() const { return height_.size(); }
+
+    /// A height of a node that is given up; what has it takes the one below or above.
+    struct Removal {
+        std::int32_t node, height, into;
+        auto operator<=>(const Removal&) const = default;
+    };
+    /// Removes heights, the first of each node. @return how many
+    std::size_t remove(const PlanTopology& plan, std::vector<Removal>& removals);
+
+private:
+    struct Divided {
+        std::vector<std::int32_t> posts;
+        std::vector<double> heights;
+    };
+    void join(Divided& node, std::int32_t from, std::int32_t to);
+    void join_crossing(const PlanTopology& plan, std::vector<Divided>& nodes,
+                       std::span<const std::int32_t> divided_of);
+
+    std::vector<std::vector<std::int32_t>> layer_block_;  ///< of each rock mass
+    std::vector<std::size_t> offset_, node_offset_;
+    std::vector<std::int32_t> level_;
+    std::vector<double> height_;
+};
+
+}  // namespace realmodel::simulation

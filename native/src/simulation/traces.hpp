@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "realmodel/base/progress.hpp"
+#include "realmodel/complex.hpp"
+#include "realmodel/meshing/triangulation.hpp"
+
+namespace realmodel::simulation {
+
+using meshing::PlanPoint;
+
+/// Where in plan blocks end or step: the edges of the tops and bottoms of blocks that no other face
+/// of the same top or bottom continues.
+struct Traces {
+    /// The top of the model ends or steps here; what else does stands beside it.
+    static constexpr std::int32_t kOfTop = -2;
+    struct Segment {
+        std::array<std::int32_t, 2> ends;  ///< points
+        std::int32_t block;  ///< that ends here without thickness, -1: a step or wall; or kOfTop
+        auto operator<=>(const Segment&) const = default;
+    };
+    std::vector<PlanPoint> points;  ///< distinct, sorted
+    std::vector<Segment> segments;  ///< sorted, each once
+};
+
+Traces traces_of(const ComplexView& model, const Progress* progress);
+
+}  // namespace realmodel::simulation

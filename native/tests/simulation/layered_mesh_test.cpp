@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "realmodel/simulation/layered_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "realmodel/base/errors.hpp"
+#include "realmodel/meshing/region_mesh.hpp"
+#include "realmodel/strata/stack.hpp"
+
+namespace realmodel::simulation {
+namespace {
+
+struct Plane {
+    std::vector<double> vertices;
+    std::vector<std::int32_t> triangles{0, 1, 2, 0, 2, 3};
+    /// Over a rectangle of 10 by 6, with heights at its west and its east side.
+    Plane(double west, double east) : vertices{0, 0, west, 10, 0, east, 10, 6, east, 0, 6, west} {}
+    strata::SurfaceView view() const { return {vertices, triangles}; }
+};
+
+/// The model of some planes, whose blocks are numbered from 0.
+struct Model {
+    CellComplex complex;
+    std::vector<std::int32_t> block_rock;
+    ComplexView view;
+
+    explicit Model(const std::vector<Plane>& planes) {
+        strata::StackInput input;
+        for (const Plane& plane : planes)
+            input.surfaces.push_back(plane.view());
+        complex = strata::build_stack(input, 1, nullptr);
+        for (std::int32_t& block : complex.cell_block)
+            --block;
+        block_rock.assign(planes.size() - 1, 0);
+        view = complex;
+        view.blocks = block_rock.size();
+    }
+    PlanLines lines(double edge_length) const {
+        return plan_lines(view, block_rock, edge_length, {}, 1, nullptr);
+    }
+    LayeredMesh mesh(double edge_length, const Layering& layering) const {
+        const PlanLines found = lines(edge_length);
+        meshing::MeshRequest request;
+        request.edge_length = edge_length;
+        for (const PlanSegment& s : found.segments) {
+            if (s.left_rock >= 0 && s.right_rock >= 0)
+                request.constraints.lines.push_back({found.points[static_cast<std::size_t>(s.from)],
+                                                     found.points[static_cast<std::size_t>(s.to)]});
+        }
+        return layered_mesh(view, block_rock, found, meshing::mesh_region(found.rings, request),
+                            layering, 1, nullptr);
+    }
+};
+
+TEST(LayeredMeshTest, LinesAreTheOutlineAndWhereALayerEnds) {
+    const Model model({{0, 0}, {4, 4}, {2, 6}});  // the upper layer ends in the middle, x = 5
+    const PlanLines lines = model.lines(1.5);
+    ASSERT_EQ(lines.rings.size(), 1u);
+    double ends = 0;
+    for (std::size_t s = 0; s < lines.segments.size(); ++s) {
+        const auto& [x, y] = lines.points[static_cast<std::size_t>(lines.segments[s].from)];
+        const auto& [u, v] = lines.points[static_cast<std::size_t>(lines.segments[s].to)];
+        if (lines.segments[s].left_rock < 0 || lines.segments[s].right_rock < 0) continue;
+        EXPECT_FALSE(lines.segments[s].is_step);
+        EXPECT_NEAR(x, 5, 1e-9);
+        EXPECT_NEAR(u, 5, 1e-9);
+        ASSERT_EQ(lines.ending_offsets[s + 1] - lines.ending_offsets[s], 1);
+        EXPECT_EQ(lines.ending_blocks[static_cast<std::size_t>(lines.ending_offsets[s])], 1);
+        ends += std::hypot(u - x, v - y);
+    }
+    EXPECT_NEAR(ends, 6, 1e-9);
+}
+
+TEST(LayeredMeshTest, PrismsBecomePyramidsAndTetrahedraWhereALayerEnds) {
+    const Model model({{0, 0}, {4, 4}, {2, 6}});
+    const LayeredMesh mesh = model.mesh(1.5, {0.001, {1, 1}, 0});
+    // an end at the border, which solvers could not compute with, went to the layer below
+    EXPECT_NEAR(mesh.volumes[0] + mesh.volumes[1], 4 * 60, 1e-7);
+    EXPECT_NEAR(mesh.volumes[1], 2.0 / 2 * 5 * 6, 1.5);
+    for (const std::int32_t block : mesh.pyramids.block)
+        EXPECT_EQ(block, 1);
+    EXPECT_GT(mesh.pyramids.corners.size(), 2u);
+    EXPECT_GT(mesh.tetrahedra.corners.size(), 2u);
+    EXPECT_EQ(std::count(mesh.prisms.block.begin(), mesh.prisms.block.end(), 0),
+              static_cast<std::ptrdiff_t>(mesh.plan.triangles.size()));
+}
+
+TEST(LayeredMeshTest, NothingIsThinnerThanAsked) {
+    const Model model({{0, 0}, {4, 4}, {2, 6}});
+    const LayeredMesh mesh = model.mesh(1, {0.7, {8, 3}, 0});
+    std::vector<std::array<double, 3>> points = mesh.points;
+    std::sort(points.begin(), points.end());
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        if (points[i][0] == points[i - 1][0] && points[i][1] == points[i - 1][1]) {
+            EXPECT_GE(points[i][2] - points[i - 1][2], 0.7 * (1 - 1e-9));
+        }
+    }
+    EXPECT_NEAR(mesh.volumes[0] + mesh.volumes[1], 4 * 60, 1e-7);
+    EXPECT_EQ(mesh.layers, 11);
+}
+
+TEST(LayeredMeshTest, AModelSmallerThanTheEdgeLengthIsRefused) {
+    const Model model({{0, 0}, {4, 4}});
+    try {
+        model.lines(1000);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.kind, "nothing");
+    }
+}
+
+TEST(LayeredMeshTest, BlocksOfOneRockMassStandTogether) {
+    const Model model({{0, 0}, {4, 4}, {6, 6}, {8, 8}});
+    const std::vector<std::int32_t> mixed{0, 1, 0};
+    EXPECT_THROW(plan_lines(model.view, mixed, 1, {}, 1, nullptr), InputError);
+}
+
+}  // namespace
+}  // namespace realmodel::simulation

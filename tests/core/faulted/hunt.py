@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hunts for models with faults and bodies that are built wrongly:
+
+    python -m tests.core.faulted.hunt SECONDS [SEED]
+
+Random cases are built and judged in a process of their own, so that a crash or a hang is a finding too. Each
+finding is minimized and written to tests/data/structures/ (or --into FOLDER), named by its seed.
+"""
+
+import argparse
+import collections
+import os
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # tests/core
+
+from stacks import places
+from stacks.hunt import Worker
+
+from faulted.case import CORPUS, load_case, save_case
+from faulted.generate import random_case
+from faulted.judge import failures_of, kinds_of
+from faulted.minimize import minimize
+
+
+def report(worker, case, failures, folder, name, steps):
+    """Makes a failing case small, writes its file, and says what it is."""
+    wanted = min(kinds_of(failures))
+    small = minimize(case, lambda c: wanted in kinds_of(worker.judge(c)), steps) if steps else case
+    left = worker.judge(small)
+    path = Path(folder) / f"{wanted}_{name}.json".replace(" ", "_")
+    save_case(small, path, "; ".join(left)[:600])
+    print(f"  {path.name}: {len(small.faults)} faults, {len(small.bodies)} bodies, size {small.size()}")
+    for failure in left[:3]:
+        print(f"    {failure[:300]}", flush=True)
+
+
+def hunt(seconds, seed, every, folder, most, steps):
+    """Judges cases, each `every`-th seed, until the time is over or enough is found; how many failed."""
+    worker = Worker(failures_of)
+    stop = time.monotonic() + seconds
+    failed, judged = collections.Counter(), 0
+    number = seed
+    while time.monotonic() < stop and sum(failed.values()) < most:
+        case = random_case(number)
+        failures = worker.judge(case)
+        judged += 1
+        if failures:
+            failed[min(kinds_of(failures))] += 1
+            print(f"seed {number}: {failures[0][:250]}", flush=True)
+            report(worker, case, failures, folder, number, steps)
+        number += every
+    worker.close()
+    print(f"{judged} cases from seed {seed}, {sum(failed.values())} failed {dict(failed)}")
+    return sum(failed.values())
+
+
+def main():
+    os.environ.setdefault("OMP_WAIT_POLICY", "passive")  # small models on busy processors: no spinning
+    sys.path.insert(0, str(places.ROOT / "addon"))
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("seconds", type=float)
+    parser.add_argument("seed", type=int, nargs="?", default=0)
+    parser.add_argument("--every", type=int, default=1, help="how many seeds others take")
+    parser.add_argument("--into", default=str(CORPUS))
+    parser.add_argument("--most", type=int, default=40, help="findings to stop at")
+    parser.add_argument("--steps", type=int, default=150, help="tries to make a finding smaller; 0: none")
+    parser.add_argument("--case", type=Path, help="judge and minimize this file instead of random cases")
+    given = parser.parse_args()
+    Path(given.into).mkdir(parents=True, exist_ok=True)
+    if given.case:
+        worker, case = Worker(failures_of), load_case(given.case)
+        failures = worker.judge(case)
+        print(*failures, sep="\n")
+        if failures and given.steps:
+            report(worker, case, failures, given.into, given.case.stem, given.steps)
+        worker.close()
+        raise SystemExit(1 if failures else 0)
+    failed = hunt(given.seconds, given.seed, given.every, given.into, given.most, given.steps)
+    raise SystemExit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()

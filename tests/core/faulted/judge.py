@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether a case is built right: a list of sentences, each with a kind of failure before its colon."""
+
+import io
+import re
+
+import numpy as np
+from stacks import places
+
+from .contract import AIR, UNDECIDED, Contract
+from .located import Faces, distances
+
+NEAR = 4096  # units in the last place: what is nearer to some surface is not decided
+
+
+def _may_be_refused(text, case):
+    """Whether a refusal is one that the program documents, of a case that it fits."""
+    if "there is no base elevation that they fill it from" in text:
+        return any(body.void and body.after for body in case.bodies)
+    if "beyond its tip the surfaces differ" in text:
+        # where another fault cuts it short, the data seen from its two sides may disagree within a triangle
+        return len(case.faults) > 1 and any(fault.dies_out for fault in case.faults)
+    return False
+
+
+def kinds_of(failures):
+    return {failure.split(":")[0] for failure in failures}
+
+
+def failures_of(case, count=240, seed=1):
+    """What is wrong with what the program makes of a case; [] where nothing is."""
+    from realmodel.core import InputRefused, build
+
+    try:
+        model = build(case.project(), cells=case.cells, threads=1)
+    except InputRefused as error:
+        text = str(error)
+        if case.refused is not None:
+            return [] if re.search(case.refused, text) else [f"refusal: not for {case.refused}: {text}"]
+        if _may_be_refused(text, case):
+            return []
+        what = re.sub(r"'[^']*'|[-\d.,()]+", "", text.split(": ", 1)[-1])[:40]
+        return [f"refused {' '.join(what.split())}: {text}"]
+    except Exception as error:
+        return [f"raised: {type(error).__name__}: {error}"]
+    if case.refused is not None:
+        return [f"built: it should be refused for {case.refused}"]
+    failures = topology(model)
+    if not len(model.cell_block):
+        return failures
+    failures += Judgement(case, model, count, seed).failures()
+    if int(case.label or 0) % 3 == 0:
+        again = build(case.project(), cells=case.cells, threads=2)
+        if _bytes(again) != _bytes(model):
+            failures.append("threads: two give other bytes than one")
+    return failures
+
+
+def _bytes(model):
+    from realmodel.core.exporters.npz import model_arrays
+
+    buffer = io.BytesIO()
+    np.savez(buffer, **model_arrays(model))
+    return buffer.getvalue()
+
+
+def topology(model):
+    """Closed cells, distinct vertices, positive volumes; the outside checker's tests where it is there."""
+    failures = []
+    sizes = np.diff(model.face_offsets)
+    face = np.repeat(np.arange(len(sizes)), sizes)
+    after = np.arange(len(face)) + 1
+    after[model.face_offsets[1:] - 1] = model.face_offsets[:-1]
+    begin, end = model.face_vertices, model.face_vertices[after]
+    uses = []
+    for side, turn in ((0, 1), (1, -1)):
+        cells = model.face_cells[face, side]
+        known = cells >= 0
+        way = np.where(begin < end, turn, -turn)
+        uses.append(np.stack([cells, np.minimum(begin, end), np.maximum(begin, end), way], axis=1)[known])
+    rows = np.concatenate(uses)
+    _, number = np.unique(rows[:, :3], axis=0, return_inverse=True)
+    number = number.ravel()
+    balance, used = np.bincount(number, rows[:, 3]), np.bincount(number)
+    if (balance != 0).any():
+        failures.append(f"closed: {(balance != 0).sum()} edges of cells are open")
+    if model.cell_kind == "columns" and (used != 2).any():
+        failures.append(f"touching: {(used != 2).sum()} edges are used more than twice by a cell")
+    least = -1e-12 * float(np.prod(np.ptp(model.vertices, axis=0))) if len(model.vertices) else 0.0
+    if (model.cell_volumes < least).any():
+        failures.append(f"volume: {(model.cell_volumes < least).sum()} cells have a negative one")
+    total = np.bincount(model.cell_block, model.cell_volumes, len(model.blocks))
+    given = np.array([block.volume for block in model.blocks])
+    if not np.allclose(total, given, rtol=1e-9, atol=1e-9 * max(total.max(initial=0.0), 1e-300)):
+        failures.append(f"volumes: blocks have {given}, their cells {total}")
+    checker = places.checker()
+    if checker is not None:
+        buffer = io.BytesIO(_bytes(model))
+        failures += [f"checker: {text}" for text in checker.check_topology(checker.Complex(buffer))]
+    return failures
+
+
+class Judgement:
+    """A model compared with the contract at random places."""
+
+    def __init__(self, case, model, count, seed):
+        self.case, self.model, self.random = case, model, np.random.default_rng(seed)
+        self.count = count
+        self.contract = Contract(case, model.structures, model.rock_inputs) if model.structures else None
+        self.parting = [f for f, fault in enumerate(case.faults) if not fault.dies_out]
+        self.faces = Faces(model)
+        self.rounding = NEAR * np.spacing(np.abs(model.vertices).max())
+        first = np.cumsum([0, *(len(rock.surfaces) for rock in case.rocks)])
+        self.number = {}  # of surfaces of the model: that of the contract's block
+        for r, rock in enumerate(case.rocks):
+            self.number |= {int(first[r]) + k: int(first[r]) + k for k in range(len(rock.surfaces))}
+        total = int(first[-1])
+        for b in range(len(case.bodies)):
+            self.number[total + len(case.faults) + b] = total + b
+        self.surfaces = total
+        self.block = np.array([self.number[block.surface] for block in model.blocks])[model.cell_block]
+
+    def failures(self):
+        if self.contract is None:
+            return []
+        low, high = self.model.vertices.min(axis=0), self.model.vertices.max(axis=0)
+        margin = 0.05 * (high - low)
+        spread = self.random.uniform(low - margin, high + margin, (self.count, 3))
+        face, at, step = self.faces.beside(self.random, self.count, self.rounding)
+        points = np.concatenate([spread, at - step, at + step])
+        said, rows, rock = self.contract.at(points)
+        cells = self.faces.cells(points)
+        failures, of_point = self._blocks(points, said, cells)
+        failures += self._sides_of_cells(points, rows, rock, of_point)
+        n = self.count
+        failures += self._neighbors(face, of_point[n : n + len(face)], of_point[n + len(face) :], points[n:])
+        failures += self._surfaces(face, at, rows[n:])
+        return failures
+
+    def _near(self, point, but=None):
+        """Whether a point is so near to some surface that rounding may have moved it across."""
+        point = point[None]
+        shapes = [v[t] for entry in self.model.rock_inputs for s in entry.structure.sheets for v, t in s]
+        shapes += [side.corners for side in self.contract.sides]
+        shapes += [body.vertices[body.triangles] for body in self.case.bodies]
+        away = min((distances(point, shape)[0] for shape in shapes), default=np.inf)
+        plan = np.inf
+        rings = [ring for rock in self.case.rocks for ring in rock.rings]
+        for entry in self.model.rock_inputs:
+            rings += [v[t][:, :2] for s in entry.structure.sheets for v, tt in s for t in tt]
+        for ring in rings:
+            for a, b in zip(ring, np.roll(ring, -1, axis=0), strict=True):
+                t = np.clip((point[0, :2] - a) @ (b - a) / max((b - a) @ (b - a), 1e-300), 0, 1)
+                plan = min(plan, float(np.linalg.norm(point[0, :2] - a - t * (b - a))))
+        bases = [rock.base_elevation for rock in self.case.rocks if rock.base_elevation is not None]
+        away = min([away, plan, *(abs(point[0, 2] - base) for base in bases)])
+        return away <= self.rounding
+
+    def _blocks(self, points, said, cells):
+        failures, of_point = [], np.full(len(points), -9)
+        for n, (expected, own) in enumerate(zip(said.tolist(), cells, strict=True)):
+            if own is None:
+                continue
+            if len(own) > 1 or any(times != 1 for times in own.values()):
+                if not self._near(points[n]):
+                    failures.append(f"overlap: at {points[n].tolist()} are the cells {own}")
+                continue
+            cell = next(iter(own), -1)
+            of_point[n] = cell
+            if expected == UNDECIDED:
+                continue
+            is_block = AIR if cell < 0 else int(self.block[cell])
+            if is_block != expected and not self._near(points[n]):
+                texts = [self._name(is_block), self._name(expected)]
+                failures.append(f"point: at {points[n].tolist()} is {texts[0]}, the contract says {texts[1]}")
+        return failures[:6], of_point
+
+    def _name(self, block):
+        blocks = self.contract.blocks
+        return str(blocks[block]) if 0 <= block < len(blocks) else {AIR: "air"}.get(block, str(block))
+
+    def _sides_of_cells(self, points, rows, rock, of_point):
+        """No cell straddles a fault that acts, and compartments are named by these sides."""
+        failures, seen = [], {}
+        for n in np.flatnonzero(of_point >= 0):
+            cell = int(of_point[n])
+            if rock[n] < 0:
+                continue
+            own = tuple(
+                int(rows[n, f]) if self.contract.acts(f, int(self.block[cell]), int(rock[n])) else 0
+                for f in self.parting
+            )
+            first, at = seen.setdefault((cell, int(rock[n])), (own, n))
+            if first != own and not self._near(points[n]) and not self._near(points[at]):
+                ends = [points[at].tolist(), points[n].tolist()]
+                failures.append(f"straddles: cell {cell} is on {first} at {ends[0]} and {own} at {ends[1]}")
+        for (cell, r), (own, at) in seen.items():
+            words = [
+                f"{'above' if side > 0 else 'below'} {fault.name}"
+                for side, fault in zip(own, (self.case.faults[f] for f in self.parting), strict=True)
+                if side
+            ]
+            mass = self.case.rocks[r].name
+            name = ", ".join(words)
+            if len(self.case.rocks) > 1:
+                name = f"{mass}: {name}" if name else mass
+            given = self.model.compartment_names[self.model.cell_compartment[cell]]
+            if given != (name or mass) and not self._near(points[at]):
+                place = points[at].tolist()
+                failures.append(f"compartment: cell {cell} is in '{given}', at {place} is '{name or mass}'")
+        return failures[:6]
+
+    def _neighbors(self, face, inner, outer, points):
+        """Beside a face are the cells that it names."""
+        failures = []
+        for k, (f, own, other) in enumerate(zip(face, inner, outer, strict=True)):
+            for which, found in ((0, own), (1, other)):
+                expected = self.model.face_cells[f, which]
+                p = points[k + which * len(face)]
+                if found not in (-9, expected) and not self._near(p) and not self._is_between(p, f):
+                    failures.append(f"beside: at {p.tolist()} is cell {found}, face {f} names {expected}")
+        return failures[:4]
+
+    def _is_between(self, point, face):
+        """Whether another face is about as near to a point as that which it was taken beside."""
+        own = self.faces.face == face
+        away = distances(point[None], self.faces.corners[own])[0]
+        return distances(point[None], self.faces.corners[~own])[0] < 2 * away
+
+    def _displaces(self, fault, block):
+        """Whether a fault displaces a block somewhere, or what is below the oldest surface: no block."""
+        rocks = range(len(self.case.rocks))
+        return block == AIR or any(self.contract.acts(fault, block, rock) for rock in rocks)
+
+    def _surfaces(self, face, at, rows):
+        """Faces lie on the surfaces that they name, and faults are there only where they act."""
+        failures = []
+        model = self.model
+        tolerance = max(self.rounding, 1e-9 * np.ptp(model.vertices, axis=0).max())
+        sheets = {}
+        first = 0
+        for entry in model.rock_inputs:
+            for k in range(len(entry.surfaces)):
+                sheets[first + k] = [v[t] for s in entry.structure.sheets for v, t in [s[k]]]
+            first += len(entry.surfaces)
+        for n, f in enumerate(face):
+            name, p = int(model.face_surface[f]), at[n][None]
+            cells = model.face_cells[f]
+            blocks = [int(self.block[c]) if c >= 0 else AIR for c in cells]
+            normal = self.faces.normal[f]
+            vertical = abs(normal[2]) <= 1e-6 * np.linalg.norm(normal)
+            said = f"face {f} at {p[0].tolist()} between {blocks} is named {name}"
+            if name == -2:
+                bases = [rock.base_elevation for rock in self.case.rocks]
+                if not any(base is not None and abs(p[0, 2] - base) <= tolerance for base in bases):
+                    failures.append(f"base: {said}")
+                continue
+            if name == -1:
+                if not vertical:
+                    failures.append(f"wall: {said}, but is not vertical")
+            elif name < self.surfaces:
+                if min(distances(p, corners)[0] for corners in sheets[name]) > tolerance:
+                    failures.append(f"surface: {said}, but is not on it")
+            elif name < self.surfaces + len(self.case.faults):
+                if distances(p, self.contract.sides[name - self.surfaces].own)[0] > tolerance:
+                    failures.append(f"fault: {said}, but is not on it")
+            else:
+                body = self.case.bodies[name - self.surfaces - len(self.case.faults)]
+                if distances(p, body.vertices[body.triangles])[0] > tolerance:
+                    failures.append(f"body: {said}, but is not on it")
+            inner, outer = rows[n], rows[n + len(face)]
+            acting = [
+                g
+                for g in range(len(self.case.faults))
+                if inner[g] != outer[g] and any(self._displaces(g, block) for block in blocks)
+            ]
+            own = name - self.surfaces
+            if 0 <= own < len(self.case.faults) and own not in acting:
+                failures.append(f"unacting: {said}, which does not act there")
+            is_cut = not vertical and not 0 <= name < self.surfaces  # columns in bodies end at surfaces
+            same = blocks[0] == blocks[1] and len(set(model.cell_compartment[cells])) == 1
+            if same and not acting and (is_cut or model.cell_kind == "blocks"):
+                failures.append(f"needless: {said}, both of one block and compartment")
+        return failures[:6]

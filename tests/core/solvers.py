@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""OpenFOAM and OpenGeoSys, where this machine has them."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+# Debian keeps OpenFOAM's settings here and nothing tells its programs so
+_FOAM_SETTINGS = Path("/usr/share/openfoam")
+_SCALAR = "FoamFile {{ version 2.0; format ascii; class {kind}; object {name}; }}\n"
+
+
+def foam_program(name):
+    """The path of a program of OpenFOAM, or None."""
+    return shutil.which(name)
+
+
+def ogs_program():
+    """The path of OpenGeoSys, beside this Python (package `ogs`) or on PATH; or None."""
+    beside = Path(sys.executable).with_name("ogs")
+    return str(beside) if beside.is_file() else shutil.which("ogs")
+
+
+def run_foam(program, case, *options):
+    """What a program of OpenFOAM prints about a case."""
+    environment = {"WM_PROJECT_DIR": str(_FOAM_SETTINGS), **os.environ}
+    done = subprocess.run(
+        [foam_program(program), "-case", case, *options],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=environment,
+    )
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
+    return done.stdout
+
+
+def write_foam_fields(case, diffusivity):
+    """T from 0 at the base to 1 on top, and a diffusivity of each cell."""
+    (case / "0").mkdir()
+    patches = (
+        "top { type fixedValue; value uniform 1; } base { type fixedValue; value uniform 0; } "
+        "sides { type zeroGradient; }"
+    )
+    (case / "0" / "T").write_text(
+        _SCALAR.format(kind="volScalarField", name="T")
+        + "dimensions [0 0 0 1 0 0 0];\ninternalField uniform 0;\n"
+        + f"boundaryField {{ {patches} }}\n"
+    )
+    (case / "0" / "DT").write_text(
+        _SCALAR.format(kind="volScalarField", name="DT")
+        + "dimensions [0 2 -1 0 0 0 0];\n"
+        + f"internalField nonuniform List<scalar> {len(diffusivity)}\n(\n"
+        + "\n".join(f"{value:g}" for value in diffusivity)
+        + '\n);\nboundaryField { ".*" { type zeroGradient; } }\n'
+    )
+    (case / "constant" / "transportProperties").write_text(
+        _SCALAR.format(kind="dictionary", name="transportProperties") + "DT DT [0 2 -1 0 0 0 0] 1;\n"
+    )
+
+
+def scalar_field(path):
+    """(C,) of a volScalarField that is not uniform."""
+    text = path.read_text()
+    count, values = re.search(r"internalField\s+nonuniform List<scalar>\s*(\d+)\s*\(([^)]*)\)", text).groups()
+    field = np.array(values.split(), float)
+    assert len(field) == int(count)
+    return field
+
+
+def run_ogs(folder, mesh_file, media, base, top):
+    """Steady flow: pressure 0 on the mesh file `base` and 1 on `top`; media: permeability by MaterialID.
+    Returns the pressure at each point."""
+    media_text = "".join(
+        f'<medium id="{number}"><properties>'
+        f"<property><name>diffusion</name><type>Constant</type><value>{value:g}</value></property>"
+        "<property><name>reference_temperature</name><type>Constant</type><value>293</value></property>"
+        "</properties></medium>"
+        for number, value in enumerate(media)
+    )
+    conditions = "".join(
+        f"<boundary_condition><mesh>{name}</mesh><type>Dirichlet</type><parameter>p_{name}</parameter>"
+        "</boundary_condition>"
+        for name in (base, top)
+    )
+    (folder / "flow.prj").write_text(
+        f"""<?xml version="1.0" encoding="ISO-8859-1"?>
+<OpenGeoSysProject>
+<meshes><mesh>{mesh_file}.vtu</mesh><mesh>{base}.vtu</mesh><mesh>{top}.vtu</mesh></meshes>
+<processes><process><name>flow</name><type>STEADY_STATE_DIFFUSION</type><integration_order>2</integration_order>
+<process_variables><process_variable>pressure</process_variable></process_variables>
+<secondary_variables/></process></processes>
+<media>{media_text}</media>
+<time_loop><processes><process ref="flow"><nonlinear_solver>basic_picard</nonlinear_solver>
+<convergence_criterion><type>DeltaX</type><norm_type>NORM2</norm_type><abstol>1e-10</abstol></convergence_criterion>
+<time_discretization><type>BackwardEuler</type></time_discretization>
+<time_stepping><type>SingleStep</type></time_stepping></process></processes>
+<output><type>VTK</type><prefix>out</prefix><data_mode>Ascii</data_mode><compress_output>false</compress_output>
+<variables><variable>pressure</variable></variables></output></time_loop>
+<parameters><parameter><name>p0</name><type>Constant</type><value>0</value></parameter>
+<parameter><name>p_{base}</name><type>Constant</type><value>0</value></parameter>
+<parameter><name>p_{top}</name><type>Constant</type><value>1</value></parameter></parameters>
+<process_variables><process_variable><name>pressure</name><components>1</components><order>1</order>
+<initial_condition>p0</initial_condition><boundary_conditions>{conditions}</boundary_conditions>
+</process_variable></process_variables>
+<nonlinear_solvers><nonlinear_solver><name>basic_picard</name><type>Picard</type><max_iter>10</max_iter>
+<linear_solver>linear</linear_solver></nonlinear_solver></nonlinear_solvers>
+<linear_solvers><linear_solver><name>linear</name><eigen><solver_type>CG</solver_type>
+<precon_type>DIAGONAL</precon_type><max_iteration_step>10000</max_iteration_step>
+<error_tolerance>1e-14</error_tolerance></eigen></linear_solver></linear_solvers>
+</OpenGeoSysProject>
+"""
+    )
+    done = subprocess.run(
+        [ogs_program(), "flow.prj"], cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-1000:]
+    result = sorted(folder.glob("out_ts_1_*.vtu"))
+    assert len(result) == 1, [path.name for path in folder.iterdir()]
+    text = result[0].read_text()
+    values = re.search(r'<DataArray[^>]*Name="pressure"[^>]*>([^<]*)<', text).group(1)
+    return np.array(values.split(), float)
+
+
+def write_ogs_nodes(path, points, triangles):
+    """A mesh of faces for boundary conditions, with the numbers of its points in the whole mesh."""
+    used, corners = np.unique(triangles, return_inverse=True)
+    corners = corners.reshape(-1, 3)
+
+    def array(name, values, kind, components=1):
+        text = " ".join(map(repr, np.ravel(values).tolist()))
+        return (
+            f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" '
+            f'format="ascii">{text}</DataArray>'
+        )
+
+    path.write_text(
+        '<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="1.0"><UnstructuredGrid>'
+        f'<Piece NumberOfPoints="{len(used)}" NumberOfCells="{len(corners)}">'
+        f"<PointData>{array('bulk_node_ids', used, 'UInt64')}</PointData>"
+        f"<Points>{array('Points', points[used], 'Float64', 3)}</Points>"
+        f"<Cells>{array('connectivity', corners, 'Int64')}"
+        f"{array('offsets', 3 * np.arange(1, len(corners) + 1), 'Int64')}"
+        f"{array('types', np.full(len(corners), 5), 'UInt8')}</Cells>"
+        "</Piece></UnstructuredGrid></VTKFile>"
+    )

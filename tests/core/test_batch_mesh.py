@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""build_model.py --mesh: the file, the report, and what is wrong usage."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PROJECT = ROOT / "blend_samples" / "two_layers" / "project.toml"
+
+
+def run(*arguments):
+    return subprocess.run(
+        [sys.executable, ROOT / "build_model.py", PROJECT, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_a_mesh_and_its_report(tmp_path):
+    mesh, report = tmp_path / "mesh.msh", tmp_path / "report.json"
+    options = ("--mesh-edge", 4, "--mesh-thickness", 0.7, "--mesh-layer-thickness", 2)
+    done = run("--mesh", mesh, *options, "--report", report)
+    assert done.returncode == 0, done.stderr
+    assert "prisms; volumes differ" in done.stdout
+    assert mesh.stat().st_size > 10_000
+    entry = json.loads(report.read_text())["mesh"]
+    assert set(entry["elements"]) == {"tetrahedron", "pyramid", "prism"}
+    for block in entry["blocks"]:
+        assert block["volume"] == pytest.approx(block["exact_volume"], rel=0.01)
+
+
+def test_defaults_and_tetrahedra(tmp_path):
+    done = run("--mesh", tmp_path / "mesh.foam", "--mesh-elements", "tetrahedra", "--mesh-layers", 2)
+    assert done.returncode == 0, done.stderr
+    assert "tetrahedra; volumes" in done.stdout
+    assert "prisms" not in done.stdout
+    assert (tmp_path / "mesh.foam" / "constant" / "polyMesh" / "owner").is_file()
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--mesh", "m.xyz"), "meshes are not written as '.xyz'"),
+        (("--mesh-edge", 4), "--mesh-edge goes with --mesh"),
+        (("--mesh", "m.vtu", "--mesh-edge", -1), "not a length above 0"),
+        (("--mesh", "m.vtu", "--estimate"), "--estimate builds nothing"),
+        (("--mesh", "m.vtu", "--surfaces-only"), "--surfaces-only goes without --mesh"),
+        (("--mesh", "m.vtu", "--export", "m.vtu"), "two outputs have this name"),
+        (("--mesh", "m.vtu", "--mesh-layers", 0), "layers must be whole numbers from 1"),
+    ],
+)
+def test_wrong_usage(tmp_path, monkeypatch, options, message):
+    monkeypatch.chdir(tmp_path)
+    done = run(*options)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert not any(tmp_path.iterdir())

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Surfaces in DXF, VTK's XML, Gmsh's MSH and LandXML, as others write them."""
+
+import numpy as np
+import pytest
+from realmodel.core import InputRefused, MeshFile, Project, Rock, Surface, build
+from realmodel.core.readers import read_mesh
+
+WHY = "is not installed: scripts/test.sh installs it"
+VERTICES = np.array([[0.5, 0, 1], [1.5, 0, 2], [1.5, 1, 3], [0.5, 1, 4], [2.5, 0.5, 0.25]])
+SQUARE, TRIANGLE = [0, 1, 2, 3], [1, 4, 2]
+
+
+def facets(mesh):
+    """The corners of each triangle, each beginning with the least, sorted."""
+    found = []
+    for corners in mesh.vertices[mesh.triangles].tolist():
+        begin = corners.index(min(corners))
+        found.append(corners[begin:] + corners[:begin])
+    return sorted(found)
+
+
+def expected(faces=((0, 1, 2), (0, 2, 3), (1, 4, 2))):
+    class Given:
+        vertices, triangles = VERTICES, np.array(faces)
+
+    return facets(Given)
+
+
+@pytest.mark.parametrize("release", ["R12", "R2000", "R2018"])
+def test_dxf_of_ezdxf(tmp_path, release):
+    ezdxf = pytest.importorskip("ezdxf", reason=f"ezdxf {WHY}")
+    document = ezdxf.new(release)
+    space = document.modelspace()
+    space.add_line((0, 0), (1, 1))
+    space.add_3dface(VERTICES[SQUARE].tolist(), dxfattribs={"layer": "Ground"})
+    space.add_3dface(VERTICES[TRIANGLE].tolist())
+    document.saveas(tmp_path / "m.txt")
+    assert facets(read_mesh(tmp_path / "m.txt")) == expected()
+
+
+def test_dxf_polyface_and_polygon_meshes(tmp_path):
+    ezdxf = pytest.importorskip("ezdxf", reason=f"ezdxf {WHY}")
+    document = ezdxf.new("R2000")
+    face = document.modelspace().add_polyface()
+    face.append_faces([VERTICES[SQUARE].tolist(), VERTICES[TRIANGLE].tolist()])
+    document.saveas(tmp_path / "f.dxf")
+    assert facets(read_mesh(tmp_path / "f.dxf")) == expected()
+    document = ezdxf.new("R2000")
+    grid = document.modelspace().add_polymesh((2, 3))
+    for m in range(2):
+        for n in range(3):
+            grid.set_mesh_vertex((m, n), (m, n, m + n))
+    document.saveas(tmp_path / "g.dxf")
+    mesh = read_mesh(tmp_path / "g.dxf")
+    assert (len(mesh.vertices), len(mesh.triangles)) == (6, 4)
+
+
+def vtk_grid(vtk, kind):
+    points = vtk.vtkPoints()
+    points.SetDataTypeToDouble()
+    points.InsertNextPoint(9, 9, 9)  # used by nothing
+    for place in VERTICES.tolist():
+        points.InsertNextPoint(place)
+    grid = vtk.vtkPolyData() if kind == "vtp" else vtk.vtkUnstructuredGrid()
+    grid.SetPoints(points)
+    grid.Allocate(2)
+    for cell, corners in ((9, SQUARE), (5, TRIANGLE)):
+        ids = vtk.vtkIdList()
+        for corner in corners:
+            ids.InsertNextId(corner + 1)
+        grid.InsertNextCell(cell, ids)
+    return grid
+
+
+@pytest.mark.parametrize("kind", ["vtp", "vtu"])
+@pytest.mark.parametrize("mode", ["Ascii", "Binary", "Appended"])
+@pytest.mark.parametrize("compressed", [False, True])
+@pytest.mark.parametrize("wide", [False, True])
+def test_vtk_xml_of_vtk(tmp_path, kind, mode, compressed, wide):
+    vtk = pytest.importorskip("vtk", reason=f"VTK {WHY}")
+    writer = vtk.vtkXMLPolyDataWriter() if kind == "vtp" else vtk.vtkXMLUnstructuredGridWriter()
+    for encoded in (True, False):
+        writer.SetInputData(vtk_grid(vtk, kind))
+        getattr(writer, f"SetDataModeTo{mode}")()
+        writer.SetEncodeAppendedData(encoded)
+        writer.SetCompressor(vtk.vtkZLibDataCompressor() if compressed else None)
+        writer.SetHeaderTypeToUInt64() if wide else writer.SetHeaderTypeToUInt32()
+        writer.SetFileName(str(tmp_path / "m.xyz"))
+        writer.Write()
+        mesh = read_mesh(tmp_path / "m.xyz")
+        assert facets(mesh) == expected()
+        assert len(mesh.vertices) == 5
+
+
+@pytest.mark.parametrize("version", [2.2, 4.1])
+@pytest.mark.parametrize("binary", [0, 1])
+def test_msh_of_gmsh(tmp_path, version, binary):
+    gmsh = pytest.importorskip("gmsh", reason=f"Gmsh {WHY}", exc_type=ImportError)
+    gmsh.initialize(interruptible=False)  # or Ctrl-C would end Python from then on
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.addDiscreteEntity(2, 1)
+        tags = [11, 12, 3, 40, 5]
+        gmsh.model.mesh.addNodes(2, 1, tags, VERTICES.ravel().tolist())
+        gmsh.model.mesh.addElements(
+            2, 1, [3, 2], [[1], [2]], [[tags[k] for k in SQUARE], [tags[k] for k in TRIANGLE]]
+        )
+        gmsh.option.setNumber("Mesh.MshFileVersion", version)
+        gmsh.option.setNumber("Mesh.Binary", binary)
+        gmsh.option.setNumber("Mesh.SaveAll", 1)
+        gmsh.write(str(tmp_path / "m.msh"))
+    finally:
+        gmsh.finalize()
+    (tmp_path / "m.msh").rename(tmp_path / "m")
+    assert facets(read_mesh(tmp_path / "m")) == expected()
+
+
+def landxml(unit='<Imperial linearUnit="foot"/>'):
+    points = "".join(f'<P id="{k + 7}">{y} {x} {z}</P>' for k, (x, y, z) in enumerate(VERTICES.tolist()))
+    return (
+        '<?xml version="1.0"?>\n<LandXML xmlns="http://www.landxml.org/schema/LandXML-1.2" version="1.2">\n'
+        f'<Units>{unit}</Units>\n<Surfaces><Surface name="Top"><Definition surfType="TIN"><Pnts>{points}</Pnts>'  # noqa: E501
+        '<Faces><F>7 8 9</F><F n="1 2">7 9 10</F><F>8 11 9</F><F i="1">7 8 11</F></Faces>'
+        "</Definition></Surface></Surfaces></LandXML>"
+    )
+
+
+def test_landxml_and_its_unit(write):
+    path = write("m.xml", landxml())
+    mesh = read_mesh(path)
+    assert facets(mesh) == expected()
+    vertices, told = mesh.in_model(MeshFile(path), "m")
+    assert vertices == pytest.approx(VERTICES * 0.3048)
+    assert told == [f"{path}: its lengths are in ft, according to the file"]
+    vertices, told = mesh.in_model(MeshFile(path, units="m"), "m")
+    assert vertices == pytest.approx(VERTICES)
+    assert told == []
+    model = build(Project("x", [Rock("r", [Surface("S", mesh=path)])]))
+    assert any("its lengths are in ft" in str(warning) for warning in model.warnings)
+
+
+def test_properties_of_tsurf_are_told(write):
+    text = (
+        'GOCAD TSurf 1\nHEADER {\nname:a\n}\nGOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT "ft" "ft" "ft"\n'
+        "ZPOSITIVE Depth\nEND_ORIGINAL_COORDINATE_SYSTEM\nPROPERTIES age porosity\nTFACE\n"
+        "PVRTX 1 0 0 1 5 6\nPVRTX 2 1 0 1 5 6\nPVRTX 3 0 1 1 5 6\nTRGL 1 2 3\nEND\n"
+    )
+    path = write("m.ts", text)
+    mesh = read_mesh(path)
+    assert mesh.vertices[:, 2].tolist() == [-1, -1, -1]
+    assert mesh.unit == "ft"
+    _, told = mesh.in_model(MeshFile(path), "ft")
+    assert told == [f"{path}: its properties age, porosity are not read"]
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("obj", b"# by hand\n\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+        ("obj", b"mtllib a.mtl\no a b\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+        (
+            "stl",
+            b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n",  # noqa: E501
+        ),
+    ],
+)
+def test_what_a_mesh_is_is_told_from_its_content(write, name, content):
+    assert len(read_mesh(write(f"{name}.txt", content)).triangles) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "match"),
+    [
+        ("m.xml", landxml().replace("<F>8 11 9</F>", "<F>8 11 99</F>"), r"surface 'Top': '8 11 99' cannot be read"),  # noqa: E501
+        ("m.xml", landxml()[:-30], r"m\.xml:4: damaged XML"),
+        ("m.xml", "<!DOCTYPE a [<!ENTITY b 'c'>]>" + landxml(), "document type"),
+        ("m.dxf", "0\nSECTION\n2\nENTITIES\n0\n3DFACE\n10\nx\n0\nENDSEC\n0\nEOF\n", r"m\.dxf:6: a 3DFACE that cannot"),  # noqa: E501
+        ("m.dxf", "0\nSECTION\n2\nENTITIES\n0\n3DFACE\n10\n", r"m\.dxf:8: the file has no EOF"),
+        ("m.dxf", "0\nSECTION\n2\nENTITIES\n0\nENDSEC\n0\nEOF\n", "no 3D faces"),
+        ("m.dxf", "0\nSECTION\nxx\nENTITIES\n", r"m\.dxf:3: 'xx' is no group code"),
+        ("m.msh", "$MeshFormat\n3 0 8\n$EndMeshFormat\n$Nodes\n$EndNodes\n$Elements\n$EndElements\n", "MSH 3 is not read"),  # noqa: E501
+        ("m.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", "no whole section Nodes"),
+        (
+            "m.msh",
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n999999999999\n1 0 0 0\n$EndNodes\n$Elements\n0\n$EndElements\n",  # noqa: E501
+            "999999999999 entries are announced, the file is cut off",
+        ),
+    ],
+)  # fmt: skip
+def test_damaged_meshes_are_refused_with_the_place(write, name, content, match):
+    with pytest.raises(InputRefused, match=match):
+        read_mesh(write(name, content))

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The blocks of a model in the formats of shapes, as readers that nobody here wrote read them."""
+
+import numpy as np
+import pytest
+from conftest import grid_surface
+from realmodel.core import Library, Project, Property, Rock, Surface, build, build_surfaces
+from realmodel.core.readers import read_mesh
+
+WHY = "not installed: scripts/test.sh installs it"
+NAMES = ["base block", "Grès à Voltzia", "Clay", "Clay (2)"]
+
+
+def rocks(shift):
+    def height(k):
+        return lambda x, y: 0.3 * k + 0.4 * np.sin(5 * x + k) * np.cos(4 * y - k)
+
+    names = [None, "Grès à Voltzia", "Clay", "Clay"]
+    surfaces = []
+    for k in range(4):
+        vertices, triangles = grid_surface(7 + k, height(k))
+        surfaces.append(Surface(f"S{k}", vertices + shift, triangles, property=k % 3, block=names[k]))
+    return [Rock("rock", surfaces, base_elevation=-2.0)]
+
+
+@pytest.fixture(scope="module")
+def model():
+    library = Library([Property(1, "Sandstone", color="#c86432"), Property(2, "Clay", color="#204060")])
+    return build(Project("crossing", rocks((400_000.0, 5_300_000.0, 0.0)), library))
+
+
+@pytest.fixture(scope="module")
+def folder(model, tmp_path_factory):
+    path = tmp_path_factory.mktemp("shapes")
+    for ending in (".obj", ".ply", ".stl", ".glb", ".dxf", ".ts"):
+        model.save(path / f"m{ending}")
+    return path
+
+
+def volume(vertices, triangles):
+    """Of what triangles close."""
+    origin = vertices.mean(axis=0)
+    a, b, c = (vertices[triangles] - origin).transpose(1, 0, 2)
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+
+def assert_closed(triangles):
+    """Each edge is used as often one way as the other."""
+    edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+    ways, counts = np.unique(edges, axis=0, return_counts=True)
+    back, back_counts = np.unique(edges[:, ::-1], axis=0, return_counts=True)
+    assert np.array_equal(ways, back)
+    assert np.array_equal(counts, back_counts)
+
+
+def test_obj_has_a_group_for_each_block(model, folder):
+    meshio = pytest.importorskip("meshio", reason=f"meshio is {WHY}")
+    text = (folder / "m.obj").read_text()
+    groups = [line.split()[1] for line in text.splitlines() if line.startswith("g ")]
+    assert groups == ["base_block", "Grès_à_Voltzia", "Clay", "Clay__2_"]
+    assert [line for line in text.splitlines() if line.startswith("usemtl")] == [
+        f"usemtl property_{k}" for k in (0, 1, 2, 0)
+    ]
+    assert "newmtl property_1\nKd 0.784314 0.392157 0.196078" in (folder / "m.mtl").read_text()
+    read = meshio.read(folder / "m.obj")
+    vertices = np.concatenate([model.block_boundary(k).vertices for k in range(4)])
+    assert np.array_equal(read.points, vertices)
+    faces = sum(len(model.block_boundary(k).faces) for k in range(4))
+    assert sum(len(cells.data) for cells in read.cells) == faces
+
+
+def test_ply_knows_blocks_properties_and_colors(model, folder):
+    vtk = pytest.importorskip("vtk", reason=f"VTK is {WHY}")
+    trimesh = pytest.importorskip("trimesh", reason=f"trimesh is {WHY}")
+    mesh = trimesh.load(folder / "m.ply", process=False)
+    faces = mesh.metadata["_ply_raw"]["face"]["data"]
+    for number, block in enumerate(model.blocks):
+        own = mesh.faces[faces["block"] == number]
+        assert_closed(own)
+        assert volume(mesh.vertices, own) == pytest.approx(block.volume, rel=1e-7)
+        assert set(faces["property"][faces["block"] == number]) == {block.property}
+    assert (faces["red"][faces["block"] == 1] == 0xC8).all()
+    reader = vtk.vtkPLYReader()
+    reader.SetFileName(str(folder / "m.ply"))
+    reader.Update()
+    assert reader.GetOutput().GetNumberOfCells() == len(mesh.faces)
+
+
+def test_stl_has_a_solid_for_each_block(model, folder):
+    trimesh = pytest.importorskip("trimesh", reason=f"trimesh is {WHY}")
+    solids = trimesh.load(folder / "m.stl", process=False).geometry
+    assert list(solids) == NAMES
+    for name, block in zip(NAMES, model.blocks, strict=True):
+        corners = np.asarray(solids[name].vertices)[solids[name].faces].reshape(-1, 3)
+        vertices, index = np.unique(corners, axis=0, return_inverse=True)
+        assert_closed(index.reshape(-1, 3))
+        assert volume(vertices, index.reshape(-1, 3)) == pytest.approx(block.volume, rel=1e-7)
+
+
+def test_glb_has_a_node_for_each_block_and_a_material_for_each_property(model, folder):
+    trimesh = pytest.importorskip("trimesh", reason=f"trimesh is {WHY}")
+    scene = trimesh.load(folder / "m.glb")
+    assert set(scene.geometry) == set(NAMES)
+    for name, block in zip(NAMES, model.blocks, strict=True):
+        mesh = scene.geometry[name]
+        assert mesh.visual.material.name == ("property 0", "Sandstone", "Clay")[block.property]
+        assert volume(mesh.vertices, mesh.faces) == pytest.approx(block.volume, rel=1e-5)
+    transform, _ = scene.graph["Clay"]
+    low, high = scene.geometry["Clay"].bounds + transform[:3, 3]
+    assert -high[2] == pytest.approx(5_300_000.0)
+    assert low[0] == pytest.approx(400_000.0)
+    assert high[1] == pytest.approx(model.block_boundary(2).vertices[:, 2].max(), abs=1e-5)
+
+
+def test_dxf_has_a_layer_for_each_block(model, folder):
+    ezdxf = pytest.importorskip("ezdxf", reason=f"ezdxf is {WHY}")
+    document = ezdxf.readfile(folder / "m.dxf")
+    assert not document.audit().has_errors
+    layers = ["BASE_BLOCK", "GRES_A_VOLTZIA", "CLAY", "CLAY__2_"]
+    for layer, block in zip(layers, model.blocks, strict=True):
+        assert layer in document.layers
+        faces = list(document.modelspace().query(f'3DFACE[layer=="{layer}"]'))
+        corners = np.array([[tuple(p) for p in face.wcs_vertices()[:3]] for face in faces])
+        vertices, index = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+        assert_closed(index.reshape(-1, 3))
+        assert volume(vertices, index.reshape(-1, 3)) == pytest.approx(block.volume, rel=1e-7)
+    assert document.layers.get("GRES_A_VOLTZIA").color != document.layers.get("CLAY").color
+
+
+def test_tsurf_has_an_object_for_each_block(model, folder):
+    text = (folder / "m.ts").read_text()
+    names = [line.removeprefix("name:") for line in text.splitlines() if line.startswith("name:")]
+    assert names == NAMES
+    assert text.count("GOCAD TSurf 1\n") == text.count("\nEND\n") == 4
+    assert 'AXIS_UNIT "m" "m" "m"' in text
+    read = read_mesh(folder / "m.ts")
+    assert_closed(read.triangles)
+    assert volume(read.vertices, read.triangles) == pytest.approx(model.volume, rel=1e-7)
+
+
+def test_every_triangle_of_a_block_has_an_area(model):
+    from realmodel.core.exporters.parts import model_parts
+
+    for part in model_parts(model):
+        a, b, c = part.vertices[part.triangles].transpose(1, 0, 2)
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        # faces with corners in one line are divided without triangles on it, up to rounding
+        assert (area > 0).mean() > 0.999
+        assert_closed(part.triangles)
+
+
+@pytest.mark.parametrize("ending", [".ply", ".stl", ".ts"])
+def test_surfaces_and_sections_are_written_as_shapes(model, tmp_path, ending):
+    surfaces = build_surfaces(model.project)
+    surfaces.save(tmp_path / f"s{ending}")
+    read = read_mesh(tmp_path / f"s{ending}")
+    assert len(read.triangles) == sum(len(surfaces.surface(k)[1]) for k in range(4))
+    low, high = model.vertices.min(axis=0), model.vertices.max(axis=0)
+    section = model.section((low + high) / 2, (1.0, 0.3, 0.1))
+    section.save(tmp_path / f"c{ending}")
+    read = read_mesh(tmp_path / f"c{ending}")
+    a, b, c = (read.vertices[read.triangles] - low).transpose(1, 0, 2)
+    assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(section.area, rel=1e-6)
+
+
+def test_surfaces_and_sections_in_glb_and_dxf(model, tmp_path):
+    trimesh = pytest.importorskip("trimesh", reason=f"trimesh is {WHY}")
+    ezdxf = pytest.importorskip("ezdxf", reason=f"ezdxf is {WHY}")
+    build_surfaces(model.project).save(tmp_path / "s.dxf")
+    document = ezdxf.readfile(tmp_path / "s.dxf")
+    assert {"S0", "S1", "S2", "S3"} <= {layer.dxf.name for layer in document.layers}
+    middle = (model.vertices.min(axis=0) + model.vertices.max(axis=0)) / 2
+    model.section(middle, (1.0, 0.0, 0.0)).save(tmp_path / "c.glb")
+    assert set(trimesh.load(tmp_path / "c.glb").geometry) <= set(NAMES)

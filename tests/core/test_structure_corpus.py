@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models with faults and bodies that were once built wrongly, kept as small files in tests/data/structures/,
+and some random ones (scripts/fuzz.sh --structures looks further)."""
+
+import numpy as np
+import pytest
+from faulted.case import CORPUS, BodyCase, load_case, save_case
+from faulted.contract import FaultSides, is_inside, levels
+from faulted.generate import random_case
+from faulted.judge import failures_of
+from faulted.minimize import minimize
+from faulted.shapes import box, together
+
+FILES = sorted(CORPUS.glob("*.json"))
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_it_is_built_right(path):
+    assert failures_of(load_case(path)) == []
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_file_is_small_and_survives_rewriting(path, tmp_path):
+    case = load_case(path)
+    assert path.stat().st_size < 20_000
+    save_case(case, tmp_path / "again.json")
+    again = load_case(tmp_path / "again.json")
+    for one, other in zip(case.bodies + case.faults, again.bodies + again.faults, strict=True):
+        assert np.array_equal(one.vertices, other.vertices)
+        assert np.array_equal(one.triangles, other.triangles)
+    assert failures_of(again, count=40) == []
+
+
+@pytest.mark.parametrize("seed", range(100, 112))
+def test_random_ones_are_built_right(seed):
+    assert failures_of(random_case(seed)) == []
+
+
+def test_a_case_is_the_same_for_a_seed():
+    one, other = random_case(7), random_case(7)
+    assert one.size() == other.size()
+    assert all(np.array_equal(a.vertices, b.vertices) for a, b in zip(one.faults, other.faults, strict=True))
+
+
+def test_the_judge_finds_what_is_wrong(monkeypatch):
+    """A body that comes at another time, in the program alone."""
+    case = load_case(CORPUS / "body_on_a_layer_that_came_later.json")
+    case.bodies = [BodyCase("B", *box((1, 1, -5), (9, 9, 5)), after="S0")]
+    assert failures_of(case) == []
+    project = type(case).project
+
+    def later(self):
+        given = project(self)
+        given.bodies[0].after = None
+        return given
+
+    monkeypatch.setattr(type(case), "project", later)
+    assert any(failure.startswith("point") for failure in failures_of(case))
+
+
+def test_sides_insides_and_levels():
+    vertices, triangles = together(box((0, 0, 0), (4, 4, 4)), box((2, 2, 2), (6, 6, 6)))
+    points = np.array([[1.0, 1, 1], [3, 3, 3], [5, 5, 5], [1, 5, 1]])
+    inside, decided = is_inside(points, vertices[triangles])
+    assert decided.all()
+    assert inside.tolist() == [True, False, True, False]
+    sheet = np.array([[0.0, 0, 1], [4, 0, 1], [0, 4, 1]]), np.array([[0, 2, 1]])
+    places = np.array([[1.0, 1, 2], [1, 1, 0.5], [1, 1, 1], [3, 3, 0], [2, 2, 0]])
+    assert levels(places, sheet).tolist() == [1, -1, 9, 0, 9]
+
+
+def test_sides_of_a_fault_are_known_beyond_it():
+    case = next(c for c in map(random_case, range(300)) if any(len(f.beyond) for f in c.faults))
+    fault = next(f for f in case.faults if len(f.beyond))
+    a, b, c = fault.vertices[fault.triangles[0]]
+    side = FaultSides(fault, np.cross(b - a, c - a))
+    middles = fault.vertices[fault.beyond].mean(axis=1)
+    corners = fault.vertices[fault.beyond]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    step = 1e-6 * normal / np.sqrt(np.linalg.norm(normal, axis=1))[:, None]
+    assert (side(middles + step) * side(middles - step) == -1).all()
+
+
+def test_a_failing_case_is_made_small():
+    case = random_case(5)
+    small = minimize(case, lambda c: len(c.faults) > 0, steps=60)
+    assert len(small.faults) == 1
+    assert small.size() < case.size()
