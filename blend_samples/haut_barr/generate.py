@@ -3,11 +3,12 @@
 
     python3 blend_samples/haut_barr/generate.py [FOLDER]
 
-The outcrop is that of chapter 5 of G. Mei's thesis (Freiburg 2014): three fins of sandstone on a base, 255 m long, 70 m
-wide and 40 m high. Only its size and the counts of rock masses, surfaces and layers are the thesis's; nothing was
-measured, and all shapes come from the formulas below (README.md explains them). Heights are in meters, plan positions
-(x, y) in meters from the south-west corner, which is put at UTM zone 32N, 377600 E, 5398100 N. Only `math` and
-`random.Random` are used and coordinates are written in centimeters, so every machine writes the same files.
+The outcrop is that of chapter 5 of G. Mei's thesis (Freiburg 2014): three fins of sandstone on a base, 255 m
+long, 70 m wide and 40 m high. Only its size and the counts of rock masses, surfaces and layers are the
+thesis's; nothing was measured, and all shapes come from the formulas below (README.md explains them). Heights
+are in meters, plan positions (x, y) in meters from the south-west corner, which is put at UTM zone 32N,
+377600 E, 5398100 N. Only `math` and `random.Random` are used and coordinates are written in centimeters, so
+every machine writes the same files.
 """
 
 import json
@@ -138,7 +139,7 @@ def bed(level, relief=0.15, wave=13.0):
 
 
 def foresets(low, slope, bend, start, turn=0.0):
-    """Slip face of a migrating bar: rises with x (or falls, where `slope` is negative), concave up at its toe."""
+    """Slip face of a migrating bar: rises with x (falls, where `slope` is negative), concave at its toe."""
 
     def height(x, y):
         d = (x - start + turn * (y - 35.0)) * (1.0 if slope > 0 else -1.0)
@@ -161,7 +162,7 @@ def rim(x, y):
 
 
 def rim_radius(angle):
-    return 0.97 + 0.02 * math.sin(3 * angle + 1.0) + 0.01 * math.sin(8 * angle)
+    return 0.99 + 0.02 * math.sin(3 * angle + 1.0) + 0.01 * math.sin(8 * angle)
 
 
 def base_outline(spacing):
@@ -304,7 +305,8 @@ def write_rock(folder, lines, name, edge_length, surfaces, inside, box, base=Non
 
 VARIOGRAM = ['method = "kriging"', 'variogram = {model = "matern52", range = 120, sill = 20}']
 HEADER = """# SPDX-License-Identifier: GPL-3.0-or-later
-# The outcrop at Haut-Barr as in chapter 5 of G. Mei's thesis: three fins of sandstone on a base. Written by generate.py.
+# The outcrop at Haut-Barr as in chapter 5 of G. Mei's thesis: three fins of sandstone on a base.
+# Written by generate.py.
 format = 1
 name = "Haut-Barr"
 library = "library.toml"
