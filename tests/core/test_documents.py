@@ -141,8 +141,10 @@ def sources():
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_sources_that_are_named_exist(document):
-    names = re.findall(r"`([\w./]+\.(?:py|cpp|hpp|sh|inl))`", document.read_text(encoding="utf-8"))
+    text = document.read_text(encoding="utf-8")
+    names = re.findall(r"`([\w./]+\.(?:py|cpp|hpp|sh|inl))`", text)
     names = [name for name in names if "NAME" not in name and "shared" not in name]
+    names = [name for name in names if f"`{name}`:\n\n```" not in text]  # the document gives it in full
     missing = {name for name in names if not any(path.endswith("/" + name) for path in sources())}
     assert not missing, f"{document.name} names {sorted(missing)}"
 
