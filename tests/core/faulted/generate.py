@@ -90,7 +90,7 @@ def _faults(rng, names, masses):
         elif found and rng.random() < 0.4:
             _branch(rng, fault, found, own)
         if not fault.ends_at and rng.random() < 0.4:  # no farther than it must reach
-            own &= _needed(vertices, triangles, uv, len(masses), not dies_out and rng.random() < RAGGED)
+            own &= _needed(vertices, triangles, uv, len(masses), rng.random() < RAGGED)
         fault.triangles, fault.beyond = triangles[own], triangles[~own]
         if len(fault.triangles):
             found.append((fault, rng.choice([0.0, 0.5, 1.0, -1.0, rng.uniform(-1.6, 1.6)])))

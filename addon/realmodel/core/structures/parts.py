@@ -42,6 +42,16 @@ class Structures:
     def names(self) -> list[str]:
         return [each.name for each in (*self.faults, *self.bodies)]
 
+    @property
+    def shapes(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Vertices (V, 3) and triangles (T, 3) of each."""
+        return [(each.vertices, each.triangles) for each in (*self.faults, *self.bodies)]
+
+    @property
+    def kinds(self) -> list[int]:
+        """Of each its number in `surface_kind`."""
+        return [1] * len(self.faults) + [2] * len(self.bodies)
+
     def native(self) -> list[tuple]:
         """As the native part takes them."""
         number = {fault.name: n for n, fault in enumerate(self.faults)}
