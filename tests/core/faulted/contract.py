@@ -99,7 +99,6 @@ class Contract:
         """structures, inputs: of the model, which gives the sheets and says which side of a fault it calls
         upper."""
         self.case, self.inputs = case, inputs
-        self.highest = structures.box[1, 2]  # compartments that are above all rock are not made
         self.sides = []
         for fault, its in zip(case.faults, structures.faults, strict=True):
             a, b, c = its.vertices[its.triangles[0]]
@@ -182,7 +181,12 @@ class Contract:
         body = len(self.blocks) - len(insides)
         state = np.where(state >= 100, state - 100 + body, np.where(state >= 0, state + first, AIR))
         if rock.rings:
-            state[taken & decided & ~known & (points[:, 2] < self.highest)] = NOWHERE
+            shapes = [
+                *(v for sheets in structure.sheets for v, _ in sheets),
+                *(b.vertices for b in self.case.bodies),
+            ]
+            top = max(float(each[:, 2].max()) for each in shapes)  # there is air above it
+            state[taken & decided & ~known & (points[:, 2] <= top)] = NOWHERE
         return state, decided
 
     def _history(self, r, points, sheets, insides):

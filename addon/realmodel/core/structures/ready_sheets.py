@@ -109,8 +109,9 @@ class ReadyMesh:
             fault, within = family.dying[number], self._within(family)
             place = torn_beyond(self.work, sheet, faults.shapes[fault], within, self.threads)
             if place is not None:
+                name, near = faults.names[fault], place_text(place)
                 raise InputRefused(
-                    f"it has two heights beyond the tip of fault '{faults.names[fault]}' near {place_text(place)}",
+                    f"it has two heights beyond the tip of fault '{name}' near {near}",
                     advice="extend the fault, or give data beyond the tip that agree",
                     place=tuple(place.tolist()),
                 )
