@@ -60,7 +60,7 @@ def model_of(name, folder):
     [
         ("two_layers", 4, 0.7, 2),
         ("gravel_plain", 12, 2, 6),
-        ("haut_barr", 40, 6, 18),
+        ("castle_hill", 40, 6, 18),
         pytest.param("claudius", 150, 25, 75, marks=data_only),
         pytest.param("drogon", 100, 15, 20, marks=data_only),
         pytest.param("pleasant", 100, 8, 20, marks=data_only),
