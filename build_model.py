@@ -99,6 +99,12 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         type=_sizes,
         help="the cells of regular grids by --export (.csv, .vti, .tif, .asc)",
     )
+    parser.add_argument(
+        "--contour-interval",
+        metavar="H",
+        type=_length,
+        help="the distance of contours in maps by --export (.gpkg, .geojson)",
+    )
     parser.add_argument("--report", metavar="F", type=Path, help="write a report to F.json")
     parser.add_argument("--render", metavar="F", type=Path, help="render a picture to F.png (in Blender)")
     parser.add_argument(
@@ -484,6 +490,7 @@ def _write(
             outputs,
             lambda share, path=path: progress(1.0, f"writing {path.name}"),
             options.cell_size,
+            options.contour_interval,
         )
     if options.blend is not None or options.render is not None:
         _write_with_blender(options, project, model, outputs, progress)

@@ -12,6 +12,7 @@ from ..simulation import PolyhedralMesh
 from .dxf import write_dxf
 from .endings import by_ending
 from .gltf import write_glb
+from .map_files import write_geojson, write_geopackage
 from .meshes import MESH_FORMATS, write_mesh
 from .npz import write_npz
 from .obj import write_mtl, write_obj
@@ -31,9 +32,8 @@ class ModelFormat:
     label, description: of the panel's menu. write(model, path, outputs, step) writes it by outputs.file or
     outputs.folder; step(share) is called now and then, last with 1. folder: what is renewed where the format
     is a folder, "" for a file. has_cell_size: it is a regular grid, and write takes the size of its cells
-    too,
-    as of regular_cells.checked_size.
-    """
+    too, as of regular_cells.checked_size. has_contours: it is a map, and write takes the interval of its
+    contours too, as of contours.checked_interval."""
 
     ending: str
     label: str
@@ -41,6 +41,7 @@ class ModelFormat:
     write: Callable[..., None]
     folder: str = ""
     has_cell_size: bool = False
+    has_contours: bool = False
 
 
 def _file(write: Callable) -> Callable:
@@ -144,6 +145,20 @@ FORMATS: dict[str, ModelFormat] = {
             write_ascii_grids,
             has_cell_size=True,
         ),
+        ModelFormat(
+            ".gpkg",
+            "GeoPackage",
+            "The geological map of the top, and contours, for GIS",
+            write_geopackage,
+            has_contours=True,
+        ),
+        ModelFormat(
+            ".geojson",
+            "GeoJSON",
+            "The geological map of the top, and contours, as text for GIS and the web",
+            write_geojson,
+            has_contours=True,
+        ),
     )
 }
 
@@ -169,21 +184,27 @@ def write_model(
     outputs: Outputs,
     step: Step = no_step,
     cell_size: float | Sequence[float] | None = None,
+    contour_interval: float | None = None,
 ) -> None:
     """Writes a model in the format of the path's ending; it appears with the other outputs. cell_size: of
-    regular grids."""
+    regular grids; contour_interval: of maps."""
     known = format_for(path)
-    known.write(model, path, outputs, step, *([cell_size] if known.has_cell_size else []))
+    more = [cell_size] * known.has_cell_size + [contour_interval] * known.has_contours
+    known.write(model, path, outputs, step, *more)
 
 
 def save_model(
-    model, path: str | Path, step: Step = no_step, cell_size: float | Sequence[float] | None = None
+    model,
+    path: str | Path,
+    step: Step = no_step,
+    cell_size: float | Sequence[float] | None = None,
+    contour_interval: float | None = None,
 ) -> None:
-    """Writes a model to a file, or a folder, that appears whole or not at all. cell_size: of regular
-    grids."""
+    """Writes a model to a file, or a folder, that appears whole or not at all. cell_size: of regular grids;
+    contour_interval: of maps."""
     format_for(path)
     with Outputs() as outputs:
-        write_model(model, path, outputs, step, cell_size)
+        write_model(model, path, outputs, step, cell_size, contour_interval)
 
 
 __all__ = ["FORMATS", "ModelFormat", "format_for", "output_target", "save_model", "write_model"]
