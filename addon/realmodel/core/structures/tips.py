@@ -124,22 +124,27 @@ def nearest(plan: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def blended(
-    heights: dict[tuple[int, ...], np.ndarray], near: dict[tuple[int, ...], np.ndarray], weights: list
+    heights: dict[tuple[int, ...], np.ndarray],
+    near: dict[tuple[int, ...], np.ndarray],
+    on_side: dict[tuple[int, ...], list[np.ndarray]],
+    weights: list,
 ) -> dict:
     """(N,) heights by the sides (+1 or -1 of each fault, 0 where it is not), different as the weights say.
 
     heights: what is seen from each combination of sides that there is. near: (N,) bool, the nodes near its
-    compartment, where it counts. weights: of each fault (N,), 1 where its sides have sheets of their own, 0
-    where they have the same.
+    compartment, where it counts. on_side: of each fault (N,) bool, the nodes that are on that side of it.
+    weights: of each fault (N,), 1 where its sides have sheets of their own, 0 where they have the same.
     """
     result = {}
     for sides, own in heights.items():
         total, whole = np.zeros(len(own)), np.zeros(len(own))
         for other, z in heights.items():
             share = near[other].astype(float)
-            for side, its, weight in zip(sides, other, weights, strict=True):
-                alike = side == its or side * its == 0
-                share = share * (0.5 + 0.5 * weight if alike else 0.5 - 0.5 * weight)
+            for fault, (side, its, weight) in enumerate(zip(sides, other, weights, strict=True)):
+                alike = side == its  # where one has no such fault: on the side that the other is on
+                if not alike and 0 in (side, its):
+                    alike = on_side[sides if side else other][fault]
+                share = share * np.where(alike, 0.5 + 0.5 * weight, 0.5 - 0.5 * weight)
             total, whole = total + np.where(share == 0.0, 0.0, share * z), whole + share
         result[sides] = np.where(near[sides], total / np.where(whole > 0, whole, 1.0), own)
     return result
@@ -188,7 +193,7 @@ def with_equal_ends(
     continuations = [native_module().structure_continuation(fault.native(), box) for fault in faults]
     weights = [np.ones(len(plan)) for _ in faults]
     while True:
-        found = blended(heights, near, weights)
+        found = blended(heights, near, on_side, weights)
         settled = True
         for number, fault in enumerate(faults):
             beyond = np.zeros(len(plan), bool)
