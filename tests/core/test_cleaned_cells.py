@@ -245,14 +245,14 @@ def test_a_half_is_cleaned():
 
 
 @pytest.fixture(scope="module")
-def haut_barr():
-    return build(load_project(SAMPLES / "haut_barr" / "project.toml"))
+def castle_hill():
+    return build(load_project(SAMPLES / "castle_hill" / "project.toml"))
 
 
 @foam_only
-def test_check_mesh_finds_no_short_edges_and_turned_cells(haut_barr, tmp_path):
+def test_check_mesh_finds_no_short_edges_and_turned_cells(castle_hill, tmp_path):
     """The exact cells fail nine checks; at 1 m short edges, flat and turned cells are gone."""
-    haut_barr.save(tmp_path / "m.foam", tolerance=1.0)
+    castle_hill.save(tmp_path / "m.foam", tolerance=1.0)
     told = run_foam("checkMesh", tmp_path / "m.foam", "-allGeometry", "-allTopology")
     assert "Mesh has 3 solution" in told
     for what in (
@@ -268,9 +268,9 @@ def test_check_mesh_finds_no_short_edges_and_turned_cells(haut_barr, tmp_path):
     assert int(found[1]) < 6000  # of 10,957
 
 
-def test_it_can_be_stopped(haut_barr):
+def test_it_can_be_stopped(castle_hill):
     with pytest.raises(Cancelled):
-        haut_barr.cleaned_cells(2.0, cancel=lambda: True)
+        castle_hill.cleaned_cells(2.0, cancel=lambda: True)
 
 
 @pytest.mark.parametrize("ending", [".vtu", ".foam", ".exo", ".disu"])

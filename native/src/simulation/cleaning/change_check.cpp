@@ -11,8 +11,8 @@ namespace {
 /// Cells of more faces (whole blocks) are tested around the change only.
 constexpr std::size_t kFewFaces = 48;
 constexpr std::size_t kLeastFaces = 3;
-/// Of the area to the power of 3/2: volumes above this are not made by rounding.
-constexpr double kLeastVolume = 1e-13;
+/// Of the area to the power of 3/2. Cells of less volume count as flat.
+constexpr double kLeastVolume = 1e-8;
 
 bool is_flat(const CellShape& cell) {
     return cell.volume <= kLeastVolume * cell.area * std::sqrt(cell.area);
