@@ -100,6 +100,12 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         help="the cells of regular grids by --export (.csv, .vti, .tif, .asc)",
     )
     parser.add_argument(
+        "--contour-interval",
+        metavar="H",
+        type=_length,
+        help="the distance of contours in maps by --export (.gpkg, .geojson)",
+    )
+    parser.add_argument(
         "--cell-tolerance",
         metavar="T",
         type=_length,
@@ -511,6 +517,7 @@ def _write(
             outputs,
             lambda share, path=path: progress(1.0, f"writing {path.name}"),
             options.cell_size,
+            options.contour_interval,
             cells,
         )
     if options.blend is not None or options.render is not None:

@@ -13,6 +13,7 @@ from ..simulation import PolyhedralMesh
 from .dxf import write_dxf
 from .endings import by_ending
 from .gltf import write_glb
+from .map_files import write_geojson, write_geopackage
 from .meshes import MESH_FORMATS, write_mesh
 from .npz import write_npz
 from .obj import write_mtl, write_obj
@@ -32,7 +33,9 @@ class ModelFormat:
     label, description: of the panel's menu. write(model, path, outputs, step) writes it by outputs.file or
     outputs.folder; step(share) is called now and then, last with 1. folder: what is renewed where the format
     is a folder, "" for a file. has_cell_size: it is a regular grid, and write takes the size of its cells
-    too, as of regular_cells.checked_size. has_cells: it has the model's cells, and write takes these, too.
+    too, as of regular_cells.checked_size. has_contours: it is a map, and write takes the interval of its
+    contours too, as of contours.checked_interval. has_cells: it has the model's cells, and write takes these,
+    too.
     """
 
     ending: str
@@ -42,6 +45,7 @@ class ModelFormat:
     folder: str = ""
     has_cell_size: bool = False
     has_cells: bool = False
+    has_contours: bool = False
 
 
 def _file(write: Callable) -> Callable:
@@ -154,6 +158,20 @@ FORMATS: dict[str, ModelFormat] = {
             write_ascii_grids,
             has_cell_size=True,
         ),
+        ModelFormat(
+            ".gpkg",
+            "GeoPackage",
+            "The geological map of the top, and contours, for GIS",
+            write_geopackage,
+            has_contours=True,
+        ),
+        ModelFormat(
+            ".geojson",
+            "GeoJSON",
+            "The geological map of the top, and contours, as text for GIS and the web",
+            write_geojson,
+            has_contours=True,
+        ),
     )
 }
 
@@ -179,12 +197,15 @@ def write_model(
     outputs: Outputs,
     step: Step = no_step,
     cell_size: float | Sequence[float] | None = None,
+    contour_interval: float | None = None,
     cells: PolyhedralMesh | None = None,
 ) -> None:
     """Writes a model in the format of the path's ending; it appears with the other outputs. cell_size: of
-    regular grids. cells: of formats with the model's cells, in place of the exact ones."""
+    regular grids; contour_interval: of maps; cells: of formats with the model's cells, in place of the exact
+    ones."""
     known = format_for(path)
-    more = [cell_size] if known.has_cell_size else [cells] if known.has_cells else []
+    more = [cell_size] * known.has_cell_size + [contour_interval] * known.has_contours
+    more += [cells] * known.has_cells
     known.write(model, path, outputs, step, *more)
 
 
@@ -193,16 +214,18 @@ def save_model(
     path: str | Path,
     step: Step = no_step,
     cell_size: float | Sequence[float] | None = None,
+    contour_interval: float | None = None,
     tolerance: float | None = None,
 ) -> None:
-    """Writes a model to a file, or a folder, that appears whole or not at all. cell_size: of regular
-    grids. tolerance: of formats with the model's cells, to clean these. Raises UsageError."""
+    """Writes a model to a file, or a folder, that appears whole or not at all. cell_size: of regular grids;
+    contour_interval: of maps; tolerance: of formats with the model's cells, to clean these. Raises
+    UsageError."""
     known = format_for(path)
     if tolerance is not None and not known.has_cells:
         raise UsageError(f"{path}: {known.label} has no polyhedral cells: it takes no tolerance")
     cells = None if tolerance is None else model.cleaned_cells(tolerance, threads=model.threads)
     with Outputs() as outputs:
-        write_model(model, path, outputs, step, cell_size, cells)
+        write_model(model, path, outputs, step, cell_size, contour_interval, cells)
 
 
 __all__ = ["FORMATS", "ModelFormat", "format_for", "output_target", "save_model", "write_model"]
