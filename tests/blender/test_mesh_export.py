@@ -80,3 +80,15 @@ class MeshExport(PanelCase):
         ops.export(filepath=str(path), contour_interval=5.0)
         shown_models.whole(self.scene).save(expected, contour_interval=5.0)
         self.assertEqual(path.read_bytes(), expected.read_bytes())
+
+    def test_cells_are_cleaned_to_a_tolerance(self):
+        self.open_two_layers()
+        path, expected = self.folder / "m.vtu", self.folder / "e.vtu"
+        ops.export(filepath=str(path), cell_tolerance=0.5)
+        shown_models.whole(self.scene).save(expected, tolerance=0.5)
+        self.assertEqual(path.read_bytes(), expected.read_bytes())
+        ops.export(filepath=str(expected))
+        self.assertLess(path.stat().st_size, expected.stat().st_size)
+        self.refused(
+            ops.export, "takes no tolerance", filepath=str(self.folder / "m.stl"), cell_tolerance=0.5
+        )

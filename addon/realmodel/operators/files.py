@@ -129,11 +129,24 @@ class REALMODEL_OT_export(Exporting, bpy.types.Operator):
         default=0.0,
     )
 
+    cell_tolerance: FloatProperty(
+        name="Cell Tolerance",
+        description="Of polyhedral cells (VTK, OpenFOAM, Exodus II, DISU), in model units: shorter edges, and "
+        "thinner faces and cells, vanish. 0: the exact cells",
+        min=0.0,
+        default=0.0,
+    )
+
     def write(self, context, path):
         size = self.cell_size[:] if any(self.cell_size) else None
-        interval = self.contour_interval or None
         model = shown_models.whole(context.scene)
-        save_model(model, path, cell_size=size, contour_interval=interval)
+        save_model(
+            model,
+            path,
+            cell_size=size,
+            contour_interval=self.contour_interval or None,
+            tolerance=self.cell_tolerance or None,
+        )
 
 
 class REALMODEL_OT_export_mesh(InBackground, Exporting, bpy.types.Operator):
