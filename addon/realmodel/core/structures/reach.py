@@ -79,9 +79,12 @@ class Reach:
         beyond = native_module().structure_continuation(fault.native(), self.structures.box)
         own, beyond = self._passed(fault.vertices[fault.triangles]), self._passed(beyond)
         part = _hanging_together(~(own | beyond))
-        middles = self._middles()
-        side = fault_sides(work, middles.reshape(-1, 3), fault, threads).reshape(self.cells)
         beside = _wider(own) & (part >= 0)
+        middles = self._middles()
+        # the first and the last of all, too: the fault is continued as far as the points reach
+        asked = np.concatenate([middles[beside], middles[[0, -1], [0, -1], [0, -1]]])
+        side = np.zeros(self.cells, np.int8)
+        side[beside] = fault_sides(work, asked, fault, threads)[:-2]
         found = np.full(self.cells, _BOTH, np.uint8)
         for number in np.unique(part[beside]):
             seen = side[beside & (part == number)]
