@@ -131,7 +131,7 @@ class REALMODEL_OT_export(Exporting, bpy.types.Operator):
 
     cell_tolerance: FloatProperty(
         name="Cell Tolerance",
-        description="Of polyhedral cells (VTK, OpenFOAM, Exodus II, DISU), in model units: shorter edges, and "
+        description="Of polyhedral cells (VTK, OpenFOAM, Exodus II, DISU), in model units: shorter edges and "
         "thinner faces and cells, vanish. 0: the exact cells",
         min=0.0,
         default=0.0,
