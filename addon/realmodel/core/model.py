@@ -64,6 +64,7 @@ class Model:
     surface_kind: np.ndarray | None = None
     cell_compartment: np.ndarray | None = None
     compartment_names: list[str] = field(default_factory=list)
+    compartment_sides: np.ndarray | None = field(default=None, repr=False)
     structures: Structures | None = field(default=None, repr=False)
 
     def __post_init__(self):
