@@ -73,8 +73,8 @@ class ClosedForm:
         return found
 
     def _sides(self, shape: FaultShape, points: np.ndarray) -> np.ndarray:
-        """(N,) the side of a fault on which each point lies: of what the fault is continued by where the border
-        of the fault is nearest."""
+        """(N,) the side of a fault on which each point lies; where its border is nearest, that of what it is
+        continued by."""
         corners = shape.vertices[shape.triangles]
         nearest = corners[_nearest_triangles(points, corners)]
         sides = orient3d(*nearest.transpose(1, 0, 2), points)
