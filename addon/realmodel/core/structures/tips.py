@@ -14,7 +14,15 @@ import numpy as np
 
 from ..work import Work, native_module
 from .sides import FaultShape, Triangulation, fault_sides
-from .triangles import crossing_pairs, distances_of_pairs, edges_of, open_edges, segments_hit, shares_hit
+from .triangles import (
+    crossing_pairs,
+    distances_of_pairs,
+    edges_of,
+    open_edges,
+    pairs_at_planes,
+    segments_hit,
+    shares_hit,
+)
 
 _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
 _AT_ONCE = 1 << 21
@@ -92,7 +100,7 @@ def on_fault(points: np.ndarray, fault: FaultShape) -> np.ndarray:
     for axis in range(3):
         inside &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
     some = np.flatnonzero(inside)
-    pairs = crossing_pairs(boxes[some], vertices[triangles])
+    pairs = pairs_at_planes(boxes[some], vertices[triangles])
     away = distances_of_pairs(points[some[pairs[:, 0]]], vertices[triangles[pairs[:, 1]]])
     found[some[pairs[away <= near, 0]]] = True
     return found
