@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "arrangement/joined_polygons.hpp"
-#include "base/parallel_sort.hpp"
+#include "base/counting_sort.hpp"
 #include "cutting/shell.hpp"
 
 namespace realmodel::cutting {
@@ -190,6 +190,7 @@ void SurfaceParts::join_across() {
                                high = slots_[index(pair[1])].cell;
             if (sides_.separates(index(caps.region), low, high)) return false;
             joined_->join(pair[0], pair[1]);
+            has_joined_across_ = true;
             loses_[index(low)] = loses_[index(high)] = 1;
             return true;
         });
@@ -213,7 +214,16 @@ void SurfaceParts::join_parts(Progress* progress) {
         if (first[cell] < 0) first[cell] = static_cast<std::int32_t>(s);
         joined_->join(first[cell], static_cast<std::int32_t>(s));
     }
-    parallel_sort(uses_, std::less<>(), overlay_.threads(), progress);
+    constexpr std::size_t kChunk = 1 << 14;
+    auto sorted = sorted_in_buckets<SlotUse>(
+        cells, (uses_.size() + kChunk - 1) / kChunk,
+        [this](std::size_t chunk, const auto& put) {
+            for (std::size_t i = chunk * kChunk; i < std::min(uses_.size(), (chunk + 1) * kChunk);
+                 ++i)
+                put(index(uses_[i].cell), uses_[i]);
+        },
+        overlay_.threads(), progress);
+    uses_ = std::move(sorted.values);
     for (std::size_t begin = 0, end = 0; begin < uses_.size(); begin = end) {
         poll(progress, begin);
         while (end < uses_.size() && uses_[end].cell == uses_[begin].cell &&

@@ -83,9 +83,10 @@ private:
     std::vector<Slot> slots_;
     std::vector<Patch> patches_;
     std::vector<Caps> caps_;
-    std::vector<SlotUse> uses_;
+    Array<SlotUse> uses_;  ///< once sorted: those of one cell, half and edge side by side
     std::optional<DisjointSets> joined_;  ///< slots of the same part
     std::vector<std::int32_t> part_;      ///< of slots
+    bool has_joined_across_ = false;      ///< some parts are of several cells
     std::vector<std::uint8_t> loses_;     ///< of the model's cells: a part of it is left out
 };
 
