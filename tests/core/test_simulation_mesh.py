@@ -55,7 +55,7 @@ def thicknesses(mesh):
 
 @pytest.mark.parametrize(
     ("sample", "edge", "thickness", "deviation"),
-    [("two_layers", 4.0, 0.2, 0.003), ("haut_barr", 13.0, 0.5, 0.02), ("gravel_plain", 15.0, 0.5, 0.03)],
+    [("two_layers", 4.0, 0.2, 0.003), ("castle_hill", 13.0, 0.5, 0.02), ("gravel_plain", 15.0, 0.5, 0.03)],
 )
 @pytest.mark.parametrize("elements", ["prisms", "tetrahedra"])
 def test_samples(sample, edge, thickness, deviation, elements):

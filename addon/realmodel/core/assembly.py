@@ -111,7 +111,7 @@ def assemble(
         kinds = [0] * len(names)
         if structures is not None:
             names += structures.names
-            kinds += [1] * len(structures.faults) + [2] * len(structures.bodies)
+            kinds += structures.kinds
         compartment, compartment_names = cell_compartments(inputs, built, structures)
         model = kind(
             **arrays,

@@ -146,8 +146,10 @@ class Model:
 
         The volume of a block just before the surface, less that just after. For each surface that cuts the
         model is built once more up to the surface before, with whole blocks as cells; what rounding alone
-        makes is given as 0. Raises Cancelled.
+        makes is given as 0. Raises UsageError where the model is a half, Cancelled.
         """
+        if self.is_cut:
+            raise UsageError("a cut model has no erosion: ask the whole model")
         return eroded(self, self.threads, progress, cancel)
 
     def validate(

@@ -80,8 +80,9 @@ bool WantedParts::ends_itself(std::int32_t cell, std::size_t region) const {
     return cell < 0 || !is_at(0) || !is_at(1);
 }
 
-/// The last structure that acts between two cells, -1 none. It must part their sides. What a fault
-/// cuts off against no rock lies against what is below the oldest surface, which it displaces.
+/// The last structure that acts between two cells, -1 none. It must part their sides. What is cut
+/// off against no rock lies against what is below the oldest surface: a fault displaces that, too,
+/// and what fills a void from a base elevation may have it beside it.
 std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int32_t high) const {
     const Sides& below = sides_.sides(sides_.part_at(region, 0));
     const Sides& above = sides_.sides(sides_.part_at(region, 1));
@@ -92,7 +93,7 @@ std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int3
         const auto s = index(of.structure);
         if (!of.is_own || below[s] == above[s]) continue;
         if (does_act(of.structure, low) || does_act(of.structure, high)) found = of.structure;
-        if (is_cut_off && sides_.is_fault(of.structure)) last = of.structure;
+        if (is_cut_off) last = of.structure;
     }
     return found >= 0 ? found : last;
 }

@@ -181,7 +181,12 @@ class Contract:
         body = len(self.blocks) - len(insides)
         state = np.where(state >= 100, state - 100 + body, np.where(state >= 0, state + first, AIR))
         if rock.rings:
-            state[taken & decided & ~known] = NOWHERE
+            shapes = [
+                *(v for sheets in structure.sheets for v, _ in sheets),
+                *(b.vertices for b in self.case.bodies),
+            ]
+            top = max(float(each[:, 2].max()) for each in shapes)  # there is air above it
+            state[taken & decided & ~known & (points[:, 2] <= top)] = NOWHERE
         return state, decided
 
     def _history(self, r, points, sheets, insides):

@@ -71,7 +71,7 @@ def model_report(
     if model.structures is not None:
         report["compartments"] = _compartments(model)
         report["faults"] = _faults(model)
-        report["bodies"] = _bodies(model)
+        report["bodies"] = [body_entry(body) for body in model.structures.bodies]
     if erosion is not None:
         report["erosion"] = _erosion(model, erosion)
     if mesh is not None:
@@ -147,11 +147,7 @@ def _faults(model) -> list[dict]:
     found = displacements(model)
     return [
         {
-            "name": fault.name,
-            "triangles": len(fault.triangles),
-            "youngest": fault.youngest,
-            "ends_at": list(fault.ends_at),
-            "dies_out": fault.dies_out,
+            **fault_entry(fault),
             "surfaces": [
                 {
                     "rock": each.rock,
@@ -167,15 +163,24 @@ def _faults(model) -> list[dict]:
     ]
 
 
+def fault_entry(fault) -> dict:
+    """What is told of a fault without a model."""
+    return {
+        "name": fault.name,
+        "triangles": len(fault.triangles),
+        "youngest": fault.youngest,
+        "ends_at": list(fault.ends_at),
+        "dies_out": fault.dies_out,
+    }
+
+
 def _mean_and_largest(values: np.ndarray) -> dict:
     return {"mean": float(values.mean()), "max": float(values[np.abs(values).argmax()])}
 
 
-def _bodies(model) -> list[dict]:
-    return [
-        {"name": body.name, "triangles": len(body.triangles), "after": body.after, "void": body.void}
-        for body in model.structures.bodies
-    ]
+def body_entry(body) -> dict:
+    """What is told of a body."""
+    return {"name": body.name, "triangles": len(body.triangles), "after": body.after, "void": body.void}
 
 
 def _block(model, number: int, total: float, deviation: float) -> dict:

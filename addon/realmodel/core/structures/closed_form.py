@@ -107,8 +107,11 @@ class ClosedForm:
         state = np.full(len(points), AIR, np.int64)
         covered = np.zeros(len(points), bool)
         protected = np.zeros(len(points), bool)
-        for k, (rule, sheet) in enumerate(zip(self.rules, sheets, strict=True)):
-            heights = heights_at(points[:, :2], *sheet, self._grid(sheet))
+        every = [heights_at(points[:, :2], *sheet, self._grid(sheet)) for sheet in sheets]
+        if self.region is None:  # the rock mass reaches as far as its surfaces
+            reached = ~np.isnan(every).all(axis=0)
+            insides = [inside & reached for inside in insides]
+        for k, (rule, heights) in enumerate(zip(self.rules, every, strict=True)):
             exists = ~np.isnan(heights)
             below, above = exists & (points[:, 2] < heights), exists & (points[:, 2] > heights)
             if RULES[rule].cuts:
