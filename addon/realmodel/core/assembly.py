@@ -112,12 +112,13 @@ def assemble(
         if structures is not None:
             names += structures.names
             kinds += structures.kinds
-        compartment, compartment_names = cell_compartments(inputs, built, structures)
+        compartment, compartment_names, sides = cell_compartments(inputs, built, structures)
         model = kind(
             **arrays,
             surface_kind=np.array(kinds, np.int32),
             cell_compartment=compartment,
             compartment_names=compartment_names,
+            compartment_sides=sides,
             structures=structures,
             cell_kind=cells,
             blocks=blocks,

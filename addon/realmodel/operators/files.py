@@ -4,7 +4,7 @@
 from pathlib import Path
 
 import bpy
-from bpy.props import EnumProperty, FloatVectorProperty, StringProperty
+from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ..bl import results
@@ -102,9 +102,18 @@ class REALMODEL_OT_export(Exporting, bpy.types.Operator):
         subtype="XYZ",
     )
 
+    contour_interval: FloatProperty(
+        name="Contour Interval",
+        description="Of maps (GeoPackage, GeoJSON), in model units; 0: automatic",
+        min=0.0,
+        default=0.0,
+    )
+
     def write(self, context, path):
         size = self.cell_size[:] if any(self.cell_size) else None
-        save_model(shown_models.whole(context.scene), path, cell_size=size)
+        interval = self.contour_interval or None
+        model = shown_models.whole(context.scene)
+        save_model(model, path, cell_size=size, contour_interval=interval)
 
 
 class REALMODEL_OT_report(Exporting, bpy.types.Operator):

@@ -137,6 +137,19 @@ std::int32_t WantedParts::wanted_at(std::size_t region, std::size_t side) const 
     return -1;
 }
 
+/// Whether the models on both sides of a region have the same blocks there, each by itself.
+bool WantedParts::is_there_without_structures(std::size_t region, std::int32_t low,
+                                              std::int32_t high) const {
+    const auto has = [&](std::size_t side, std::int32_t cell) {
+        const std::int32_t model = model_of_part_[sides_.part_at(region, 1 - side)];
+        return std::ranges::any_of(winding_.around(region, side), [&](const auto& one) {
+            return one.second > 0 && model_of_cell_[index(one.first)] == model &&
+                   overlay_.model().block(one.first) == overlay_.model().block(cell);
+        });
+    };
+    return has(0, low) && has(1, high);
+}
+
 /// Whether a region of the surface is narrower than rounding may have made it.
 bool WantedParts::is_sliver(std::size_t region) const {
     double length = 0, area = 0, rounding = 0;
@@ -187,12 +200,14 @@ void WantedParts::find_same(std::size_t region) {
         return sides_.sides(sides_.part_at(region, 0))[s] !=
                sides_.sides(sides_.part_at(region, 1))[s];
     };
-    // beyond its tip, surfaces that are torn on both sides are displaced still
+    // beyond its tip, surfaces that are torn are displaced still, but for walls of both models
     const bool is_beyond_tip =
         low >= 0 && high >= 0 && std::ranges::any_of(structures, [&](const RegionOf& of) {
             return !of.is_own && sides_.dies_out(of.structure) && parts_sides(of);
         });
-    if (!is_beyond_tip && ends_itself(low, region) && ends_itself(high, region)) return;
+    if (ends_itself(low, region) && ends_itself(high, region) &&
+        (!is_beyond_tip || is_there_without_structures(region, low, high)))
+        return;
     const auto fault = std::ranges::find_if(structures, parts_sides);
     sides_.refuse("ends_inside",
                   "the fault ends in the rock: what is beyond differs on its two sides",

@@ -74,7 +74,7 @@ def _faults(rng, names, masses):
     found = []
     for n in range(rng.choice([0, 1, 1, 1, 2, 2, 3])):
         kind = rng.choice(shapes.KINDS)
-        dies_out = kind not in ("listric", "overturned", "rough", "wall", "flat") and rng.random() < 0.2
+        dies_out = kind not in ("listric", "overturned", "rough", "wall", "flat") and rng.random() < 0.3
         tip = rng.uniform(-2, 2) if dies_out else None
         vertices, triangles, uv = shapes.fault_surface(rng, kind, tip)
         fault = FaultCase(f"F{n}", vertices, triangles, np.zeros((0, 3), np.int32), dies_out=dies_out)

@@ -20,9 +20,6 @@ def _may_be_refused(text, case):
     """Whether a refusal is one that the program documents, of a case that it fits."""
     if "there is no base elevation that they fill it from" in text:
         return any(body.void and body.after for body in case.bodies)
-    if "beyond its tip the surfaces differ" in text:
-        # where another fault cuts it short, the data seen from its two sides may disagree within a triangle
-        return len(case.faults) > 1 and any(fault.dies_out for fault in case.faults)
     return False
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..erosion import Erosion
-from ..simulation import mesh_entry
+from ..simulation import cleaned_entry, mesh_entry
 from ..structures.displacement import displacements
 from ..surface_heights import used_vertices
 from ..validation import PLACES_OF_REPORT, ValidationReport
@@ -27,11 +27,13 @@ def model_report(
     validation: ValidationReport | None = None,
     erosion: Erosion | None = None,
     mesh=None,
+    cells=None,
 ) -> dict:
     """The report's content. Volumes are in model units cubed, times in seconds, memory in bytes.
 
     validation: what Model.validate found; it is asked now where none is given. erosion: what Model.eroded
-    found; mesh: a SimulationMesh of it; without them the report says nothing of that.
+    found; mesh: a SimulationMesh of it; cells: its CleanedCells; without them the report says nothing of
+    that.
     """
     validation = validation or model.validate(PLACES_OF_REPORT, threads=model.threads)
     total = model.volume
@@ -76,6 +78,8 @@ def model_report(
         report["erosion"] = _erosion(model, erosion)
     if mesh is not None:
         report["mesh"] = mesh_entry(mesh)
+    if cells is not None:
+        report["cleaned_cells"] = cleaned_entry(cells)
     return report
 
 
@@ -268,7 +272,8 @@ def write_report(
     validation: ValidationReport | None = None,
     erosion: Erosion | None = None,
     mesh=None,
+    cells=None,
 ) -> None:
     """Writes the report as UTF-8 JSON to an open binary file."""
-    report = model_report(model, stage, validation, erosion, mesh)
+    report = model_report(model, stage, validation, erosion, mesh, cells)
     file.write(f"{json.dumps(report, indent=2, ensure_ascii=False, allow_nan=False)}\n".encode())

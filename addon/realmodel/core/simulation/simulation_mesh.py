@@ -16,11 +16,11 @@ from ..method_options import check_threads
 from ..planar_mesh import mesh_rings
 from ..work import Cancel, Progress, Work, native_module, run
 from .tetrahedra import divided, divided_quadrilaterals
-from .volume_mesh import PlanMesh, VolumeMesh
+from .volume_mesh import PlanMesh, VolumeMesh, model_arrays
+from .volume_warnings import changed_volumes
 
 ELEMENTS = ("prisms", "tetrahedra")
 MESHER = "frontal"
-_MOST_CHANGE = 0.1  # of a block's volume, without a warning
 _THINNEST = 1e-9  # of the largest coordinate: nearer than this, doubles leave no room for a layer
 
 
@@ -86,7 +86,7 @@ def simulation_mesh(
         )
 
     def task(work: Work) -> SimulationMesh:
-        arrays = _arrays(model)
+        arrays = model_arrays(model)
         rocks = np.array([block.rock for block in model.blocks], np.int32)
         sizes = local_lengths(size, [], None)
         with work.phase(0.0, 0.2, "simplifying lines"):
@@ -165,13 +165,6 @@ def _refuse_what_has_no_columns(model) -> None:
                 )
 
 
-def _arrays(model) -> dict:
-    return {
-        name: getattr(model, name)
-        for name in ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
-    }
-
-
 def _with_lines(size, inner: list[np.ndarray]) -> list[Mapping]:
     """`size` for the planar mesh; without lines inside there is nothing that "constraints" would mean."""
     return [entry for entry in size if inner or entry.get("at") != "constraints"]
@@ -220,21 +213,12 @@ def _assembled(model, made: dict, wanted: str) -> SimulationMesh:
         ),
         volumes=made["volumes"],
         exact_volumes=np.array([block.volume for block in model.blocks]),
-        warnings=_changes(model, made["volumes"]),
+        warnings=changed_volumes(
+            model,
+            made["volumes"],
+            "a shorter edge length or a smaller minimum thickness changes less",
+        ),
     )
-
-
-def _changes(model, volumes: np.ndarray) -> list[BuildWarning]:
-    return [
-        BuildWarning(
-            f"block '{block.name}' has a volume of {volume:.6g} in the mesh, and of {block.volume:.6g} in "
-            "the model; a shorter edge length or a smaller minimum thickness changes less",
-            "mesh_volume",
-            model.rock_inputs[block.rock].rock.name,
-        )
-        for block, volume in zip(model.blocks, volumes, strict=True)
-        if abs(volume - block.volume) > _MOST_CHANGE * block.volume
-    ]
 
 
 def mesh_entry(mesh: SimulationMesh) -> dict:

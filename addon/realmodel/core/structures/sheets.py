@@ -86,7 +86,7 @@ def _make(entry, number: int, surface) -> None:
             sources = dict.fromkeys(sources, max(made, key=lambda key: (counts[key], key)))
         for family in lacking:
             if (source := sources[family.key]) is not None:
-                made[family.key] = _taken_over(family, made[source])
+                made[family.key] = _taken_over(surface, family, made[source])
                 _tell(entry, number, surface, family, next(each for each in every if each.key == source))
         lacking = [family for family in lacking if family.key not in made]
     for family in every:
@@ -103,10 +103,13 @@ def _neighbor(key, made, counts):
     return max(near, key=lambda other: (counts[other], other), default=None)
 
 
-def _taken_over(family: Family, sheets: dict) -> dict:
+def _taken_over(surface, family: Family, sheets: dict) -> dict:
     """Sheets of another family by the sides of this one: the faults that die out may be others."""
     first = next(iter(sheets.values()))
-    return {sides: sheets.get(sides, first) for sides in family.members.values()}
+    taken = {sides: sheets.get(sides, first) for sides in family.members.values()}
+    drawn = surface.drawn_together(family, taken)
+    same = all(np.array_equal(drawn[sides][0], sheet[0]) for sides, sheet in taken.items())
+    return taken if same else drawn
 
 
 def _tell(entry, number: int, surface, family: Family, source: Family) -> None:

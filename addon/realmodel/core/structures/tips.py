@@ -14,12 +14,13 @@ import numpy as np
 
 from ..work import Work, native_module
 from .sides import FaultShape, Triangulation, fault_sides
-from .triangles import crossing_pairs, distances_of_pairs, edges_of, segments_hit
+from .triangles import crossing_pairs, distances_of_pairs, edges_of, open_edges, segments_hit, shares_hit
 
 _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
 _AT_ONCE = 1 << 21
 _HALVINGS = 30  # a billionth of an edge
 _PASSES = 2
+_SHARES = (np.arange(16) + 0.5) / 16  # of a line: where it is looked at
 
 Within = Callable[[np.ndarray], np.ndarray]
 
@@ -106,11 +107,7 @@ def _hit_shares(begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.nda
     for start in range(0, len(pairs), 1 << 16):
         segment, triangle = pairs[start : start + (1 << 16)].T
         hit = segments_hit(begin[segment], end[segment], corners[triangle])
-        a, b, c = corners[triangle[hit]].transpose(1, 0, 2)
-        normal = np.cross(b - a, c - a)
-        low = ((begin[segment[hit]] - a) * normal).sum(axis=1)
-        high = ((end[segment[hit]] - a) * normal).sum(axis=1)
-        found[segment[hit]] = low / (low - high)
+        found[segment[hit]] = shares_hit(begin[segment[hit]], end[segment[hit]], corners[triangle[hit]])
     return found
 
 
@@ -179,12 +176,12 @@ def with_equal_ends(
         known = np.isfinite(low[:, 2])
         low[:, 2], high[:, 2] = (np.where(known, each[:, 2], 0.0) for each in (low, high))
         inside = known & within(low) & within(high)
-        entire = np.ascontiguousarray(triangles[inside[triangles].all(axis=1)])
-        doubtful = [entire[_met(work, fault, low, high, entire, threads) > 0] for fault in faults]
+        whole = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
+        doubtful = [whole[_met(work, fault, low, high, whole, threads) > 0] for fault in faults]
         for nodes, some in zip(passed, doubtful, strict=True):
             nodes[some] = True
-    crossed = np.ascontiguousarray(triangles[(known & ~inside)[triangles].any(axis=1)])
-    crossed = crossed[known[crossed].all(axis=1)]
+    box = np.array([low[known].min(axis=0, initial=np.inf), high[known].max(axis=0, initial=-np.inf)])
+    continuations = [native_module().structure_continuation(fault.native(), box) for fault in faults]
     weights = [np.ones(len(plan)) for _ in faults]
     while True:
         found = blended(heights, near, weights)
@@ -196,12 +193,14 @@ def with_equal_ends(
                 some = np.ascontiguousarray(some[near[sides][some].any(axis=1)])
                 sheet = np.column_stack([plan, np.where(known, z, 0.0)])
                 met = _met(work, fault, sheet, sheet, some, threads)
-                beyond[some[met == _PASSES]] = True
+                passes = met == _PASSES
+                divided = np.flatnonzero(passes & ~inside[some].all(axis=1))
+                passes[divided] = _meet_within(sheet[some[divided]], continuations[number], within)
+                beyond[some[passes]] = True
                 touched = np.unique(some[met > 0]).astype(np.int32)
+                touched = touched[inside[touched]]
                 alone = np.repeat(touched[:, None], 3, axis=1)
                 beyond[touched[_met(work, fault, sheet, sheet, alone, threads) > 0]] = True
-                if len(crossed):
-                    beyond |= _beyond(work, plan, z, crossed, fault, within, threads)
             if (beyond & (weights[number] > 0)).any():
                 before = weights[number] == 0
                 weights[number] = _weight(plan, beyond | before, ramp)
@@ -244,13 +243,56 @@ def shared(sheets: dict[tuple[int, ...], Triangulation]) -> dict[tuple[int, ...]
     return {sides: known.setdefault(sheet[0].tobytes(), sheet) for sides, sheet in sheets.items()}
 
 
-def _beyond(work: Work, plan, z, triangles, fault: FaultShape, within: Within, threads: int) -> np.ndarray:
-    """(N,) bool: the nodes of those of some triangles through which a fault would go on in a compartment
-    whose border passes them."""
-    used, numbers = np.unique(triangles, return_inverse=True)
-    sheet = np.column_stack([plan[used], z[used]]), numbers.reshape(-1, 3)
-    found = np.zeros(len(plan), bool)
-    found[used[trace_of(work, sheet, fault, within, threads).beyond]] = True
+def torn_beyond(
+    work: Work, sheet: Triangulation, fault: FaultShape, within: Within, threads: int = 0
+) -> np.ndarray | None:
+    """(3,) a place in a compartment at which a sheet has two heights along a line in which a fault would go
+    on beyond its ends; None where there is none."""
+    vertices, triangles = sheet
+    ends = vertices[open_edges(vertices, triangles)]
+    swap = (ends[:, 0, 0] > ends[:, 1, 0]) | (
+        (ends[:, 0, 0] == ends[:, 1, 0]) & (ends[:, 0, 1] > ends[:, 1, 1])
+    )
+    ends[swap] = ends[swap, ::-1]
+    lines, line = np.unique(ends[:, :, :2].reshape(-1, 4), axis=0, return_inverse=True)
+    low, high = np.full((len(lines), 2), np.inf), np.full((len(lines), 2), -np.inf)
+    np.minimum.at(low, line.ravel(), ends[:, :, 2])
+    np.maximum.at(high, line.ravel(), ends[:, :, 2])
+    torn = (low < high).any(axis=1)
+    low, high = (_along(np.dstack([lines[torn].reshape(-1, 2, 2), z[torn]])) for z in (low, high))
+    alone = np.repeat(np.arange(len(low), dtype=np.int32)[:, None], 3, axis=1)
+    on = np.all([_met(work, fault, places, places, alone, threads) > 0 for places in (low, high)], axis=0)
+    middles = (low + high)[on] / 2
+    middles = middles[within(middles)]
+    return middles[0] if len(middles) else None
+
+
+def _along(lines: np.ndarray) -> np.ndarray:
+    """(16 K, 3) some places along each of some lines (K, 2, 3)."""
+    begin, end = lines[:, :1], lines[:, 1:]
+    return np.ascontiguousarray((begin + _SHARES[None, :, None] * (end - begin)).reshape(-1, 3))
+
+
+def _meet_within(corners: np.ndarray, others: np.ndarray, within: Within) -> np.ndarray:
+    """(K,) bool: the triangles (K, 3, 3) of which places where they meet others (M, 3, 3) are in a
+    compartment."""
+    pairs = crossing_pairs(corners, others)
+    ends = np.full((len(pairs), 6, 3), np.nan)
+    one, other = corners[pairs[:, 0]], others[pairs[:, 1]]
+    for turn, (triangle, edges) in enumerate(((one, other), (other, one))):
+        for corner in range(3):
+            begin, end = edges[:, corner], edges[:, (corner + 1) % 3]
+            hit = segments_hit(begin, end, triangle)
+            share = shares_hit(begin[hit], end[hit], triangle[hit])
+            ends[hit, 3 * turn + corner] = begin[hit] + share[:, None] * (end - begin)[hit]
+    rows = np.flatnonzero(np.isfinite(ends[:, :, 0]).sum(axis=1) > 1)
+    some = ends[rows]
+    at = np.arange(len(rows))
+    first = some[at, np.isfinite(some[:, :, 0]).argmax(axis=1)]
+    last = some[at, np.nan_to_num(np.linalg.norm(some - first[:, None], axis=2), nan=-1.0).argmax(axis=1)]
+    places = _along(np.stack([first, last], axis=1))
+    found = np.zeros(len(corners), bool)
+    found[pairs[rows[within(places).reshape(-1, len(_SHARES)).any(axis=1)], 0]] = True
     return found
 
 

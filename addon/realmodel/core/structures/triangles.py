@@ -152,6 +152,14 @@ def segments_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> n
     return crosses
 
 
+def shares_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(K,) where segments that hit the plane of the triangle of their row do so, 0 to 1 of their lengths."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    low, high = ((begin - a) * normal).sum(axis=1), ((end - a) * normal).sum(axis=1)
+    return low / (low - high)
+
+
 class NoTwoSides(Exception):
     """A surface that returns to itself the other way round; edge: its ends (2, 3)."""
 
