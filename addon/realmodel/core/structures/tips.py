@@ -28,7 +28,8 @@ _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
 _AT_ONCE = 1 << 21
 _HALVINGS = 30  # a billionth of an edge
 _TOUCHES, _PASSES = 1, 2
-_SHARES = (np.arange(16) + 0.5) / 16  # of a line: where it is looked at
+_SHARES = np.array([0.00001, 0.001, 0.03, *(np.arange(1, 16) / 16), 0.97, 0.999, 0.99999])
+"""Of a line: where it is looked at. Another fault may leave no more than its end."""
 
 Within = Callable[[np.ndarray], np.ndarray]
 
@@ -297,7 +298,7 @@ def _lie_in(work: Work, fault: FaultShape, lines: np.ndarray, within: Within, th
 
 
 def _along(lines: np.ndarray) -> np.ndarray:
-    """(16 K, 3) some places along each of some lines (K, 2, 3)."""
+    """(L K, 3) some places along each of some lines (K, 2, 3)."""
     begin, end = lines[:, :1], lines[:, 1:]
     return np.ascontiguousarray((begin + _SHARES[None, :, None] * (end - begin)).reshape(-1, 3))
 
