@@ -173,9 +173,26 @@ bool has_area(std::span<const PlanePosition> corners, double twice_area,
     return std::abs(twice_area) > 4 * (rounding[0] * around[1] + rounding[1] * around[0]);
 }
 
+/// Whether corners lie in the plane that fits them, but for the rounding of their coordinates.
+bool is_flat(std::span<const Position> corners) {
+    constexpr double kUnits = 8;  // in the last place, by which coordinates may be off
+    const Position normal = polygon_normal(corners);
+    double allowed = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        double largest = 0;
+        for (const Position& p : corners)
+            largest = std::max(largest, std::abs(p[axis]));
+        allowed += kUnits * std::abs(normal[axis]) * (std::nextafter(largest, HUGE_VAL) - largest);
+    }
+    return std::ranges::all_of(corners, [&](const Position& p) {
+        return std::abs(dot(normal, minus(p, corners[0]))) <= allowed;
+    });
+}
+
 }  // namespace
 
-/// Whether rounding may have bent a polygon, so that it is no longer convex.
+/// Whether rounding may have bent a polygon, so that it is no longer convex; of joined models,
+/// where nodes of several become one, also whether it is no longer flat.
 bool PartRounding::is_bent(std::size_t piece) const {
     const auto nodes = pieces_.polygons[piece];
     const auto& [face, cells, sides, is_level, parts] = pieces_[piece];
@@ -185,6 +202,7 @@ bool PartRounding::is_bent(std::size_t piece) const {
     for (const NodeId node : nodes)
         corners.push_back(at(node));
     const Position normal = polygon_normal(corners);
+    if (joins_models_ && !is_flat(corners)) return true;
     // what lay on one of the model's surfaces must be convex in plan, the rest as it is seen best
     const bool lay_on_surface = face >= 0 && !is_level && normal[2] != 0;
     const View seen = lay_on_surface ? View({0, 0, normal[2]}) : View(normal);
