@@ -30,8 +30,8 @@ class BatchMesh:
         """Where it will stand. Raises UsageError, OutputFailed."""
         return mesh_target(self.path)
 
-    def make(self, model, threads: int, progress) -> SimulationMesh:
-        """The mesh. Raises as Model.simulation_mesh."""
+    def make(self, model, threads: int, progress=None) -> SimulationMesh:
+        """The mesh. Raises as Model.simulation_mesh. Without progress it is a part of the present job."""
         extent = np.ptp(model.vertices[:, :2], axis=0) if len(model.vertices) else np.zeros(2)
         edge = float(extent.max()) / EDGES_ACROSS if self.edge is None else self.edge
         return model.simulation_mesh(
@@ -41,7 +41,7 @@ class BatchMesh:
             elements=self.elements,
             layer_thickness=self.layer_thickness,
             threads=threads,
-            progress=lambda _share, text: progress(1.0, text),
+            progress=progress and (lambda _share, text: progress(1.0, text)),
         )
 
     def write(self, mesh: SimulationMesh, outputs, unit: str, progress) -> None:

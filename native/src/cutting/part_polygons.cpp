@@ -173,9 +173,26 @@ bool has_area(std::span<const PlanePosition> corners, double twice_area,
     return std::abs(twice_area) > 4 * (rounding[0] * around[1] + rounding[1] * around[0]);
 }
 
+/// Whether corners lie in the plane that fits them, but for the rounding of their coordinates.
+bool is_flat(std::span<const Position> corners) {
+    constexpr double kUnits = 8;  // in the last place, by which coordinates may be off
+    const Position normal = polygon_normal(corners);
+    double allowed = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        double largest = 0;
+        for (const Position& p : corners)
+            largest = std::max(largest, std::abs(p[axis]));
+        allowed += kUnits * std::abs(normal[axis]) * (std::nextafter(largest, HUGE_VAL) - largest);
+    }
+    return std::ranges::all_of(corners, [&](const Position& p) {
+        return std::abs(dot(normal, minus(p, corners[0]))) <= allowed;
+    });
+}
+
 }  // namespace
 
-/// Whether rounding may have bent a polygon, so that it is no longer convex.
+/// Whether rounding may have bent a polygon, so that it is no longer convex; of joined models,
+/// where nodes of several become one, also whether it is no longer flat.
 bool PartRounding::is_bent(std::size_t piece) const {
     const auto nodes = pieces_.polygons[piece];
     const auto& [face, cells, sides, is_level, parts] = pieces_[piece];
@@ -185,6 +202,7 @@ bool PartRounding::is_bent(std::size_t piece) const {
     for (const NodeId node : nodes)
         corners.push_back(at(node));
     const Position normal = polygon_normal(corners);
+    if (joins_models_ && !is_flat(corners)) return true;
     // what lay on one of the model's surfaces must be convex in plan, the rest as it is seen best
     const bool lay_on_surface = face >= 0 && !is_level && normal[2] != 0;
     const View seen = lay_on_surface ? View({0, 0, normal[2]}) : View(normal);
@@ -207,7 +225,7 @@ NodeId PartRounding::add_middle(std::size_t piece) {
         for (std::size_t k = 0; k < 3; ++k)
             middle[k] += (at(node)[k] - first[k]) / static_cast<double>(nodes.size());
     }
-    if (!taken_.insert(middle).second) {
+    if (!taken_.insert(middle)) {
         const std::int32_t face = pieces_[piece].face;
         const bool on_base = face >= 0 && model_.face_surface[index(face)] == kBase;
         middle = free_position_beside(middle, on_base ? Freedom::kLevel : Freedom::kAny, taken_);
@@ -336,7 +354,7 @@ NodeId PartRounding::add_between(const std::array<NodeId, 2>& edge) {
     Position middle;
     for (std::size_t k = 0; k < 3; ++k)
         middle[k] = at(edge[0])[k] + (at(edge[1])[k] - at(edge[0])[k]) / 2;
-    if (!taken_.insert(middle).second) middle = free_position_beside(middle, Freedom::kAny, taken_);
+    if (!taken_.insert(middle)) middle = free_position_beside(middle, Freedom::kAny, taken_);
     new_positions_.push_back(middle);
     return checked_number(vertices_.size() + new_positions_.size(), "vertices and new nodes") - 1;
 }

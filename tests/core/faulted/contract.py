@@ -214,10 +214,6 @@ class Contract:
                     continue
                 if not has_base:  # whether nothing is ever there depends on surfaces to come
                     decided &= ~(inside & ~covered)
-                    if self.case.bodies[b].void:  # what fills it is no more than near to it: see the docs
-                        decided &= ~(inside & (k + 1 < len(sheets)))
-                if self.case.bodies[b].void:
-                    decided &= ~(inside & protected & (k + 1 < len(sheets)))
                 inside = inside & (has_base | (state != NEVER))
                 state[inside] = AIR if self.case.bodies[b].void else 100 + b
         return state, decided
