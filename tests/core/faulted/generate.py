@@ -14,6 +14,7 @@ import numpy as np
 from . import shapes, signs
 from .case import BodyCase, Case, FaultCase, RockCase, SurfaceCase
 from .contract import FaultSides
+from .located import distances
 
 RULES = ("erosional", "erosional", "conformable", "base", "discontinuous")
 STEP = 2.0  # between surfaces, about
@@ -24,6 +25,7 @@ PLACES = [(1.0, (0, 0, 0))] * 5 + [  # scale, shift
     (0.1, (0, 0, 0)),
     (40.115, (4500000.37, 5300000.11, 311.7)),
 ]
+FADES = 3.0  # so far from where a fault is not its throw is less
 RAGGED = 0.3  # of faults that reach no farther than they must
 
 
@@ -74,7 +76,7 @@ def _faults(rng, names, masses):
     found = []
     for n in range(rng.choice([0, 1, 1, 1, 2, 2, 3])):
         kind = rng.choice(shapes.KINDS)
-        dies_out = kind not in ("listric", "overturned", "rough", "wall", "flat") and rng.random() < 0.3
+        dies_out = kind not in ("listric", "overturned", "rough", "wall") and rng.random() < 0.3
         tip = rng.uniform(-2, 2) if dies_out else None
         vertices, triangles, uv = shapes.fault_surface(rng, kind, tip)
         fault = FaultCase(f"F{n}", vertices, triangles, np.zeros((0, 3), np.int32), dies_out=dies_out)
@@ -217,9 +219,12 @@ def _height(rng, k, faults):
         elif kind == "rough":
             z = z + 0.6 * np.random.default_rng(seed).uniform(-1, 1, len(plan))
         for side, (_, throw, fault) in zip(row, faults, strict=True):
-            if fault.dies_out:
-                continue
-            z = z + throw * side / 2
+            share = 1.0
+            if fault.dies_out:  # nothing is displaced where it is not
+                at_level = np.column_stack([plan, np.full(len(plan), level)])
+                away = distances(at_level, fault.vertices[fault.beyond])
+                share = np.clip(away / FADES, 0, 1) ** 2
+            z = z + throw * side / 2 * share
         return np.round(z, 6)
 
     return at

@@ -118,9 +118,12 @@ class ReadyMesh:
 
     def drawn_together(self, family: Family, sheets: dict) -> dict[tuple[int, ...], Triangulation]:
         """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
-        if len({id(sheet) for sheet in sheets.values()}) == 1:
-            return sheets
         vertices, triangles = next(iter(sheets.values()))
+        plans = [sheet[0][:, :2] for sheet in sheets.values()]
+        if len({id(sheet) for sheet in sheets.values()}) == 1 or not all(
+            np.array_equal(plan, plans[0]) for plan in plans
+        ):
+            return sheets
         heights = {sides: sheet[0][:, 2] for sides, sheet in sheets.items()}
         plan = np.ascontiguousarray(vertices[:, :2])
         return self._with_equal_ends(family, range(len(family.dying)), heights, plan, triangles)

@@ -132,21 +132,27 @@ def nearest(plan: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def blended(
-    heights: dict[tuple[int, ...], np.ndarray], near: dict[tuple[int, ...], np.ndarray], weights: list
+    heights: dict[tuple[int, ...], np.ndarray],
+    near: dict[tuple[int, ...], np.ndarray],
+    on_side: dict[tuple[int, ...], list[np.ndarray]],
+    weights: list,
 ) -> dict:
-    """(N,) heights by the sides (+1 or -1 of each fault that dies out), different only as the weights say.
+    """(N,) heights by the sides (+1 or -1 of each fault, 0 where it is not), different as the weights say.
 
     heights: what is seen from each combination of sides that there is. near: (N,) bool, the nodes near its
-    compartment, where it counts. weights: of each fault (N,), 1 where its sides have sheets of their own, 0
-    where they have the same.
+    compartment, where it counts. on_side: of each fault (N,) bool, the nodes that are on that side of it.
+    weights: of each fault (N,), 1 where its sides have sheets of their own, 0 where they have the same.
     """
     result = {}
     for sides, own in heights.items():
         total, whole = np.zeros(len(own)), np.zeros(len(own))
         for other, z in heights.items():
             share = near[other].astype(float)
-            for side, its, weight in zip(sides, other, weights, strict=True):
-                share = share * np.where(side == its, 0.5 + 0.5 * weight, 0.5 - 0.5 * weight)
+            for fault, (side, its, weight) in enumerate(zip(sides, other, weights, strict=True)):
+                alike = side == its  # where one has no such fault: on the side that the other is on
+                if not alike and 0 in (side, its):
+                    alike = on_side[sides if side else other][fault]
+                share = share * np.where(alike, 0.5 + 0.5 * weight, 0.5 - 0.5 * weight)
             total, whole = total + np.where(share == 0.0, 0.0, share * z), whole + share
         result[sides] = np.where(near[sides], total / np.where(whole > 0, whole, 1.0), own)
     return result
@@ -163,18 +169,18 @@ def with_equal_ends(
     threads: int = 0,
 ) -> dict[tuple[int, ...], np.ndarray]:
     """The heights (N,) of the sheets on each combination of sides, equal to the bit at all nodes of
-    triangles through which a fault would go on beyond its ends. Within the distance `ramp` of these they are
-    drawn together."""
+    triangles through which a fault that dies out would go on beyond its ends. Within the distance `ramp` of
+    these they are drawn together."""
     first = next(iter(heights.values()))
     if all(np.array_equal(z, first, equal_nan=True) for z in heights.values()):
         return dict.fromkeys(heights, first)
-    on_side = {
-        sides: [
-            fault_sides(work, np.nan_to_num(np.column_stack([plan, z])), fault, threads) == side
+    on_side = {}
+    for sides, z in heights.items():
+        at = np.nan_to_num(np.column_stack([plan, z]))
+        on_side[sides] = [
+            (side == 0) | (fault_sides(work, at, fault, threads) == side)
             for fault, side in zip(faults, sides, strict=True)
         ]
-        for sides, z in heights.items()
-    }
     passed = [np.zeros(len(plan), bool) for _ in faults]
     for _ in range(2):  # what is passed between nodes alone is near, too
         near = {
@@ -185,14 +191,17 @@ def with_equal_ends(
         low[:, 2], high[:, 2] = (np.where(known, each[:, 2], 0.0) for each in (low, high))
         inside = known & within(low) & within(high)
         whole = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
-        doubtful = [whole[_met(work, fault, low, high, whole, threads) > 0] for fault in faults]
+        doubtful = [
+            whole[_met(work, fault, low, high, whole, threads) > 0] if fault.dies_out else whole[:0]
+            for fault in faults
+        ]
         for nodes, some in zip(passed, doubtful, strict=True):
             nodes[some] = True
     box = np.array([low[known].min(axis=0, initial=np.inf), high[known].max(axis=0, initial=-np.inf)])
     continuations = [native_module().structure_continuation(fault.native(), box) for fault in faults]
     weights = [np.ones(len(plan)) for _ in faults]
     while True:
-        found = blended(heights, near, weights)
+        found = blended(heights, near, on_side, weights)
         settled = True
         for number, fault in enumerate(faults):
             beyond = np.zeros(len(plan), bool)
