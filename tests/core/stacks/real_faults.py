@@ -41,7 +41,6 @@ def drogon(folder, edge_length=200, method="natural_neighbour"):
     for number in range(1, 7):
         text += f'[[fault]]\nname = "F{number}"\npoints = "{(data / f"F{number}.pol").as_posix()}"\n'
         text += 'z_axis = "down"\ndies_out = true\nextend = 100\n'
-    text += 'ends_at = ["F2"]\n'  # F6, which meets it along its lower border
     return _written(folder, text)
 
 
