@@ -27,7 +27,7 @@ from .triangles import (
 _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
 _AT_ONCE = 1 << 21
 _HALVINGS = 30  # a billionth of an edge
-_PASSES = 2
+_TOUCHES, _PASSES = 1, 2
 _SHARES = (np.arange(16) + 0.5) / 16  # of a line: where it is looked at
 
 Within = Callable[[np.ndarray], np.ndarray]
@@ -214,6 +214,8 @@ def with_equal_ends(
                 divided = np.flatnonzero(passes & ~inside[some].all(axis=1))
                 passes[divided] = _meet_within(sheet[some[divided]], continuations[number], within)
                 beyond[some[passes]] = True
+                edges = np.unique(np.sort(edges_of(some[met == _TOUCHES]), axis=1), axis=0)
+                beyond[edges[_lie_in(work, fault, sheet[edges], within, threads)]] = True
                 touched = np.unique(some[met > 0]).astype(np.int32)
                 touched = touched[inside[touched]]
                 alone = np.repeat(touched[:, None], 3, axis=1)
@@ -282,6 +284,16 @@ def torn_beyond(
     middles = (low + high)[on] / 2
     middles = middles[within(middles)]
     return middles[0] if len(middles) else None
+
+
+def _lie_in(work: Work, fault: FaultShape, lines: np.ndarray, within: Within, threads: int) -> np.ndarray:
+    """(K,) bool: the lines (K, 2, 3) that lie in a compartment, and for a part where a fault would go on
+    beyond its ends."""
+    places = _along(lines)
+    alone = np.repeat(np.arange(len(places), dtype=np.int32)[:, None], 3, axis=1)
+    on = _met(work, fault, places, places, alone, threads) > 0
+    on[on] = within(places[on])
+    return on.reshape(-1, len(_SHARES)).any(axis=1)
 
 
 def _along(lines: np.ndarray) -> np.ndarray:
