@@ -125,10 +125,13 @@ def _emptied(stack: Stack, older: int, base: float | None, before: Older) -> Sta
         floors = _never(stack, before)
     young = range(older, len(stack.sheets))
     kept: list[tuple[Triangulation, int, int]] = []  # with their blocks and surfaces
-    if any(RULES[stack.rules[k]].cuts for k in young[1:]) and (tops := before.protected()):
-        for k in young:
-            for piece in before.lower(tops, stack.sheets[k], k):
-                kept.append((piece.sheet, stack.blocks[k], stack.surfaces[piece.of]))
+    tops = before.protected() if any(RULES[stack.rules[k]].cuts for k in young[1:]) else []
+    for k in young:
+        if not tops:  # all below them is filled: once more would only round it once more
+            break
+        for piece in before.lower(tops, stack.sheets[k], k):
+            kept.append((piece.sheet, stack.blocks[k], stack.surfaces[piece.of]))
+        tops = before.above(tops, stack.sheets[k])
     parts = [
         *((sheet, _DEPOSITS, NOTHING, of) for sheet, of in floors),
         *((sheet, _DEPOSITS, block, of) for sheet, block, of in kept),

@@ -81,6 +81,13 @@ class Older(NamedTuple):
         of = [*(piece.of for piece in tops), number]
         return [Piece(piece.sheet, of[piece.of]) for piece in found]
 
+    def above(self, tops: list[Piece], sheet: Triangulation) -> list[Piece]:
+        """What of tops, the highest of them, lies above a sheet, or where that is not."""
+        model = self._built([sheet, *(piece.sheet for piece in tops)], [_DEPOSITS] * (1 + len(tops)), None)
+        first = len(self.plans) + 1
+        found = _tops(self.build, model, model["cell_block"] >= first, first)
+        return [Piece(piece.sheet, tops[piece.of].of) for piece in found]
+
 
 def _plan(sheet: Triangulation) -> Triangulation:
     """What a sheet covers, as a region."""
