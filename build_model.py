@@ -99,6 +99,18 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
         type=_sizes,
         help="the cells of regular grids by --export (.csv, .vti, .tif, .asc)",
     )
+    parser.add_argument(
+        "--contour-interval",
+        metavar="H",
+        type=_length,
+        help="the distance of contours in maps by --export (.gpkg, .geojson)",
+    )
+    parser.add_argument(
+        "--cell-tolerance",
+        metavar="T",
+        type=_length,
+        help="clean the model's cells by --export (.vtu, .foam, .exo, .disu): T is the least size",
+    )
     parser.add_argument("--report", metavar="F", type=Path, help="write a report to F.json")
     parser.add_argument("--render", metavar="F", type=Path, help="render a picture to F.png (in Blender)")
     parser.add_argument(
@@ -163,7 +175,8 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--mesh-elements",
         choices=("prisms", "tetrahedra"),
-        help="prisms, with pyramids and tetrahedra where layers end (default), or tetrahedra alone",
+        help="prisms, with pyramids and tetrahedra where layers end (default), or tetrahedra alone, which "
+        "models with bodies and inclined faults and halves of cuts need",
     )
     parser.add_argument("--stage", metavar="M", type=_whole, help="only up to surface M, counted from 0")
     parser.add_argument(
@@ -222,6 +235,7 @@ def _parse(arguments: list[str]) -> argparse.Namespace:
             "fence",
             "cut",
             "mesh",
+            "cell_tolerance",
         ):
             if getattr(options, name):
                 parser.error(f"--surfaces-only goes without --{name.replace('_', '-')}")
@@ -288,6 +302,7 @@ def _whole(text: str) -> int:
 def _run(options: argparse.Namespace) -> None:
     from realmodel.core import build, load_project
     from realmodel.core.atomic import Outputs
+    from realmodel.core.batch_mesh import cleaned_line
     from realmodel.core.table import volume_table
     from realmodel.core.terminal import TerminalProgress
 
@@ -318,7 +333,8 @@ def _run(options: argparse.Namespace) -> None:
             validation = _validation(options, model, progress)
             erosion = _erosion(options, model, progress)
             mesh = mesh_request.make(model, options.threads, progress) if mesh_request else None
-            _write(options, project, model, outputs, progress, validation, erosion, mesh)
+            cells = _cleaned_cells(options, model, progress)
+            _write(options, project, model, outputs, progress, validation, erosion, mesh, cells)
             if mesh is not None:
                 mesh_request.write(mesh, outputs, project.units, progress)
             told = [request.run(model, outputs, options.threads, progress) for request in requests]
@@ -328,7 +344,8 @@ def _run(options: argparse.Namespace) -> None:
             progress.close()
     if not options.quiet:
         with contextlib.suppress(BrokenPipeError):  # the outputs are there
-            for warning in [*model.warnings, *(mesh.warnings if mesh is not None else ())]:
+            made = [each for each in (mesh, cells) if each is not None]
+            for warning in [*model.warnings, *(warning for each in made for warning in each.warnings)]:
                 print(f"warning: {warning}")
             if options.check_model:
                 print(f"{validation}\n")
@@ -337,6 +354,8 @@ def _run(options: argparse.Namespace) -> None:
                 print(line, flush=True)
             if mesh is not None:
                 print(mesh_request.line(mesh), flush=True)
+            if cells is not None:
+                print(cleaned_line(cells), flush=True)
 
 
 def _surfaces_only(options: argparse.Namespace, project, progress) -> None:
@@ -426,6 +445,17 @@ def _requests(options: argparse.Namespace) -> list:
     ]
 
 
+def _cleaned_cells(options: argparse.Namespace, model, progress):
+    """The cells that --cell-tolerance asks for, or None."""
+    if options.cell_tolerance is None:
+        return None
+    return model.cleaned_cells(
+        options.cell_tolerance,
+        threads=options.threads,
+        progress=lambda _share, text: progress(1.0, text),
+    )
+
+
 def _mesh_request(options: argparse.Namespace):
     """What --mesh asks for, or None."""
     from realmodel.core.batch_mesh import BatchMesh
@@ -445,11 +475,15 @@ def _mesh_request(options: argparse.Namespace):
 def _checked_targets(options: argparse.Namespace, requests: list, mesh=None) -> list[Path]:
     """Where the outputs will stand; refused before anything is built rather than after."""
     from realmodel.core import UsageError
-    from realmodel.core.exporters import format_for, output_target
+    from realmodel.core.exporters import FORMATS, format_for, output_target
     from realmodel.core.exporters.surfaces import surface_writer_for
 
     for path in options.export:
         surface_writer_for(path) if options.surfaces_only else format_for(path)
+    if options.cell_tolerance is not None:
+        able = [known.ending for known in FORMATS.values() if known.has_cells]
+        if not any(path.suffix.lower() in able for path in options.export):
+            raise UsageError(f"--cell-tolerance goes with --export of a file with cells: {', '.join(able)}")
     paths = [*options.export, *(p for p in (options.report, options.blend, options.render) if p is not None)]
     paths += [path for request in requests for path in request.outputs]
     targets = [output_target(path) for path in paths]
@@ -472,7 +506,7 @@ def _refuse_overwriting(files: list[Path], targets: list[Path]) -> None:
 
 
 def _write(
-    options: argparse.Namespace, project, model, outputs, progress, validation, erosion, mesh=None
+    options: argparse.Namespace, project, model, outputs, progress, validation, erosion, mesh, cells
 ) -> None:
     from realmodel.core.exporters import write_model
     from realmodel.core.exporters.report import write_report
@@ -484,12 +518,14 @@ def _write(
             outputs,
             lambda share, path=path: progress(1.0, f"writing {path.name}"),
             options.cell_size,
+            options.contour_interval,
+            cells,
         )
     if options.blend is not None or options.render is not None:
         _write_with_blender(options, project, model, outputs, progress)
     if options.report is not None:
         with outputs.file(options.report) as file:
-            write_report(model, options.report, file, options.stage, validation, erosion, mesh)
+            write_report(model, options.report, file, options.stage, validation, erosion, mesh, cells)
 
 
 def _write_with_blender(options: argparse.Namespace, project, model, outputs, progress) -> None:

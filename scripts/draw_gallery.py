@@ -23,6 +23,7 @@ IMAGES = ROOT / "docs" / "images" / "gallery"
 SAMPLES = ROOT / "blend_samples"
 SIZE = (1800, 1100)
 RAYS, SECONDS = 32, 200.0  # of a pixel, and of a picture at most
+FRAME = (600, 300)  # of a film strip
 EXPOSURE = 0.2
 POINTS = 900.0  # the width of a picture, as labels are measured
 LABEL, TITLE = 12.0, 17.0
@@ -88,20 +89,13 @@ class Picture:
         (text, position in the scene, offset in points from there). room: shares of width and height to be
         left free at the left and at the top."""
         import bpy
-        import numpy as np
         from bpy_extras.object_utils import world_to_camera_view
         from mathutils import Vector
-        from realmodel.bl import picture
         from realmodel.core.drawing.drawing import Drawing
 
         scene = bpy.context.scene
-        points = np.concatenate(self.points)
-        camera = picture.set_up(scene, points, SIZE)
-        aim(camera, points, azimuth, elevation, room)
         file = self.folder / f"{name}.png"
-        picture.set_renderer(scene, file, SIZE, RAYS, SECONDS)
-        scene.view_settings.exposure = EXPOSURE
-        bpy.ops.render.render(write_still=True)
+        camera = self.render(file, SIZE, azimuth, elevation, room)
         drawing = Drawing(POINTS, POINTS * SIZE[1] / SIZE[0])
         height = drawing.height
         drawing.text(28, height - 40, title, TITLE, INK)
@@ -115,6 +109,21 @@ class Picture:
             add_legend(drawing, list(self.names.items()))
         put_over(file, drawing)
 
+    def render(self, file, size, azimuth, elevation, room):
+        """Writes a picture of so many pixels without texts. Returns the camera."""
+        import bpy
+        import numpy as np
+        from realmodel.bl import picture
+
+        scene = bpy.context.scene
+        points = np.concatenate(self.points)
+        camera = picture.set_up(scene, points, size)
+        aim(camera, points, size, azimuth, elevation, room)
+        picture.set_renderer(scene, file, size, RAYS, SECONDS)
+        scene.view_settings.exposure = EXPOSURE
+        bpy.ops.render.render(write_still=True)
+        return camera
+
 
 def smooth(mesh):
     """Smooth within a surface, sharp where surfaces and walls meet."""
@@ -127,8 +136,8 @@ def smooth(mesh):
         mesh.set_sharp_from_angle(angle=math.radians(32.0))
 
 
-def aim(camera, points, azimuth, elevation, room):
-    """Turns the camera to points (N, 3), which then fill the picture but for the `room`."""
+def aim(camera, points, size, azimuth, elevation, room):
+    """Turns the camera to points (N, 3), which then fill the picture of a size but for the `room`."""
     import math
 
     import numpy as np
@@ -140,7 +149,7 @@ def aim(camera, points, azimuth, elevation, room):
     axes = np.array([right, back.cross(right), back])
     local = points @ axes.T
     half = math.tan(camera.data.angle / 2.0)
-    tangents = half * np.array([1.0 - room[0], (1.0 - room[1]) * SIZE[1] / SIZE[0]]) / 1.12
+    tangents = half * np.array([1.0 - room[0], (1.0 - room[1]) * size[1] / size[0]]) / 1.12
     away, center = 0.0, []
     for axis, tangent in enumerate(tangents):
         high = (local[:, axis] + tangent * local[:, 2]).max()
@@ -150,7 +159,7 @@ def aim(camera, points, azimuth, elevation, room):
     camera.matrix_world = (
         Matrix.Translation(axes.T @ np.array([*center, away])) @ Matrix(axes.T.tolist()).to_4x4()
     )
-    camera.data.shift_x, camera.data.shift_y = -room[0] / 2, room[1] / 2 * SIZE[1] / SIZE[0]
+    camera.data.shift_x, camera.data.shift_y = -room[0] / 2, room[1] / 2 * size[1] / size[0]
     camera.data.clip_end = 100.0 * away
 
 
@@ -184,17 +193,25 @@ def add_legend(drawing, entries):
 
 def put_over(file, drawing):
     """Puts a drawing over a picture."""
-    import bpy
-    import numpy as np
     from realmodel.core.drawing.png import write_pixels
     from realmodel.core.drawing.raster import over, rasterize
 
-    image = bpy.data.images.load(str(file))
-    pixels = np.array(image.pixels[:], np.float32).reshape(SIZE[1], SIZE[0], -1)[::-1].copy()
-    bpy.data.images.remove(image)
-    over(pixels, rasterize(drawing, SIZE[0] / POINTS, None), 0, 0)
+    pixels = read_pixels(file)
+    over(pixels, rasterize(drawing, pixels.shape[1] / drawing.width, None), 0, 0)
     with open(file, "wb") as out:
         write_pixels(pixels, out, 144)
+
+
+def read_pixels(file):
+    """(height, width, 4) float32, from the top."""
+    import bpy
+    import numpy as np
+
+    image = bpy.data.images.load(str(file))
+    width, height = image.size
+    pixels = np.array(image.pixels[:], np.float32).reshape(height, width, -1)[::-1].copy()
+    bpy.data.images.remove(image)
+    return pixels
 
 
 def sample(name, folder):
@@ -313,7 +330,35 @@ def tunnel(folder):
     )
 
 
-SCENES = (faults, intrusion, tunnel)
+def stages(folder):
+    """A film strip: Haut-Barr after each of its surfaces."""
+    import bpy
+    import numpy as np
+    from realmodel.core import polygon_mesh
+    from realmodel.core.drawing.drawing import Drawing
+    from realmodel.core.drawing.png import write_pixels
+
+    model, picture = sample("haut_barr", folder)
+    whole, frames = [np.array(model.vertices - picture.origin, float)], []
+    for number in range(1, max(len(rock.surfaces) for rock in model.project.rocks)):
+        for item in [item for item in bpy.context.scene.objects if item.type == "MESH"]:
+            bpy.data.meshes.remove(item.data)
+        stage = model.stage(number)
+        picture.show(stage, polygon_mesh.of_blocks(stage, picture.origin))
+        picture.points = whole  # the camera stays where it is
+        file = folder / "frame.png"
+        picture.render(file, FRAME, 160.0, 26.0, (0.0, 0.0))
+        drawing = Drawing(*(POINTS / SIZE[0] * side for side in FRAME))
+        drawing.text(12, drawing.height - 24, f"Stage {number}", LABEL, INK)
+        put_over(file, drawing)
+        frames.append(read_pixels(file))
+        file.unlink()
+    rows = [np.concatenate(frames[n : n + 3], axis=1) for n in range(0, len(frames), 3)]
+    with open(folder / "stages.png", "wb") as out:
+        write_pixels(np.concatenate(rows), out, 144)
+
+
+SCENES = (faults, intrusion, tunnel, stages)
 
 
 def in_blender(folder, *names):

@@ -248,7 +248,7 @@ def side_by_side(pictures, name, columns, smaller=1):
 def start(walk):
     """The tab in a new file, and the window with an example."""
     yield from keep(walk, "start", "UI")
-    yield from example(walk, "haut_barr")
+    yield from example(walk, "castle_hill")
     yield from keep(walk, "window")
 
 
@@ -256,7 +256,7 @@ def tour(walk):
     """Each panel by itself."""
     import bpy
 
-    yield from example(walk, "haut_barr")
+    yield from example(walk, "castle_hill")
     group = bpy.context.scene.realmodel
     group.active_result = len(group.results) - 4
     group.rocks[0].active_surface = 2
@@ -270,7 +270,7 @@ def modes(walk):
 
     yield from show_panels(walk, ["start"])
     walk.area.spaces.active.show_region_ui = False
-    yield from example(walk, "haut_barr")
+    yield from example(walk, "castle_hill")
     group = bpy.context.scene.realmodel
     group.view.show_legend = False
     pictures = []
@@ -337,7 +337,7 @@ def quality(walk):
     import bpy
     from driver import read_picture
 
-    yield from example(walk, "haut_barr")
+    yield from example(walk, "castle_hill")
     bpy.context.scene.realmodel.rocks[0].active_surface = 5
     bpy.ops.realmodel.check_quality()
     charts = []

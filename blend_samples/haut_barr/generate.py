@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the input files of the Haut-Barr sample: region.geojson, *.csv and ground.off.
+"""Writes the input files of the Haut-Barr sample: the project file, outlines and points.
 
     python3 blend_samples/haut_barr/generate.py [FOLDER]
 
-Everything is made up: no measurement of the real hill went into it. The formulas below (README.md
-explains them) give heights in meters at a plan position (x, y) in meters from the south-west
-corner, which is put at UTM zone 32N, 377400 E, 5397900 N, so that the sample also shows that
-large coordinates lose nothing. Only `math` and `random.Random` are used and heights are written in
-centimeters, so every machine writes the same files.
+The outcrop is that of chapter 5 of G. Mei's thesis (Freiburg 2014): three fins of sandstone on a base, 255 m
+long, 70 m wide and 40 m high. Only its size and the counts of rock masses, surfaces and layers are the
+thesis's; nothing was measured, and all shapes come from the formulas below (README.md explains them). Heights
+are in meters, plan positions (x, y) in meters from the south-west corner, which is put at UTM zone 32N,
+377600 E, 5398100 N. Only `math` and `random.Random` are used and coordinates are written in centimeters, so
+every machine writes the same files.
 """
 
 import json
@@ -16,32 +17,88 @@ import random
 import sys
 from pathlib import Path
 
-EAST, NORTH = 377400, 5397900  # UTM 32N of the local origin
-WIDTH, DEPTH = 1200.0, 800.0  # extent of the region in plan, meters
+EAST, NORTH = 377600, 5398100  # UTM 32N of the local origin
+LENGTH, WIDTH = 255.0, 70.0  # extent of the base in plan, meters
+BASE = 420.0  # elevation of the flat base of the model, meters
 
-# fmt: off
-# Concave: a bay in the south, where the old road enters, bares the inside of the castle hill.
-OUTLINE = [
-    (0, 90), (60, 20), (150, 0), (500, 0), (545, 60), (560, 185), (612, 258), (690, 262),
-    (742, 190), (765, 70), (820, 0), (1120, 0), (1200, 70), (1200, 610), (1150, 740), (1040, 800),
-    (300, 800), (130, 770), (30, 690), (0, 560),
-]
-# The quarry on the eastern plateau was dug so deep that the model leaves it out: a hole.
-QUARRY = [(1010, 548), (1062, 530), (1108, 554), (1120, 600), (1086, 640), (1030, 632), (998, 592)]
-# fmt: on
 
-# Levels of the tops of the layers where the structure is 0 (below the castle), meters
-LEVEL = {
-    "permian": 342.0,
-    "annweiler": 374.0,
-    "vosgien": 460.0,
-    "conglomerate": 510.0,
-    "violet": 518.0,
-    "intermediate": 550.0,
-    "voltzia": 564.0,
-    "muschelkalk": 582.0,
-}
-THROW = 134.0  # of the flexure in the east, meters
+class Fin:
+    """A fin of rock: an oval in plan with a wavy, notched outline."""
+
+    def __init__(self, name, center, half_length, half_width, turn, summit, joints, seed):
+        self.name, self.center = name, center
+        self.half_length, self.half_width = half_length, half_width
+        self.turn = math.radians(turn)
+        self.summit = summit  # elevation of its highest part, meters
+        self.joints = joints  # clefts across it: (along, lean, depth), meters along its axis
+        shake = random.Random(seed)
+        self.waves = [
+            (order, shake.uniform(0, 2 * math.pi), 0.09 / order**0.6) for order in (2, 3, 5, 7, 11, 16)
+        ]
+
+    def radius(self, angle):
+        """Of the outline as a share of the oval's, by the angle in the oval."""
+        bare = 1.0 + sum(size * math.sin(order * angle + phase) for order, phase, size in self.waves)
+        notches = 0.0
+        for along, lean, _ in self.joints:
+            for side in (-1.0, 1.0):
+                at = math.atan2(
+                    side * math.sqrt(max(0.0, 1.0 - (along / self.half_length) ** 2)),
+                    along / self.half_length,
+                )
+                away = (angle - at - 0.002 * lean + math.pi) % (2.0 * math.pi) - math.pi
+                notches = max(notches, 0.10 * bell(away / 0.055))
+        return bare - notches
+
+    def local(self, x, y):
+        """Along and across the fin, meters."""
+        dx, dy = x - self.center[0], y - self.center[1]
+        cos, sin = math.cos(self.turn), math.sin(self.turn)
+        return dx * cos + dy * sin, dy * cos - dx * sin
+
+    def share(self, x, y):
+        """0 in the middle, 1 on the outline."""
+        along, across = self.local(x, y)
+        u, v = along / self.half_length, across / self.half_width
+        return math.hypot(u, v) / self.radius(math.atan2(v, u))
+
+    def outline(self, spacing):
+        corners, angle = [], 0.0
+        cos, sin = math.cos(self.turn), math.sin(self.turn)
+        while angle < 2.0 * math.pi - 1e-3:
+            r = self.radius(angle)
+            along, across = r * self.half_length * math.cos(angle), r * self.half_width * math.sin(angle)
+            corners.append(
+                (self.center[0] + along * cos - across * sin, self.center[1] + along * sin + across * cos)
+            )
+            tangent = math.hypot(self.half_length * math.sin(angle), self.half_width * math.cos(angle))
+            angle += spacing / max(tangent, self.half_width)
+        return corners
+
+    def top(self, x, y):
+        """Its bare rock: a rounded summit with ledges of hard beds, and clefts along the joints."""
+        along, across = self.local(x, y)
+        r = min(self.share(x, y), 1.2)
+        u = along / self.half_length
+        z = self.summit - 1.2 * r**2 - 5.0 * r**14
+        z -= (
+            5.0 * step((u - 0.45) * 7.0)
+            + 3.0 * step((-u - 0.6) * 8.0)
+            + 1.2 * math.sin(2.6 * u + self.turn * 9.0)
+        )
+        for level, height, width in (
+            (456.0, 1.3, 0.5),
+            (452.0, 1.8, 0.6),
+            (448.5, 1.2, 0.5),
+            (444.0, 1.4, 0.6),
+        ):
+            e = z - level - structure(x, y)
+            z += height * math.tanh(e / width) * bell(e / 3.0)
+        z += 0.30 * math.sin(x / 1.9 + 0.6 * math.sin(y / 2.3)) + 0.25 * math.sin(y / 1.6 + x / 4.1)
+        for at, lean, depth in self.joints:
+            away = along - at - 0.03 * lean * across - 0.5 * math.sin(across / 2.7)
+            z -= depth * bell(away / 1.3) ** 0.7 * (0.5 + 0.5 * r)
+        return max(z, 429.0 + 0.5 * math.sin(x / 3.0))
 
 
 def step(t):
@@ -53,165 +110,230 @@ def bell(t):
     return math.exp(-t * t)
 
 
+FINS = [
+    Fin(
+        "Septentrional Rock",
+        (50.0, 38.0),
+        37.0,
+        11.0,
+        8.0,
+        457.5,
+        [(-15.0, 8.0, 9.0), (8.0, -6.0, 17.0), (19.0, 4.0, 6.0)],
+        1,
+    ),
+    Fin("Median Rock", (130.0, 32.0), 34.0, 12.5, -7.0, 459.5, [(-9.0, -7.0, 8.0), (14.0, 6.0, 14.0)], 2),
+    Fin("Markenfels", (207.0, 38.0), 31.0, 9.5, 12.0, 455.5, [(-10.0, 5.0, 12.0), (9.0, -9.0, 16.0)], 3),
+]
+
+
 def structure(x, y):
-    """How far the strata lie above their level: dip, a gentle fold, and the flexure in the east."""
-    dip = 0.055 * (x - 590.0)
-    fold = -14.0 * math.sin(2.0 * math.pi * (0.30 * x + 0.95 * y) / 820.0)
-    flexure = -THROW * step((x - 875.0 - 0.22 * (y - 400.0)) / 42.0)
-    return dip + fold + flexure
+    """How far the beds lie above their level: a gentle dip to the east and a wave."""
+    return 0.006 * (127.5 - x) + 0.008 * (y - 35.0) + 0.3 * math.sin(x / 37.0 + y / 29.0)
 
 
-def basement(x, y):
-    """Old land surface on the granite: hills and two basins under the Permian."""
-    relief = 18.0 * math.sin(2.0 * math.pi * (x + 0.3 * y - 60.0) / 560.0)
-    relief += 8.0 * math.cos(2.0 * math.pi * (y - 0.35 * x) / 430.0)
-    return 331.0 + structure(x, y) + relief
+def bed(level, relief=0.15, wave=13.0):
+    """The top of a bed, slightly uneven."""
+    return lambda x, y: (
+        level + structure(x, y) + relief * math.sin(x / wave + 0.7 * y / wave) * math.cos(y / wave)
+    )
 
 
-def channels(x, y):
-    """Depth of the rivers that cut into the conglomerate before the Couches intermediaires."""
-    west = abs(x - 108.0 - 34.0 * math.sin(y / 130.0))
-    east = abs(y - 520.0 - 0.25 * (x - 900.0) - 30.0 * math.sin(x / 90.0))
-    return 58.0 * max(bell(west / 34.0), bell(east / 44.0) * step((x - 800.0) / 40.0))
-
-
-def top(layer):
-    """Height function of the top of a layer of the Permian or Triassic."""
+def foresets(low, slope, bend, start, turn=0.0):
+    """Slip face of a migrating bar: rises with x (falls, where `slope` is negative), concave at its toe."""
 
     def height(x, y):
-        z = LEVEL[layer] + structure(x, y)
-        if layer == "violet":
-            z -= channels(x, y)
-        elif layer == "permian":
-            z += 3.0 * math.sin(x / 150.0) * math.cos(y / 120.0)
-        elif layer == "vosgien":
-            z += 2.5 * math.sin((x + y) / 95.0)
-        return z
+        d = (x - start + turn * (y - 35.0)) * (1.0 if slope > 0 else -1.0)
+        rise = abs(slope) * 0.5 * (d + math.hypot(d, bend))
+        return low + structure(x, y) + rise
 
     return height
 
 
-def main_valley(x, y):
-    """Distance from the axis of the main valley (the Zorn's), meters."""
-    return abs(x - 330.0 - 52.0 * math.sin((y + 60.0) / 170.0))
+def channel(level, depth, axis, width):
+    """The top of a bed into which a river cut."""
+    plain = bed(level)
+    return lambda x, y: plain(x, y) - depth * bell((x - axis - 9.0 * math.sin(y / 15.0)) / width)
 
 
-def side_valley(x, y):
-    """Distance from the axis of the side valley that follows the flexure, meters."""
-    return abs(x - 838.0 - 0.20 * (y - 400.0) - 24.0 * math.sin(y / 120.0))
+def rim(x, y):
+    """0 in the middle of the base, 1 on its outline."""
+    u, v = (x - LENGTH / 2) / (LENGTH / 2), (y - WIDTH / 2) / (WIDTH / 2)
+    return (abs(u) ** 3 + abs(v) ** 3) ** (1.0 / 3.0) / rim_radius(math.atan2(v, u))
 
 
-def slope(distance, half_width, floor, steepness):
-    """Height of a valley's side at a distance from its axis: flat floor, then ever steeper."""
-    d = max(0.0, distance - half_width)
-    return floor + steepness * d * d / (d + 38.0)
+def rim_radius(angle):
+    return 0.99 + 0.02 * math.sin(3 * angle + 1.0) + 0.01 * math.sin(8 * angle)
 
 
-def smaller(a, b, radius):
-    """Smooth minimum."""
-    h = max(0.0, radius - abs(a - b)) / radius
-    return min(a, b) - 0.25 * radius * h * h
+def base_outline(spacing):
+    corners, angle = [], 0.0
+    while angle < 2.0 * math.pi - 1e-3:
+        cos, sin = math.cos(angle), math.sin(angle)
+        r = rim_radius(angle) / (abs(cos) ** 3 + abs(sin) ** 3) ** (1.0 / 3.0)
+        corners.append((LENGTH / 2 * (1 + r * cos), WIDTH / 2 * (1 + r * sin)))
+        angle += spacing / math.hypot(LENGTH / 2 * sin, WIDTH / 2 * cos)
+    return corners
 
 
-def crags(x, y):
-    """The three rocks of the castle, on a ridge from south to north."""
-    z = 0.0
-    for cx, cy, radius, height in ((604, 335, 24, 22), (584, 408, 30, 25), (566, 486, 21, 18)):
-        r = math.hypot((x - cx) * 1.35, y - cy) / radius
-        z = max(z, height * step((1.0 - r) * 5.0))
-    return z
+def bench(x, y):
+    """The rock of the base: highest along the fins, falling off to its outline."""
+    z = 427.4 - 5.4 * min(rim(x, y), 1.2) ** 4 + 0.4 * math.sin(x / 9.0) * math.sin(y / 7.0)
+    e = z - 425.2 - structure(x, y)
+    return z + 0.5 * math.tanh(e / 0.3) * bell(e / 1.5)
 
 
-def ground(x, y):
-    """Today's land surface."""
-    west = 508.0 + 5.0 * math.sin(x / 70.0) * math.cos(y / 110.0)
-    castle = 484.0 - 0.0011 * (y - 400.0) ** 2 * step((abs(y - 400.0) - 120.0) / 60.0)
-    east = 481.0 + 4.0 * math.sin((x + 1.4 * y) / 95.0)
-    between = step((x - 350.0) / 50.0)
-    beyond = step((x - 850.0) / 40.0)
-    z = west + (castle - west) * between + (east - castle) * beyond
-    z = smaller(z, slope(main_valley(x, y), 34.0, 292.0 + 0.02 * y, 1.40), 40.0)
-    z = smaller(z, slope(side_valley(x, y), 20.0, 308.0 + 0.03 * y, 1.35), 36.0)
-    # Hard beds stand out as cliffs: the conglomerate, and a bench in the Gres vosgien.
-    for level, height, width in ((464.0, 14.0, 5.0), (412.0, 6.0, 5.0)):
-        e = z - level - structure(x, y)
-        z += height * math.tanh(e / width) * bell(e / 42.0)
-    gully = abs(y - 210.0 - 0.35 * (x - 1000.0) - 14.0 * math.sin(x / 40.0))
-    z -= 24.0 * bell(gully / 20.0) * step((x - 925.0) / 30.0) * step((1190.0 - x) / 40.0)
-    return z + crags(x, y)
+def debris(x, y):
+    """Blocks and sand at the foot of the fins."""
+    away = min(8.0 * (fin.share(x, y) - 1.0) * fin.half_width / 8.0 for fin in FINS)
+    return bench(x, y) + 2.6 * bell(max(away, 0.0) / 3.2) - 0.35
 
 
-def old_valleys(x, y):
-    """Land surface of the last ice age: loess on the plateaus, valleys deeper than today's."""
-    fill = 52.0 * bell(main_valley(x, y) / 58.0) + 42.0 * bell(side_valley(x, y) / 42.0)
-    return ground(x, y) + 24.0 - fill
+def soil(x, y):
+    return (
+        max(bench(x, y), debris(x, y))
+        + 0.45 * step((math.sin(x / 17.0) + math.cos(y / 11.0) - 0.2) * 3.0)
+        - 0.12
+    )
 
 
-def stations(spacing, seed, margin=30.0):
-    """Scattered plan positions: a staggered grid, each shaken by up to 0.35 of its spacing."""
+def pockets(fin):
+    """Soil and grass in the hollows of a fin's summit."""
+
+    def height(x, y):
+        uneven = 0.5 * math.sin(x / 3.7 + 1.0) * math.sin(y / 2.9) + 0.3 * math.sin(x / 8.0)
+        level = fin.summit - 2.6 + uneven - 12.0 * min(fin.share(x, y), 1.2) ** 4
+        return min(level, fin.top(x, y) + 0.8)
+
+    return height
+
+
+# The surfaces of each rock mass, oldest first: (name, height, rule, spacing of the points, property, block)
+def base_surfaces():
+    return [
+        ("set 1", bed(421.9), "erosional", 12, 1, "Set 1"),
+        ("bar 1", foresets(421.6, 0.035, 30.0, 90.0, 0.4), "conformable", 9, 2, "Bar 1"),
+        ("set 2", bed(423.2), "erosional", 12, 1, "Set 2"),
+        ("bar 2", foresets(422.9, -0.030, 25.0, 150.0, -0.3), "conformable", 9, 2, "Bar 2"),
+        ("set 3", channel(424.9, 1.6, 168.0, 14.0), "erosional", 7, 1, "Set 3"),
+        ("channel", bed(424.5), "conformable", 12, 3, "Channel gravel"),
+        ("set 4", bed(426.2), "conformable", 12, 1, "Set 4"),
+        ("bench", bench, "erosional", 3.5, 4, "Bench"),
+        ("debris", debris, "conformable", 2.5, 6, "Debris"),
+        ("soil", soil, "conformable", 3.5, 7, "Soil"),
+    ]
+
+
+def fin_surfaces(fin):
+    x = fin.center[0]
+    beds = {
+        "foot": ("foot", None, "erosional", 0, 0, None),
+        "set 1": ("set 1", bed(423.2), "erosional", 9, 1, "Set 1"),
+        "bar 1": ("bar 1", foresets(423.0, 0.16, 12.0, x - 12.0, 0.3), "conformable", 5, 2, "Bar 1"),
+        "set 2": ("set 2", bed(429.0), "erosional", 9, 1, "Set 2"),
+        "set 3": ("set 3", channel(436.0, 3.0, x + 6.0, 8.0), "erosional", 4, 1, "Set 3"),
+        "bar 2": ("bar 2", foresets(435.4, -0.22, 10.0, x + 10.0, -0.4), "conformable", 5, 2, "Bar 2"),
+        "set 4": ("set 4", bed(444.0), "erosional", 9, 1, "Set 4"),
+        "pebbles": ("pebbles", bed(446.2, 0.3, 6.0), "conformable", 5, 3, "Pebble bed"),
+        "conglomerate": ("conglomerate", bed(452.0), "conformable", 9, 4, "Lower conglomerate"),
+        "summit": ("summit", fin.top, "erosional", 1.5, 5, "Upper conglomerate"),
+        "soil": ("soil", pockets(fin), "conformable", 2.0, 7, "Soil"),
+    }
+    chosen = {
+        "Septentrional Rock": "foot,set 1,bar 1,set 2,set 3,bar 2,set 4,conglomerate,summit,soil",
+        "Median Rock": "foot,set 1,set 2,set 3,set 4,pebbles,conglomerate,summit,soil",
+        "Markenfels": "foot,set 1,bar 1,set 2,set 3,bar 2,pebbles,conglomerate,summit,soil",
+    }[fin.name]
+    return [beds[name] for name in chosen.split(",")]
+
+
+def stations(inside, box, spacing, seed):
+    """Scattered plan positions: a staggered grid, each shaken by up to 0.35 of its spacing; those inside."""
     shake = random.Random(seed)
-    points, row, y = [], 0, -margin
-    while y <= DEPTH + margin:
-        x = -margin + (0.5 * spacing if row % 2 else 0.0)
-        while x <= WIDTH + margin:
-            away = [0.7 * spacing * (shake.random() - 0.5) for _ in range(2)]
-            points.append((x + away[0], y + away[1]))
+    points, row, y = [], 0, box[1]
+    while y <= box[3]:
+        x = box[0] + (0.5 * spacing if row % 2 else 0.0)
+        while x <= box[2]:
+            dx, dy = (0.7 * spacing * (shake.random() - 0.5) for _ in range(2))
+            if inside(x + dx, y + dy, spacing):
+                points.append((round(x + dx, 2), round(y + dy, 2)))
             x += spacing
         row, y = row + 1, y + spacing * 0.866
     return points
+
+
+def file_name(*words):
+    return "_".join("_".join(words).lower().split())
 
 
 def write_points(path, positions, height):
     with open(path, "w", encoding="ascii", newline="\n") as file:
         file.write("x,y,z\n")
         for x, y in positions:
-            x, y = round(x, 1), round(y, 1)
-            file.write(f"{EAST + x:.1f},{NORTH + y:.1f},{height(x, y):.2f}\n")
+            file.write(f"{EAST + x:.2f},{NORTH + y:.2f},{height(x, y):.2f}\n")
 
 
-def write_off(path, spacing, height):
-    """A ready triangulated surface: a grid that reaches beyond the region, diagonals alternating."""
-    columns, rows = int(WIDTH / spacing) + 3, int(DEPTH / spacing) + 3
-    with open(path, "w", encoding="ascii", newline="\n") as file:
-        file.write(f"OFF\n{columns * rows} {2 * (columns - 1) * (rows - 1)} 0\n")
-        for j in range(rows):
-            for i in range(columns):
-                x, y = (i - 1) * spacing, (j - 1) * spacing
-                file.write(f"{EAST + x:.1f} {NORTH + y:.1f} {height(x, y):.2f}\n")
-        for j in range(rows - 1):
-            for i in range(columns - 1):
-                a = j * columns + i
-                b, c, d = a + 1, a + columns + 1, a + columns
-                if (i + j) % 2:
-                    file.write(f"3 {a} {b} {d}\n3 {b} {c} {d}\n")
-                else:
-                    file.write(f"3 {a} {b} {c}\n3 {a} {c} {d}\n")
-
-
-def write_region(path):
+def write_region(path, outline, holes=()):
     def ring(corners):
-        return [[EAST + x, NORTH + y] for x, y in [*corners, corners[0]]]
+        return [[round(EAST + x, 2), round(NORTH + y, 2)] for x, y in [*corners, corners[0]]]
 
-    feature = {
-        "type": "Feature",
-        "properties": {"name": "Haut-Barr"},
-        "geometry": {"type": "Polygon", "coordinates": [ring(OUTLINE), ring(QUARRY[::-1])]},
-    }
+    geometry = {"type": "Polygon", "coordinates": [ring(outline), *(ring(hole[::-1]) for hole in holes)]}
+    feature = {"type": "Feature", "properties": {"name": path.stem}, "geometry": geometry}
     with open(path, "w", encoding="ascii", newline="\n") as file:
-        json.dump({"type": "FeatureCollection", "features": [feature]}, file, indent=1)
+        json.dump({"type": "FeatureCollection", "features": [feature]}, file)
         file.write("\n")
+
+
+def write_rock(folder, lines, name, edge_length, surfaces, inside, box, base=None):
+    key = file_name(name)
+    lines += ["", "[[rock]]", f'name = "{name}"', f'region = "{key}.geojson"', f"edge_length = {edge_length}"]
+    if base is not None:
+        lines.append(f"base_elevation = {base}")
+    for seed, (surface, height, rule, spacing, number, block) in enumerate(surfaces):
+        lines += ["", "[[rock.surface]]", f'name = "{surface}"']
+        if height is None:
+            lines += ['method = "constant"', f"value = {BASE}"]
+        else:
+            file = f"{key}_{file_name(surface)}.csv"
+            write_points(folder / file, stations(inside, box, spacing, seed), height)
+            lines += [f'points = "{file}"']
+            lines += ['method = "natural_neighbour"', 'extrapolate = "nearest"'] if spacing < 4 else VARIOGRAM
+        if rule != "erosional":
+            lines.append(f'rule = "{rule}"')
+        if block is not None:
+            lines += [f"property = {number}", f'block = "{block}"']
+
+
+VARIOGRAM = ['method = "kriging"', 'variogram = {model = "matern52", range = 120, sill = 20}']
+HEADER = """# SPDX-License-Identifier: GPL-3.0-or-later
+# The outcrop at Haut-Barr as in chapter 5 of G. Mei's thesis: three fins of sandstone on a base.
+# Written by generate.py.
+format = 1
+name = "Haut-Barr"
+library = "library.toml"
+"""
 
 
 def main(folder):
     folder.mkdir(parents=True, exist_ok=True)
-    write_region(folder / "region.geojson")
-    logged = stations(46.0, seed=1)  # the strata were logged at the same stations
-    write_points(folder / "basement.csv", stations(30.0, seed=2), basement)
-    for layer in LEVEL:
-        positions = stations(24.0, seed=3) if layer == "violet" else logged
-        write_points(folder / f"{layer}.csv", positions, top(layer))
-    write_points(folder / "old_valleys.csv", stations(20.0, seed=4), old_valleys)
-    write_off(folder / "ground.off", 11.0, ground)
+    lines = HEADER.splitlines()
+    holes = [fin.outline(1.5) for fin in FINS]
+    write_region(folder / "base.geojson", base_outline(3.0), holes)
+    for fin, outline in zip(FINS, holes, strict=True):
+        write_region(folder / f"{file_name(fin.name)}.geojson", outline)
+        along = fin.half_length * 1.3
+        box = fin.center[0] - along, fin.center[1] - along, fin.center[0] + along, fin.center[1] + along
+        near = lambda x, y, spacing, fin=fin: (fin.share(x, y) - 1.0) * fin.half_width < spacing  # noqa: E731
+        write_rock(folder, lines, fin.name, 1.15, fin_surfaces(fin), near, box)
+
+    def on_base(x, y, spacing):
+        if (rim(x, y) - 1.0) * WIDTH / 2 > spacing:
+            return False
+        return all((fin.share(x, y) - 1.0) * fin.half_width > -spacing for fin in FINS)
+
+    write_rock(
+        folder, lines, "base", 2.4, base_surfaces(), on_base, (-9.0, -9.0, LENGTH + 9.0, WIDTH + 9.0), BASE
+    )
+    (folder / "project.toml").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -44,6 +44,7 @@ py::list shell_arrays(std::vector<shells::Shell>&& shells) {
         arrays.append(py::make_tuple(
             to_array(std::move(shell.coordinates)), to_array(std::move(shell.offsets)),
             to_array(std::move(shell.corners)), to_array(std::move(shell.faces)),
+            to_array(std::move(shell.reversed)).attr("view")("bool"),
             to_array(std::move(shell.edges.edges)), to_array(std::move(shell.edges.of_corner))));
     }
     return arrays;
@@ -93,7 +94,8 @@ taken off the coordinates before they are rounded. shrink: None for the boundary
 each cell stands by itself, its own vertices drawn towards their mean by this factor.
 
 Returns for each block None where it has no cells, or (coordinates (V, 3) float32, offsets (F + 1,) and
-corners (C,) int32, counter-clockwise seen from outside, faces (F,) int32 of the complex, edges (E, 2)
+corners (C,) int32, counter-clockwise seen from outside, faces (F,) int32 of the complex, reversed (F,) bool
+(it is the side of the face's second cell), edges (E, 2)
 and for each corner its edge (C,) int32, as polygon_edges has them); the same for any number of threads.
 Raises InputError kind "bad_index", "too_large"; Cancelled.)");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// simulation_lines, layered_mesh, filled_mesh.
+// simulation_lines, layered_mesh, filled_mesh, clean_cells.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -13,6 +13,7 @@
 #include "arrays.hpp"
 #include "complex_arrays.hpp"
 #include "realmodel/base/progress.hpp"
+#include "realmodel/simulation/clean_cells.hpp"
 #include "realmodel/simulation/filled_mesh.hpp"
 #include "realmodel/simulation/layered_mesh.hpp"
 #include "rows.hpp"
@@ -149,6 +150,35 @@ py::dict filled_mesh(const py::dict& model, const Indices& cell_region,
     return made;
 }
 
+py::dict counts_dict(const simulation::ComplexCounts& counts) {
+    py::dict made;
+    made["edges"] = counts.edges;
+    made["faces"] = counts.faces;
+    made["cells"] = counts.cells;
+    return made;
+}
+
+py::dict clean_cells(const py::dict& model, std::size_t blocks, const Indices& surface_kind,
+                     double tolerance, int threads, Progress* control) {
+    ComplexArrays arrays(model);
+    arrays.complex.blocks = blocks;
+    simulation::CleanedCells cells;
+    {
+        const py::gil_scoped_release unlocked;
+        cells = simulation::clean_cells(arrays.complex, view_of(surface_kind), tolerance, threads,
+                                        control);
+    }
+    py::dict made = complex_arrays(cells.complex);
+    made["cell_origin"] = to_array(std::move(cells.cell_origin));
+    made["volumes_before"] = to_array(std::move(cells.volumes_before));
+    made["before"] = counts_dict(cells.before);
+    made["after"] = counts_dict(cells.after);
+    made["short_edges"] = cells.short_edges;
+    made["thin_cells"] = cells.thin_cells;
+    made["largest_move"] = cells.largest_move;
+    return made;
+}
+
 }  // namespace
 
 void bind_simulation(py::module_& module) {
@@ -192,6 +222,15 @@ whose faces matter inside a region, too. tolerance: how far boundaries may lie f
 Returns a dict: points (P, 3), tetrahedra (E, 4), region (E,), triangles (F, 3) outside, between regions
 and on kept surfaces, surface (F,).
 Raises InputError kinds "bad_index", "nothing", "flat"; Cancelled.)");
+    module.def("clean_cells", &clean_cells, py::arg("model"), py::arg("blocks"),
+               py::arg("surface_kind"), py::arg("tolerance"), py::arg("threads") = 0,
+               py::arg("control") = nullptr,
+               R"(The cells of a model without edges, faces and cells smaller than a tolerance.
+
+model: dict of the arrays of docs/dev/geometry.md. surface_kind: (S,) int32. Returns a dict: the same arrays,
+volumes (B,), volumes_before (B,), cell_origin (C,) int32: the cell that each was; before, after: dicts of
+edges, faces, cells; short_edges, thin_cells: how many had to stay; largest_move: of a vertex.
+Raises InputError kind "bad_index"; Cancelled.)");
 }
 
 }  // namespace realmodel::bindings

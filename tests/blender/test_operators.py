@@ -16,9 +16,9 @@ ALWAYS = {  # operators that can be used in every scene of one's own, and why
     "documentation": "has a poll of its own",
 }
 CHANGES_NOTHING = {  # operators without a step of undo: files, the view of a viewport, the clipboard, jobs
-    *("export", "report", "save_section", "save_chart", "library_export", "capture", "copy_table"),
+    *("export", "export_mesh", "report", "save_section", "save_chart", "library_export", "capture"),
     *("view", "view_all", "view_previous", "view_next", "cancel", "stop_check", "check_quality"),
-    *("dismiss", "documentation"),
+    *("dismiss", "documentation", "copy_table"),
 }
 
 

@@ -52,7 +52,7 @@ class Start(PanelCase):
         self.assertGreater(len(areas), 1)
         for area in areas:
             self.assertEqual(handler.poll_drop(SimpleNamespace(area=area)), area.type == "VIEW_3D")
-        files = [SAMPLES / "gravel_plain" / "ground.asc", SAMPLES / "haut_barr" / "ground.off"]
+        files = [SAMPLES / "gravel_plain" / "ground.asc", SAMPLES / "castle_hill" / "ground.off"]
         for number, file in enumerate(files):
             self.assertIn(file.suffix, handler.bl_file_extensions.split(";"))
             shutil.copy(file, self.folder / f"{number}{file.suffix}")
@@ -101,7 +101,7 @@ class Start(PanelCase):
         self.assertEqual(len(self.model.rocks[0].surfaces), 2)
 
     def test_examples(self):
-        for name in ("two_layers", "haut_barr"):
+        for name in ("two_layers", "castle_hill", "haut_barr"):
             self.assertEqual(ops.open_sample(sample=name), {"FINISHED"})
             self.assertTrue(len(self.model.library))
 
@@ -135,7 +135,7 @@ class Saved(PanelCase):
         return path.parent
 
     def test_example_after_its_files_are_gone(self):
-        copy = shutil.copytree(SAMPLES / "haut_barr", self.folder / "copy")
+        copy = shutil.copytree(SAMPLES / "castle_hill", self.folder / "copy")
         ops.open_project(filepath=str(copy / "project.toml"))
         ops.build()
         shutil.rmtree(copy)

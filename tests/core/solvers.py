@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""OpenFOAM and OpenGeoSys, where this machine has them."""
+"""OpenFOAM, OpenGeoSys and CalculiX, where this machine has them."""
 
 import os
 import re
@@ -149,3 +149,18 @@ def write_ogs_nodes(path, points, triangles):
         f"{array('types', np.full(len(corners), 5), 'UInt8')}</Cells>"
         "</Piece></UnstructuredGrid></VTKFile>"
     )
+
+
+def run_calculix(folder, mesh_file, materials, gravity):
+    """(N, 3) the displacements of all nodes under their own weight, the base held. materials: Young's modulus
+    and density by the name of the block; Poisson's ratio is 0."""
+    lines = [f"*INCLUDE, INPUT={mesh_file}"]
+    for name, (stiffness, density) in materials.items():
+        lines += [f"*MATERIAL, NAME={name}", "*ELASTIC", f"{stiffness!r}, 0", "*DENSITY", repr(density)]
+        lines.append(f"*SOLID SECTION, ELSET={name}, MATERIAL={name}")
+    lines += ["*BOUNDARY", "base_nodes, 1, 3", "*STEP", "*STATIC", "*DLOAD"]
+    lines += [f"all_elements, GRAV, {gravity!r}, 0, 0, -1", "*NODE PRINT, NSET=all_nodes", "U", "*END STEP"]
+    (folder / "weight.inp").write_text("\n".join(lines) + "\n")
+    done = subprocess.run(["ccx", "weight"], cwd=folder, capture_output=True, text=True, check=False)
+    assert "Job finished" in done.stdout, done.stdout[-3000:]
+    return np.loadtxt(folder / "weight.dat", skiprows=3)[:, 1:]

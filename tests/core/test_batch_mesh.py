@@ -42,12 +42,31 @@ def test_defaults_and_tetrahedra(tmp_path):
     assert (tmp_path / "mesh.foam" / "constant" / "polyMesh" / "owner").is_file()
 
 
+def test_cleaned_cells_and_their_report(tmp_path):
+    report = tmp_path / "report.json"
+    done = run("--export", tmp_path / "m.foam", "--cell-tolerance", 0.5, "--report", report)
+    assert done.returncode == 0, done.stderr
+    assert "cells cleaned to 0.5: " in done.stdout
+    assert " cells removed" in done.stdout
+    assert (tmp_path / "m.foam" / "constant" / "polyMesh" / "owner").is_file()
+    entry = json.loads(report.read_text())["cleaned_cells"]
+    assert entry["tolerance"] == 0.5
+    assert entry["removed"]["edges"] > entry["removed"]["cells"] > 0
+    assert entry["largest_move"] <= 0.5
+    for block in entry["blocks"]:
+        assert block["volume"] == pytest.approx(block["exact_volume"], rel=0.01)
+        assert block["volume"] != block["exact_volume"]
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
         (("--mesh", "m.xyz"), "meshes are not written as '.xyz'"),
         (("--mesh-edge", 4), "--mesh-edge goes with --mesh"),
         (("--mesh", "m.vtu", "--mesh-edge", -1), "not a length above 0"),
+        (("--cell-tolerance", 1), "--cell-tolerance goes with --export of a file with cells"),
+        (("--cell-tolerance", 1, "--export", "m.obj"), "--cell-tolerance goes with --export of a file with"),
+        (("--cell-tolerance", 0, "--export", "m.vtu"), "'0' is not a length above 0"),
         (("--mesh", "m.vtu", "--estimate"), "--estimate builds nothing"),
         (("--mesh", "m.vtu", "--surfaces-only"), "--surfaces-only goes without --mesh"),
         (("--mesh", "m.vtu", "--export", "m.vtu"), "two outputs have this name"),

@@ -9,7 +9,7 @@ import pytest
 from conftest import grid_surface
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
-from realmodel.core import Cancelled, Project, Rock, Surface, build
+from realmodel.core import Cancelled, Project, Rock, Surface, UsageError, build
 from realmodel.core.exporters.report import model_report
 from realmodel.core.table import volume_table
 from stacks.generate import random_stack
@@ -236,3 +236,9 @@ def test_table_and_report():
         "clay": pytest.approx(2),
         "sand": pytest.approx(6),
     }
+
+
+def test_a_half_has_no_erosion_of_its_own():
+    half = build(Project("hill", [hill()])).cut_by_plane((2, 2, 2), (1, 0, 0)).above
+    with pytest.raises(UsageError, match="ask the whole model"):
+        half.eroded()

@@ -6,6 +6,7 @@ import pytest
 from realmodel.core import Fault, InputRefused, Project, Rock, Surface
 from realmodel.core.project import check_project
 from realmodel.core.structures.closed_form import heights_at, nearest_side
+from realmodel.core.structures.triangles import crossing_pairs, pairs_at_planes
 from structure_cases import closed_form_of, plane_fault, prepared
 
 
@@ -270,3 +271,19 @@ def test_two_faults_and_a_branch():
     for sheet, height, place in zip(sheets_by_place(entry, *places), (0.0, 1.0, 2.0), places, strict=True):
         assert_single_valued(sheet, 100.0)
         assert heights_at(np.array([place[:2]], float), *sheet) == height
+
+
+def test_what_is_left_out_by_planes_is_far():
+    random = np.random.default_rng(5)
+    first = random.uniform(0, 0.3, (300, 3, 3)) + random.uniform(0, 3, (300, 1, 3))
+    second = random.uniform(0, 3, (7, 3, 3))
+    all_pairs = {tuple(pair) for pair in crossing_pairs(first, second).tolist()}
+    near = 0.05
+    kept = {tuple(pair) for pair in pairs_at_planes(first, second, near).tolist()}
+    left_out = np.array(sorted(all_pairs - kept))
+    assert kept <= all_pairs and len(kept) > 50 and len(left_out) > 50
+    a, b, c = second[left_out[:, 1]].transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    off = np.einsum("kij,kj->ki", first[left_out[:, 0]] - a[:, None], normal)
+    assert (np.abs(off) > near).all() and (np.sign(off) == np.sign(off[:, :1])).all()

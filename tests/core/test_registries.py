@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is in the add-on's registries is there: functions of methods, rules and meshers of the native part."""
 
+import re
 from importlib import import_module
+from pathlib import Path
 
 import numpy as np
 import pytest
 from realmodel.core import InputRefused, Project, Rock, Surface, build, mesh_region
+from realmodel.core.exporters import FORMATS
+from realmodel.core.exporters.meshes import MESH_FORMATS
+from realmodel.core.exporters.sections import SECTION_WRITERS
 from realmodel.core.meshers import MESHERS
 from realmodel.core.methods import METHODS, OPTIONS
 from realmodel.core.readers.mesh_file import read_mesh
@@ -64,3 +69,16 @@ def test_a_mesh_of_no_known_format_is_refused(tmp_path):
     file.write_text("xyz\n")
     with pytest.raises(InputRefused, match="nor its extension is that of a mesh"):
         read_mesh(file)
+
+
+def test_the_document_tells_who_checks_each_format():
+    root = Path(__file__).resolve().parents[2]
+    text = (root / "docs" / "dev" / "formats.md").read_text(encoding="utf-8")
+    written = text[text.index("## Written") : text.index("## Read")]
+    for ending in (*FORMATS, *MESH_FORMATS, *SECTION_WRITERS):
+        assert f"`{ending}`" in written, ending
+    for line in text.splitlines():
+        if line.startswith("| ") and not line.startswith(("| format", "|---")):
+            tests = re.findall(r"`(test_\w+\.py)`", line)
+            assert tests, line
+            assert all((root / "tests" / "core" / name).is_file() for name in tests), line

@@ -19,12 +19,14 @@ from realmodel.core import (
     build,
     load_project,
 )
+from realmodel.core.simulation.element_faces import ElementFaces
 from solver_meshes import block_volumes, check_solver_mesh, least_angles, outside_volume
 from stacks import places, real_data
 from stacks.generate import random_stack
 from stacks.model_view import rocks_of
 from stacks.project_files import stack_project
 from stacks.rock_masses import random_rock_masses
+from structure_cases import plane_fault
 
 SAMPLES = Path(__file__).parents[2] / "blend_samples"
 SQUARE = [[0.0, 0.0], [100.0, 0.0], [100.0, 60.0], [0.0, 60.0]]
@@ -55,7 +57,7 @@ def thicknesses(mesh):
 
 @pytest.mark.parametrize(
     ("sample", "edge", "thickness", "deviation"),
-    [("two_layers", 4.0, 0.2, 0.003), ("haut_barr", 13.0, 0.5, 0.02), ("gravel_plain", 15.0, 0.5, 0.03)],
+    [("two_layers", 4.0, 0.2, 0.003), ("castle_hill", 13.0, 0.5, 0.02), ("gravel_plain", 15.0, 0.5, 0.03)],
 )
 @pytest.mark.parametrize("elements", ["prisms", "tetrahedra"])
 def test_samples(sample, edge, thickness, deviation, elements):
@@ -122,6 +124,21 @@ def test_random_stacks(tmp_path_factory, family, fineness, thinness, layers, rng
     assert mesh.volumes == pytest.approx(block_volumes(mesh), rel=1e-6)
     if len(mesh.points):
         assert thicknesses(mesh).min() >= 0.99 * thickness
+
+
+@pytest.mark.parametrize("thickness", [4.5, 5.5, 7.0])
+@pytest.mark.parametrize("share", [None, 0.5])
+def test_a_model_of_one_element_is_not_eroded(thickness, share):
+    """A wedge from 4 to 16 m, alone or of two layers: only what is thinner than asked is given up, though
+    every element of a column of one is under-determined."""
+    top = np.array([4.0, 16.0, 16.0, 4.0])
+    middle = [] if share is None else [plane("S1", share * top)]
+    surfaces = [plane("S0", 0.0), *middle, plane("S2", top)]
+    model = build(Project(name="wedge", rocks=[Rock(name="r", surfaces=surfaces)]))
+    mesh = checked(model.simulation_mesh(5.0, thickness))
+    thinner = (thickness - 4.0) / 12.0  # share of the length where the model is
+    lost = 6000.0 * thinner * (4.0 + thickness) / 2
+    assert mesh.exact_volumes.sum() - mesh.volumes.sum() == pytest.approx(lost, abs=0.01 * 60_000)
 
 
 def test_a_layer_ends_where_its_thickness_does():
@@ -319,6 +336,50 @@ def test_a_vertical_fault_is_a_step():
     assert mesh.volumes == pytest.approx(mesh.exact_volumes, rel=1e-6)
     at_fault = mesh.points[np.isclose(mesh.points[:, 0], 50)]
     assert set(np.round(at_fault[:, 2], 6)) == {0.0, 10.0, 15.0, 30.0}
+    assert fault_area(mesh, 3) == pytest.approx(60 * 30)
+
+
+def fault_area(mesh, number):
+    area = 0.0
+    for kind, corners in mesh.faces.items():
+        on = mesh.points[corners[mesh.face_surface[kind] == number]]
+        spans = on[:, 1:] - on[:, :1]
+        area += np.linalg.norm(np.cross(spans[:, :-1], spans[:, 1:]).sum(axis=1), axis=1).sum() / 2
+    return area
+
+
+@pytest.mark.parametrize("elements", ["prisms", "tetrahedra"])
+@pytest.mark.parametrize("turn", [0.0, 20.0])
+def test_faces_on_a_fault_have_its_number(turn, elements):
+    """A fault that the youngest surface does not know has faces in the rock; without that surface, a scarp
+    on top as well: a patch. The walls of the region have none."""
+
+    def points(east, west, lift=0.0):
+        x, y = np.random.default_rng(1).uniform(0.0, 10.0, (300, 2)).T
+        side = x - 5 + (y - 5) * np.tan(np.radians(turn)) < 0
+        return np.column_stack([x, y, np.where(side, west, east) + 0.1 * y + lift])
+
+    surfaces = [Surface("S0", points=points(0.0, -1.0)), Surface("S1", points=points(2.2, 1.0))]
+    square = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]
+    fault = Fault("F", *plane_fault(turn=turn), youngest="S1")
+    for young in ([], [Surface("S2", points=points(4.0, 4.0))]):
+        rock = Rock("r", [*surfaces, *young], region=square, edge_length=1.0, base_elevation=-5.0)
+        model = build(Project("p", [rock], faults=[fault]))
+        number = len(surfaces) + len(young)
+        mesh = checked(model.simulation_mesh(1.0, 0.1, elements=elements))
+        exact = 0.0
+        for face in np.flatnonzero(model.face_surface == number):
+            corners = model.vertices[
+                model.face_vertices[model.face_offsets[face] : model.face_offsets[face + 1]]
+            ]
+            spans = corners[1:] - corners[0]
+            exact += np.linalg.norm(np.cross(spans[:-1], spans[1:]).sum(axis=0)) / 2
+        assert fault_area(mesh, number) == pytest.approx(exact, rel=0.005)
+        sets = {found.name: found for found in ElementFaces(mesh).sets()}
+        groups = {found.name for found in sets.values() if found.group}
+        assert groups >= {"top", "base", "sides"}
+        assert any(name.startswith("F") for name in sets)
+        assert ("F" in {found.group for found in sets.values()}) == (not young)
 
 
 def test_cancelled():

@@ -58,6 +58,26 @@ def test_the_judge_finds_what_is_wrong(monkeypatch):
     assert any(failure.startswith("point") for failure in failures_of(case))
 
 
+def test_the_judge_asks_for_the_whole_volume_and_the_proof(monkeypatch):
+    case = next(c for c in map(random_case, range(20)) if c.is_full and c.faults)
+    assert failures_of(case, count=10) == []
+    case.is_full = False
+    project = type(case).project
+
+    def deeper(self):
+        given = project(self)
+        for rock in given.rocks:
+            rock.base_elevation -= 1.0
+        return given
+
+    monkeypatch.setattr(type(case), "project", deeper)
+    assert not any(failure.startswith("whole") for failure in failures_of(case, count=10))
+    case.is_full = True
+    assert any(failure.startswith("whole") for failure in failures_of(case, count=10))
+    monkeypatch.setattr("realmodel.core.structures.proof.closed_forms", lambda model: [])
+    assert any(failure.startswith("validation: places") for failure in failures_of(case, count=10))
+
+
 def test_sides_insides_and_levels():
     vertices, triangles = together(box((0, 0, 0), (4, 4, 4)), box((2, 2, 2), (6, 6, 6)))
     points = np.array([[1.0, 1, 1], [3, 3, 3], [5, 5, 5], [1, 5, 1]])

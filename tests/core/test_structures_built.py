@@ -154,6 +154,28 @@ def test_a_fault_that_dies_out(tmp_path):
     assert (model.face_surface == 3).any()
 
 
+def test_a_branch_of_a_fault_that_dies_out(tmp_path):
+    """Past the tip all three compartments are one rock, though the branch parts two of them."""
+
+    def height(k):
+        def at(x, y):
+            fade = np.clip((6.0 - y) / 3.0, 0.0, 1.0) ** 2
+            return k + np.where(x > 5, 0.4, np.where(y > 3, -0.4, -0.8)) * fade
+
+        return at
+
+    given = [Surface(f"S{k}", points=points_of(height(k), k, 300)) for k in range(2)]
+    corners = np.array([[-5.0, 3, -20], [5.5, 3, -20], [5.5, 3, 20], [-5, 3, 20]])
+    triangles = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    faults = [
+        Fault("F", *plane_fault(y=(-5.0, 6.0)), dies_out=True),
+        Fault("B", corners, triangles, ends_at=("F",)),
+    ]
+    model = assert_right(Project("p", [rock(given, edge_length=1.5)], faults=faults), tmp_path)
+    assert sorted(model.compartment_names) == ["above B", "below B", "r"]
+    assert {2, 3} <= set(model.face_surface.tolist())
+
+
 def test_a_fault_that_ends_inside_is_refused():
     fault = Fault("F", *plane_fault(y=(-5.0, 6.0)))
     with pytest.raises(InputRefused, match=r"fault 'F': it ends inside the rock that it displaces near \("):
@@ -171,7 +193,7 @@ def torn(z):
 def test_a_fault_that_dies_out_in_torn_surfaces_is_refused_for_them():
     given = [Surface(f"S{k}", *torn(k)) for k in range(3)]
     fault = Fault("F", *plane_fault(y=(-5.0, 6.0)), dies_out=True)
-    with pytest.raises(InputRefused, match=r"beyond its tip the surfaces differ .*data beyond the tip"):
+    with pytest.raises(InputRefused, match=r"surface 'S0': it has two heights beyond the tip of fault 'F'"):
         build(Project("p", [rock(given)], faults=[fault]))
 
 

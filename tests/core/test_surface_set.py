@@ -8,7 +8,8 @@ import sys
 import numpy as np
 import pytest
 from conftest import ROOT, grid_surface
-from realmodel.core import Fault, Project, Rock, Surface, UsageError, build, build_surfaces, interpolate
+from realmodel.core import Body, Fault, Project, Rock, Surface, UsageError, build, build_surfaces, interpolate
+from realmodel.core.table import surface_table
 from structure_cases import plane_fault
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
@@ -173,3 +174,36 @@ def test_the_sheets_of_a_surface_that_a_fault_displaces(tmp_path):
     surfaces.save(tmp_path / "s.npz")
     with np.load(tmp_path / "s.npz") as read:
         assert np.array_equal(read["surface_triangle_sheet"], sheet)
+
+
+def test_surfaces_of_faults_and_bodies_come_after_those_of_the_rock_masses(tmp_path):
+    corners = np.array([[50.0, 40.0, 5.0], [60.0, 40.0, 5.0], [50.0, 50.0, 5.0], [50.0, 40.0, 15.0]])
+    faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    sticks = [np.array([[30.0, y, z] for z in (-50.0, 20.0, 90.0)]) for y in (-20.0, 40.0, 100.0)]
+    level = Surface("level", points=np.array([[10.0, 10.0, 30.0], [90.0, 60.0, 30.0]]), method="constant")
+    given = Project(
+        "structures",
+        [Rock("hill", [level], region=SQUARE, edge_length=20.0)],
+        faults=[Fault("sticks", points=sticks)],
+        bodies=[Body("ore", corners, faces)],
+    )
+    surfaces = build_surfaces(given)
+    assert surfaces.surface_names == ["level", "sticks", "ore"]
+    assert surfaces.surface_kind.tolist() == [0, 1, 2]
+    vertices, triangles = surfaces.surface(1)
+    assert np.ptp(vertices[:, 0]) < 1e-9
+    assert len(triangles)
+    assert np.array_equal(surfaces.surface(2)[0], corners)
+    assert len(surfaces.surface_triangle_sheet) == sum(len(surfaces.surface(k)[1]) for k in range(3))
+    for name in ("s.npz", "s.vtu", "s.ply"):
+        surfaces.save(tmp_path / name)
+    arrays = np.load(tmp_path / "s.npz")
+    assert arrays["surface_kind"].tolist() == [0, 1, 2]
+    assert arrays["surface_names"].tolist() == ["level", "sticks", "ore"]
+    assert b"ore" in (tmp_path / "s.ply").read_bytes()
+    lines = surface_table(surfaces).splitlines()
+    assert [line.split()[:2] for line in lines[2:]] == [
+        ["sticks", "fault"],
+        ["ore", "body"],
+        ["level", "hill"],
+    ]

@@ -54,7 +54,7 @@ def open_the_tab(walk):
 
 def open_the_example(walk):
     """F3, its name, Enter: it is built at once, with progress."""
-    yield from walk.command({"two_layers": "two layers", "haut_barr": "haut-barr"}[walk.sample])
+    yield from walk.command({"two_layers": "two layers", "castle_hill": "castle hill"}[walk.sample])
     yield lambda: len(model().rocks) == 1
     walk.shot("opened")
     yield lambda: len(model().results) > 0 and idle()

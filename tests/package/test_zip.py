@@ -56,7 +56,11 @@ def test_all_that_a_user_needs_is_there(unpacked):
     for name in ("LICENSE", "NOTICE.md", "core/build.py", "bl/scene.py", "vendor/shapefile.py"):
         assert (folder / name).is_file(), name
     samples = folder / "blend_samples"
-    assert {path.parent.name for path in samples.glob("*/project.toml")} >= {"two_layers", "haut_barr"}
+    assert {path.parent.name for path in samples.glob("*/project.toml")} >= {
+        "two_layers",
+        "castle_hill",
+        "haut_barr",
+    }
 
 
 class Links(HTMLParser):

@@ -11,12 +11,22 @@ from . import meshes_ahead, versions
 FACE_SURFACE = "realmodel_surface"
 # Face attribute of blocks that faults divide: the number of the compartment that a face bounds
 FACE_COMPARTMENT = "realmodel_compartment"
+# Attributes of blocks (realmodel.core.bedding): kind, domain
+BEDDING = {
+    "height": ("FLOAT", "CORNER"),
+    "thickness": ("FLOAT", "CORNER"),
+    "depth": ("FLOAT", "CORNER"),
+    "is_top": ("BOOLEAN", "FACE"),
+    "age": ("FLOAT", "FACE"),
+}
+PREFIX = "realmodel_"
 
 
 def new_mesh(name, shape):
     """A new mesh datablock, bpy.types.Mesh, of a realmodel.core.polygon_mesh.PolygonMesh, whose coordinates
     are offsets from the model origin. The surface that each polygon lies on becomes the face attribute
-    `realmodel_surface`, the compartment that it bounds `realmodel_compartment`.
+    `realmodel_surface`, the compartment that it bounds `realmodel_compartment`, and where corners lie in
+    their layers those of BEDDING, with `realmodel_` before their names.
 
     Arrays go to Blender as they are: a million quads, with their edges, in less than a tenth of a second.
     A mesh that was made ahead is there already.
@@ -78,15 +88,21 @@ def holds(mesh, shape):
     return (
         np.array_equal(mesh_coordinates(mesh), shape.coordinates)
         and np.array_equal(versions.corner_vertices(mesh), shape.corners)
-        and _holds_compartments(mesh, shape.face_compartment)
+        and _holds(mesh, FACE_COMPARTMENT, shape.face_compartment)
+        and all(_holds(mesh, PREFIX + name, values) for name, values in _bedding(shape))
     )
 
 
-def _holds_compartments(mesh, wanted):
-    attribute = mesh.attributes.get(FACE_COMPARTMENT)
+def _bedding(shape):
+    """(name, values or None) of each attribute of the bedding of a PolygonMesh."""
+    return [(name, None if shape.bedding is None else getattr(shape.bedding, name)) for name in BEDDING]
+
+
+def _holds(mesh, name, wanted):
+    attribute = mesh.attributes.get(name)
     if wanted is None or attribute is None:
         return wanted is None and attribute is None
-    values = np.empty(len(attribute.data), np.int32)
+    values = np.empty(len(attribute.data), wanted.dtype)
     attribute.data.foreach_get("value", values)
     return np.array_equal(values, wanted)
 
@@ -96,6 +112,10 @@ def _fill(mesh, shape):
     for name, values in ((FACE_SURFACE, shape.face_surface), (FACE_COMPARTMENT, shape.face_compartment)):
         if values is not None and len(values):
             attribute = mesh.attributes.new(name, "INT", "FACE")
+            attribute.data.foreach_set("value", values)
+    for name, values in _bedding(shape):
+        if values is not None and len(values):
+            attribute = mesh.attributes.new(PREFIX + name, *BEDDING[name])
             attribute.data.foreach_set("value", values)
 
 

@@ -11,7 +11,8 @@ from ..core import InputRefused
 _PLACES = (Path(__file__).resolve().parents[1], Path(__file__).resolve().parents[3])
 _LABELS = {
     "two_layers": ("Two Layers", "The smallest project: two surfaces from points, one erosion"),
-    "haut_barr": ("Haut-Barr", "A castle hill of eleven surfaces, cut by erosion into separate bodies"),
+    "haut_barr": ("Haut-Barr", "Three rocks of sandstone on a base: four rock masses, 36 layers"),
+    "castle_hill": ("Castle Hill", "Eleven surfaces, cut by erosion into separate bodies"),
     "gravel_plain": ("Gravel Plain", "A valley filled with gravel, from boreholes"),
     "fault_blocks": (
         "Fault Blocks",

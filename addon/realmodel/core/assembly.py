@@ -111,13 +111,14 @@ def assemble(
         kinds = [0] * len(names)
         if structures is not None:
             names += structures.names
-            kinds += [1] * len(structures.faults) + [2] * len(structures.bodies)
-        compartment, compartment_names = cell_compartments(inputs, built, structures)
+            kinds += structures.kinds
+        compartment, compartment_names, sides = cell_compartments(inputs, built, structures)
         model = kind(
             **arrays,
             surface_kind=np.array(kinds, np.int32),
             cell_compartment=compartment,
             compartment_names=compartment_names,
+            compartment_sides=sides,
             structures=structures,
             cell_kind=cells,
             blocks=blocks,

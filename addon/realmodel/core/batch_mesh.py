@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The mesh for simulation that build_model.py writes: --mesh and what goes with it."""
+"""Meshes for simulation that build_model.py writes: --mesh and what goes with it, --cell-tolerance."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from .exporters.meshes import mesh_target, write_mesh
-from .simulation import SimulationMesh, mesh_entry
+from .simulation import CleanedCells, SimulationMesh, mesh_entry
 
 EDGES_ACROSS = 50  # of the model, where no edge length is given
 EDGE_OVER_THICKNESS = 10  # where no minimum thickness is given
@@ -30,8 +30,8 @@ class BatchMesh:
         """Where it will stand. Raises UsageError, OutputFailed."""
         return mesh_target(self.path)
 
-    def make(self, model, threads: int, progress) -> SimulationMesh:
-        """The mesh. Raises as Model.simulation_mesh."""
+    def make(self, model, threads: int, progress=None) -> SimulationMesh:
+        """The mesh. Raises as Model.simulation_mesh. Without progress it is a part of the present job."""
         extent = np.ptp(model.vertices[:, :2], axis=0) if len(model.vertices) else np.zeros(2)
         edge = float(extent.max()) / EDGES_ACROSS if self.edge is None else self.edge
         return model.simulation_mesh(
@@ -41,7 +41,7 @@ class BatchMesh:
             elements=self.elements,
             layer_thickness=self.layer_thickness,
             threads=threads,
-            progress=lambda _share, text: progress(1.0, text),
+            progress=progress and (lambda _share, text: progress(1.0, text)),
         )
 
     def write(self, mesh: SimulationMesh, outputs, unit: str, progress) -> None:
@@ -59,7 +59,17 @@ class BatchMesh:
         return f"{self.path}: {counts or 'no elements'}{angle}; {_change_text(mesh)}"
 
 
-def _change_text(mesh: SimulationMesh) -> str:
+def cleaned_line(cells: CleanedCells) -> str:
+    """What is printed of cells by --cell-tolerance."""
+    removed = ", ".join(f"{count:,} {what}" for what, count in cells.removed.items())
+    left = ", ".join(f"{count:,} {what.replace('_', ' ')}" for what, count in cells.left.items() if count)
+    return (
+        f"cells cleaned to {cells.tolerance:g}: {removed} removed{f', {left} left' if left else ''}; "
+        f"{_change_text(cells)}"
+    )
+
+
+def _change_text(mesh: SimulationMesh | CleanedCells) -> str:
     change = mesh.volumes - mesh.exact_volumes
     if not change.any():
         return "all volumes are exact"

@@ -15,13 +15,15 @@ from . import cutting
 from .assembly import build_stage
 from .blocks import Block, BlockBoundary
 from .build_warning import BuildWarning
+from .contours import contours
 from .erosion import Erosion, eroded
 from .errors import UsageError
 from .exporters import save_model
+from .geological_map import geological_map
 from .heights import Interpolation
 from .project import Project
 from .rock_input import RockInput
-from .simulation import simulation_mesh
+from .simulation import cleaned_cells, simulation_mesh
 from .structures.parts import Structures
 from .surface_set import triangle_sheets, vertex_attributes
 from .validation import PLACES_OF_CHECK, ValidationReport, validate
@@ -62,6 +64,7 @@ class Model:
     surface_kind: np.ndarray | None = None
     cell_compartment: np.ndarray | None = None
     compartment_names: list[str] = field(default_factory=list)
+    compartment_sides: np.ndarray | None = field(default=None, repr=False)
     structures: Structures | None = field(default=None, repr=False)
 
     def __post_init__(self):
@@ -123,15 +126,23 @@ class Model:
         sheet = self.surface_triangle_sheet[begin:end]
         return [np.ascontiguousarray(triangles[sheet == each]) for each in np.unique(sheet)]
 
-    def save(self, path: str | Path, cell_size: float | Sequence[float] | None = None) -> None:
+    def save(
+        self,
+        path: str | Path,
+        cell_size: float | Sequence[float] | None = None,
+        contour_interval: float | None = None,
+        tolerance: float | None = None,
+    ) -> None:
         """Writes the model to a file or folder, by its ending: those of exporters.FORMATS. It appears whole
         or not at all.
 
         cell_size: of regular grids (.csv, .vti, .tif, .asc), one number, two (in plan, in height) or three;
-        None: a hundredth of the longest side. Raises UsageError for an ending that is not known,
-        OutputFailed where it cannot be written.
+        None: a hundredth of the longest side. contour_interval: of maps (.gpkg, .geojson); None: one of about
+        fifteen levels. tolerance: of formats with the model's cells (.vtu, .foam, .exo, .disu): they are
+        cleaned as cleaned_cells does; None: the exact cells. Raises UsageError for an ending that is not
+        known, OutputFailed where it cannot be written.
         """
-        save_model(self, path, cell_size=cell_size)
+        save_model(self, path, cell_size=cell_size, contour_interval=contour_interval, tolerance=tolerance)
 
     def stage(self, m: int, progress: Progress | None = None, cancel: Cancel | None = None) -> Model:
         """The model as it was just after surface m (from 0) of each rock mass. Raises UsageError where no
@@ -146,8 +157,10 @@ class Model:
 
         The volume of a block just before the surface, less that just after. For each surface that cuts the
         model is built once more up to the surface before, with whole blocks as cells; what rounding alone
-        makes is given as 0. Raises Cancelled.
+        makes is given as 0. Raises UsageError where the model is a half, Cancelled.
         """
+        if self.is_cut:
+            raise UsageError("a cut model has no erosion: ask the whole model")
         return eroded(self, self.threads, progress, cancel)
 
     def validate(
@@ -168,6 +181,9 @@ class Model:
         return validate(self, places, seed, threads, progress, cancel)
 
     simulation_mesh = simulation_mesh
+    cleaned_cells = cleaned_cells
+    geological_map = geological_map
+    contours = contours
     cut_by_plane = cutting.cut_by_plane
     cut_by_surface = cutting.cut_by_surface
     cut_by_block = cutting.cut_by_block

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .bedding import Bedding, bedding_of, seen_from_below
 from .work import Cancel, native_module, run
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ class PolygonMesh:
     None. edges: (E, 2) int32, each once, and corner_edges: (C,) int32, for each corner the edge from it to
     the next; both None where whoever takes the mesh is to find them. smooth: shaded without breaks.
     face_compartment: (F,) int32, the compartment that each polygon bounds, or None for models of one.
+    bedding: of blocks, where its corners lie in their layers.
     """
 
     coordinates: np.ndarray
@@ -37,6 +39,7 @@ class PolygonMesh:
     corner_edges: np.ndarray | None = None
     smooth: bool = False
     face_compartment: np.ndarray | None = None
+    bedding: Bedding | None = None
 
     @property
     def polygons(self) -> int:
@@ -64,24 +67,13 @@ def of_surfaces(model: Model, origin: np.ndarray) -> list[PolygonMesh | None]:
             continue
         faces = order[first:last]
         # The cell that a face is numbered for lies below it or above; seen from above all turn the same way.
-        offsets, corners = model.face_corners(faces, _seen_from_below(model, faces))
+        offsets, corners = model.face_corners(faces, seen_from_below(model, faces))
         used, corners = np.unique(corners, return_inverse=True)
         coordinates = (model.vertices[used] - origin).astype(np.float32)
         offsets, corners = offsets.astype(np.int32), corners.astype(np.int32).ravel()
         edges, corner_edges = native_module().polygon_edges(offsets, corners, len(used))
         found.append(PolygonMesh(coordinates, offsets, corners, None, edges, corner_edges))
     return found
-
-
-def _seen_from_below(model: Model, faces: np.ndarray) -> np.ndarray:
-    """(N,) bool: the faces whose corners go clockwise seen from above."""
-    offsets, corners = model.face_corners(faces, np.zeros(len(faces), bool))
-    x, y = model.vertices[corners, 0], model.vertices[corners, 1]
-    following = np.arange(1, len(corners) + 1)
-    following[offsets[1:] - 1] = offsets[:-1]
-    first = np.repeat(offsets[:-1], np.diff(offsets))
-    x, y = x - x[first], y - y[first]
-    return np.add.reduceat(x * y[following] - y * x[following], offsets[:-1]) < 0
 
 
 def of_blocks(
@@ -178,6 +170,7 @@ def _joined(parts: list[PolygonMesh | None], numbers: np.ndarray) -> PolygonMesh
         **{key: np.concatenate(arrays).astype(np.int32) for key, arrays in found.items()},
         face_surface=np.concatenate([part.face_surface for part, _ in given]),
         face_compartment=np.concatenate([np.full(part.polygons, number, np.int32) for part, number in given]),
+        bedding=Bedding.joined([part.bedding for part, _ in given]),
     )
 
 
@@ -185,7 +178,7 @@ def _shells(model, origin, shrink, threads, cancel, label, count) -> list:
     """The mesh around the cells of each label, and of each polygon the face of the model."""
 
     def task(work):
-        return work.native(
+        shells = work.native(
             native_module().complex_shells,
             model.vertices,
             model.face_offsets,
@@ -197,13 +190,23 @@ def _shells(model, origin, shrink, threads, cancel, label, count) -> list:
             shrink,
             threads,
         )
+        there = [arrays for arrays in shells if arrays is not None]
+        if not there:
+            return shells, None
+        faces, is_second = (np.concatenate([arrays[n] for arrays in there]) for n in (3, 4))
+        return shells, bedding_of(work, model, faces, is_second, threads)
 
-    found = []
-    for arrays in run(task, cancel=cancel):
+    shells, bedding = run(task, cancel=cancel)
+    found, corner, polygon = [], 0, 0
+    for arrays in shells:
         if arrays is None:
             found.append(None)
             continue
-        coordinates, offsets, corners, faces, edges, corner_edges = arrays
+        coordinates, offsets, corners, faces, _, edges, corner_edges = arrays
+        ends = corner + len(corners), polygon + len(faces)
+        own = bedding.part(slice(corner, ends[0]), slice(polygon, ends[1]))
+        corner, polygon = ends
         surface = model.face_surface[faces]
-        found.append((PolygonMesh(coordinates, offsets, corners, surface, edges, corner_edges), faces))
+        shape = PolygonMesh(coordinates, offsets, corners, surface, edges, corner_edges, bedding=own)
+        found.append((shape, faces))
     return found

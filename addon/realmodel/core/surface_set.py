@@ -16,6 +16,7 @@ from .heights import Interpolation
 from .method_options import check_threads
 from .project import Project, check_project
 from .rock_input import RockInput, interpolate_rock, mesh_rock, read_rocks
+from .structures.parts import Structures, structures_of
 from .structures.reading import read_structures
 from .structures.setup import make_structures
 from .work import Cancel, Progress, Work, native_module, run
@@ -27,14 +28,16 @@ _READ, _MESHED = 0.2, 0.4  # shares of the time
 class SurfaceSet:
     """Surfaces as the model would take them: interpolated ones on the mesh of their region, ready meshes as
     they are, unclipped; of surfaces that faults displace all sheets, one after another. `surface_names` and
-    all numbers go through the rock masses in order, oldest first. `project` holds the arrays in the place of
-    files.
+    all numbers go through the rock masses in order, oldest first, then through the faults and the bodies.
+    `project` holds the arrays in the place of files. `surface_kind` is that of a Model.
     """
 
     project: Project
     rock_inputs: list[RockInput] = field(repr=False)
     surface_names: list[str]
+    surface_kind: np.ndarray
     warnings: list[BuildWarning]
+    structures: Structures = field(repr=False)
 
     @property
     def interpolations(self) -> list[Interpolation | None]:
@@ -43,12 +46,14 @@ class SurfaceSet:
 
     def surface(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Vertices (V, 3) float64 and triangles (T, 3) int32 of one surface."""
-        return [shape for entry in self.rock_inputs for shape in entry.surfaces][number]
+        interfaces = [shape for entry in self.rock_inputs for shape in entry.surfaces]
+        return [*interfaces, *self.structures.shapes][number]
 
     @property
     def surface_triangle_sheet(self) -> np.ndarray:
         """As Model.surface_triangle_sheet."""
-        return triangle_sheets(self.rock_inputs)
+        count = sum(len(triangles) for _, triangles in self.structures.shapes)
+        return np.append(triangle_sheets(self.rock_inputs), np.zeros(count, np.int32))
 
     def surface_attributes(self, number: int) -> dict[str, np.ndarray]:
         """As Model.surface_attributes."""
@@ -96,7 +101,7 @@ def build_surfaces(
     *,
     stage: int | None = None,
 ) -> SurfaceSet:
-    """Reads, meshes and interpolates the surfaces of a project, and stops there.
+    """Reads, meshes and interpolates the surfaces of a project, fits those of its faults, and stops there.
 
     Arguments as `build`; stage: only the surfaces up to this one (from 0) of each rock mass.
     Raises InputRefused, UsageError, Cancelled.
@@ -121,17 +126,21 @@ def _build(work: Work, project: Project, threads: int, stage: int | None) -> Sur
         begin, end = (_READ + (_MESHED - _READ) * k / count for k in (number, number + 1))
         with work.phase(begin, end, f"meshing the region of {entry.rock.name}"):
             mesh_rock(work, entry)
+    structures = structures_of(project, faults, bodies)
     if faults:
-        make_structures(work, project, faults, bodies, inputs, threads, stage, _MESHED, 1.0)
+        structures = make_structures(work, project, faults, bodies, inputs, threads, stage, _MESHED, 1.0)
     else:
         for number, entry in enumerate(inputs):
             begin, end = (_MESHED + (1.0 - _MESHED) * k / count for k in (number, number + 1))
             interpolate_rock(work, entry, begin, end, threads, stage)
     if stage is not None:
         inputs = [entry.stage(stage) for entry in inputs]
+    names = [surface.name for entry in inputs for surface in entry.rock.surfaces]
     return SurfaceSet(
         project,
         inputs,
-        [surface.name for entry in inputs for surface in entry.rock.surfaces],
+        [*names, *structures.names],
+        np.array([0] * len(names) + structures.kinds, np.int32),
         [warning for entry in inputs for warning in entry.warnings],
+        structures,
     )

@@ -73,12 +73,17 @@ _HEADINGS_OF_SURFACES = (
 
 
 def surface_table(surfaces) -> str:
-    """A line for each surface, youngest first. `least sure` is the largest deviation of a height where the
-    method tells one, `beyond points` the share of the vertices outside the hull of the points."""
+    """A line for each fault and body, then for each interface, youngest first. `least sure` is the largest
+    deviation of a height where the method tells one, `beyond points` the share of the vertices outside the
+    hull of the points."""
     rows = []
     rocks = [entry.rock.name for entry in surfaces.rock_inputs for _ in entry.surfaces]
     given = [surface for entry in surfaces.rock_inputs for surface in entry.rock.surfaces]
-    for number in reversed(range(len(surfaces.surface_names))):
+    for number, kind in enumerate(surfaces.surface_kind[len(given) :].tolist(), len(given)):
+        heights = surfaces.surface(number)[0][:, 2]
+        shape = [f"{len(heights)}", f"{heights.min():.7g}", f"{heights.max():.7g}"]
+        rows.append([surfaces.surface_names[number], "", ("fault", "body")[kind - 1], "", *shape, "", ""])
+    for number in reversed(range(len(given))):
         result = surfaces.interpolations[number]
         told = surfaces.surface_attributes(number)
         known = told["variance"][np.isfinite(told["variance"])]

@@ -4,20 +4,35 @@
 from pathlib import Path
 
 import bpy
-from bpy.props import EnumProperty, FloatVectorProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    StringProperty,
+)
 from bpy_extras.io_utils import ExportHelper
 
 from ..bl import results
 from ..bl.display import shown_models
+from ..bl.mesh_job import MeshJob
 from ..core import UsageError
 from ..core.atomic import Outputs
+from ..core.batch_mesh import BatchMesh
 from ..core.exporters import FORMATS, save_model
+from ..core.exporters.meshes import MESH_FORMATS
 from ..core.exporters.report import write_report
-from .reporting import Reporting, a_model, chosen_path
+from .background import InBackground
+from .reporting import Reporting, a_model, chosen_path, not_building
 
 _MODELS = tuple(
     (known.ending[1:].upper(), f"{known.label} ({known.ending})", known.description)
     for known in FORMATS.values()
+)
+_MESHES = tuple(
+    (known.ending[1:].upper(), f"{known.label} ({known.ending})", f"A mesh for {known.label}")
+    for known in MESH_FORMATS.values()
 )
 _REPORTS = (
     ("JSON", "Report (.json)", "Volumes, settings, warnings, and the proof of the model"),
@@ -76,12 +91,17 @@ class Exporting(Reporting, ExportHelper):
         return super().invoke(context, event)
 
     def act(self, context):
+        path = self.target()
+        self.write(context, path)
+        self.report({"INFO"}, f"Wrote {path}")
+
+    def target(self):
+        """The path of the output. Raises UsageError, InputRefused."""
         path = chosen_path(self, "the output")
         known = self.filter_glob.replace("*", "").split(";")
         if path.suffix.lower() not in known:
             raise UsageError(f"{path}: the name must end in {' or '.join(known)}")
-        self.write(context, path)
-        self.report({"INFO"}, f"Wrote {path}")
+        return path
 
 
 class REALMODEL_OT_export(Exporting, bpy.types.Operator):
@@ -102,9 +122,104 @@ class REALMODEL_OT_export(Exporting, bpy.types.Operator):
         subtype="XYZ",
     )
 
+    contour_interval: FloatProperty(
+        name="Contour Interval",
+        description="Of maps (GeoPackage, GeoJSON), in model units; 0: automatic",
+        min=0.0,
+        default=0.0,
+    )
+
+    cell_tolerance: FloatProperty(
+        name="Cell Tolerance",
+        description="Of polyhedral cells (VTK, OpenFOAM, Exodus II, DISU), in model units: shorter edges and "
+        "thinner faces and cells, vanish. 0: the exact cells",
+        min=0.0,
+        default=0.0,
+    )
+
     def write(self, context, path):
         size = self.cell_size[:] if any(self.cell_size) else None
-        save_model(shown_models.whole(context.scene), path, cell_size=size)
+        model = shown_models.whole(context.scene)
+        save_model(
+            model,
+            path,
+            cell_size=size,
+            contour_interval=self.contour_interval or None,
+            tolerance=self.cell_tolerance or None,
+        )
+
+
+class REALMODEL_OT_export_mesh(InBackground, Exporting, bpy.types.Operator):
+    """Export a mesh of the built model for solvers, with limits of edge length and thickness. Esc cancels"""
+
+    bl_idname = "realmodel.export_mesh"
+    bl_label = "Export Simulation Mesh"
+    needs = (a_model, not_building)
+
+    format: format_menu(_MESHES)
+    filter_glob: format_filter(_MESHES)
+    edge_length: FloatProperty(
+        name="Edge Length",
+        description="In plan, in model units; what is smaller is lost. 0: a fiftieth of the model",
+        min=0.0,
+    )
+    minimum_thickness: FloatProperty(
+        name="Minimum Thickness",
+        description="Layers end where they are thinner. 0: a tenth of the edge length",
+        min=0.0,
+    )
+    layers: IntProperty(
+        name="Layers", description="Divide each block into so many layers. 0: by the layer thickness", min=0
+    )
+    layer_thickness: FloatProperty(
+        name="Layer Thickness",
+        description="Divide blocks into layers no thicker than this; Layers then limits their number. 0: any",
+        min=0.0,
+    )
+    elements: EnumProperty(
+        name="Elements",
+        description="What the mesh consists of",
+        items=(
+            ("PRISMS", "Prisms", "Prisms, with pyramids and tetrahedra where layers end"),
+            ("TETRAHEDRA", "Tetrahedra", "Tetrahedra alone"),
+        ),
+    )
+    is_chosen: BoolProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    _browsed = False  # the file browser was opened; Blender then calls execute alone
+
+    def invoke(self, context, event):
+        if self.is_chosen:
+            return InBackground.invoke(self, context, event)
+        self._browsed = True
+        return Exporting.invoke(self, context, event)
+
+    def execute(self, context):
+        if not self._browsed or bpy.app.background:
+            return super().execute(context)
+        given = self.as_keywords(ignore=("filter_glob", "check_existing", "is_chosen"))
+        bpy.ops.realmodel.export_mesh("INVOKE_DEFAULT", is_chosen=True, **given)
+        return {"FINISHED"}
+
+    def act(self, context):
+        InBackground.act(self, context)
+
+    def begin(self, context):
+        self._request = BatchMesh(
+            self.target(),
+            self.edge_length or None,
+            self.minimum_thickness or None,
+            self.layers or None,
+            self.layer_thickness or None,
+            self.elements.lower(),
+        )
+        model = shown_models.whole(context.scene)
+        return MeshJob(model, self._request, model.project.units)
+
+    def tell_done(self, mesh):
+        for warning in mesh.warnings:
+            self.report({"WARNING"}, str(warning))
+        self.report({"INFO"}, f"Wrote {self._request.line(mesh)}")
 
 
 class REALMODEL_OT_report(Exporting, bpy.types.Operator):
@@ -127,4 +242,4 @@ class REALMODEL_OT_report(Exporting, bpy.types.Operator):
                 write_report(model, path, file)
 
 
-CLASSES = (REALMODEL_OT_export, REALMODEL_OT_report)
+CLASSES = (REALMODEL_OT_export, REALMODEL_OT_export_mesh, REALMODEL_OT_report)

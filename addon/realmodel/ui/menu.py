@@ -10,7 +10,8 @@ from ..bl.boolean_job import OPERATIONS
 _SURFACE_OF_OBJECT = ("surface_add", "Surface from Active Object", {"use_object": True})
 _EXPORT = (
     ("save_project", "RealModel Project (.toml)", {}),
-    ("export", "RealModel Model (cells, meshes, shapes)", {}),
+    ("export", "RealModel Model (cells, shapes, grids, maps)", {}),
+    ("export_mesh", "RealModel Simulation Mesh (prisms, tetrahedra)", {}),
     ("report", "RealModel Report (.json/.csv)", {}),
 )
 _IMPORT = (

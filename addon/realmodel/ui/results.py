@@ -29,6 +29,7 @@ class REALMODEL_PT_results(OfABuiltModel, TabPanel, bpy.types.Panel):
         line = layout.row(align=True)
         line.operator("realmodel.export", text="Export...", icon="EXPORT")
         line.operator("realmodel.report", text="Report...", icon="TEXT").format = "JSON"
+        layout.operator("realmodel.export_mesh", text="Simulation Mesh...", icon="MOD_LATTICE")
 
 
 def _block_lines(scene, row):

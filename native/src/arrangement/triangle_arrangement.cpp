@@ -19,8 +19,28 @@ using spatial::Box;
 
 namespace {
 
-/// So many triangles are one piece of work.
+/// So many triangles, or lines of a large one, are one piece of work.
 constexpr std::size_t kChunk = 1 << 8;
+/// So many points or segments make a triangle a large one: its lines are shared among threads, and
+/// found by a tree.
+constexpr std::size_t kLarge = 1 << 9;
+
+Box box_of(const exact::SpacePoints& points, const std::array<SpacePointId, 2>& line) {
+    Box box;
+    for (const SpacePointId end : line)
+        box.include(points.rounded(end));
+    return box;
+}
+
+/// The results of all ranges, one after another.
+template <class Item>
+std::vector<Item> joined(std::vector<std::vector<Item>>& ranges) {
+    std::vector<Item> all;
+    for (auto& range : ranges)
+        all.insert(all.end(), std::make_move_iterator(range.begin()),
+                   std::make_move_iterator(range.end()));
+    return all;
+}
 
 }  // namespace
 
@@ -249,25 +269,39 @@ public:
           t_(t),
           axis_((t.axis + 1) % 3),
           in_order_(t.points) {
+        if (in_order_.size() > kLarge) {
+            std::vector<Box> boxes(in_order_.size());
+            for (std::size_t i = 0; i < boxes.size(); ++i)
+                boxes[i].include(points_.rounded(in_order_[i]));
+            tree_.emplace(std::move(boxes));
+            return;
+        }
         std::sort(in_order_.begin(), in_order_.end(), [this](SpacePointId p, SpacePointId q) {
             return std::pair(coordinate(p), p) < std::pair(coordinate(q), q);
         });
     }
 
     /// The nodes between two others, in order from the first to the second.
-    std::vector<SpacePointId> operator()(SpacePointId a, SpacePointId b) const {
+    std::vector<SpacePointId> operator()(const std::array<SpacePointId, 2>& line) const {
+        const auto [a, b] = line;
         std::vector<SpacePointId> found;
-        for (const SpacePointId p : t_.corners) {
+        const auto visit = [&](SpacePointId p) {
             if (is_between(p, a, b)) found.push_back(p);
-        }
-        const auto [low, high] = std::minmax({coordinate(a), coordinate(b)});
-        auto next =
-            std::lower_bound(in_order_.begin(), in_order_.end(), low,
-                             [this](SpacePointId p, double x) { return coordinate(p) < x; });
-        for (; next != in_order_.end() && coordinate(*next) <= high; ++next) {
-            if (is_between(*next, a, b) &&
-                std::find(found.begin(), found.end(), *next) == found.end())
-                found.push_back(*next);
+        };
+        std::ranges::for_each(t_.corners, visit);
+        const auto visit_point = [&](SpacePointId p) {
+            if (std::ranges::find(t_.corners, p) == t_.corners.end()) visit(p);
+        };
+        if (tree_) {
+            tree_->find(box_of(points_, line),
+                        [&](std::int32_t i) { visit_point(in_order_[index(i)]); });
+        } else {
+            const auto [low, high] = std::minmax({coordinate(a), coordinate(b)});
+            auto next =
+                std::lower_bound(in_order_.begin(), in_order_.end(), low,
+                                 [this](SpacePointId p, double x) { return coordinate(p) < x; });
+            for (; next != in_order_.end() && coordinate(*next) <= high; ++next)
+                visit_point(*next);
         }
         const int direction = compare(points_, a, b);
         std::sort(found.begin(), found.end(), [this, direction](SpacePointId p, SpacePointId q) {
@@ -294,8 +328,22 @@ private:
     const exact::SpacePoints& points_;
     const Triangle& t_;
     std::size_t axis_;
-    std::vector<SpacePointId> in_order_;  ///< the triangle's points in the order of one coordinate
+    /// The triangle's points: in the order of one coordinate, unless there is a tree of them.
+    std::vector<SpacePointId> in_order_;
+    std::optional<spatial::BoxTree> tree_;
 };
+
+/// Those of some triangles that have many points or segments.
+std::vector<std::int32_t> TriangleArrangement::large_triangles(
+    std::span<const std::int32_t> among) const {
+    std::vector<std::int32_t> found;
+    for (const std::int32_t triangle : among) {
+        const Triangle& t = triangles_[index(triangle)];
+        if (t.facing != 0 && std::max(t.points.size(), t.segments.size()) > kLarge)
+            found.push_back(triangle);
+    }
+    return found;
+}
 
 /// Puts the points and segments of all triangles in order, each once.
 void TriangleArrangement::sort_all(int threads, const Progress* progress) {
@@ -309,50 +357,122 @@ void TriangleArrangement::sort_all(int threads, const Progress* progress) {
     });
 }
 
+/// Whether segments of a triangle whose boxes meet cross each other.
+bool TriangleArrangement::do_cross(const Triangle& t, const SegmentPair& pair) const {
+    const auto& [a, b, c, d] = pair;
+    if (a == c || a == d || b == c || b == d) return false;
+    return orientation(t, a, b, c) * orientation(t, a, b, d) < 0 &&
+           orientation(t, c, d, a) * orientation(t, c, d, b) < 0;
+}
+
+namespace {
+
+/// Segments of a triangle with the boxes around them, in the order of one coordinate of these.
+template <class Segment>
+struct BoxedSegment {
+    const Segment* segment;
+    Box box;
+};
+
+template <class Segment>
+std::vector<BoxedSegment<Segment>> boxed_segments(const exact::SpacePoints& points,
+                                                  const std::vector<Segment>& segments,
+                                                  std::size_t axis) {
+    std::vector<BoxedSegment<Segment>> boxed;
+    boxed.reserve(segments.size());
+    for (const Segment& s : segments)
+        boxed.push_back({&s, box_of(points, s.ends)});
+    std::sort(boxed.begin(), boxed.end(), [axis](const auto& s, const auto& r) {
+        const double x = s.box.low[axis], y = r.box.low[axis];
+        return x != y ? x < y : *s.segment < *r.segment;
+    });
+    return boxed;
+}
+
+}  // namespace
+
 /// Pairs of segments of one triangle that cross each other.
 std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segments(
     const Triangle& t) const {
     std::vector<SegmentPair> found;
-    if (t.facing == 0) return found;
-    struct Boxed {
-        const Segment* segment;
-        Box box;
-    };
-    std::vector<Boxed> boxed;
-    for (const Segment& s : t.segments) {
-        Boxed& own = boxed.emplace_back(Boxed{&s, {}});
-        for (const SpacePointId end : s.ends)
-            own.box.include(points_.rounded(end));
-    }
+    if (t.facing == 0 || t.segments.size() < 2) return found;
     const std::size_t axis = (t.axis + 1) % 3;
-    std::sort(boxed.begin(), boxed.end(), [&](const Boxed& s, const Boxed& r) {
-        const double x = s.box.low[axis], y = r.box.low[axis];
-        return x != y ? x < y : *s.segment < *r.segment;
-    });
+    const auto boxed = boxed_segments(points_, t.segments, axis);
     for (std::size_t i = 0; i < boxed.size(); ++i) {
         const auto [a, b] = boxed[i].segment->ends;
         for (std::size_t j = i + 1; j < boxed.size(); ++j) {
             if (boxed[j].box.low[axis] > boxed[i].box.high[axis]) break;
-            const auto [c, d] = boxed[j].segment->ends;
-            if (a == c || a == d || b == c || b == d) continue;
             if (!boxed[i].box.meets(boxed[j].box)) continue;
-            if (orientation(t, a, b, c) * orientation(t, a, b, d) >= 0) continue;
-            if (orientation(t, c, d, a) * orientation(t, c, d, b) >= 0) continue;
-            found.push_back({a, b, c, d});
+            const auto [c, d] = boxed[j].segment->ends;
+            if (do_cross(t, {a, b, c, d})) found.push_back({a, b, c, d});
         }
     }
     return found;
+}
+
+/// The same, in the same order, of a large triangle.
+std::vector<TriangleArrangement::SegmentPair> TriangleArrangement::crossing_segments(
+    const Triangle& t, int threads, const Progress* progress) const {
+    const auto boxed = boxed_segments(points_, t.segments, (t.axis + 1) % 3);
+    std::vector<Box> boxes;
+    boxes.reserve(boxed.size());
+    for (const auto& own : boxed)
+        boxes.push_back(own.box);
+    const spatial::BoxTree tree(std::move(boxes));
+    std::vector<std::vector<SegmentPair>> found((boxed.size() + kChunk - 1) / kChunk);
+    parallel_ranges(
+        boxed.size(), kChunk, threads, progress,
+        [&](std::size_t begin, std::size_t end) {
+            std::vector<std::size_t> near;
+            for (std::size_t i = begin; i < end; ++i) {
+                near.clear();
+                tree.find(boxed[i].box, [&](std::int32_t j) {
+                    if (index(j) > i) near.push_back(index(j));
+                });
+                std::sort(near.begin(), near.end());
+                const auto [a, b] = boxed[i].segment->ends;
+                for (const std::size_t j : near) {
+                    const auto [c, d] = boxed[j].segment->ends;
+                    if (do_cross(t, {a, b, c, d})) found[begin / kChunk].push_back({a, b, c, d});
+                }
+            }
+        },
+        0.02);
+    return joined(found);
 }
 
 /// Notes where segments of one triangle cross each other: only where the triangles of a group do
 /// cross.
 void TriangleArrangement::intersect_segments(int threads, const Progress* progress) {
     std::vector<std::vector<SegmentPair>> found(triangles_.size());
-    each_triangle(threads, progress,
-                  [&](std::size_t i) { found[i] = crossing_segments(triangles_[i]); });
+    each_triangle(threads, progress, [&](std::size_t i) {
+        if (triangles_[i].segments.size() <= kLarge) found[i] = crossing_segments(triangles_[i]);
+    });
+    std::vector<std::pair<std::size_t, SegmentPair>> pairs;
     for (std::size_t i = 0; i < found.size(); ++i) {
-        for (const auto& [a, b, c, d] : found[i])
-            triangles_[i].points.push_back(points_.intersection(triangles_[i].axis, a, b, c, d));
+        if (triangles_[i].facing != 0 && triangles_[i].segments.size() > kLarge)
+            found[i] = crossing_segments(triangles_[i], threads, progress);
+        for (const SegmentPair& pair : found[i])
+            pairs.push_back({i, pair});
+        found[i] = {};
+    }
+    // where they do is found on all threads and numbered in order
+    constexpr std::size_t kAtOnce = 1 << 14;
+    std::vector<exact::SpacePoints::Reduced> at;
+    for (std::size_t first = 0; first < pairs.size(); first += kAtOnce) {
+        at.resize(std::min(kAtOnce, pairs.size() - first));
+        parallel_ranges(
+            at.size(), kChunk, threads, progress,
+            [&](std::size_t begin, std::size_t end) {
+                for (std::size_t k = begin; k < end; ++k) {
+                    const auto& [i, pair] = pairs[first + k];
+                    const auto& [a, b, c, d] = pair;
+                    at[k] = points_.crossing(triangles_[i].axis, a, b, c, d);
+                }
+            },
+            0.02);
+        for (std::size_t k = 0; k < at.size(); ++k)
+            triangles_[pairs[first + k].first].points.push_back(points_.add(std::move(at[k])));
     }
 }
 
@@ -361,7 +481,14 @@ void TriangleArrangement::messages_of(std::int32_t triangle, std::vector<Message
     const Triangle& t = triangles_[index(triangle)];
     // of a triangle without area one corner may lie on the edge between the others
     if (t.points.empty() && t.facing != 0) return;
-    const NodesOnLines nodes_on(*this, t);
+    messages_of(triangle, NodesOnLines(*this, t), 0, t.line_count(), messages);
+}
+
+/// The points on some lines of a triangle.
+void TriangleArrangement::messages_of(std::int32_t triangle, const NodesOnLines& nodes_on,
+                                      std::size_t begin, std::size_t end,
+                                      std::vector<Message>& messages) const {
+    const Triangle& t = triangles_[index(triangle)];
     const auto send = [&](std::int32_t to, SpacePointId p) {
         const Triangle& other = triangles_[index(to)];
         if (to == triangle ||
@@ -370,14 +497,15 @@ void TriangleArrangement::messages_of(std::int32_t triangle, std::vector<Message
             return;
         messages.push_back({to, p});
     };
-    for (const Segment& s : t.segments) {
-        for (const SpacePointId p : nodes_on(s.ends[0], s.ends[1]))
-            send(s.other, p);
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
-        const SpacePointId a = t.corners[i], b = t.corners[(i + 1) % 3];
-        const auto on = nodes_on(a, b);
+    for (std::size_t i = begin; i < end; ++i) {
+        const auto on = nodes_on(t.line(i));
+        if (i < t.segments.size()) {
+            for (const SpacePointId p : on)
+                send(t.segments[i].other, p);
+            continue;
+        }
         if (on.empty()) continue;
+        const auto [a, b] = t.line(i);
         const auto edge = unordered(a, b);
         for (auto other = std::lower_bound(of_edge_.begin(), of_edge_.end(), std::pair(edge, 0));
              other != of_edge_.end() && other->first == edge; ++other) {
@@ -394,11 +522,26 @@ void TriangleArrangement::exchange_points(int threads, const Progress* progress)
     std::iota(changed.begin(), changed.end(), 0);
     while (!changed.empty()) {
         std::vector<std::vector<Message>> messages((changed.size() + kChunk - 1) / kChunk);
+        const std::vector<std::int32_t> large = large_triangles(changed);
         parallel_ranges(changed.size(), kChunk, threads, progress,
                         [&](std::size_t begin, std::size_t end) {
-                            for (std::size_t i = begin; i < end; ++i)
-                                messages_of(changed[i], messages[begin / kChunk]);
+                            for (std::size_t i = begin; i < end; ++i) {
+                                if (!std::ranges::binary_search(large, changed[i]))
+                                    messages_of(changed[i], messages[begin / kChunk]);
+                            }
                         });
+        for (const std::int32_t triangle : large) {
+            const Triangle& t = triangles_[index(triangle)];
+            const NodesOnLines nodes_on(*this, t);
+            const std::size_t first = messages.size();
+            messages.resize(first + (t.line_count() + kChunk - 1) / kChunk);
+            parallel_ranges(
+                t.line_count(), kChunk, threads, progress,
+                [&](std::size_t begin, std::size_t end) {
+                    messages_of(triangle, nodes_on, begin, end, messages[first + begin / kChunk]);
+                },
+                0.02);
+        }
         changed.clear();
         for (const auto& chunk : messages) {
             for (const Message& message : chunk) {
@@ -414,30 +557,52 @@ void TriangleArrangement::exchange_points(int threads, const Progress* progress)
     }
 }
 
-void TriangleArrangement::find_regions(std::int32_t triangle, std::vector<Region>& regions) const {
-    const Triangle& t = triangles_[index(triangle)];
-    if (t.points.empty() && t.segments.empty()) {
-        regions.push_back({triangle, {{t.corners[0], t.corners[1], t.corners[2]}}});
-        return;
-    }
-    const NodesOnLines nodes_on(*this, t);
-    std::vector<std::array<SpacePointId, 2>> edges;
-    const auto add_edges = [&](SpacePointId a, SpacePointId b) {
+/// What some lines of a triangle are divided into.
+void TriangleArrangement::find_edges(const Triangle& t, const NodesOnLines& nodes_on,
+                                     std::size_t begin, std::size_t end,
+                                     std::vector<Edge>& edges) const {
+    for (std::size_t i = begin; i < end; ++i) {
+        const auto [a, b] = t.line(i);
         SpacePointId last = a;
-        for (const SpacePointId p : nodes_on(a, b)) {
+        for (const SpacePointId p : nodes_on({a, b})) {
             edges.push_back(unordered(last, p));
             last = p;
         }
         edges.push_back(unordered(last, b));
-    };
-    for (std::size_t i = 0; i < 3; ++i)
-        add_edges(t.corners[i], t.corners[(i + 1) % 3]);
-    for (const Segment& s : t.segments)
-        add_edges(s.ends[0], s.ends[1]);
+    }
+}
+
+/// @param edges  all that its lines are divided into; put in order
+void TriangleArrangement::find_regions(std::int32_t triangle, std::vector<Edge>& edges,
+                                       std::vector<Region>& regions) const {
+    const Triangle& t = triangles_[index(triangle)];
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     for (RegionLoops& loops : regions_of_graph(points_, {t.axis, t.facing}, edges))
         regions.push_back({triangle, std::move(loops)});
+}
+
+/// The regions of each large triangle.
+std::vector<std::vector<Region>> TriangleArrangement::regions_of_large(
+    std::span<const std::int32_t> large, int threads, const Progress* progress) const {
+    std::vector<std::vector<Edge>> edges(large.size());
+    for (std::size_t n = 0; n < large.size(); ++n) {
+        const Triangle& t = triangles_[index(large[n])];
+        const NodesOnLines nodes_on(*this, t);
+        std::vector<std::vector<Edge>> found((t.line_count() + kChunk - 1) / kChunk);
+        parallel_ranges(
+            t.line_count(), kChunk, threads, progress,
+            [&](std::size_t begin, std::size_t end) {
+                find_edges(t, nodes_on, begin, end, found[begin / kChunk]);
+            },
+            0.02);
+        edges[n] = joined(found);
+    }
+    std::vector<std::vector<Region>> regions(large.size());
+    parallel_chunks(
+        large.size(), threads, progress,
+        [&](std::size_t n) { find_regions(large[n], edges[n], regions[n]); }, 0.02);
+    return regions;
 }
 
 void TriangleArrangement::divide(int threads, const Progress* progress) {
@@ -448,10 +613,29 @@ void TriangleArrangement::divide(int threads, const Progress* progress) {
     intersect_segments(threads, progress);
     sort_all(threads, progress);
     exchange_points(threads, progress);
+    std::vector<std::int32_t> all(triangles_.size());
+    std::iota(all.begin(), all.end(), 0);
+    const std::vector<std::int32_t> large = large_triangles(all);
+    auto of_large = regions_of_large(large, threads, progress);
     std::vector<std::vector<Region>> found((triangles_.size() + kChunk - 1) / kChunk);
     each_triangle(threads, progress, [&](std::size_t i) {
-        if (triangles_[i].facing != 0)
-            find_regions(static_cast<std::int32_t>(i), found[i / kChunk]);
+        const Triangle& t = triangles_[i];
+        const auto number = static_cast<std::int32_t>(i);
+        auto& regions = found[i / kChunk];
+        if (t.facing == 0) return;
+        if (t.points.empty() && t.segments.empty()) {
+            regions.push_back({number, {{t.corners[0], t.corners[1], t.corners[2]}}});
+            return;
+        }
+        const auto own = std::ranges::lower_bound(large, number);
+        if (own != large.end() && *own == number) {
+            std::ranges::move(of_large[static_cast<std::size_t>(own - large.begin())],
+                              std::back_inserter(regions));
+            return;
+        }
+        std::vector<Edge> edges;
+        find_edges(t, NodesOnLines(*this, t), 0, t.line_count(), edges);
+        find_regions(number, edges, regions);
     });
     std::size_t count = 0;
     for (const auto& regions : found)

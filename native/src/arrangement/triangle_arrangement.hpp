@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "arrangement/polygons.hpp"
@@ -76,6 +77,12 @@ private:
         int facing = 0;                    ///< which way it turns seen along its axis, 0: no area
         std::vector<SpacePointId> points;  ///< in order, once all are there
         std::vector<Segment> segments;     ///< likewise
+        /// Its segments, then its edges.
+        std::size_t line_count() const { return segments.size() + 3; }
+        std::array<SpacePointId, 2> line(std::size_t i) const {
+            if (i < segments.size()) return segments[i].ends;
+            return {corners[i - segments.size()], corners[(i - segments.size() + 1) % 3]};
+        }
     };
     /// On which sides of the plane of another triangle corners lie.
     struct Sides {
@@ -94,6 +101,7 @@ private:
     };
     /// The ends of one segment, then those of another.
     using SegmentPair = std::array<SpacePointId, 4>;
+    using Edge = std::array<SpacePointId, 2>;
     class NodesOnLines;
 
     int orientation(const Triangle& t, SpacePointId a, SpacePointId b, SpacePointId c) const {
@@ -110,12 +118,23 @@ private:
     void exchange_segments();
     template <class Visit>
     void each_triangle(int threads, const Progress* progress, const Visit& visit) const;
+    std::vector<std::int32_t> large_triangles(std::span<const std::int32_t> among) const;
     void sort_all(int threads, const Progress* progress);
     std::vector<SegmentPair> crossing_segments(const Triangle& t) const;
+    std::vector<SegmentPair> crossing_segments(const Triangle& t, int threads,
+                                               const Progress* progress) const;
+    bool do_cross(const Triangle& t, const SegmentPair& pair) const;
     void intersect_segments(int threads, const Progress* progress);
     void exchange_points(int threads, const Progress* progress);
     void messages_of(std::int32_t triangle, std::vector<Message>& messages) const;
-    void find_regions(std::int32_t triangle, std::vector<Region>& regions) const;
+    void messages_of(std::int32_t triangle, const NodesOnLines& nodes_on, std::size_t begin,
+                     std::size_t end, std::vector<Message>& messages) const;
+    void find_edges(const Triangle& t, const NodesOnLines& nodes_on, std::size_t begin,
+                    std::size_t end, std::vector<Edge>& edges) const;
+    void find_regions(std::int32_t triangle, std::vector<Edge>& edges,
+                      std::vector<Region>& regions) const;
+    std::vector<std::vector<Region>> regions_of_large(std::span<const std::int32_t> large,
+                                                      int threads, const Progress* progress) const;
 
     exact::SpacePoints& points_;
     std::vector<Triangle> triangles_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ranges>
 
 #include "cutting/part_rounding.hpp"
 
@@ -172,9 +173,26 @@ bool has_area(std::span<const PlanePosition> corners, double twice_area,
     return std::abs(twice_area) > 4 * (rounding[0] * around[1] + rounding[1] * around[0]);
 }
 
+/// Whether corners lie in the plane that fits them, but for the rounding of their coordinates.
+bool is_flat(std::span<const Position> corners) {
+    constexpr double kUnits = 8;  // in the last place, by which coordinates may be off
+    const Position normal = polygon_normal(corners);
+    double allowed = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        double largest = 0;
+        for (const Position& p : corners)
+            largest = std::max(largest, std::abs(p[axis]));
+        allowed += kUnits * std::abs(normal[axis]) * (std::nextafter(largest, HUGE_VAL) - largest);
+    }
+    return std::ranges::all_of(corners, [&](const Position& p) {
+        return std::abs(dot(normal, minus(p, corners[0]))) <= allowed;
+    });
+}
+
 }  // namespace
 
-/// Whether rounding may have bent a polygon, so that it is no longer convex.
+/// Whether rounding may have bent a polygon, so that it is no longer convex; of joined models,
+/// where nodes of several become one, also whether it is no longer flat.
 bool PartRounding::is_bent(std::size_t piece) const {
     const auto nodes = pieces_.polygons[piece];
     const auto& [face, cells, sides, is_level, parts] = pieces_[piece];
@@ -184,6 +202,7 @@ bool PartRounding::is_bent(std::size_t piece) const {
     for (const NodeId node : nodes)
         corners.push_back(at(node));
     const Position normal = polygon_normal(corners);
+    if (joins_models_ && !is_flat(corners)) return true;
     // what lay on one of the model's surfaces must be convex in plan, the rest as it is seen best
     const bool lay_on_surface = face >= 0 && !is_level && normal[2] != 0;
     const View seen = lay_on_surface ? View({0, 0, normal[2]}) : View(normal);
@@ -215,62 +234,99 @@ NodeId PartRounding::add_middle(std::size_t piece) {
     return checked_number(vertices_.size() + new_positions_.size(), "vertices and new nodes") - 1;
 }
 
-/// Where parts use an edge more than twice, two polygons between the same parts that turn against
-/// each other get a node of their own there.
+namespace {
+
+/// A polygon that has an edge, and which way it goes along it; between two parts, -1 none.
+struct EdgeOfPiece {
+    std::array<NodeId, 2> edge;
+    std::size_t piece;
+    int direction;
+    std::array<std::int32_t, 2> parts;
+
+    bool is_of(std::int32_t part) const { return parts[0] == part || parts[1] == part; }
+    std::int32_t beyond(std::int32_t part) const { return parts[parts[0] == part ? 1 : 0]; }
+    int direction_of(std::int32_t part) const { return parts[0] == part ? direction : -direction; }
+};
+
+/// Of all that have an edge the fewest, as numbers, that lead from a part which has it more than
+/// twice through other parts back to it: each of these has two of them, which turn against each
+/// other. None where no part has it more than twice, or there is no such way.
+std::vector<std::size_t> way_back(std::span<const EdgeOfPiece> uses) {
+    std::map<std::int32_t, int> count;
+    for (const EdgeOfPiece& use : uses) {
+        for (const std::int32_t part : use.parts)
+            ++count[part];
+    }
+    std::vector<std::size_t> best;
+    for (const auto& [part, times] : count) {
+        if (part < 0 || times <= 2) continue;
+        for (std::size_t start = 0; start < uses.size(); ++start) {
+            if (!uses[start].is_of(part)) continue;
+            constexpr std::size_t kNot = SIZE_MAX;
+            std::vector<std::size_t> before(uses.size(), kNot);
+            before[start] = start;
+            struct At {
+                std::size_t use;
+                std::int32_t entered;
+            };
+            std::vector<At> open{{start, uses[start].beyond(part)}};
+            std::size_t last = kNot;
+            for (std::size_t i = 0; i < open.size() && last == kNot; ++i) {
+                const auto [use, entered] = open[i];
+                for (std::size_t next = 0; next < uses.size() && last == kNot; ++next) {
+                    if (before[next] != kNot || !uses[next].is_of(entered) ||
+                        uses[next].direction_of(entered) != -uses[use].direction_of(entered))
+                        continue;
+                    const std::int32_t beyond = uses[next].beyond(entered);
+                    const bool is_back = beyond == part;
+                    if (is_back && uses[next].direction_of(part) != -uses[start].direction_of(part))
+                        continue;
+                    before[next] = use;
+                    if (is_back) last = next;
+                    open.push_back({next, beyond});
+                }
+            }
+            if (last == kNot) continue;
+            std::vector<std::size_t> way{last};
+            while (way.back() != start)
+                way.push_back(before[way.back()]);
+            if (best.empty() || way.size() < best.size()) best = std::move(way);
+        }
+    }
+    return best;
+}
+
+}  // namespace
+
+/// Where parts use an edge more than twice, polygons that lead round other parts there get a node
+/// of their own on it.
 void PartRounding::set_touching_apart() {
-    struct Use {
-        std::array<NodeId, 2> edge;
-        std::size_t piece;
-        int direction;
-    };
-    std::vector<Use> uses;
+    std::vector<EdgeOfPiece> uses;
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
         const auto nodes = pieces_.polygons[p];
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             const NodeId a = nodes[i], b = nodes[(i + 1) % nodes.size()];
             if (is_near_[index(a)] != 0 && is_near_[index(b)] != 0)
-                uses.push_back({unordered(a, b), p, a < b ? 1 : -1});
+                uses.push_back({unordered(a, b), p, a < b ? 1 : -1, pieces_[p].parts});
         }
     }
-    std::ranges::stable_sort(uses, {}, &Use::edge);
+    std::ranges::stable_sort(uses, {}, &EdgeOfPiece::edge);
     std::map<std::size_t, std::vector<std::pair<std::array<NodeId, 2>, NodeId>>> nodes_on;
     for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
         while (end < uses.size() && uses[end].edge == uses[begin].edge)
             ++end;
-        std::vector<Use> own(uses.begin() + static_cast<std::ptrdiff_t>(begin),
-                             uses.begin() + static_cast<std::ptrdiff_t>(end));
-        const auto touches = [&own, this] {
-            std::map<std::int32_t, int> count;
-            for (const Use& use : own) {
-                for (const std::int32_t part : pieces_[use.piece].parts) {
-                    if (part >= 0 && ++count[part] > 2) return true;
-                }
-            }
-            return false;
-        };
-        while (own.size() > 2 && touches()) {
-            const auto turned = [this](const Use& use) {  // low part first
-                auto parts = pieces_[use.piece].parts;
-                const bool swapped = parts[0] > parts[1];
-                if (swapped) std::swap(parts[0], parts[1]);
-                return std::pair(parts, swapped ? -use.direction : use.direction);
-            };
-            std::size_t i = 0, j = 0;
-            for (i = 0; i < own.size(); ++i) {
-                for (j = i + 1; j < own.size(); ++j) {
-                    if (turned(own[i]).first == turned(own[j]).first &&
-                        turned(own[i]).second == -turned(own[j]).second)
-                        break;
-                }
-                if (j < own.size()) break;
-            }
-            if (i >= own.size()) break;
-            const auto& edge = own[i].edge;
-            const NodeId middle = add_between(edge);
-            for (const std::size_t k : {i, j})
-                nodes_on[own[k].piece].push_back({edge, middle});
-            own.erase(own.begin() + static_cast<std::ptrdiff_t>(j));
-            own.erase(own.begin() + static_cast<std::ptrdiff_t>(i));
+        if (end - begin <= 2) continue;
+        std::vector<EdgeOfPiece> own(uses.begin() + static_cast<std::ptrdiff_t>(begin),
+                                     uses.begin() + static_cast<std::ptrdiff_t>(end));
+        while (true) {
+            std::vector<std::size_t> way = way_back(own);
+            if (way.empty()) break;
+            std::ranges::sort(way);
+            const NodeId middle = add_between(uses[begin].edge);
+            for (const std::size_t use : way)
+                nodes_on[own[use].piece].push_back({uses[begin].edge, middle});
+            for (const std::size_t use : std::views::reverse(way))
+                own.erase(own.begin() + static_cast<std::ptrdiff_t>(use));
         }
     }
     if (nodes_on.empty()) return;

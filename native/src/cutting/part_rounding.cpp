@@ -416,7 +416,8 @@ void PartRounding::set_apart() {
     }
 }
 
-/// Gives parts without thickness on an axis, and walls without extent in plan, one unit of it.
+/// Gives parts without thickness on an axis, and walls without extent in plan, one unit of it; of
+/// joined models a new polygon may be a wall, too.
 void PartRounding::give_extents() {
     const auto widen = [this](std::span<const NodeId> nodes, std::size_t axis, bool free_only) {
         for (const NodeId node : nodes) {
@@ -449,7 +450,7 @@ void PartRounding::give_extents() {
         }
     }
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-        if (!is_wall(p)) continue;
+        if (!is_wall(p) && !(joins_models_ && pieces_[p].face < 0)) continue;
         const auto corners = pieces_.polygons[p];
         const bool upright = std::all_of(corners.begin(), corners.end(), [&](NodeId node) {
             return at(node)[0] == at(corners[0])[0] && at(node)[1] == at(corners[0])[1];

@@ -43,6 +43,7 @@ private:
     void contract();
     std::vector<NodeId> find_contractions();
     bool join_short_edges();
+    bool leaves_wall(NodeId from, NodeId to) const;
     void keep_sound(const std::vector<NodeId>& contracted);
     /// Of polygons of a part: how often they use an edge beyond twice, how many there are, and
     /// where.

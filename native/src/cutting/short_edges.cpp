@@ -124,6 +124,18 @@ private:
     std::unordered_map<std::int32_t, std::optional<Around>> now_;
 };
 
+/// Whether a node on a wall would go off it, if it moved to another one: near 0 on an axis walls
+/// are as precise as their small coordinates.
+bool PartRounding::leaves_wall(NodeId from, NodeId to) const {
+    if (on_wall_[index(from)] == 0) return false;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double x = at(from)[axis], y = at(to)[axis];
+        const double own = std::max(std::abs(x), std::abs(y));
+        if (std::abs(x - y) > 4 * (std::nextafter(own, HUGE_VAL) - own)) return true;
+    }
+    return false;
+}
+
 /// Contracts edges of new nodes that are as short as rounding, one after another, where no part
 /// comes to touch itself for it: what two models have in common was rounded in each by itself.
 bool PartRounding::join_short_edges() {
@@ -144,8 +156,11 @@ bool PartRounding::join_short_edges() {
     bool any = false;
     for (const auto& edge : edges) {
         const NodeId a = becomes_[index(edge[0])], b = becomes_[index(edge[1])];
-        if (a == b || !is_new(std::max(a, b))) continue;
-        any = short_edges.contract(std::min(a, b), std::max(a, b)) || any;
+        const NodeId to = std::min(a, b), from = std::max(a, b);
+        if (a == b || !is_new(from) || leaves_wall(from, to)) continue;
+        if (!short_edges.contract(to, from)) continue;
+        any = true;
+        on_wall_[index(to)] |= on_wall_[index(from)];
     }
     return any;
 }

@@ -57,11 +57,11 @@ SpacePointId SpacePoints::add(RationalPoint&& p) {
     }
     for (std::size_t k = 0; k < 3; ++k)
         fractions.at[k] = p[k].get_num() * (fractions.weight / p[k].get_den());
-    return enter(std::move(fractions));
+    return add(reduced(std::move(fractions)));
 }
 
-/// The number of a point of which `at`, `weight` and `lines` are set.
-SpacePointId SpacePoints::enter(Fractions&& p) {
+/// A point of which `at`, `weight` and `lines` are set.
+SpacePoints::Reduced SpacePoints::reduced(Fractions&& p) {
     mpz_class common = gcd(p.weight, p.at[0]);
     for (std::size_t k = 1; k < 3; ++k) {
         if (common != 1) common = gcd(common, p.at[k]);
@@ -81,9 +81,13 @@ SpacePointId SpacePoints::enter(Fractions&& p) {
         const double low = nearest_double(rest, p.weight * high.get_den(), 0);
         p.interval[k] = {rounded[k], low, std::abs(low) * kEpsilon + kDoubleDoubleUnderflow};
     }
-    if (are_doubles) return enter(rounded, {});
-    fractions_.push_back(std::move(p));
-    return enter(rounded,
+    return {std::move(p), rounded, are_doubles};
+}
+
+SpacePointId SpacePoints::add(Reduced&& p) {
+    if (p.are_doubles) return enter(p.rounded, {});
+    fractions_.push_back(std::move(p.fractions));
+    return enter(p.rounded,
                  {Source::Kind::kFractions, static_cast<std::int32_t>(fractions_.size()) - 1});
 }
 
@@ -189,17 +193,18 @@ SpacePointId SpacePoints::in_fractions(const Intersection& of) {
     const HomogeneousPoints<mpz_class> in(*this, of.of);
     auto found = in.absolute(in.point(of));
     const Line line{of.of[0], of.of[1]};
-    return enter({std::move(found.at), std::move(found.weight), {}, {line, Line{kNone, kNone}}});
+    return add(
+        reduced({std::move(found.at), std::move(found.weight), {}, {line, Line{kNone, kNone}}}));
 }
 
-SpacePointId SpacePoints::intersection(std::size_t axis, SpacePointId p, SpacePointId q,
-                                       SpacePointId a, SpacePointId b) {
+SpacePoints::Reduced SpacePoints::crossing(std::size_t axis, SpacePointId p, SpacePointId q,
+                                           SpacePointId a, SpacePointId b) const {
     const HomogeneousPoints<mpz_class> in(*this, std::array{p, q, a, b});
     auto found = in.absolute(in.crossing(axis, p, q, a, b));
-    return enter({std::move(found.at),
-                  std::move(found.weight),
-                  {},
-                  {Line{std::min(p, q), std::max(p, q)}, Line{std::min(a, b), std::max(a, b)}}});
+    return reduced({std::move(found.at),
+                    std::move(found.weight),
+                    {},
+                    {Line{std::min(p, q), std::max(p, q)}, Line{std::min(a, b), std::max(a, b)}}});
 }
 
 SpacePointId SpacePoints::projected(std::size_t axis, SpacePointId p, SpacePointId a,

@@ -62,7 +62,19 @@ public:
     /// Where the line through p and q passes through the one through a and b, in the view along
     /// `axis`; all four lie in one plane.
     SpacePointId intersection(std::size_t axis, SpacePointId p, SpacePointId q, SpacePointId a,
-                              SpacePointId b);
+                              SpacePointId b) {
+        return add(crossing(axis, p, q, a, b));
+    }
+    /// A point in fractions that have no common divisor, and the doubles nearest to it.
+    struct Reduced {
+        Fractions fractions;
+        SpacePosition rounded;
+        bool are_doubles;  ///< these doubles are the point
+    };
+    /// The same without its number, which add() gives it: what takes time in intersection().
+    Reduced crossing(std::size_t axis, SpacePointId p, SpacePointId q, SpacePointId a,
+                     SpacePointId b) const;
+    SpacePointId add(Reduced&& p);
     /// p moved along `axis` into the plane of a, b, c.
     SpacePointId projected(std::size_t axis, SpacePointId p, SpacePointId a, SpacePointId b,
                            SpacePointId c);
@@ -105,7 +117,7 @@ private:
 
     const Source& source(SpacePointId p) const { return source_[index(p)]; }
     SpacePointId enter(const SpacePosition& rounded, Source source);
-    SpacePointId enter(Fractions&& p);
+    static Reduced reduced(Fractions&& p);
     SpacePointId construct(const Intersection& of);
     SpacePointId in_fractions(const Intersection& of);
     std::array<DoubleDoubleInterval, 3> coordinates(const Intersection& of) const;

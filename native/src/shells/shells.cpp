@@ -110,6 +110,7 @@ void add_polygon(const ComplexView& complex, const Side& side, Shell& shell) {
     }
     shell.offsets.push_back(static_cast<std::int32_t>(shell.corners.size()));
     shell.faces.push_back(side.face);
+    shell.reversed.push_back(side.reversed ? 1 : 0);
 }
 
 Shell begun(const ComplexView& complex, std::span<const Side> sides) {
@@ -122,6 +123,7 @@ Shell begun(const ComplexView& complex, std::span<const Side> sides) {
     shell.corners.reserve(corners);
     shell.offsets.reserve(sides.size() + 1);
     shell.faces.reserve(sides.size());
+    shell.reversed.reserve(sides.size());
     shell.offsets.push_back(0);
     return shell;
 }

@@ -97,6 +97,8 @@ public:
     explicit Round(FilledMesh& mesh)
         : mesh_(mesh),
           incidence_(mesh),
+          tetrahedra_(mesh.tetrahedra),
+          triangles_(mesh.triangles),
           is_taken_(mesh.tetrahedra.size(), 0),
           is_gone_(mesh.tetrahedra.size(), 0) {}
 
@@ -133,7 +135,7 @@ private:
     bool is_outside(const Tetrahedron& corners, std::size_t corner, std::size_t own) const {
         const Triangle face = opposite(corners, corner);
         for (const std::int32_t other : incidence_.tetrahedra[index(face[0])]) {
-            const Tetrahedron& its = mesh_.tetrahedra[index(other)];
+            const Tetrahedron& its = tetrahedra_[index(other)];
             if (index(other) != own && is_gone_[index(other)] == 0 && has(its, face[0]) &&
                 has(its, face[1]) && has(its, face[2]))
                 return false;
@@ -161,7 +163,7 @@ private:
                     return false;
         std::vector<std::size_t> rows;
         for (const std::int32_t f : incidence_.triangles[index(inside[0])]) {
-            const Triangle& face = mesh_.triangles[index(f)];
+            const Triangle& face = triangles_[index(f)];
             // what is inside must not be on the outside, or a boundary, elsewhere
             const bool is_own =
                 has(corners, face[0]) && has(corners, face[1]) && has(corners, face[2]);
@@ -221,7 +223,7 @@ private:
         };
         std::vector<std::int32_t> around;
         for (const std::int32_t t : incidence_.tetrahedra[index(middle_of[0])]) {
-            if (!has_all(mesh_.tetrahedra[index(t)])) continue;
+            if (!has_all(tetrahedra_[index(t)])) continue;
             if (is_taken_[index(t)] != 0) return false;
             around.push_back(t);
         }
@@ -263,6 +265,9 @@ private:
 
     FilledMesh& mesh_;
     Incidence incidence_;
+    // as they were before the round, which incidence_ is of
+    const std::vector<Tetrahedron> tetrahedra_;
+    const std::vector<Triangle> triangles_;
     std::vector<std::uint8_t> is_taken_, is_gone_;
 };
 

@@ -55,10 +55,18 @@ constexpr double kSeeds = 1.5;         ///< of the edge length: between first po
 constexpr double kFacetAngle = 25;     ///< degrees: the least wanted in faces of boundaries
 constexpr double kRadiusOverEdge = 2;  ///< the most wanted of a tetrahedron
 constexpr double kSliver = 12;         ///< degrees: flatter tetrahedra are to go
-constexpr int kFirstSurface = 8;       ///< CGAL numbers surfaces from 1, we from kCutFace
+constexpr std::uint64_t kQuestionsOfAPoint = 200;  ///< about the most asked of the model
+constexpr int kFirstSurface = 8;  ///< CGAL numbers surfaces from 1, we from kCutFace
 
 Point point_of(const std::array<double, 3>& p) {
     return {p[0], p[1], p[2]};
+}
+
+[[noreturn]] void refuse_endless() {
+    throw InputError(
+        "endless",
+        "ever smaller tetrahedra would be needed where boundaries meet at sharp angles; "
+        "use another edge length or a larger minimum thickness");
 }
 
 struct Face {
@@ -121,6 +129,8 @@ public:
         tree_.insert(rows.cbegin(), rows.cend(), &faces_);
         tree_.build();
     }
+
+    std::uint64_t most_asked = UINT64_MAX;  ///< questions, after which refinement is given up
 
     CGAL::Bbox_3 bbox() const { return tree_.bbox(); }
     bool empty() const { return tree_.empty(); }
@@ -196,7 +206,9 @@ public:
 
 private:
     void poll() const {
-        if (progress_ != nullptr && (++asked_ & 0xff) == 0) progress_->check();
+        if ((++asked_ & 0xff) != 0) return;
+        if (progress_ != nullptr) progress_->check();
+        if (asked_ > most_asked) refuse_endless();
     }
     int patch(std::size_t row) const { return faces_[row].surface + kFirstSurface; }
     /// How far the plane of a face is on the way between two points.
@@ -212,7 +224,7 @@ private:
     Tree tree_;
     const Progress* progress_;
     mutable std::vector<std::size_t> hits_;
-    mutable std::uint32_t asked_ = 0;
+    mutable std::uint64_t asked_ = 0;
 };
 
 using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
@@ -370,7 +382,7 @@ FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> c
                        int threads, Progress* progress) {
     if (progress != nullptr) progress->begin(0.0, 0.2, "finding boundaries");
     const BoundaryFaces faces = boundary_faces(model, cell_region, kept, threads, progress);
-    const Domain domain(model, faces.triangles, progress);
+    Domain domain(model, faces.triangles, progress);
     if (domain.empty()) throw InputError("nothing", "the model has no boundary");
     Complex complex;
     Triangulation& triangulation = complex.triangulation();
@@ -391,14 +403,12 @@ FilledMesh filled_mesh(const ComplexView& model, std::span<const std::int32_t> c
 
     if (progress != nullptr) progress->begin(0.2, 0.7, "dividing into tetrahedra");
     const Criteria criteria(edge_length, tolerance);
+    const std::size_t most = most_points(model, faces, edge_length, tolerance);
+    domain.most_asked = kQuestionsOfAPoint * most;  // it may fail without a new point, too
     CGAL::Mesh_error_code stopped{};
-    CGAL::Mesh_3::Mesher_3<Complex, Criteria, Domain>(
-        complex, domain, criteria, 0, most_points(model, faces, edge_length, tolerance), &stopped)
+    CGAL::Mesh_3::Mesher_3<Complex, Criteria, Domain>(complex, domain, criteria, 0, most, &stopped)
         .refine_mesh();
-    if (stopped != CGAL::CGAL_MESH_3_NO_ERROR)
-        throw InputError("endless",
-                         "ever smaller tetrahedra would be needed where boundaries meet at sharp "
-                         "angles; use another edge length or a larger minimum thickness");
+    if (stopped != CGAL::CGAL_MESH_3_NO_ERROR) refuse_endless();
     if (progress != nullptr) progress->begin(0.7, 1.0, "removing flat tetrahedra");
     CGAL::perturb_mesh_3(complex, domain, CGAL::parameters::sliver_bound = kSliver);
     CGAL::exude_mesh_3(complex, CGAL::parameters::sliver_bound = kSliver);

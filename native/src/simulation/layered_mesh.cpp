@@ -12,9 +12,11 @@
 #include "base/parallel_counts.hpp"
 #include "realmodel/base/errors.hpp"
 #include "simulation/column_heights.hpp"
+#include "simulation/narrow_strips.hpp"
 #include "simulation/plan_topology.hpp"
 #include "simulation/post_columns.hpp"
 #include "simulation/post_levels.hpp"
+#include "simulation/vertical_faults.hpp"
 
 namespace realmodel::simulation {
 
@@ -42,6 +44,7 @@ public:
           levels_(levels),
           minimum_thickness_(minimum_thickness),
           mesh_(mesh),
+          elements_(plan.triangles(), 0),
           is_parted_(levels.level_count(), 0) {
         find_parted();
     }
@@ -68,35 +71,52 @@ public:
             move(top);
         }
         if (last_block_ >= 0) add_flat_face(-1);
+        elements_[t] = static_cast<std::int32_t>(fronts_.size()) - 1;
         find_weak();
     }
 
-    /// Faces on steps that only one side has belong to the outside.
-    void finish_steps() {
+    /// Faces on steps that only one side has belong to the outside; those that both have are told
+    /// of where a fault is.
+    void finish_steps(const VerticalFaults& faults) {
         std::sort(step_faces_.begin(), step_faces_.end(), [](const SideFace& a, const SideFace& b) {
             return std::tie(a.key, a.number) < std::tie(b.key, b.number);
         });
-        std::vector<const SideFace*> outside;
+        std::vector<const SideFace*> told;
         for (std::size_t i = 0; i < step_faces_.size();) {
             std::size_t j = i + 1;
             while (j < step_faces_.size() && step_faces_[j].key == step_faces_[i].key)
                 ++j;
-            if (j == i + 1) outside.push_back(&step_faces_[i]);
+            SideFace& face = step_faces_[i];
+            if (!faults.empty())
+                face.surface = faults.fault_at(face.edge[0], face.edge[1], face.height);
+            if (j == i + 1 || face.surface != kWall) told.push_back(&face);
             i = j;
         }
-        std::sort(outside.begin(), outside.end(),
+        std::sort(told.begin(), told.end(),
                   [](const SideFace* a, const SideFace* b) { return a->number < b->number; });
-        for (const SideFace* face : outside)
-            add_outside(face->corners);
+        for (const SideFace* face : told)
+            add_side(face->corners, face->surface);
     }
 
+    /// How many elements each column has.
+    std::span<const std::int32_t> elements() const { return elements_; }
+
     /// Heights to give up, so that no element is left that solvers call under-determined.
-    std::vector<PostLevels::Removal>& weak() { return weak_; }
+    /// @param is_narrow  narrow_strips()
+    std::vector<PostLevels::Removal>& weak(std::span<const std::uint8_t> is_narrow) {
+        for (const auto& [t, removal] : weak_alone_) {
+            if (is_narrow[t] != 0) weak_.push_back(removal);
+        }
+        return weak_;
+    }
 
 private:
     struct SideFace {
         std::array<std::int32_t, 4> key, corners;  // of a triangle the last corner is -1
         std::size_t number;
+        std::array<PlanPoint, 2> edge;
+        double height;  ///< of its center
+        std::int32_t surface;
     };
 
     std::int32_t point(std::size_t corner, std::int32_t at) const {
@@ -257,11 +277,16 @@ private:
             if (low[j] == high[j]) corners = {low[i], low[j], high[i], -1};
             if (low[i] == high[i]) corners = {low[i], low[j], high[j], -1};
             if (outside) {
-                add_outside(corners);
+                add_side(corners, kWall);
             } else {
                 std::array<std::int32_t, 4> key = corners;
                 std::sort(key.begin(), key.end());
-                step_faces_.push_back({key, corners, step_faces_.size()});
+                const auto &a = plan_.mesh().vertices[index(node_[i])],
+                           &b = plan_.mesh().vertices[index(node_[j])];
+                const double height = (position(i, front_[i])[2] + position(i, to[i])[2] +
+                                       position(j, front_[j])[2] + position(j, to[j])[2]) /
+                                      4;
+                step_faces_.push_back({key, corners, step_faces_.size(), {a, b}, height, kWall});
             }
         }
         front_ = to;
@@ -303,7 +328,11 @@ private:
                 if ((independence > kNoDeterminant || (is_first && is_last)) &&
                     divides_blocks(i, gone) && rise >= kThickEnd * minimum_thickness_)
                     continue;
-                weak_.push_back({node_[i], gone, upper ? low[i] : high[i]});
+                const PostLevels::Removal removal{node_[i], gone, upper ? low[i] : high[i]};
+                if (is_first && is_last)
+                    weak_alone_.emplace_back(t_, removal);
+                else
+                    weak_.push_back(removal);
             }
         }
     }
@@ -428,13 +457,13 @@ private:
         elements.layer.push_back(mesh_.layers - 1 - layer_);
     }
 
-    void add_outside(const std::array<std::int32_t, 4>& corners) {
+    void add_side(const std::array<std::int32_t, 4>& corners, std::int32_t surface) {
         if (corners[3] < 0) {
             mesh_.triangles.corners.push_back({corners[0], corners[1], corners[2]});
-            mesh_.triangles.surface.push_back(kWall);
+            mesh_.triangles.surface.push_back(surface);
         } else {
             mesh_.quadrilaterals.corners.push_back(corners);
-            mesh_.quadrilaterals.surface.push_back(kWall);
+            mesh_.quadrilaterals.surface.push_back(surface);
         }
     }
 
@@ -489,6 +518,8 @@ private:
     std::vector<Front> fronts_;               ///< of the column, upward
     std::vector<std::int32_t> front_blocks_;  ///< of what lies above each
     std::vector<PostLevels::Removal> weak_;
+    std::vector<std::pair<std::size_t, PostLevels::Removal>> weak_alone_;  ///< with their triangles
+    std::vector<std::int32_t> elements_;                                   ///< of each column
     bool has_step_ = false;
     std::array<std::size_t, 2> step_{};
     std::vector<std::array<std::int32_t, 2>> lines_;
@@ -522,6 +553,7 @@ LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t>
     const ColumnHeights columns = post_columns(model, blocks, lines, plan, threads, progress);
     PostLevels levels(plan, lines, blocks, columns, layering);
     LayeredMesh made;
+    std::vector<std::uint8_t> is_narrow;
     for (int repair = 0;; ++repair) {
         check_total(levels.height_count(), INT32_MAX);
         made = {};
@@ -536,8 +568,9 @@ LayeredMesh layered_mesh(const ComplexView& model, std::span<const std::int32_t>
             poll(progress, t);
             filler.fill(t);
         }
-        if (repair < kRepairs && levels.remove(plan, filler.weak()) > 0) continue;
-        filler.finish_steps();
+        if (repair == 0) is_narrow = narrow_strips(plan, filler.elements());
+        if (repair < kRepairs && levels.remove(plan, filler.weak(is_narrow)) > 0) continue;
+        filler.finish_steps(VerticalFaults(model, lines.steps));
         break;
     }
     std::vector<std::int32_t> number(levels.height_count(), -1);

@@ -10,6 +10,7 @@
 
 #include "cutting/nearest_side.hpp"
 #include "realmodel/base/errors.hpp"
+#include "structures/mean_plane.hpp"
 
 namespace realmodel::structures {
 
@@ -58,98 +59,10 @@ std::vector<BorderEdge> border_of(const CutterSurface& surface) {
     return border;
 }
 
-Position cross(const Position& a, const Position& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-/// The edges of a border one after another where it is one ring; nothing where it is not.
-std::vector<BorderEdge> ring_of(std::span<const BorderEdge> border) {
-    std::map<NodeId, const BorderEdge*> leaving;
-    for (const BorderEdge& edge : border)
-        leaving[edge.from] = &edge;
-    std::vector<BorderEdge> ring;
-    if (border.empty() || leaving.size() != border.size()) return ring;
-    for (const BorderEdge* edge = &border[0]; edge != nullptr && ring.size() < border.size();) {
-        ring.push_back(*edge);
-        const auto next = leaving.find(edge->to);
-        edge = next == leaving.end() ? nullptr : next->second;
-        if (edge == &border[0]) break;
-    }
-    if (ring.size() != border.size() || ring.back().to != ring.front().from) ring.clear();
-    return ring;
-}
-
-/// How much rather an edge counts to the upper or the lower border than to a side: at 65 degrees
-/// from the strike either is as good.
-constexpr double kSide = 0.5;
-
-/// Of each edge of a ring one of four classes that follow one another round it once, at the least
-/// cost.
-std::vector<std::size_t> least_turns(std::span<const std::array<double, 4>> cost) {
-    const std::size_t count = cost.size();
-    std::vector<std::size_t> best;
-    double least = HUGE_VAL;
-    for (std::size_t start = 0; start < 4; ++start) {
-        // after each edge: what it costs when the class has changed so often, and whether it just
-        // did
-        std::array<double, 5> total{0, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL};
-        std::vector<std::array<std::uint8_t, 5>> changed(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            std::array<double, 5> next{};
-            for (std::size_t c = 0; c < 5; ++c) {
-                changed[i][c] = c > 0 && total[c - 1] < total[c] ? 1 : 0;
-                next[c] = total[c - changed[i][c]] + cost[i][(start + c) % 4];
-            }
-            total = next;
-        }
-        if (!(total[4] < least)) continue;
-        least = total[4];
-        best.assign(count, 0);
-        std::size_t c = 4;
-        for (std::size_t i = count; i-- > 0;) {
-            best[i] = (start + c) % 4;
-            c -= changed[i][c];
-        }
-    }
-    if (best.empty()) best.assign(count, 0);
-    return best;
-}
-
-/// Where a fault that dies out goes on from each edge of its border: up and down the dip, and along
-/// the strike, of its mean plane, so that what is continued does not cross itself however the fault
-/// bends. Its border is one ring, which four corners divide; where it is not, nothing.
-std::map<NodeId, Position> ways_in_mean_plane(const CutterSurface& fault,
-                                              std::span<const BorderEdge> border) {
-    std::map<NodeId, Position> ways;
-    const std::vector<BorderEdge> ring = ring_of(border);
-    Position normal{0, 0, 0};
-    for (const auto& t : fault.triangles) {
-        const Position own = cross(minus(fault.vertices[index(t[1])], fault.vertices[index(t[0])]),
-                                   minus(fault.vertices[index(t[2])], fault.vertices[index(t[0])]));
-        normal = sum(normal, own);
-    }
-    normal = unit(normal);
-    if (ring.empty() || dot(normal, normal) == 0) return ways;
-    Position strike = unit({-normal[1], normal[0], 0});
-    if (std::hypot(normal[0], normal[1]) < 1e-6) strike = unit(cross({0, 1, 0}, normal));
-    const Position dip = cross(normal, strike);  // upward
-    const auto opposite = [](const Position& p) { return Position{-p[0], -p[1], -p[2]}; };
-    // as the ring runs: the lower border, then the sides between it and the upper one
-    const std::array<Position, 4> way{opposite(dip), strike, dip, opposite(strike)};
-    std::vector<std::array<double, 4>> cost;
-    for (const BorderEdge& edge : ring) {
-        const Position along =
-            minus(fault.vertices[index(edge.to)], fault.vertices[index(edge.from)]);
-        const Position away = unit(cross(along, normal));
-        const double length = std::sqrt(dot(along, along));
-        auto& own = cost.emplace_back();
-        for (std::size_t c = 0; c < 4; ++c)
-            own[c] = length * (1 - dot(away, way[c]) + (c % 2 == 1 ? kSide : 0));
-    }
-    const std::vector<std::size_t> turn = least_turns(cost);
-    for (std::size_t i = 0; i < ring.size(); ++i)
-        ways[ring[i].from] = way[turn[i]];
-    return ways;
+/// How far a continuation goes on, in two steps, by the size of a box around the rock and all
+/// structures.
+std::array<double, 2> reaches(double size) {
+    return {1.25 * size, 8 * size};
 }
 
 /// Continues one fault beyond its border. What is nearest reaches out of the rock; what follows
@@ -160,17 +73,12 @@ public:
     /// @param in_its_plane  of vertices: edges between such ones are continued so
     /// @param size  of a box around the rock and all structures
     Continuation(const CutterSurface& fault, std::vector<std::uint8_t> in_its_plane, double size)
-        : fault_(fault), in_its_plane_(std::move(in_its_plane)), lengths_{1.25 * size, 8 * size} {}
+        : fault_(fault), in_its_plane_(std::move(in_its_plane)), lengths_(reaches(size)) {}
 
     std::vector<std::array<Position, 3>> triangles() {
         std::map<NodeId, std::vector<std::pair<NodeId, Position>>> arriving, leaving;
-        const std::vector<BorderEdge> border = border_of(fault_);
-        std::map<NodeId, Position> ways;
-        if (std::ranges::find(in_its_plane_, 0) == in_its_plane_.end())
-            ways = ways_in_mean_plane(fault_, border);
-        for (const BorderEdge& edge : border) {
-            const auto known = ways.find(edge.from);
-            const Position way = known == ways.end() ? direction(edge) : known->second;
+        for (const BorderEdge& edge : border_of(fault_)) {
+            const Position way = direction(edge);
             Position a = at(edge.from), b = at(edge.to);
             for (const double length : lengths_) {
                 const Position far_a = beyond(at(edge.from), way, length);
@@ -292,14 +200,12 @@ bool divides(const CutterSurface& fault, const Box& rock) {
            });
 }
 
-/// Of the vertices of a fault: whether its continuation there must go on in its plane. Where it
-/// dies out that is so everywhere, and beyond a fault that it ends at: straight up or down it might
-/// come back through that.
+/// Of the vertices of a fault: whether its continuation there must go on in its plane. That is so
+/// beyond a fault that it ends at: straight up or down it might come back through that.
 std::vector<std::uint8_t> in_its_plane(const Structure& structure,
                                        std::span<const CutterSurface> given,
                                        const CutterSurface& own) {
-    std::vector<std::uint8_t> found(own.vertices.size(), structure.dies_out ? 1 : 0);
-    if (structure.dies_out) return found;
+    std::vector<std::uint8_t> found(own.vertices.size(), 0);
     for (const std::int32_t other : structure.ends_at) {
         const cutting::NearestSide nearest(given[index(other)]);
         double above = 0;
@@ -317,6 +223,26 @@ std::vector<std::uint8_t> in_its_plane(const Structure& structure,
         }
     }
     return found;
+}
+
+/// What continues a fault beyond its border.
+std::vector<std::array<Position, 3>> continuation(std::span<const Structure> structures,
+                                                  std::span<const CutterSurface> given,
+                                                  std::int32_t number, double size) {
+    const Structure& structure = structures[index(number)];
+    const CutterSurface& own = given[index(number)];
+    if (!structure.dies_out)
+        return Continuation(own, in_its_plane(structure, given, own), size).triangles();
+    std::vector<std::array<NodeId, 2>> border;
+    for (const BorderEdge& edge : border_of(own))
+        border.push_back({edge.from, edge.to});
+    auto found = continued_in_mean_plane(own, border, reaches(size));
+    if (!found)
+        throw InputError("folded",
+                         "what is beyond its tip is not known: seen at right angles to the fault "
+                         "its border crosses itself",
+                         number, {}, own.vertices[index(border[0][0])]);
+    return *std::move(found);
 }
 
 }  // namespace
@@ -372,9 +298,7 @@ StructureSurface structure_surface(std::span<const Structure> structures, const 
             add({own.vertices[index(t[0])], own.vertices[index(t[1])], own.vertices[index(t[2])]},
                 false);
         if (!structures[index(s)].is_body && (continues_all || !divides(own, rock))) {
-            for (const auto& t :
-                 Continuation(own, in_its_plane(structures[index(s)], given, own), size)
-                     .triangles())
+            for (const auto& t : continuation(structures, given, s, size))
                 add(t, true);
         }
         CutterSurface& single = all.single.emplace_back();

@@ -80,8 +80,9 @@ bool WantedParts::ends_itself(std::int32_t cell, std::size_t region) const {
     return cell < 0 || !is_at(0) || !is_at(1);
 }
 
-/// The last structure that acts between two cells, -1 none. It must part their sides. What a fault
-/// cuts off against no rock lies against what is below the oldest surface, which it displaces.
+/// The last structure that acts between two cells, -1 none. It must part their sides. What is cut
+/// off against no rock lies against what is below the oldest surface: a fault displaces that, too,
+/// and what fills a void from a base elevation may have it beside it.
 std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int32_t high) const {
     const Sides& below = sides_.sides(sides_.part_at(region, 0));
     const Sides& above = sides_.sides(sides_.part_at(region, 1));
@@ -92,7 +93,7 @@ std::int32_t WantedParts::acting(std::size_t region, std::int32_t low, std::int3
         const auto s = index(of.structure);
         if (!of.is_own || below[s] == above[s]) continue;
         if (does_act(of.structure, low) || does_act(of.structure, high)) found = of.structure;
-        if (is_cut_off && sides_.is_fault(of.structure)) last = of.structure;
+        if (is_cut_off) last = of.structure;
     }
     return found >= 0 ? found : last;
 }
@@ -134,6 +135,19 @@ std::int32_t WantedParts::wanted_at(std::size_t region, std::size_t side) const 
         if (times > 0 && of_cap(region, side, cell) == kAbove) return cell;
     }
     return -1;
+}
+
+/// Whether the models on both sides of a region have the same blocks there, each by itself.
+bool WantedParts::is_there_without_structures(std::size_t region, std::int32_t low,
+                                              std::int32_t high) const {
+    const auto has = [&](std::size_t side, std::int32_t cell) {
+        const std::int32_t model = model_of_part_[sides_.part_at(region, 1 - side)];
+        return std::ranges::any_of(winding_.around(region, side), [&](const auto& one) {
+            return one.second > 0 && model_of_cell_[index(one.first)] == model &&
+                   overlay_.model().block(one.first) == overlay_.model().block(cell);
+        });
+    };
+    return has(0, low) && has(1, high);
 }
 
 /// Whether a region of the surface is narrower than rounding may have made it.
@@ -186,12 +200,14 @@ void WantedParts::find_same(std::size_t region) {
         return sides_.sides(sides_.part_at(region, 0))[s] !=
                sides_.sides(sides_.part_at(region, 1))[s];
     };
-    // beyond its tip, surfaces that are torn on both sides are displaced still
+    // beyond its tip, surfaces that are torn are displaced still, but for walls of both models
     const bool is_beyond_tip =
         low >= 0 && high >= 0 && std::ranges::any_of(structures, [&](const RegionOf& of) {
             return !of.is_own && sides_.dies_out(of.structure) && parts_sides(of);
         });
-    if (!is_beyond_tip && ends_itself(low, region) && ends_itself(high, region)) return;
+    if (ends_itself(low, region) && ends_itself(high, region) &&
+        (!is_beyond_tip || is_there_without_structures(region, low, high)))
+        return;
     const auto fault = std::ranges::find_if(structures, parts_sides);
     sides_.refuse("ends_inside",
                   "the fault ends in the rock: what is beyond differs on its two sides",

@@ -153,5 +153,33 @@ TEST(TriangleArrangement, EdgesOfRegionsAreUsedOnceEitherWayWithinATriangle) {
     }
 }
 
+TEST(TriangleArrangement, ALargeTriangleIsDividedAsSmallOnesAreOnAnyNumberOfThreads) {
+    constexpr int kAcross = 8, kAlong = 560;  // upright triangles, of which each two cross on it
+    std::vector<std::vector<SpacePointId>> first;
+    for (const int threads : {1, 2, 5}) {
+        Arrangement a;
+        const auto level = a.add({{{-2000, -100, 0}, {2000, -100, 0}, {0, 2000, 0}}});
+        for (int i = 1; i <= kAlong; ++i)
+            a.add({{{1.0 * i, -9, -1}, {1.0 * i, 30, -1}, {1.0 * i + 0.3, 4, 99}}});
+        for (int i = 1; i <= kAcross; ++i)
+            a.add({{{-99, 1.0 * i, -1}, {700, 1.0 * i, -1}, {300, 1.0 * i - 0.4, 99}}});
+        for (std::int32_t other = 1; other <= kAlong + kAcross; ++other)
+            a.triangles.insert(a.triangles.intersection(level, other).value());
+        a.triangles.divide(threads, nullptr);
+        const auto regions = a.regions_of(level);
+        ASSERT_EQ(regions.size(), 1U + (kAlong - 1) * (kAcross - 1));
+        std::vector<std::vector<SpacePointId>> loops;
+        for (const Region* region : regions)
+            loops.insert(loops.end(), region->loops.begin(), region->loops.end());
+        EXPECT_EQ(std::ranges::count_if(loops, [](const auto& loop) { return loop.size() == 4; }),
+                  (kAlong - 1) * (kAcross - 1));
+        // those that cross it know the nodes on their segments
+        EXPECT_EQ(a.nodes_of(1).size(), 3U + 2 + kAcross);
+        EXPECT_EQ(a.nodes_of(kAlong + 1).size(), 3U + 2 + kAlong);
+        if (first.empty()) first = loops;
+        EXPECT_EQ(loops, first);
+    }
+}
+
 }  // namespace
 }  // namespace realmodel::arrangement

@@ -395,5 +395,77 @@ TEST(ContinuationOf, AFaultThatDiesOutDoesNotCrossItselfWhereItBends) {
         EXPECT_GT(cutting::dot(n, normals[0]), 0);
 }
 
+/// Of triangles in a plane x = const: the sum of their areas, negative where they turn about.
+double area_along_x(const std::vector<std::array<std::array<double, 3>, 3>>& triangles) {
+    double sum = 0;
+    for (const auto& [a, b, c] : triangles)
+        sum += ((b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1])) / 2;
+    return sum;
+}
+
+TEST(ContinuationOf, ARaggedFaultThatDiesOutIsContinuedOnceEverywhere) {
+    OwnedSurface comb;  // teeth that reach different ways, in the plane x = 2
+    for (int i = 0; i <= 6; ++i) {
+        comb.vertex(2, i, 0);
+        comb.vertex(2, i + 0.25 * (i % 3), i % 2 == 0 ? 1 : 4);
+    }
+    for (std::int32_t i = 0; i < 6; ++i) {
+        comb.triangle(2 * i, 2 * i + 2, 2 * i + 1);
+        if (i % 3 != 1) comb.triangle(2 * i + 2, 2 * i + 3, 2 * i + 1);
+    }
+    Structure dying = fault(comb);
+    dying.dies_out = true;
+    const auto beyond = continuation_of(dying, {{{-9, -9, -9}, {9, 9, 9}}});
+    std::vector<std::array<std::array<double, 3>, 3>> all = beyond;
+    for (std::size_t t = 0; t + 2 < comb.triangles.size(); t += 3) {
+        auto& corners = all.emplace_back();
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto v = static_cast<std::size_t>(3 * comb.triangles[t + i]);
+            corners[i] = {comb.vertices[v], comb.vertices[v + 1], comb.vertices[v + 2]};
+        }
+    }
+    double size = 0;
+    std::array<double, 2> low{0, 0}, high{0, 0};
+    for (const auto& t : all) {
+        size += std::abs(area_along_x({t}));
+        for (const auto& p : t) {
+            EXPECT_EQ(p[0], 2);
+            for (std::size_t k = 0; k < 2; ++k) {
+                low[k] = std::min(low[k], p[k + 1]);
+                high[k] = std::max(high[k], p[k + 1]);
+            }
+        }
+    }
+    const double whole = (high[0] - low[0]) * (high[1] - low[1]);
+    EXPECT_NEAR(std::abs(area_along_x(all)), whole, 1e-9 * whole);
+    EXPECT_NEAR(size, whole, 1e-9 * whole);
+}
+
+TEST(ContinuationOf, PartsOfAFaultThatDiesOutMayNotLieBesideEachOther) {
+    OwnedSurface two;
+    for (const double x : {0.0, 1.0}) {
+        for (const double z : {0.0, 4.0}) {
+            two.vertex(x, 3 * x, z);
+            two.vertex(x, 3 * x + 5, z);
+        }
+    }
+    for (const std::int32_t first : {0, 4}) {
+        two.triangle(first, first + 1, first + 3);
+        two.triangle(first, first + 3, first + 2);
+    }
+    Structure dying = fault(two);
+    dying.dies_out = true;
+    try {
+        parts_of(layers({0, 4}), std::array{dying}, 1, nullptr);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.kind, "folded");
+        EXPECT_EQ(error.surface, 0);
+        EXPECT_TRUE(error.place.has_value());
+    }
+    dying.dies_out = false;
+    EXPECT_NO_THROW(continuation_of(dying, {{{-9, -9, -9}, {9, 9, 9}}}));
+}
+
 }  // namespace
 }  // namespace realmodel::structures

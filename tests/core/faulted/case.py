@@ -62,7 +62,8 @@ class BodyCase:
 
 @dataclass
 class Case:
-    """refused: what the refusal must say, as a regular expression; None where it must build."""
+    """refused: what the refusal must say, as a regular expression; None where it must build. is_full: each
+    rock mass has a base, its oldest surface covers its region, its youngest is level, above all others."""
 
     rocks: list
     faults: list = field(default_factory=list)
@@ -70,6 +71,7 @@ class Case:
     cells: str = "columns"
     refused: str | None = None
     label: str = ""
+    is_full: bool = False
 
     def project(self):
         """The same for the program."""
@@ -170,4 +172,12 @@ def load_case(path):
     ]
     faults = [FaultCase(**shape(row, "triangles", "beyond")) for row in data["faults"]]
     bodies = [BodyCase(**shape(row, "triangles")) for row in data["bodies"]]
-    return Case(rocks, faults, bodies, data["cells"], data.get("refused"), data.get("label", ""))
+    return Case(
+        rocks,
+        faults,
+        bodies,
+        data["cells"],
+        data.get("refused"),
+        data.get("label", ""),
+        data.get("is_full", False),
+    )

@@ -181,7 +181,12 @@ class Contract:
         body = len(self.blocks) - len(insides)
         state = np.where(state >= 100, state - 100 + body, np.where(state >= 0, state + first, AIR))
         if rock.rings:
-            state[taken & decided & ~known] = NOWHERE
+            shapes = [
+                *(v for sheets in structure.sheets for v, _ in sheets),
+                *(b.vertices for b in self.case.bodies),
+            ]
+            top = max(float(each[:, 2].max()) for each in shapes)  # there is air above it
+            state[taken & decided & ~known & (points[:, 2] <= top)] = NOWHERE
         return state, decided
 
     def _history(self, r, points, sheets, insides):
@@ -209,10 +214,6 @@ class Contract:
                     continue
                 if not has_base:  # whether nothing is ever there depends on surfaces to come
                     decided &= ~(inside & ~covered)
-                    if self.case.bodies[b].void:  # what fills it is no more than near to it: see the docs
-                        decided &= ~(inside & (k + 1 < len(sheets)))
-                if self.case.bodies[b].void:
-                    decided &= ~(inside & protected & (k + 1 < len(sheets)))
                 inside = inside & (has_base | (state != NEVER))
                 state[inside] = AIR if self.case.bodies[b].void else 100 + b
         return state, decided

@@ -11,18 +11,21 @@ import random
 
 import numpy as np
 
-from . import shapes
+from . import shapes, signs
 from .case import BodyCase, Case, FaultCase, RockCase, SurfaceCase
 from .contract import FaultSides
+from .located import distances
 
 RULES = ("erosional", "erosional", "conformable", "base", "discontinuous")
 STEP = 2.0  # between surfaces, about
 BASE = -14.0
+TOP = 24.0  # of a surface above everything
 PLACES = [(1.0, (0, 0, 0))] * 5 + [  # scale, shift
     (100.0, (452000.0, 6201000.0, -1800.0)),
     (0.1, (0, 0, 0)),
     (40.115, (4500000.37, 5300000.11, 311.7)),
 ]
+FADES = 3.0  # so far from where a fault is not its throw is less
 RAGGED = 0.3  # of faults that reach no farther than they must
 
 
@@ -43,11 +46,18 @@ def random_case(seed):
         names[1] = [f"S{k}" for k in range(counts[1])]  # both have surfaces of these names
     masses = [RockCase(["left", "right"][r], []) for r in range(rocks)]
     made = _faults(rng, names, masses)
-    for r, rock in enumerate(masses):
-        _fill(rng, rock, r, names, made)
+    covered = [_fill(rng, rock, r, names, made) for r, rock in enumerate(masses)]
     bodies = _bodies(rng, names, masses)
+    is_full = all(covered) and rng.random() < 0.4
+    if is_full:
+        for r, rock in enumerate(masses):
+            vertices, triangles = _plan(rng)
+            nodes = np.clip(vertices, 0, 10) + np.array([10.0 * r, 0.0])
+            level = np.column_stack([nodes, np.full(len(nodes), TOP)])
+            rock.surfaces.append(SurfaceCase("top", "conformable", vertices=level, triangles=triangles))
     case = Case(masses, [fault for fault, _ in made], bodies, rng.choice(["columns", "columns", "blocks"]))
     case.label = str(seed)
+    case.is_full = is_full and not any(body.void and body.after is None for body in bodies)
     _place(rng, case)
     return case
 
@@ -66,7 +76,7 @@ def _faults(rng, names, masses):
     found = []
     for n in range(rng.choice([0, 1, 1, 1, 2, 2, 3])):
         kind = rng.choice(shapes.KINDS)
-        dies_out = kind not in ("listric", "overturned", "rough", "wall", "flat") and rng.random() < 0.2
+        dies_out = kind not in ("listric", "overturned", "rough", "wall") and rng.random() < 0.3
         tip = rng.uniform(-2, 2) if dies_out else None
         vertices, triangles, uv = shapes.fault_surface(rng, kind, tip)
         fault = FaultCase(f"F{n}", vertices, triangles, np.zeros((0, 3), np.int32), dies_out=dies_out)
@@ -82,7 +92,7 @@ def _faults(rng, names, masses):
         elif found and rng.random() < 0.4:
             _branch(rng, fault, found, own)
         if not fault.ends_at and rng.random() < 0.4:  # no farther than it must reach
-            own &= _needed(vertices, triangles, uv, len(masses), not dies_out and rng.random() < RAGGED)
+            own &= _needed(vertices, triangles, uv, len(masses), rng.random() < RAGGED)
         fault.triangles, fault.beyond = triangles[own], triangles[~own]
         if len(fault.triangles):
             found.append((fault, rng.choice([0.0, 0.5, 1.0, -1.0, rng.uniform(-1.6, 1.6)])))
@@ -122,13 +132,35 @@ def _branch(rng, fault, found, own):
     crossed = reaches & (corner[fault.triangles] * kept <= 0).any(axis=1)
     if area[crossed].sum() > 0.3 * area[reaches].sum():
         return
+    if _comes_back(fault, reaches, other):
+        return
     fault.ends_at = [other.name]
     fault.youngest, fault.rocks = other.youngest, list(other.rocks)
     own &= reaches
 
 
+def _border(triangles):
+    """The edges (a, b) that one triangle alone has."""
+    edges = np.sort(
+        np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1
+    )
+    edges, count = np.unique(edges, axis=0, return_counts=True)
+    return set(map(tuple, edges[count == 1].tolist()))
+
+
+def _comes_back(fault, reaches, other):
+    """Whether the line at which a branch is cut off passes the other fault: it would end before that."""
+    corners = other.vertices[other.triangles]
+    for a, b in _border(fault.triangles[reaches]) - _border(fault.triangles):
+        begin, end = fault.vertices[[a]], fault.vertices[b]
+        if any(signs.crossings(begin, end, each[None])[0].any() for each in corners):
+            return True
+    return False
+
+
 def _fill(rng, rock, r, names, made):
-    """Gives a rock mass its region, its base and its surfaces."""
+    """Gives a rock mass its region, its base and its surfaces. Whether it has a base, and a region that the
+    oldest of them covers."""
     x0 = 10.0 * r
     ring = np.array([[0.0, 0], [10, 0], [10, 10], [0, 10]])
     if r == 0 and rng.random() < 0.2:
@@ -145,6 +177,7 @@ def _fill(rng, rock, r, names, made):
     sides = [_Side(fault) for fault, _ in made]
     faults = [fault for fault, _ in made]
     shared = _plan(rng) if rng.random() < 0.5 else None
+    is_covered = bool(rock.rings) and rock.base_elevation is not None
     for k, name in enumerate(names[r]):
         active = [f for f, fault in enumerate(faults) if _youngest(rock, names[r], fault) >= k]
         height = _height(rng, k, [(sides[f], made[f][1], faults[f]) for f in active])
@@ -156,6 +189,7 @@ def _fill(rng, rock, r, names, made):
         if surface.points is None or len(surface.points) < 4:
             surface.points = surface.method = None
             torn = bool(active) and rng.random() < 0.5
+            is_covered &= k > 0 or not torn
             plan = shared if shared is not None and rng.random() < 0.7 else _plan(rng)
             surface.vertices, surface.triangles = _mesh(rng, own, height, plan, x0, torn, bool(rock.rings))
             if k and rng.random() < 0.3:
@@ -163,6 +197,7 @@ def _fill(rng, rock, r, names, made):
         rock.surfaces.append(surface)
     if all(surface.points is None for surface in rock.surfaces):
         rock.edge_length = None
+    return is_covered
 
 
 def _height(rng, k, faults):
@@ -184,9 +219,12 @@ def _height(rng, k, faults):
         elif kind == "rough":
             z = z + 0.6 * np.random.default_rng(seed).uniform(-1, 1, len(plan))
         for side, (_, throw, fault) in zip(row, faults, strict=True):
-            if fault.dies_out:
-                continue
-            z = z + throw * side / 2
+            share = 1.0
+            if fault.dies_out:  # nothing is displaced where it is not
+                at_level = np.column_stack([plan, np.full(len(plan), level)])
+                away = distances(at_level, fault.vertices[fault.beyond])
+                share = np.clip(away / FADES, 0, 1) ** 2
+            z = z + throw * side / 2 * share
         return np.round(z, 6)
 
     return at

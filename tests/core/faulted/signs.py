@@ -33,7 +33,9 @@ def turn(a, b, p):
     a, b, p = (np.broadcast_to(x, np.broadcast_shapes(a.shape, b.shape, p.shape)) for x in (a, b, p))
     u, v = a - p, b - p
     one, two = u[:, 0] * v[:, 1], u[:, 1] * v[:, 0]
-    return _signs(one - two, 1e-14 * (np.abs(one) + np.abs(two)), (a, b, p))
+    bound = 1e-14 * (np.abs(one) + np.abs(two))
+    bound[(a[:, :2] == b[:, :2]).all(axis=1)] = -1.0  # 0 without doubt
+    return _signs(one - two, bound, (a, b, p))
 
 
 def over(a, b, c, p):

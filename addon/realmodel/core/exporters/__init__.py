@@ -8,10 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..atomic import Outputs, writable_folder, writable_target
+from ..errors import UsageError
 from ..simulation import PolyhedralMesh
 from .dxf import write_dxf
 from .endings import by_ending
 from .gltf import write_glb
+from .map_files import write_geojson, write_geopackage
 from .meshes import MESH_FORMATS, write_mesh
 from .npz import write_npz
 from .obj import write_mtl, write_obj
@@ -31,8 +33,9 @@ class ModelFormat:
     label, description: of the panel's menu. write(model, path, outputs, step) writes it by outputs.file or
     outputs.folder; step(share) is called now and then, last with 1. folder: what is renewed where the format
     is a folder, "" for a file. has_cell_size: it is a regular grid, and write takes the size of its cells
-    too,
-    as of regular_cells.checked_size.
+    too, as of regular_cells.checked_size. has_contours: it is a map, and write takes the interval of its
+    contours too, as of contours.checked_interval. has_cells: it has the model's cells, and write takes these,
+    too.
     """
 
     ending: str
@@ -41,6 +44,8 @@ class ModelFormat:
     write: Callable[..., None]
     folder: str = ""
     has_cell_size: bool = False
+    has_cells: bool = False
+    has_contours: bool = False
 
 
 def _file(write: Callable) -> Callable:
@@ -66,9 +71,9 @@ def _write_obj(model, path, outputs: Outputs, step: Step) -> None:
         write_obj(parts, file, step, materials.name)
 
 
-def _cells(model, path, outputs: Outputs, step: Step) -> None:
-    """The exact cells as a mesh for simulation."""
-    write_mesh(PolyhedralMesh.of_model(model), path, outputs, step, model.project.units)
+def _cells(model, path, outputs: Outputs, step: Step, cells: PolyhedralMesh | None) -> None:
+    """The cells as a mesh for simulation, the exact ones where none are given."""
+    write_mesh(cells or PolyhedralMesh.of_model(model), path, outputs, step, model.project.units)
 
 
 FORMATS: dict[str, ModelFormat] = {
@@ -80,6 +85,7 @@ FORMATS: dict[str, ModelFormat] = {
             "VTK Unstructured Grid",
             "The polyhedral cells, for ParaView and simulation",
             _cells,
+            has_cells=True,
         ),
         ModelFormat(
             ".foam",
@@ -87,13 +93,21 @@ FORMATS: dict[str, ModelFormat] = {
             "A folder with the polyhedral cells as polyMesh, with zones of cells and patches",
             _cells,
             MESH_FORMATS[".foam"].folder,
+            has_cells=True,
         ),
-        ModelFormat(".exo", "Exodus II", "The polyhedral cells, an element block for each block", _cells),
+        ModelFormat(
+            ".exo",
+            "Exodus II",
+            "The polyhedral cells, an element block for each block",
+            _cells,
+            has_cells=True,
+        ),
         ModelFormat(
             ".disu",
             "MODFLOW 6 DISU",
             "The polyhedral cells as an unstructured grid, and a table of the block of each",
             _cells,
+            has_cells=True,
         ),
         ModelFormat(
             ".obj", "Wavefront OBJ", "The closed boundary of every block, a group for each", _write_obj
@@ -144,6 +158,20 @@ FORMATS: dict[str, ModelFormat] = {
             write_ascii_grids,
             has_cell_size=True,
         ),
+        ModelFormat(
+            ".gpkg",
+            "GeoPackage",
+            "The geological map of the top, and contours, for GIS",
+            write_geopackage,
+            has_contours=True,
+        ),
+        ModelFormat(
+            ".geojson",
+            "GeoJSON",
+            "The geological map of the top, and contours, as text for GIS and the web",
+            write_geojson,
+            has_contours=True,
+        ),
     )
 }
 
@@ -169,21 +197,35 @@ def write_model(
     outputs: Outputs,
     step: Step = no_step,
     cell_size: float | Sequence[float] | None = None,
+    contour_interval: float | None = None,
+    cells: PolyhedralMesh | None = None,
 ) -> None:
     """Writes a model in the format of the path's ending; it appears with the other outputs. cell_size: of
-    regular grids."""
+    regular grids; contour_interval: of maps; cells: of formats with the model's cells, in place of the exact
+    ones."""
     known = format_for(path)
-    known.write(model, path, outputs, step, *([cell_size] if known.has_cell_size else []))
+    more = [cell_size] * known.has_cell_size + [contour_interval] * known.has_contours
+    more += [cells] * known.has_cells
+    known.write(model, path, outputs, step, *more)
 
 
 def save_model(
-    model, path: str | Path, step: Step = no_step, cell_size: float | Sequence[float] | None = None
+    model,
+    path: str | Path,
+    step: Step = no_step,
+    cell_size: float | Sequence[float] | None = None,
+    contour_interval: float | None = None,
+    tolerance: float | None = None,
 ) -> None:
-    """Writes a model to a file, or a folder, that appears whole or not at all. cell_size: of regular
-    grids."""
-    format_for(path)
+    """Writes a model to a file, or a folder, that appears whole or not at all. cell_size: of regular grids;
+    contour_interval: of maps; tolerance: of formats with the model's cells, to clean these. Raises
+    UsageError."""
+    known = format_for(path)
+    if tolerance is not None and not known.has_cells:
+        raise UsageError(f"{path}: {known.label} has no polyhedral cells: it takes no tolerance")
+    cells = None if tolerance is None else model.cleaned_cells(tolerance, threads=model.threads)
     with Outputs() as outputs:
-        write_model(model, path, outputs, step, cell_size)
+        write_model(model, path, outputs, step, cell_size, contour_interval, cells)
 
 
 __all__ = ["FORMATS", "ModelFormat", "format_for", "output_target", "save_model", "write_model"]

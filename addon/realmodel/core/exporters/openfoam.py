@@ -43,7 +43,7 @@ writePrecision  12;
     "fvSchemes": """ddtSchemes { default steadyState; }
 gradSchemes { default Gauss linear; }
 divSchemes { default none; }
-laplacianSchemes { default Gauss linear corrected; }
+laplacianSchemes { default Gauss harmonic corrected; }
 interpolationSchemes { default linear; }
 snGradSchemes { default corrected; }
 """,

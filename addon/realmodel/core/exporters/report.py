@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..erosion import Erosion
-from ..simulation import mesh_entry
+from ..simulation import cleaned_entry, mesh_entry
 from ..structures.displacement import displacements
 from ..surface_heights import used_vertices
 from ..validation import PLACES_OF_REPORT, ValidationReport
@@ -27,11 +27,13 @@ def model_report(
     validation: ValidationReport | None = None,
     erosion: Erosion | None = None,
     mesh=None,
+    cells=None,
 ) -> dict:
     """The report's content. Volumes are in model units cubed, times in seconds, memory in bytes.
 
     validation: what Model.validate found; it is asked now where none is given. erosion: what Model.eroded
-    found; mesh: a SimulationMesh of it; without them the report says nothing of that.
+    found; mesh: a SimulationMesh of it; cells: its CleanedCells; without them the report says nothing of
+    that.
     """
     validation = validation or model.validate(PLACES_OF_REPORT, threads=model.threads)
     total = model.volume
@@ -71,11 +73,13 @@ def model_report(
     if model.structures is not None:
         report["compartments"] = _compartments(model)
         report["faults"] = _faults(model)
-        report["bodies"] = _bodies(model)
+        report["bodies"] = [body_entry(body) for body in model.structures.bodies]
     if erosion is not None:
         report["erosion"] = _erosion(model, erosion)
     if mesh is not None:
         report["mesh"] = mesh_entry(mesh)
+    if cells is not None:
+        report["cleaned_cells"] = cleaned_entry(cells)
     return report
 
 
@@ -147,11 +151,7 @@ def _faults(model) -> list[dict]:
     found = displacements(model)
     return [
         {
-            "name": fault.name,
-            "triangles": len(fault.triangles),
-            "youngest": fault.youngest,
-            "ends_at": list(fault.ends_at),
-            "dies_out": fault.dies_out,
+            **fault_entry(fault),
             "surfaces": [
                 {
                     "rock": each.rock,
@@ -167,15 +167,24 @@ def _faults(model) -> list[dict]:
     ]
 
 
+def fault_entry(fault) -> dict:
+    """What is told of a fault without a model."""
+    return {
+        "name": fault.name,
+        "triangles": len(fault.triangles),
+        "youngest": fault.youngest,
+        "ends_at": list(fault.ends_at),
+        "dies_out": fault.dies_out,
+    }
+
+
 def _mean_and_largest(values: np.ndarray) -> dict:
     return {"mean": float(values.mean()), "max": float(values[np.abs(values).argmax()])}
 
 
-def _bodies(model) -> list[dict]:
-    return [
-        {"name": body.name, "triangles": len(body.triangles), "after": body.after, "void": body.void}
-        for body in model.structures.bodies
-    ]
+def body_entry(body) -> dict:
+    """What is told of a body."""
+    return {"name": body.name, "triangles": len(body.triangles), "after": body.after, "void": body.void}
 
 
 def _block(model, number: int, total: float, deviation: float) -> dict:
@@ -263,7 +272,8 @@ def write_report(
     validation: ValidationReport | None = None,
     erosion: Erosion | None = None,
     mesh=None,
+    cells=None,
 ) -> None:
     """Writes the report as UTF-8 JSON to an open binary file."""
-    report = model_report(model, stage, validation, erosion, mesh)
+    report = model_report(model, stage, validation, erosion, mesh, cells)
     file.write(f"{json.dumps(report, indent=2, ensure_ascii=False, allow_nan=False)}\n".encode())

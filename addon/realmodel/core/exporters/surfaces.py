@@ -15,7 +15,7 @@ from ..errors import UsageError
 from .npz import joined_attributes, texts, write_arrays
 from .part_formats import part_writers
 from .parts import surface_parts
-from .report import SCHEMA, surface_entries, versions, warning_entries
+from .report import SCHEMA, body_entry, fault_entry, surface_entries, versions, warning_entries
 from .vtk_xml import write_grid
 
 _TRIANGLE = 5  # VTK's number
@@ -24,9 +24,9 @@ ATTRIBUTES = ("height", "variance", "distance")
 
 def surface_arrays(surfaces) -> dict[str, np.ndarray]:
     """By the names that the arrays of a model have: surface_vertices (Vs, 3), surface_triangles (Ts, 3)
-    within their own surface, offsets (S+1,), surface_names, and for each vertex surface_height,
-    surface_variance and surface_distance (Vs,), NaN where there is none; surface_triangle_sheet (Ts,), the
-    sheet of its surface that each triangle is of, from 0."""
+    within their own surface, offsets (S+1,), surface_names, surface_kind (S,), and for each vertex
+    surface_height, surface_variance and surface_distance (Vs,), NaN where there is none;
+    surface_triangle_sheet (Ts,), the sheet of its surface that each triangle is of, from 0."""
     shapes = [surfaces.surface(number) for number in range(len(surfaces.surface_names))]
     arrays = {
         "surface_vertices": np.concatenate([vertices for vertices, _ in shapes]),
@@ -39,6 +39,7 @@ def surface_arrays(surfaces) -> dict[str, np.ndarray]:
         **{f"surface_{name}": joined_attributes(surfaces, name) for name in ATTRIBUTES},
         "surface_triangle_sheet": surfaces.surface_triangle_sheet,
         "surface_names": texts(surfaces.surface_names),
+        "surface_kind": surfaces.surface_kind,
     }
 
 
@@ -103,6 +104,8 @@ def write_surfaces_report(surfaces, file: BinaryIO) -> None:
             "file": str(surfaces.project.path) if surfaces.project.path else None,
         },
         "surfaces": surface_entries(surfaces),
+        "faults": [fault_entry(fault) for fault in surfaces.structures.faults],
+        "bodies": [body_entry(body) for body in surfaces.structures.bodies],
         "warnings": warning_entries(surfaces),
         "versions": versions(),
     }

@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes for simulation, in the plain form that writers of solvers' formats take."""
 
+from .cleaned_cells import CleanedCells, cleaned_cells, cleaned_entry
 from .simulation_mesh import SimulationMesh, mesh_entry, simulation_mesh
 from .volume_mesh import CORNERS, PlanMesh, PolyhedralMesh, VolumeMesh
 
 __all__ = [
     "CORNERS",
+    "CleanedCells",
     "PlanMesh",
     "PolyhedralMesh",
     "SimulationMesh",
     "VolumeMesh",
+    "cleaned_cells",
+    "cleaned_entry",
     "mesh_entry",
     "simulation_mesh",
 ]

@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..work import Work, native_module
-from .native_call import call_native, model_arrays
+from .native_call import call_native
+from .volume_mesh import model_arrays
 
 _FAULT = 1  # of surface_kind
 

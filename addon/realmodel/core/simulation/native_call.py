@@ -7,13 +7,6 @@ from ..errors import BuildFailed, InputRefused
 from ..work import Work, native_module
 
 
-def model_arrays(model) -> dict:
-    return {
-        name: getattr(model, name)
-        for name in ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
-    }
-
-
 def call_native(work: Work, function, *arguments):
     """What `function` gives; the last argument is the number of threads. Raises InputRefused, BuildFailed."""
     native = native_module()

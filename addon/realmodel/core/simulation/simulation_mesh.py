@@ -16,13 +16,14 @@ from ..method_options import check_threads
 from ..planar_mesh import mesh_rings
 from ..work import Cancel, Progress, Work, native_module, run
 from .filled import filled, smallest_dihedral_angle, tetrahedron_volumes
-from .native_call import call_native, model_arrays
+from .native_call import call_native
 from .tetrahedra import divided, divided_quadrilaterals
-from .volume_mesh import PlanMesh, VolumeMesh
+from .volume_mesh import PlanMesh, VolumeMesh, model_arrays
+from .volume_warnings import changed_volumes
 
 ELEMENTS = ("prisms", "tetrahedra")
 MESHER = "frontal"
-_MOST_CHANGE = 0.1  # of a block's volume, without a warning
+_CHANGES_LESS = "a shorter edge length or a smaller minimum thickness changes less"
 _THINNEST = 1e-9  # of the largest coordinate: nearer than this, doubles leave no room for a layer
 
 
@@ -222,7 +223,11 @@ def _assembled(model, made: dict, wanted: str) -> SimulationMesh:
         ),
         volumes=made["volumes"],
         exact_volumes=np.array([block.volume for block in model.blocks]),
-        warnings=_changes(model, made["volumes"]),
+        warnings=changed_volumes(
+            model,
+            made["volumes"],
+            _CHANGES_LESS,
+        ),
     )
 
 
@@ -239,7 +244,7 @@ def _of_tetrahedra(model, made: dict) -> SimulationMesh:
         **_names(model),
         volumes=volumes,
         exact_volumes=np.array([block.volume for block in model.blocks]),
-        warnings=_changes(model, volumes),
+        warnings=changed_volumes(model, volumes, _CHANGES_LESS),
         smallest_angle=smallest_dihedral_angle(made["points"], made["corners"]),
     )
 
@@ -251,19 +256,6 @@ def _names(model) -> dict:
         "surface_names": list(model.surface_names),
         "surface_kind": model.surface_kind,
     }
-
-
-def _changes(model, volumes: np.ndarray) -> list[BuildWarning]:
-    return [
-        BuildWarning(
-            f"block '{block.name}' has a volume of {volume:.6g} in the mesh, and of {block.volume:.6g} in "
-            "the model; a shorter edge length or a smaller minimum thickness changes less",
-            "mesh_volume",
-            model.rock_inputs[block.rock].rock.name,
-        )
-        for block, volume in zip(model.blocks, volumes, strict=True)
-        if abs(volume - block.volume) > _MOST_CHANGE * block.volume
-    ]
 
 
 def mesh_entry(mesh: SimulationMesh) -> dict:

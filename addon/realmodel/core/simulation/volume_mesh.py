@@ -110,3 +110,11 @@ class PolyhedralMesh:
             model.surface_kind,
             model.cell_compartment,
         )
+
+
+def model_arrays(model) -> dict[str, np.ndarray]:
+    """The arrays of a model's cells, as native functions take them."""
+    return {
+        name: getattr(model, name)
+        for name in ("vertices", "face_offsets", "face_vertices", "face_cells", "face_surface", "cell_block")
+    }

@@ -17,7 +17,7 @@ from ..rules import RULES
 from ..work import native_module
 from .exact import orient2d, orient3d
 from .sides import FaultShape, RockFaults
-from .triangles import distances_of_pairs
+from .triangles import distances_of_pairs, open_edges
 
 Triangulation = tuple[np.ndarray, np.ndarray]
 
@@ -64,13 +64,26 @@ class ClosedForm:
     def compartments_of(self, points: np.ndarray) -> np.ndarray:
         """(N,) the compartment that each point lies in; -1 for none."""
         points = np.asarray(points, np.float64).reshape(-1, 3)
-        columns = [nearest_side(points, *self._continued(shape, points)) for shape in self.faults.shapes]
+        columns = [self._sides(shape, points) for shape in self.faults.shapes]
         sides = np.column_stack(columns) if columns else np.zeros((len(points), 0), np.int8)
         sides = self.faults.without_dropped(sides)
         found = np.full(len(points), -1, np.int64)
         for number, row in enumerate(self.compartments):
             found[(sides == row).all(axis=1)] = number
         return found
+
+    def _sides(self, shape: FaultShape, points: np.ndarray) -> np.ndarray:
+        """(N,) the side of a fault on which each point lies; where its border is nearest, that of what it is
+        continued by."""
+        corners = shape.vertices[shape.triangles]
+        nearest = corners[_nearest_triangles(points, corners)]
+        sides = orient3d(*nearest.transpose(1, 0, 2), points)
+        border = shape.vertices[open_edges(shape.vertices, shape.triangles)]
+        away = distances_of_pairs(points, nearest)
+        ends = _to_segments(points, border) <= away * (1 + _EQUAL)
+        if ends.any():
+            sides[ends] = nearest_side(points[ends], *self._continued(shape, points))
+        return sides
 
     @staticmethod
     def _continued(shape: FaultShape, points: np.ndarray) -> Triangulation:
@@ -107,8 +120,11 @@ class ClosedForm:
         state = np.full(len(points), AIR, np.int64)
         covered = np.zeros(len(points), bool)
         protected = np.zeros(len(points), bool)
-        for k, (rule, sheet) in enumerate(zip(self.rules, sheets, strict=True)):
-            heights = heights_at(points[:, :2], *sheet, self._grid(sheet))
+        every = [heights_at(points[:, :2], *sheet, self._grid(sheet)) for sheet in sheets]
+        if self.region is None:  # the rock mass reaches as far as its surfaces
+            reached = ~np.isnan(every).all(axis=0)
+            insides = [inside & reached for inside in insides]
+        for k, (rule, heights) in enumerate(zip(self.rules, every, strict=True)):
             exists = ~np.isnan(heights)
             below, above = exists & (points[:, 2] < heights), exists & (points[:, 2] > heights)
             if RULES[rule].cuts:
@@ -233,6 +249,11 @@ def nearest_side(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray
     counter-clockwise. Of triangles equally near, at an edge or a corner, that which the point is farthest off
     the plane of counts. 0 on the plane."""
     corners = vertices[triangles]
+    return orient3d(*corners[_nearest_triangles(points, corners)].transpose(1, 0, 2), points)
+
+
+def _nearest_triangles(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(N,) the number of the triangle that nearest_side takes, of triangles (T, 3, 3)."""
     middles = corners.mean(axis=1)
     radius = np.linalg.norm(corners - middles[:, None], axis=2).max(axis=1)
     chosen = np.empty(len(points), np.int64)
@@ -243,7 +264,17 @@ def nearest_side(points: np.ndarray, vertices: np.ndarray, triangles: np.ndarray
         farthest = (apart + radius).min(axis=1)
         rows, near = np.nonzero(apart - radius <= farthest[:, None] * (1 + _EQUAL))
         chosen[start : start + some] = _nearest(part, rows, corners[near], near)
-    return orient3d(*corners[chosen].transpose(1, 0, 2), points)
+    return chosen
+
+
+def _to_segments(points: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """(N,) how far the nearest of segments (E, 2, 3) is from each point, up to rounding."""
+    found = np.full(len(points), np.inf)
+    for begin, end in ends:
+        along = end - begin
+        share = np.clip((points - begin) @ along / (along @ along), 0.0, 1.0)
+        found = np.minimum(found, np.linalg.norm(points - begin - share[:, None] * along, axis=1))
+    return found
 
 
 def _nearest(points: np.ndarray, rows: np.ndarray, corners: np.ndarray, numbers: np.ndarray) -> np.ndarray:

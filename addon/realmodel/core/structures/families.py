@@ -18,10 +18,12 @@ _DIES_OUT = 2  # in a key: a fault that dies out is there, on either side
 @dataclass(frozen=True)
 class Family:
     """key: of each fault -1 or +1, the side; 0, it is not there or does not displace the surface; 2, it dies
-    out here. members: the sides of the latter, -1 or +1 each, by compartment."""
+    out here. members: the sides of the latter, -1 or +1 each, by compartment. branches: of several families
+    together the faults that end at one that dies out: 2 in the key, 0 in members where they are not."""
 
     key: tuple[int, ...]
     members: dict[int, tuple[int, ...]]
+    branches: tuple[int, ...] = ()
 
     @property
     def dying(self) -> list[int]:
@@ -41,7 +43,9 @@ def are_within(
 ) -> np.ndarray:
     """(N,) bool: the points (N, 3) in the compartments of a family of surface `number` of a RockInput."""
     rows = sides_of(work, points, entry.structure.faults, threads)
-    return (keys_of(entry.structure, number, rows) == family.key).all(axis=1)
+    keys = keys_of(entry.structure, number, rows)
+    keys[:, list(family.branches)] = _DIES_OUT
+    return (keys == family.key).all(axis=1)
 
 
 def families(structure: RockStructure, number: int) -> list[Family]:
@@ -51,4 +55,27 @@ def families(structure: RockStructure, number: int) -> list[Family]:
     for compartment, key in enumerate(map(tuple, keys_of(structure, number, rows).tolist())):
         family = found.setdefault(key, Family(key, {}))
         family.members[compartment] = tuple(rows[compartment, family.dying].tolist())
+    return list(found.values())
+
+
+def around_tips(structure: RockStructure, number: int, every: list[Family]) -> list[Family]:
+    """Families together that only branches of a fault that dies out part: past its tips, where these branches
+    are not, their sheets are one."""
+    faults = structure.faults
+    active = faults.active(number)
+    branches = tuple(
+        branch
+        for branch, ends in enumerate(faults.ends)
+        if active[branch] and any(faults.dies_out[other] for other, _ in ends)
+    )
+    if not branches:
+        return []
+    found: dict[tuple[int, ...], Family] = {}
+    for family in every:
+        key = tuple(_DIES_OUT if fault in branches else side for fault, side in enumerate(family.key))
+        together = found.setdefault(key, Family(key, {}, branches))
+        for compartment in family.members:
+            together.members[compartment] = tuple(
+                structure.compartments[compartment, together.dying].tolist()
+            )
     return list(found.values())

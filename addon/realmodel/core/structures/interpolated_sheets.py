@@ -109,21 +109,39 @@ class InterpolatedSurface:
             visible = visible if visible.any() else own
             sheet = self._interpolated(family, tuple(whole), visible, settled)
             seen[sides], told[sides] = self._on_nodes(sheet), self.made[id(sheet)][:2]
-        ramp = _RAMP * float(np.median(_lengths(nodes, triangles)))
+        found = self._with_equal_ends(family, met, seen, told, meshed)
+        return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
+
+    def drawn_together(self, family: Family, sheets: dict) -> dict[tuple[int, ...], Triangulation]:
+        """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
+        if len({id(sheet) for sheet in sheets.values()}) == 1:
+            return sheets
+        _, triangles = self.entry.region
+        heights = {sides: self._on_nodes(sheet) for sides, sheet in sheets.items()}
+        told = {sides: self.made[id(sheet)][:2] for sides, sheet in sheets.items()}
+        known = np.isfinite(list(heights.values())).all(axis=0)
+        meshed = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
+        return self._with_equal_ends(family, range(len(family.dying)), heights, told, meshed)
+
+    def _with_equal_ends(self, family: Family, some, heights: dict, told: dict, meshed: np.ndarray) -> dict:
+        """Sheets with some heights at the nodes, drawn together beyond the ends of some of the faults that
+        die out. told: what interpolating them gave, likewise by sides."""
+        nodes, triangles = self.entry.region
+        shapes = self.entry.structure.faults.shapes
         equal = with_equal_ends(
             self.work,
             nodes,
             meshed,
-            seen,
-            [faults[number] for number in met],
+            heights,
+            [shapes[family.dying[number]] for number in some],
             self._within(family),
-            ramp,
+            _RAMP * float(np.median(_lengths(nodes, triangles))),
             self.threads,
         )
         found = shared({sides: where_known(nodes, triangles, z) for sides, z in equal.items()})
         for sides, sheet in found.items():
             self.made[id(sheet)] = (*told[sides], sheet)
-        return {sides: found[tuple(sides[number] for number in met)] for sides in family.members.values()}
+        return found
 
     def _interpolated(
         self,

@@ -14,6 +14,7 @@ from .parts import Structures, compartment_of
 from .reach import Reach
 from .refusals import refused_structure
 from .rock_structure import Triangulation
+from .voids import Build
 
 _BUILT = 0.4  # of the time: until the stacks are built; then they are cut and joined
 
@@ -120,8 +121,16 @@ def _part_model(
 ) -> dict | None:
     """The arrays of all rock masses as they are in one part; None where there is nothing."""
     first = _first_surfaces(inputs)
+    native = native_module()
+
+    def of_columns(sheets, region, rules) -> dict:
+        return work.native(
+            native.build_rock_masses, [(sheets, region, None, rules)], cells="columns", threads=threads
+        )
+
     stacks = [
-        _stack(inputs, structures, part, number, first[number], first[-1]) for number in range(len(inputs))
+        _stack(inputs, structures, part, number, first[number], first[-1], of_columns)
+        for number in range(len(inputs))
     ]
     columns = reach.columns(part)
     kept = {id(sheet): reach.over(columns, sheet) for stack in stacks for sheet in stack.sheets}
@@ -134,7 +143,6 @@ def _part_model(
         stacks[n].sheets = [_narrowed(sheet, kept[id(sheet)]) for sheet in stacks[n].sheets]
     rocks = [(stacks[n].sheets, inputs[n].region, stacks[n].base_elevation, stacks[n].rules) for n in taken]
     surfaces = [first[n] + own if own >= 0 else own for n in taken for own in stacks[n].surfaces]
-    native = native_module()
     try:
         built = work.native(native.build_rock_masses, rocks, cells=cells, threads=threads)
     except native.InputError as error:
@@ -156,6 +164,10 @@ def _part_model(
         "surfaces": first[-1],
         "cell_kind": cells,
     }
+    if (model["cell_block"] < 0).all():
+        return None
+    if (model["cell_block"] < 0).any():
+        model |= _without_cells(model, model["cell_block"] < 0)
     if cells == "blocks" and len(set(blocks.tolist())) < len(blocks):
         model |= one_cell_each(model)
     warnings = [
@@ -176,8 +188,10 @@ def _narrowed(sheet: Triangulation, kept: np.ndarray) -> Triangulation:
     return np.ascontiguousarray(vertices[used]), number[triangles[kept]].astype(np.int32)
 
 
-def _stack(inputs: list, structures: Structures, part: int, number: int, first: int, surfaces: int) -> Stack:
-    """The stack of one rock mass in one part. surfaces: of all rock masses."""
+def _stack(
+    inputs: list, structures: Structures, part: int, number: int, first: int, surfaces: int, build: Build
+) -> Stack:
+    """The stack of one rock mass in one part. surfaces: of all rock masses; build: models of columns."""
     entry = inputs[number]
     sheets = entry.structure.sheets[compartment_of(structures, entry, part)]
     rules = [surface.rule for surface in entry.rock.surfaces]
@@ -197,7 +211,7 @@ def _stack(inputs: list, structures: Structures, part: int, number: int, first: 
         if given.void and at + 1 < len(inside) and inside[at + 1][0] == after:
             continue  # what comes next leaves nothing of it
         block = NOTHING if given.void else body_block(structures, surfaces, number, body)
-        stack = inside_body(stack, after, block, top, given, plans)
+        stack = inside_body(stack, after, block, top, plans, entry.region, build)
     return stack
 
 
@@ -236,6 +250,29 @@ def acts(inputs: list, structures: Structures) -> np.ndarray:
                 if rock in others and (others[rock], other) <= (after, body):
                     found[count + body, body_block(structures, first[-1], rock, other)] = 1
     return found
+
+
+def _without_cells(model: dict, dropped: np.ndarray) -> dict:
+    """The arrays of a model without some cells, (C,) bool: slivers on a floor that rounding left."""
+    number = np.append(np.where(dropped, -1, np.cumsum(~dropped) - 1), -1).astype(np.int32)
+    cells = number[model["face_cells"]]
+    kept = np.flatnonzero((cells >= 0).any(axis=1))
+    loops = [
+        model["face_vertices"][model["face_offsets"][face] : model["face_offsets"][face + 1]][
+            :: 1 if cells[face, 0] >= 0 else -1
+        ]
+        for face in kept
+    ]
+    used, corners = np.unique(np.concatenate(loops), return_inverse=True)
+    cells = cells[kept]
+    return {
+        "vertices": np.ascontiguousarray(model["vertices"][used]),
+        "face_offsets": np.cumsum([0, *map(len, loops)]).astype(np.int64),
+        "face_vertices": corners.ravel().astype(np.int32),
+        "face_cells": np.ascontiguousarray(np.where(cells[:, :1] >= 0, cells, cells[:, ::-1])),
+        "face_surface": model["face_surface"][kept],
+        "cell_block": np.ascontiguousarray(model["cell_block"][~dropped]),
+    }
 
 
 def one_cell_each(model: dict) -> dict:

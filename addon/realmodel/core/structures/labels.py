@@ -11,8 +11,9 @@ from .parts import Structures, compartment_names, compartment_of
 
 def cell_compartments(
     inputs: list, built: dict, structures: Structures | None
-) -> tuple[np.ndarray, list[str]]:
-    """(C,) int32 the compartment of each cell, and the names of the compartments that have cells.
+) -> tuple[np.ndarray, list[str], np.ndarray]:
+    """(C,) int32 the compartment of each cell, the names of the compartments that have cells, and (N, F) int8
+    the side of each fault that they lie on, 0 where it does not divide them.
 
     A compartment lies on one side of each fault that divides its blocks: where faults die out their two sides
     are one compartment, and what is younger than a fault is not divided by it.
@@ -42,7 +43,7 @@ def cell_compartments(
         names = [f"{rock}: {name}" if name else rock for rock, name in zip(rocks, names, strict=True)]
     else:
         names = [name or rock for rock, name in zip(rocks, names, strict=True)]
-    return label.astype(np.int32), names
+    return label.astype(np.int32), names, distinct[:, 1:].astype(np.int8)
 
 
 def _dying(structures: Structures) -> np.ndarray:

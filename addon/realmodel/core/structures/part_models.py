@@ -7,14 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import InputRefused
 from ..rules import RULES
-from .entries import body_item
 from .rock_structure import Triangulation
+from .voids import Build, Older, level
 
 NOTHING = -1
 FILLER, FLOOR = -1, -2  # surfaces that only fill a body, or lie in the place of the base elevation
-_DEPOSITS = "conformable"
+_DEPOSITS, _PROTECTS = "conformable", "base"
 
 
 @dataclass
@@ -69,24 +68,27 @@ def inside_body(
     after: int,
     block: int,
     top: float,
-    body,
-    plans: list[tuple[np.ndarray, np.ndarray]],
+    plans: list[Triangulation],
+    region: Triangulation | None,
+    build: Build,
 ) -> Stack:
     """The stack inside of a body that came after surface `after`: all that was there, air and rock, is the
     body, block `block`, or NOTHING in a void. top: a height above all sheets and bodies. plans:
-    triangulations that together cover the rock mass in plan. Raises InputRefused.
+    triangulations that together cover the rock mass in plan; region: the one that bounds it, or None.
     """
     older = sum(number <= after for number in stack.surfaces)  # with floors, and fillers of earlier bodies
     base = stack.base_elevation
     if FLOOR in stack.surfaces:
         base = float(stack.sheets[0][0][0, 2])
     if block == NOTHING:
-        return _emptied(stack, older, base, body)
+        sheets = stack.sheets[:older]
+        before = Older(build, sheets, stack.rules[:older], distinct_plans(sheets), region)
+        return _emptied(stack, older, base, before)
     # what is protected depends on all that was there
     protects = any(RULES[rule].protects for rule in stack.rules[:older])
     kept = [k for k in range(older) if stack.surfaces[k] != FLOOR] if protects or base is None else []
     inside = Stack(
-        [*(stack.sheets[k] for k in kept), *(_level(plan, top) for plan in plans)],
+        [*(stack.sheets[k] for k in kept), *(level(plan, top) for plan in plans)],
         [*(stack.rules[k] for k in kept), *[_DEPOSITS] * len(plans)],
         None,
         [block] * (len(kept) + len(plans)),
@@ -100,7 +102,7 @@ def inside_body(
 def _upon(base: float | None, plans, lower: Stack, stack: Stack, older: int) -> Stack:
     """Floors at a base elevation, which all else lies on, then one stack, then the younger surfaces of
     another."""
-    floors = [] if base is None else [_level(plan, base) for plan in plans]
+    floors = [] if base is None else [level(plan, base) for plan in plans]
     return Stack(
         [*floors, *lower.sheets, *stack.sheets[older:]],
         [*[_DEPOSITS] * len(floors), *lower.rules, *stack.rules[older:]],
@@ -110,28 +112,26 @@ def _upon(base: float | None, plans, lower: Stack, stack: Stack, older: int) -> 
     )
 
 
-def _emptied(stack: Stack, older: int, base: float | None, body) -> Stack:
-    """Inside of a void: what came before is air, and younger surfaces fill it from the base."""
+def _emptied(stack: Stack, older: int, base: float | None, before: Older) -> Stack:
+    """Inside of a void: what came before is air, and younger surfaces fill it from the base, or from the top
+    of what is below the oldest surface. What they fill below the top of what was protected stays: it is there
+    before they come as they do elsewhere."""
     if base is not None:
         # where no older surface was, none that comes later forms a block
-        plans = distinct_plans(stack.sheets[:older])
-        return _upon(base, plans, Stack([], [], None, [], []), stack, older)
-    if older == len(stack.sheets):
-        return Stack([], [], None, [], [])
-    if not RULES[stack.rules[older]].cuts:
-        source = body.source
-        raise InputRefused(
-            "younger surfaces fill this void, and there is no base elevation that they fill it from",
-            file=source.document.file if source else body.shape_file,
-            line=source.line("after") if source else None,
-            item=body_item(body),
-            advice="give the rock mass a base_elevation, or leave out 'after'",
-        )
-    blocks = [NOTHING, *[stack.blocks[older]] * (older - 1), *stack.blocks[older:]]
-    return Stack(stack.sheets, stack.rules, None, blocks, stack.surfaces)
-
-
-def _level(plan: tuple[np.ndarray, np.ndarray], height: float) -> Triangulation:
-    """A level surface over what a sheet or a region covers."""
-    vertices, triangles = plan
-    return np.column_stack([vertices[:, :2], np.full(len(vertices), height)]), triangles
+        floors = [(level(plan, base), FLOOR) for plan in before.plans]
+    else:
+        floors = [(piece.sheet, stack.surfaces[piece.of]) for piece in before.never()]
+    young = range(older, len(stack.sheets))
+    kept: list[tuple[Triangulation, int, int]] = []  # with their blocks and surfaces
+    if any(RULES[stack.rules[k]].cuts for k in young[1:]) and (tops := before.protected()):
+        for k in young:
+            for piece in before.lower(tops, stack.sheets[k], k):
+                kept.append((piece.sheet, stack.blocks[k], stack.surfaces[piece.of]))
+    parts = [
+        *((sheet, _DEPOSITS, NOTHING, of) for sheet, of in floors),
+        *((sheet, _DEPOSITS, block, of) for sheet, block, of in kept),
+        *((sheet, _PROTECTS, NOTHING, of) for sheet, of in floors if kept),  # protects what there is
+        *((stack.sheets[k], stack.rules[k], stack.blocks[k], stack.surfaces[k]) for k in young),
+    ]
+    sheets, rules, blocks, surfaces = map(list, zip(*parts, strict=True)) if parts else ([], [], [], [])
+    return Stack(sheets, rules, None, blocks, surfaces)

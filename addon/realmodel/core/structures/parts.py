@@ -4,6 +4,7 @@ masses."""
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -41,6 +42,16 @@ class Structures:
     def names(self) -> list[str]:
         return [each.name for each in (*self.faults, *self.bodies)]
 
+    @property
+    def shapes(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Vertices (V, 3) and triangles (T, 3) of each."""
+        return [(each.vertices, each.triangles) for each in (*self.faults, *self.bodies)]
+
+    @property
+    def kinds(self) -> list[int]:
+        """Of each its number in `surface_kind`."""
+        return [1] * len(self.faults) + [2] * len(self.bodies)
+
     def native(self) -> list[tuple]:
         """As the native part takes them."""
         number = {fault.name: n for n, fault in enumerate(self.faults)}
@@ -56,10 +67,8 @@ class Structures:
         here = {self.faults[number].name: at for at, number in enumerate(numbers)}
         ends = []
         for number in numbers:
-            own = self.sides[self.sides[:, number] != 0]
-            others = [name for name in self.faults[number].ends_at if name in here]
-            kept = [(here[name], int(own[:, numbers[here[name]]].max(initial=-1))) for name in others]
-            ends.append([(other, side) for other, side in kept if side])
+            kept = self._kept_sides(number)
+            ends.append([(here[name], side) for name, side in kept.items() if name in here])
         faults = [self.faults[number] for number in numbers]
         return RockFaults(
             [fault.name for fault in faults],
@@ -69,6 +78,18 @@ class Structures:
             numbers,
             ends,
         )
+
+    def _kept_sides(self, number: int) -> dict[str, int]:
+        """By the names of the faults at which a fault ends: the side on which it remains. With these it is in
+        those parts alone that have it."""
+        names = list(self.faults[number].ends_at)
+        all_names = self.names
+        others = self.sides[:, [all_names.index(name) for name in names]]
+        for kept in itertools.product((-1, 1), repeat=len(names)):
+            is_beyond = (others == -np.array(kept, np.int8)).any(axis=1)
+            if np.array_equal(is_beyond, self.sides[:, number] == 0):
+                return dict(zip(names, kept, strict=True))
+        raise AssertionError(f"the sides of {all_names[number]} and of the faults at which it ends disagree")
 
     def has_block(self, number: int) -> bool:
         """Whether a structure has a block: a body that is not void and exists in some rock mass."""

@@ -30,7 +30,8 @@ class Reach:
         step = self.size[:2].max() / _CELLS[0]
         self.cells = np.maximum(1, np.minimum(_CELLS, np.ceil(self.size / step))).astype(int)
         self.step = self.size / self.cells
-        self.ranges: dict[int, tuple] = {}  # of sheets: the sheet, first and last cells of its triangles
+        # of the triangles of sheets: sheets in several places that have them, first and last cells
+        self.ranges: dict[int, list[tuple]] = {}
         self.masks = [
             self._sides(work, FaultShape(fault.vertices, fault.triangles, fault.dies_out), threads)
             for fault in structures.faults
@@ -49,13 +50,21 @@ class Reach:
 
     def over(self, columns: np.ndarray, sheet: Triangulation) -> np.ndarray:
         """(T,) bool: the triangles of a sheet whose boxes in plan meet some of these columns."""
-        if id(sheet) not in self.ranges:
-            self.ranges[id(sheet)] = sheet, *self._range(*extents(sheet[0][sheet[1], :2]))
-        _, first, last = self.ranges[id(sheet)]
+        first, last = self._ranges_of(sheet)
         total = np.zeros(np.array(columns.shape) + 1, np.int64)
         total[1:, 1:] = columns.cumsum(axis=0).cumsum(axis=1)
         (x0, y0), (x1, y1) = first.T, last.T + 1
         return total[x1, y1] - total[x0, y1] - total[x1, y0] + total[x0, y0] > 0
+
+    def _ranges_of(self, sheet: Triangulation) -> tuple[np.ndarray, np.ndarray]:
+        """The first and the last cells of the triangles of a sheet; those of a surface differ in heights."""
+        known = self.ranges.setdefault(id(sheet[1]), [])
+        for other, first, last in known:
+            if np.array_equal(sheet[0][:, :2], other[0][:, :2]):
+                return first, last
+        first, last = self._range(*extents(sheet[0][sheet[1], :2]))
+        known.append((sheet, first, last))
+        return first, last
 
     def _range(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The first and the last cells of boxes; what is only beside a cell counts as in it."""
@@ -70,9 +79,12 @@ class Reach:
         beyond = native_module().structure_continuation(fault.native(), self.structures.box)
         own, beyond = self._passed(fault.vertices[fault.triangles]), self._passed(beyond)
         part = _hanging_together(~(own | beyond))
-        middles = self._middles()
-        side = fault_sides(work, middles.reshape(-1, 3), fault, threads).reshape(self.cells)
         beside = _wider(own) & (part >= 0)
+        middles = self._middles()
+        # the first and the last of all, too: the fault is continued as far as the points reach
+        asked = np.concatenate([middles[beside], middles[[0, -1], [0, -1], [0, -1]]])
+        side = np.zeros(self.cells, np.int8)
+        side[beside] = fault_sides(work, asked, fault, threads)[:-2]
         found = np.full(self.cells, _BOTH, np.uint8)
         for number in np.unique(part[beside]):
             seen = side[beside & (part == number)]

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..errors import InputRefused, place_text
 from ..heights import heights
 from ..work import Work
 from .families import Family, are_within
 from .mesh_parts import LEFT, RIGHT, PlanTiling, plan_tiling
 from .rock_structure import Triangulation
 from .sides import FaultShape, fault_sides
-from .tips import on_fault, shared, trace_of, with_equal_ends
+from .tips import on_fault, shared, torn_beyond, trace_of, with_equal_ends
 from .triangles import meet, welded
 
 
@@ -75,9 +76,7 @@ class ReadyMesh:
         shapes = self.entry.structure.faults.shapes
         common = self._continued(plan, known, triangles)
         faults = [shapes[fault] for fault in family.dying]
-
-        def within(points: np.ndarray) -> np.ndarray:
-            return are_within(self.work, self.entry, self.number, family, points, self.threads)
+        within = self._within(family)
 
         def traces_on(sheet: Triangulation) -> list:
             return [trace_of(self.work, sheet, fault, within, self.threads) for fault in faults]
@@ -87,6 +86,7 @@ class ReadyMesh:
         if not met:
             sheet = np.column_stack([plan, common]), triangles
             return dict.fromkeys(family.members.values(), sheet)
+        self._require_one_height_beyond(family, met, (np.column_stack([plan, common]), triangles))
         if not self.tiling.is_mesh:
             plan, triangles = self.tiling.nodes, self.tiling.tiles
             common = self._continued(plan, self.tiling.heights(own), triangles)
@@ -100,18 +100,45 @@ class ReadyMesh:
                 hidden |= (self.masks[:, family.dying[number]] == other) & beside[number]
             left = own & ~hidden if (own & ~hidden).any() else own  # what hides all hides nothing
             seen[given] = self._continued(plan, self.tiling.heights(left), triangles)
-        equal = with_equal_ends(
-            self.work,
-            plan,
-            triangles,
-            seen,
-            [faults[number] for number in met],
-            within,
-            0.0,
-            self.threads,
-        )
-        found = shared({given: (np.column_stack([plan, z]), triangles) for given, z in equal.items()})
+        found = self._with_equal_ends(family, met, seen, plan, triangles)
         return {given: found[tuple(given[number] for number in met)] for given in family.members.values()}
+
+    def _require_one_height_beyond(self, family: Family, met: list[int], sheet: Triangulation) -> None:
+        faults = self.entry.structure.faults
+        for number in met:
+            fault, within = family.dying[number], self._within(family)
+            place = torn_beyond(self.work, sheet, faults.shapes[fault], within, self.threads)
+            if place is not None:
+                name, near = faults.names[fault], place_text(place)
+                raise InputRefused(
+                    f"it has two heights beyond the tip of fault '{name}' near {near}",
+                    advice="extend the fault, or give data beyond the tip that agree",
+                    place=tuple(place.tolist()),
+                )
+
+    def drawn_together(self, family: Family, sheets: dict) -> dict[tuple[int, ...], Triangulation]:
+        """Sheets of another family, by sides, for this one: its faults may die out elsewhere."""
+        vertices, triangles = next(iter(sheets.values()))
+        plans = [sheet[0][:, :2] for sheet in sheets.values()]
+        if len({id(sheet) for sheet in sheets.values()}) == 1 or not all(
+            np.array_equal(plan, plans[0]) for plan in plans
+        ):
+            return sheets
+        heights = {sides: sheet[0][:, 2] for sides, sheet in sheets.items()}
+        plan = np.ascontiguousarray(vertices[:, :2])
+        return self._with_equal_ends(family, range(len(family.dying)), heights, plan, triangles)
+
+    def _with_equal_ends(self, family: Family, some, heights: dict, plan: np.ndarray, triangles: np.ndarray):
+        """Sheets with some heights, by sides, drawn together beyond the ends of some of the faults that die
+        out."""
+        shapes = self.entry.structure.faults.shapes
+        faults = [shapes[family.dying[number]] for number in some]
+        within = self._within(family)
+        equal = with_equal_ends(self.work, plan, triangles, heights, faults, within, 0.0, self.threads)
+        return shared({sides: (np.column_stack([plan, z]), triangles) for sides, z in equal.items()})
+
+    def _within(self, family: Family):
+        return lambda points: are_within(self.work, self.entry, self.number, family, points, self.threads)
 
     def _continued(self, plan: np.ndarray, known: np.ndarray, triangles: np.ndarray) -> np.ndarray:
         """(N,) heights: those that are known, and where they are NaN what the method makes of them."""

@@ -11,6 +11,7 @@ _ADVICE = {
     "is_closed": "a closed surface is a body: write [[body]]",
     "one_sided": "cut it open where it returns to itself",
     "branching": "make a fault of its own of each branch, and set 'ends_at'",
+    "folded": "make a fault of its own of each part of it that lies beside another one",
     "does_not_meet": "extend it to that fault, or take it out of 'ends_at'",
     "ends_inside": "extend it beyond the rock, set 'dies_out' or 'ends_at', or choose an older 'youngest'",
 }

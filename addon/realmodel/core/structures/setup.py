@@ -68,7 +68,7 @@ def _facing_up(work: Work, fault: Fault) -> Fault:
     beside = corners[largest].mean(axis=0) + normals[largest] / size * 1e-3 * np.sqrt(size)
     native = native_module()
     try:
-        side = fault_sides(work, beside[None], FaultShape(fault.vertices, fault.triangles))
+        side = fault_sides(work, beside[None], FaultShape(fault.vertices, fault.triangles, fault.dies_out))
     except native.InputError as error:
         error.surface = 0
         raise refused_structure(error, structures_of(Project("", []), [fault], [])) from error

@@ -14,7 +14,7 @@ from ..project import surface_item
 from ..surface_heights import interpolation_order
 from ..work import Work
 from ..wrong_sides import points_too_low
-from .families import Family, families
+from .families import Family, around_tips, families
 from .interpolated_sheets import InterpolatedSurface
 from .ready_sheets import ReadyMesh
 from .rock_structure import joined
@@ -86,12 +86,17 @@ def _make(entry, number: int, surface) -> None:
             sources = dict.fromkeys(sources, max(made, key=lambda key: (counts[key], key)))
         for family in lacking:
             if (source := sources[family.key]) is not None:
-                made[family.key] = _taken_over(family, made[source])
+                made[family.key] = _taken_over(surface, family, made[source])
                 _tell(entry, number, surface, family, next(each for each in every if each.key == source))
         lacking = [family for family in lacking if family.key not in made]
     for family in every:
         for compartment, sides in family.members.items():
             structure.sheets[compartment][number] = made[family.key][sides]
+    for together in around_tips(structure, number, every):
+        sheets = {sides: structure.sheets[each][number] for each, sides in together.members.items()}
+        drawn = _drawn_together(surface, together, sheets)
+        for compartment, sides in together.members.items():
+            structure.sheets[compartment][number] = drawn[sides]
     sheets = structure.distinct(number)
     entry.surfaces[number] = joined(sheets)
     surface.finish(sheets)
@@ -103,10 +108,20 @@ def _neighbor(key, made, counts):
     return max(near, key=lambda other: (counts[other], other), default=None)
 
 
-def _taken_over(family: Family, sheets: dict) -> dict:
+def _taken_over(surface, family: Family, sheets: dict) -> dict:
     """Sheets of another family by the sides of this one: the faults that die out may be others."""
     first = next(iter(sheets.values()))
-    return {sides: sheets.get(sides, first) for sides in family.members.values()}
+    taken = {sides: sheets.get(sides, first) for sides in family.members.values()}
+    return _drawn_together(surface, family, taken)
+
+
+def _drawn_together(surface, family: Family, sheets: dict) -> dict:
+    """Sheets by sides, equal beyond the tips; the same ones where they were."""
+    drawn = surface.drawn_together(family, sheets)
+    return {
+        sides: sheet if np.array_equal(drawn[sides][0], sheet[0]) else drawn[sides]
+        for sides, sheet in sheets.items()
+    }
 
 
 def _tell(entry, number: int, surface, family: Family, source: Family) -> None:

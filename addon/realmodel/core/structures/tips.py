@@ -14,12 +14,21 @@ import numpy as np
 
 from ..work import Work, native_module
 from .sides import FaultShape, Triangulation, fault_sides
-from .triangles import crossing_pairs, distances_of_pairs, edges_of, segments_hit
+from .triangles import (
+    crossing_pairs,
+    distances_of_pairs,
+    edges_of,
+    open_edges,
+    pairs_at_planes,
+    segments_hit,
+    shares_hit,
+)
 
 _ON = 1e-6  # of the extent of a fault: vertices so near it lie on it
 _AT_ONCE = 1 << 21
 _HALVINGS = 30  # a billionth of an edge
 _PASSES = 2
+_SHARES = (np.arange(16) + 0.5) / 16  # of a line: where it is looked at
 
 Within = Callable[[np.ndarray], np.ndarray]
 
@@ -91,7 +100,7 @@ def on_fault(points: np.ndarray, fault: FaultShape) -> np.ndarray:
     for axis in range(3):
         inside &= (points[:, axis] >= low[axis]) & (points[:, axis] <= high[axis])
     some = np.flatnonzero(inside)
-    pairs = crossing_pairs(boxes[some], vertices[triangles])
+    pairs = pairs_at_planes(boxes[some], vertices[triangles])
     away = distances_of_pairs(points[some[pairs[:, 0]]], vertices[triangles[pairs[:, 1]]])
     found[some[pairs[away <= near, 0]]] = True
     return found
@@ -106,11 +115,7 @@ def _hit_shares(begin: np.ndarray, end: np.ndarray, fault: FaultShape) -> np.nda
     for start in range(0, len(pairs), 1 << 16):
         segment, triangle = pairs[start : start + (1 << 16)].T
         hit = segments_hit(begin[segment], end[segment], corners[triangle])
-        a, b, c = corners[triangle[hit]].transpose(1, 0, 2)
-        normal = np.cross(b - a, c - a)
-        low = ((begin[segment[hit]] - a) * normal).sum(axis=1)
-        high = ((end[segment[hit]] - a) * normal).sum(axis=1)
-        found[segment[hit]] = low / (low - high)
+        found[segment[hit]] = shares_hit(begin[segment[hit]], end[segment[hit]], corners[triangle[hit]])
     return found
 
 
@@ -127,21 +132,27 @@ def nearest(plan: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def blended(
-    heights: dict[tuple[int, ...], np.ndarray], near: dict[tuple[int, ...], np.ndarray], weights: list
+    heights: dict[tuple[int, ...], np.ndarray],
+    near: dict[tuple[int, ...], np.ndarray],
+    on_side: dict[tuple[int, ...], list[np.ndarray]],
+    weights: list,
 ) -> dict:
-    """(N,) heights by the sides (+1 or -1 of each fault that dies out), different only as the weights say.
+    """(N,) heights by the sides (+1 or -1 of each fault, 0 where it is not), different as the weights say.
 
     heights: what is seen from each combination of sides that there is. near: (N,) bool, the nodes near its
-    compartment, where it counts. weights: of each fault (N,), 1 where its sides have sheets of their own, 0
-    where they have the same.
+    compartment, where it counts. on_side: of each fault (N,) bool, the nodes that are on that side of it.
+    weights: of each fault (N,), 1 where its sides have sheets of their own, 0 where they have the same.
     """
     result = {}
     for sides, own in heights.items():
         total, whole = np.zeros(len(own)), np.zeros(len(own))
         for other, z in heights.items():
             share = near[other].astype(float)
-            for side, its, weight in zip(sides, other, weights, strict=True):
-                share = share * np.where(side == its, 0.5 + 0.5 * weight, 0.5 - 0.5 * weight)
+            for fault, (side, its, weight) in enumerate(zip(sides, other, weights, strict=True)):
+                alike = side == its  # where one has no such fault: on the side that the other is on
+                if not alike and 0 in (side, its):
+                    alike = on_side[sides if side else other][fault]
+                share = share * np.where(alike, 0.5 + 0.5 * weight, 0.5 - 0.5 * weight)
             total, whole = total + np.where(share == 0.0, 0.0, share * z), whole + share
         result[sides] = np.where(near[sides], total / np.where(whole > 0, whole, 1.0), own)
     return result
@@ -158,18 +169,18 @@ def with_equal_ends(
     threads: int = 0,
 ) -> dict[tuple[int, ...], np.ndarray]:
     """The heights (N,) of the sheets on each combination of sides, equal to the bit at all nodes of
-    triangles through which a fault would go on beyond its ends. Within the distance `ramp` of these they are
-    drawn together."""
+    triangles through which a fault that dies out would go on beyond its ends. Within the distance `ramp` of
+    these they are drawn together."""
     first = next(iter(heights.values()))
     if all(np.array_equal(z, first, equal_nan=True) for z in heights.values()):
         return dict.fromkeys(heights, first)
-    on_side = {
-        sides: [
-            fault_sides(work, np.nan_to_num(np.column_stack([plan, z])), fault, threads) == side
+    on_side = {}
+    for sides, z in heights.items():
+        at = np.nan_to_num(np.column_stack([plan, z]))
+        on_side[sides] = [
+            (side == 0) | (fault_sides(work, at, fault, threads) == side)
             for fault, side in zip(faults, sides, strict=True)
         ]
-        for sides, z in heights.items()
-    }
     passed = [np.zeros(len(plan), bool) for _ in faults]
     for _ in range(2):  # what is passed between nodes alone is near, too
         near = {
@@ -179,15 +190,18 @@ def with_equal_ends(
         known = np.isfinite(low[:, 2])
         low[:, 2], high[:, 2] = (np.where(known, each[:, 2], 0.0) for each in (low, high))
         inside = known & within(low) & within(high)
-        entire = np.ascontiguousarray(triangles[inside[triangles].all(axis=1)])
-        doubtful = [entire[_met(work, fault, low, high, entire, threads) > 0] for fault in faults]
+        whole = np.ascontiguousarray(triangles[known[triangles].all(axis=1)])
+        doubtful = [
+            whole[_met(work, fault, low, high, whole, threads) > 0] if fault.dies_out else whole[:0]
+            for fault in faults
+        ]
         for nodes, some in zip(passed, doubtful, strict=True):
             nodes[some] = True
-    crossed = np.ascontiguousarray(triangles[(known & ~inside)[triangles].any(axis=1)])
-    crossed = crossed[known[crossed].all(axis=1)]
+    box = np.array([low[known].min(axis=0, initial=np.inf), high[known].max(axis=0, initial=-np.inf)])
+    continuations = [native_module().structure_continuation(fault.native(), box) for fault in faults]
     weights = [np.ones(len(plan)) for _ in faults]
     while True:
-        found = blended(heights, near, weights)
+        found = blended(heights, near, on_side, weights)
         settled = True
         for number, fault in enumerate(faults):
             beyond = np.zeros(len(plan), bool)
@@ -196,12 +210,14 @@ def with_equal_ends(
                 some = np.ascontiguousarray(some[near[sides][some].any(axis=1)])
                 sheet = np.column_stack([plan, np.where(known, z, 0.0)])
                 met = _met(work, fault, sheet, sheet, some, threads)
-                beyond[some[met == _PASSES]] = True
+                passes = met == _PASSES
+                divided = np.flatnonzero(passes & ~inside[some].all(axis=1))
+                passes[divided] = _meet_within(sheet[some[divided]], continuations[number], within)
+                beyond[some[passes]] = True
                 touched = np.unique(some[met > 0]).astype(np.int32)
+                touched = touched[inside[touched]]
                 alone = np.repeat(touched[:, None], 3, axis=1)
                 beyond[touched[_met(work, fault, sheet, sheet, alone, threads) > 0]] = True
-                if len(crossed):
-                    beyond |= _beyond(work, plan, z, crossed, fault, within, threads)
             if (beyond & (weights[number] > 0)).any():
                 before = weights[number] == 0
                 weights[number] = _weight(plan, beyond | before, ramp)
@@ -244,13 +260,56 @@ def shared(sheets: dict[tuple[int, ...], Triangulation]) -> dict[tuple[int, ...]
     return {sides: known.setdefault(sheet[0].tobytes(), sheet) for sides, sheet in sheets.items()}
 
 
-def _beyond(work: Work, plan, z, triangles, fault: FaultShape, within: Within, threads: int) -> np.ndarray:
-    """(N,) bool: the nodes of those of some triangles through which a fault would go on in a compartment
-    whose border passes them."""
-    used, numbers = np.unique(triangles, return_inverse=True)
-    sheet = np.column_stack([plan[used], z[used]]), numbers.reshape(-1, 3)
-    found = np.zeros(len(plan), bool)
-    found[used[trace_of(work, sheet, fault, within, threads).beyond]] = True
+def torn_beyond(
+    work: Work, sheet: Triangulation, fault: FaultShape, within: Within, threads: int = 0
+) -> np.ndarray | None:
+    """(3,) a place in a compartment at which a sheet has two heights along a line in which a fault would go
+    on beyond its ends; None where there is none."""
+    vertices, triangles = sheet
+    ends = vertices[open_edges(vertices, triangles)]
+    swap = (ends[:, 0, 0] > ends[:, 1, 0]) | (
+        (ends[:, 0, 0] == ends[:, 1, 0]) & (ends[:, 0, 1] > ends[:, 1, 1])
+    )
+    ends[swap] = ends[swap, ::-1]
+    lines, line = np.unique(ends[:, :, :2].reshape(-1, 4), axis=0, return_inverse=True)
+    low, high = np.full((len(lines), 2), np.inf), np.full((len(lines), 2), -np.inf)
+    np.minimum.at(low, line.ravel(), ends[:, :, 2])
+    np.maximum.at(high, line.ravel(), ends[:, :, 2])
+    torn = (low < high).any(axis=1)
+    low, high = (_along(np.dstack([lines[torn].reshape(-1, 2, 2), z[torn]])) for z in (low, high))
+    alone = np.repeat(np.arange(len(low), dtype=np.int32)[:, None], 3, axis=1)
+    on = np.all([_met(work, fault, places, places, alone, threads) > 0 for places in (low, high)], axis=0)
+    middles = (low + high)[on] / 2
+    middles = middles[within(middles)]
+    return middles[0] if len(middles) else None
+
+
+def _along(lines: np.ndarray) -> np.ndarray:
+    """(16 K, 3) some places along each of some lines (K, 2, 3)."""
+    begin, end = lines[:, :1], lines[:, 1:]
+    return np.ascontiguousarray((begin + _SHARES[None, :, None] * (end - begin)).reshape(-1, 3))
+
+
+def _meet_within(corners: np.ndarray, others: np.ndarray, within: Within) -> np.ndarray:
+    """(K,) bool: the triangles (K, 3, 3) of which places where they meet others (M, 3, 3) are in a
+    compartment."""
+    pairs = crossing_pairs(corners, others)
+    ends = np.full((len(pairs), 6, 3), np.nan)
+    one, other = corners[pairs[:, 0]], others[pairs[:, 1]]
+    for turn, (triangle, edges) in enumerate(((one, other), (other, one))):
+        for corner in range(3):
+            begin, end = edges[:, corner], edges[:, (corner + 1) % 3]
+            hit = segments_hit(begin, end, triangle)
+            share = shares_hit(begin[hit], end[hit], triangle[hit])
+            ends[hit, 3 * turn + corner] = begin[hit] + share[:, None] * (end - begin)[hit]
+    rows = np.flatnonzero(np.isfinite(ends[:, :, 0]).sum(axis=1) > 1)
+    some = ends[rows]
+    at = np.arange(len(rows))
+    first = some[at, np.isfinite(some[:, :, 0]).argmax(axis=1)]
+    last = some[at, np.nan_to_num(np.linalg.norm(some - first[:, None], axis=2), nan=-1.0).argmax(axis=1)]
+    places = _along(np.stack([first, last], axis=1))
+    found = np.zeros(len(corners), bool)
+    found[pairs[rows[within(places).reshape(-1, len(_SHARES)).any(axis=1)], 0]] = True
     return found
 
 

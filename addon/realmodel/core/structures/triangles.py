@@ -8,6 +8,7 @@ import itertools
 import numpy as np
 
 _EDGES = ((0, 1), (1, 2), (2, 0))
+_ROUNDING = 1e-9  # relative: what is so near to a plane may be on it
 
 
 def welded(vertices: np.ndarray) -> np.ndarray:
@@ -113,10 +114,28 @@ def crossing_pairs(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     return np.concatenate(found) if found else np.empty((0, 2), np.int64)
 
 
+def pairs_at_planes(first: np.ndarray, second: np.ndarray, near: float = 0.0) -> np.ndarray:
+    """As crossing_pairs, without those of which the box of the first is farther than `near` from the plane of
+    the second."""
+    one, other = crossing_pairs(first, second).T
+    low, high = extents(first)
+    middle, reach = (low + high) / 2, (high - low) / 2 + near
+    a, b, c = second.transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    off, size, allowed = np.zeros((3, len(one)))
+    for k in range(3):
+        away = normal[other, k] * (middle[one, k] - a[other, k])
+        off += away
+        size += np.abs(away)
+        allowed += np.abs(normal[other, k]) * reach[one, k]
+    kept = ~(np.abs(off) > allowed + _ROUNDING * (size + allowed))
+    return np.column_stack([one[kept], other[kept]])
+
+
 def meet(first: np.ndarray, second: np.ndarray) -> np.ndarray:
     """(N,) bool: the triangles of `first` (N, 3, 3) that an edge of one of `second` (M, 3, 3) passes, or
     whose own edge passes one of these; touching counts, up to rounding."""
-    pairs = crossing_pairs(first, second)
+    pairs = pairs_at_planes(first, second)
     found = np.zeros(len(first), bool)
     for start in range(0, len(pairs), 1 << 16):
         some = pairs[start : start + (1 << 16)]
@@ -150,6 +169,14 @@ def segments_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> n
     for p, q in ((a, b), (b, c), (c, a)):
         crosses &= (np.cross(q - p, at - p) * normal).sum(axis=1) >= 0
     return crosses
+
+
+def shares_hit(begin: np.ndarray, end: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(K,) where segments that hit the plane of the triangle of their row do so, 0 to 1 of their lengths."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    low, high = ((begin - a) * normal).sum(axis=1), ((end - a) * normal).sum(axis=1)
+    return low / (low - high)
 
 
 class NoTwoSides(Exception):

@@ -30,8 +30,9 @@ PolygonEdges polygon_edges(std::span<const std::int32_t> offsets,
 struct Shell {
     std::vector<std::array<float, 3>> coordinates;  ///< offsets from the origin asked for
     std::vector<std::int32_t> offsets;
-    std::vector<std::int32_t> corners;  ///< counter-clockwise seen from outside
-    std::vector<std::int32_t> faces;    ///< of the complex: the one that each polygon is
+    std::vector<std::int32_t> corners;   ///< counter-clockwise seen from outside
+    std::vector<std::int32_t> faces;     ///< of the complex: the one that each polygon is
+    std::vector<std::uint8_t> reversed;  ///< of each polygon: it is its face's second side
     PolygonEdges edges;
 };
 

@@ -33,7 +33,8 @@ struct Part {
 /// The parts that structures divide some rock into, each combination of sides once, ascending.
 /// @throws InputError  `surface` is the structure's number; kinds not_finite, bad_index,
 ///         no_triangles, branching, one_sided; not_closed (of a body: the place of an open edge);
-///         does_not_meet (a fault and one that it ends at, which it does not meet)
+///         does_not_meet (a fault and one that it ends at, which it does not meet); folded (one
+///         that dies out, whose border crosses itself seen at right angles to its mean plane)
 /// @throws Cancelled
 std::vector<Part> parts_of(const ComplexView& rock, std::span<const Structure> structures,
                            int threads, Progress* progress);

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The geological map and contours as GeoJSON (RFC 7946) and GeoPackage (OGC 12-128r18).
+
+Areas: a feature for each block, in each compartment, where it crops out. Contours: a feature for each line.
+Coordinates are those of the model; a project names no coordinate system, so neither do the files.
+"""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+import struct
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..atomic import Outputs
+from ..contours import contours
+from ..errors import OutputFailed
+from ..geological_map import geological_map, ground_of
+
+AREAS, CONTOURS = "geology", "contours"
+_TOP = "top of the model"
+_POLYGONS, _LINE = 6, 2  # well-known binary: several polygons, a line
+_UNDEFINED = -1  # the plane system that is not known, of GeoPackages
+
+
+@dataclass(frozen=True, eq=False)
+class _Layer:
+    """columns: of attributes, name to SQL type. rows: (values, rings) each: polygons, each a list of closed
+    rings, or a line."""
+
+    name: str
+    columns: dict[str, str]
+    rows: list[tuple[list, list | np.ndarray]]
+
+
+def write_geojson(model, path, outputs: Outputs, step: Callable[[float], None], interval) -> None:
+    """One collection of the features of all layers; `layer` says which each is of."""
+    layers = _layers(model, step, interval)
+    with outputs.file(path) as file:
+        head = {"type": "FeatureCollection", "name": model.project.name or Path(path).stem}
+        file.write(json.dumps(head, ensure_ascii=False)[:-1].encode() + b', "features": [')
+        first = True
+        for layer in layers:
+            for values, shape in layer.rows:
+                feature = {
+                    "type": "Feature",
+                    "properties": {"layer": layer.name, **dict(zip(layer.columns, values, strict=True))},
+                    "geometry": _geometry(shape),
+                }
+                file.write(b"\n" if first else b",\n")
+                file.write(json.dumps(feature, ensure_ascii=False, allow_nan=False).encode())
+                first = False
+        file.write(b"\n]}\n")
+    step(1.0)
+
+
+def _geometry(shape) -> dict:
+    if isinstance(shape, np.ndarray):
+        return {"type": "LineString", "coordinates": shape.tolist()}
+    return {"type": "MultiPolygon", "coordinates": [[ring.tolist() for ring in rings] for rings in shape]}
+
+
+def write_geopackage(model, path, outputs: Outputs, step: Callable[[float], None], interval) -> None:
+    """A table for each layer."""
+    layers = _layers(model, step, interval)
+    try:
+        with outputs.path(path) as target, closing(sqlite3.connect(target)) as base:
+            base.executescript(_SCHEMA)
+            for layer in layers:
+                _write_layer(base, layer)
+            base.commit()
+    except sqlite3.Error as error:
+        raise OutputFailed(f"{path}: cannot be written: {error}") from error
+    step(1.0)
+
+
+def _layers(model, step: Callable[[float], None], interval) -> list[_Layer]:
+    ground = ground_of(model)
+    step(0.3)
+    library = model.project.library
+    columns = {"block": "TEXT", "property": "INTEGER", "rock": "TEXT", "compartment": "TEXT"}
+    columns |= {"color": "TEXT", "area": "REAL"}
+    colors = np.rint(model.block_colors * 255).astype(int).tolist()
+    names = model.compartment_names
+    areas = _Layer(AREAS, columns, [])
+    for area in geological_map(model, ground):
+        block = model.blocks[area.block]
+        entry = library.get(block.property) if library else None
+        values = [block.name, block.property, entry.name if entry else None]
+        values.append(names[area.compartment] if len(names) > 1 else None)
+        values += ["#{:02x}{:02x}{:02x}".format(*colors[area.block]), area.area]
+        areas.rows.append((values, [[_closed(ring) for ring in rings] for rings in area.polygons]))
+    step(0.5)
+    lines = _Layer(CONTOURS, {"surface": "TEXT", "elevation": "REAL"}, [])
+    for line in contours(model, interval, ground):
+        lines.rows.append(([line.surface or _TOP, line.elevation], line.points))
+    step(0.7)
+    return [areas, lines]
+
+
+def _closed(ring: np.ndarray) -> np.ndarray:
+    return np.concatenate([ring, ring[:1]])
+
+
+# The date of the last change is always the same: so the same model gives the same bytes.
+_SCHEMA = """
+PRAGMA application_id = 1196444487;
+PRAGMA user_version = 10300;
+CREATE TABLE gpkg_spatial_ref_sys (
+    srs_name TEXT NOT NULL,
+    srs_id INTEGER PRIMARY KEY,
+    organization TEXT NOT NULL,
+    organization_coordsys_id INTEGER NOT NULL,
+    definition TEXT NOT NULL,
+    description TEXT);
+INSERT INTO gpkg_spatial_ref_sys VALUES
+    ('Undefined Cartesian', -1, 'NONE', -1, 'undefined', NULL),
+    ('Undefined geographic', 0, 'NONE', 0, 'undefined', NULL),
+    ('WGS 84', 4326, 'EPSG', 4326,
+        'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],' ||
+        'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]', NULL);
+CREATE TABLE gpkg_contents (
+    table_name TEXT NOT NULL PRIMARY KEY,
+    data_type TEXT NOT NULL,
+    identifier TEXT UNIQUE,
+    description TEXT DEFAULT '',
+    last_change DATETIME NOT NULL DEFAULT '1970-01-01T00:00:00.000Z',
+    min_x DOUBLE, min_y DOUBLE, max_x DOUBLE, max_y DOUBLE,
+    srs_id INTEGER REFERENCES gpkg_spatial_ref_sys(srs_id));
+CREATE TABLE gpkg_geometry_columns (
+    table_name TEXT NOT NULL,
+    column_name TEXT NOT NULL,
+    geometry_type_name TEXT NOT NULL,
+    srs_id INTEGER NOT NULL,
+    z TINYINT NOT NULL,
+    m TINYINT NOT NULL,
+    CONSTRAINT pk_geom_cols PRIMARY KEY (table_name, column_name),
+    CONSTRAINT uk_gc_table_name UNIQUE (table_name),
+    CONSTRAINT fk_gc_tn FOREIGN KEY (table_name) REFERENCES gpkg_contents(table_name),
+    CONSTRAINT fk_gc_srs FOREIGN KEY (srs_id) REFERENCES gpkg_spatial_ref_sys(srs_id));
+"""
+
+
+def _write_layer(base: sqlite3.Connection, layer: _Layer) -> None:
+    kind = "MULTIPOLYGON" if layer.name == AREAS else "LINESTRING"
+    columns = ", ".join(f"{name} {form}" for name, form in layer.columns.items())
+    base.execute(
+        f"CREATE TABLE {layer.name} (fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom {kind}, {columns})"
+    )
+    boxes = np.array([_box(shape) for _, shape in layer.rows]).reshape(-1, 4)
+    whole = (
+        [*boxes[:, :2].min(axis=0).tolist(), *boxes[:, 2:].max(axis=0).tolist()] if len(boxes) else [None] * 4
+    )
+    base.execute(
+        "INSERT INTO gpkg_contents (table_name, data_type, identifier, min_x, min_y, max_x, max_y, srs_id) "
+        "VALUES (?, 'features', ?, ?, ?, ?, ?, ?)",
+        [layer.name, layer.name, *whole, _UNDEFINED],
+    )
+    base.execute(
+        "INSERT INTO gpkg_geometry_columns VALUES (?, 'geom', ?, ?, 0, 0)", [layer.name, kind, _UNDEFINED]
+    )
+    marks = ", ".join("?" * (len(layer.columns) + 1))
+    base.executemany(
+        f"INSERT INTO {layer.name} (geom, {', '.join(layer.columns)}) VALUES ({marks})",
+        (
+            [_blob(shape, box), *values]
+            for (values, shape), box in zip(layer.rows, boxes.tolist(), strict=True)
+        ),
+    )
+
+
+def _box(shape) -> list[float]:
+    places = shape if isinstance(shape, np.ndarray) else np.concatenate([rings[0] for rings in shape])
+    return [*places.min(axis=0).tolist(), *places.max(axis=0).tolist()]
+
+
+def _blob(shape, box: list[float]) -> bytes:
+    """A header with the bounding box, then well-known binary, little-endian."""
+    head = b"GP\0\3" + struct.pack("<i4d", _UNDEFINED, box[0], box[2], box[1], box[3])
+    if isinstance(shape, np.ndarray):
+        return head + struct.pack("<BII", 1, _LINE, len(shape)) + shape.astype("<f8").tobytes()
+    parts = [head, struct.pack("<BII", 1, _POLYGONS, len(shape))]
+    for rings in shape:
+        parts.append(struct.pack("<BII", 1, 3, len(rings)))
+        for ring in rings:
+            parts += [struct.pack("<I", len(ring)), ring.astype("<f8").tobytes()]
+    return b"".join(parts)

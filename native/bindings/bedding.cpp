@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// bedding.
+#include "realmodel/bedding/bedding.hpp"
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "arrays.hpp"
+#include "rock_arrays.hpp"
+
+namespace py = pybind11;
+
+namespace realmodel::bindings {
+
+namespace {
+
+/// (sheets, base elevation, rules).
+using HistoryArrays =
+    std::tuple<std::vector<SurfaceArrays>, std::optional<double>, std::vector<std::string>>;
+
+py::tuple bedding_arrays(const Array<double>& vertices, const Array<std::int64_t>& face_offsets,
+                         const Indices& face_vertices, const Indices& face_cells,
+                         const std::vector<HistoryArrays>& given, const Indices& faces,
+                         const Array<bool>& reversed, const Indices& history, const Indices& layer,
+                         const Indices& histories_of_corners, int threads,
+                         const Progress* control) {
+    require_columns(vertices, 3, "vertices");
+    require_columns(face_cells, 2, "face_cells");
+    const ComplexView complex{.vertices = view(vertices),
+                              .face_offsets = view(face_offsets),
+                              .face_vertices = view(face_vertices),
+                              .face_cells = view(face_cells),
+                              .face_surface = {},
+                              .cell_block = {}};
+    std::vector<bedding::History> histories;
+    for (const auto& [sheets, base_elevation, rules] : given) {
+        const strata::StackInput rock = view_of(RockArrays{sheets, {}, base_elevation, rules});
+        histories.push_back({rock.surfaces, rock.rules, rock.base_elevation});
+    }
+    const auto count = static_cast<std::size_t>(faces.size());
+    if (reversed.size() != faces.size() || history.size() != faces.size() ||
+        layer.size() != faces.size()) {
+        throw py::value_error("faces, reversed, history, layer: one for each polygon");
+    }
+    std::vector<bedding::Polygon> polygons(count);
+    for (std::size_t n = 0; n < count; ++n) {
+        polygons[n] = {faces.data()[n], reversed.data()[n], history.data()[n], layer.data()[n]};
+    }
+    bedding::Bedding made;
+    {
+        const py::gil_scoped_release unlocked;
+        made = bedding::bedding_of(complex, histories, polygons, view(histories_of_corners),
+                                   threads, control);
+    }
+    return py::make_tuple(to_array(std::move(made.height)), to_array(std::move(made.thickness)),
+                          to_array(std::move(made.depth)));
+}
+
+}  // namespace
+
+void bind_bedding(py::module_& module) {
+    module.def("bedding", &bedding_arrays, py::arg("vertices"), py::arg("face_offsets"),
+               py::arg("face_vertices"), py::arg("face_cells"), py::arg("histories"),
+               py::arg("faces"), py::arg("reversed"), py::arg("history"), py::arg("layer"),
+               py::arg("histories_of_corners"), py::arg("threads") = 0,
+               py::arg("control") = py::none(),
+               R"(Where the corners of polygons lie in their layers as they were deposited.
+
+The arrays are those of docs/dev/geometry.md. histories: (sheets, base elevation or None, rules) of each rock
+mass or compartment, sheets as (vertices (V, 3), triangles (T, 3)), oldest first. Of each polygon: faces (N,)
+int32; reversed (N,) bool, seen from its second cell; history (N,) int32; layer (N,) int32, the sheet that its
+block lies beneath, -1: none. histories_of_corners: of each corner in place of its polygon's, or empty.
+
+Returns of each corner, in the order that the polygon's side has, (C,) float32: height in the layer from 0 to
+1, thickness of the layer as it was deposited, depth below the youngest top. The same for any number of
+threads. Raises InputError kind "bad_index", "too_large"; Cancelled.)");
+}
+
+}  // namespace realmodel::bindings

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation/cleaning/editable_complex.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "base/parallel.hpp"
+#include "realmodel/base/errors.hpp"
+
+namespace realmodel::simulation {
+
+namespace {
+
+constexpr std::size_t kAtOnce = 1 << 13;
+
+[[noreturn]] void refuse(std::size_t face, const char* what) {
+    throw InputError("bad_index", "face " + std::to_string(face) + " names " + what, -1,
+                     {static_cast<std::int64_t>(face)});
+}
+
+void check_indices(const ComplexView& model) {
+    const std::size_t faces = model.face_count();
+    if (model.face_offsets.size() != faces + 1 || model.face_surface.size() != faces)
+        refuse(faces, "more or fewer offsets than faces");
+    for (std::size_t f = 0; f < faces; ++f) {
+        const std::int64_t begin = model.face_offsets[f], end = model.face_offsets[f + 1];
+        if (begin < 0 || begin >= end ||
+            end > static_cast<std::int64_t>(model.face_vertices.size()))
+            refuse(f, "corners that do not exist");
+        for (const std::int32_t v : model.face(f)) {
+            if (v < 0 || index(v) >= model.vertex_count())
+                refuse(f, "a vertex that does not exist");
+        }
+        for (std::size_t side = 0; side < 2; ++side) {
+            const std::int32_t cell = model.cell(f, side);
+            if (cell < (side == 0 ? 0 : -1) ||
+                cell >= static_cast<std::int64_t>(model.cell_count()))
+                refuse(f, "a cell that does not exist");
+        }
+    }
+    for (const std::int32_t block : model.cell_block) {
+        if (block < 0 || index(block) >= model.blocks) refuse(0, "a cell of no block");
+    }
+}
+
+std::vector<std::int32_t> copy_of(std::span<const std::int32_t> numbers) {
+    return {numbers.begin(), numbers.end()};
+}
+
+/// Lists of the faces that have each of `count` things; visit(face, see) calls see(thing).
+template <class Visit>
+ListPool faces_of(std::size_t count, std::size_t faces, const Visit& visit) {
+    std::vector<std::int64_t> offsets(count + 1, 0);
+    for (std::size_t f = 0; f < faces; ++f)
+        visit(f, [&](std::int32_t thing) { ++offsets[index(thing) + 1]; });
+    for (std::size_t i = 0; i < count; ++i)
+        offsets[i + 1] += offsets[i];
+    std::vector<std::int64_t> next(offsets.begin(), offsets.end() - 1);
+    std::vector<std::int32_t> found(static_cast<std::size_t>(offsets[count]));
+    for (std::size_t f = 0; f < faces; ++f) {
+        visit(f, [&](std::int32_t thing) {
+            found[static_cast<std::size_t>(next[index(thing)]++)] = static_cast<std::int32_t>(f);
+        });
+    }
+    return {std::span<const std::int64_t>(offsets), std::move(found)};
+}
+
+}  // namespace
+
+CellShape cell_shape(std::span<const SeenFace> faces) {
+    CellShape found;
+    SpaceVector middle;
+    for (const SeenFace& face : faces)
+        middle = middle + face.shape.center;
+    middle = (1.0 / static_cast<double>(faces.size())) * middle;
+    SpaceVector moment;
+    for (const SeenFace& face : faces) {
+        const SpaceVector arm = face.shape.center - middle;
+        const double part = face.sign * dot(face.shape.area, arm) / 3;
+        found.volume += part;
+        moment = moment + part * (0.75 * arm);
+        found.area += length(face.shape.area);
+    }
+    const SpaceVector center = found.volume > 0 ? middle + (1 / found.volume) * moment : middle;
+    for (const SeenFace& face : faces) {
+        if (!(face.sign * dot(face.shape.area, face.shape.center - center) > 0))
+            ++found.turned_faces;
+    }
+    return found;
+}
+
+void Change::clear() {
+    removed.clear();
+    added.clear();
+    corners.clear();
+    tested.clear();
+}
+
+void Change::add_simple(std::span<const std::int32_t> loop, std::int32_t origin,
+                        std::array<std::int32_t, 2> cells, std::int32_t surface) {
+    if (loop.size() < 3) return;
+    added.push_back({origin,
+                     static_cast<std::uint32_t>(corners.size()),
+                     static_cast<std::uint32_t>(loop.size()),
+                     cells,
+                     surface,
+                     false,
+                     {}});
+    corners.insert(corners.end(), loop.begin(), loop.end());
+}
+
+void Change::add(std::span<const std::int32_t> loop, std::int32_t origin,
+                 std::array<std::int32_t, 2> cells, std::int32_t surface) {
+    open_.clear();
+    for (const std::int32_t v : loop) {
+        const auto met = std::find(open_.begin(), open_.end(), v);
+        if (met != open_.end()) {
+            add_simple({met, open_.end()}, origin, cells, surface);
+            open_.erase(met, open_.end());
+        }
+        open_.push_back(v);
+    }
+    add_simple(open_, origin, cells, surface);
+}
+
+EditableComplex::EditableComplex(const ComplexView& model, int threads, Progress* progress)
+    : model_((check_indices(model), model)),
+      cells_(model.face_count()),
+      surface_(copy_of(model.face_surface)),
+      shapes_(model.face_count()),
+      cell_shapes_(model.cell_count()),
+      corners_(model.face_offsets, copy_of(model.face_vertices)),
+      cell_faces_(faces_of(model.cell_count(), model.face_count(),
+                           [&](std::size_t f, const auto& see) {
+                               see(model.cell(f, 0));
+                               if (model.cell(f, 1) >= 0) see(model.cell(f, 1));
+                           })),
+      vertex_faces_(
+          faces_of(model.vertex_count(), model.face_count(), [&](std::size_t f, const auto& see) {
+              for (const std::int32_t v : model.face(f))
+                  see(v);
+          })) {
+    std::array<double, 3> low{}, high{};
+    for (std::size_t v = 0; v < model.vertex_count(); ++v) {
+        const auto p = model.vertex(static_cast<std::int32_t>(v));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            low[axis] = v == 0 ? p[axis] : std::min(low[axis], p[axis]);
+            high[axis] = v == 0 ? p[axis] : std::max(high[axis], p[axis]);
+        }
+    }
+    points_.reserve(model.vertex_count());
+    for (std::size_t v = 0; v < model.vertex_count(); ++v) {
+        const auto p = model.vertex(static_cast<std::int32_t>(v));
+        points_.push_back({p[0] - (low[0] + high[0]) / 2, p[1] - (low[1] + high[1]) / 2,
+                           p[2] - (low[2] + high[2]) / 2});
+    }
+    for (std::size_t f = 0; f < cells_.size(); ++f)
+        cells_[f] = {model.cell(f, 0), model.cell(f, 1)};
+    parallel_ranges(cells_.size(), kAtOnce, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t f = begin; f < end; ++f)
+                            shapes_[f] = shape_of(corners(static_cast<std::int32_t>(f)));
+                    });
+    parallel_ranges(cell_shapes_.size(), kAtOnce, threads, progress,
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t c = begin; c < end; ++c)
+                            cell_shapes_[c] = measured(static_cast<std::int32_t>(c));
+                    });
+}
+
+FaceShape EditableComplex::shape_of(std::span<const std::int32_t> loop) const {
+    SpaceVector middle;
+    for (const std::int32_t v : loop)
+        middle = middle + point(v);
+    middle = (1.0 / static_cast<double>(loop.size())) * middle;
+    FaceShape found;
+    SpaceVector moment;
+    double weights = 0;
+    SpaceVector from = point(loop.back()) - middle;
+    for (const std::int32_t v : loop) {
+        const SpaceVector to = point(v) - middle;
+        const SpaceVector part = 0.5 * cross(from, to);
+        const double weight = length(part);
+        found.area = found.area + part;
+        moment = moment + weight * (from + to);
+        weights += weight;
+        from = to;
+    }
+    found.center = weights > 0 ? middle + (1 / (3 * weights)) * moment : middle;
+    return found;
+}
+
+CellShape EditableComplex::measured(std::int32_t cell) const {
+    std::vector<SeenFace> seen;
+    for (const std::int32_t f : cell_faces(cell))
+        seen.push_back({shape(f), cells(f)[0] == cell ? 1.0 : -1.0});
+    return seen.empty() ? CellShape{} : cell_shape(seen);
+}
+
+void EditableComplex::remove(std::int32_t face) {
+    for (const std::int32_t v : corners(face))
+        vertex_faces_.erase(v, face);
+    for (const std::int32_t c : cells(face)) {
+        if (c >= 0) cell_faces_.erase(c, face);
+    }
+    corners_.set(face, {});
+}
+
+void EditableComplex::apply(const Change& change) {
+    std::vector<std::int32_t> touched;
+    const auto touch = [&](const std::array<std::int32_t, 2>& beside) {
+        for (const std::int32_t c : beside) {
+            if (c >= 0) touched.push_back(c);
+        }
+    };
+    for (const std::int32_t f : change.removed) {
+        touch(cells(f));
+        remove(f);
+    }
+    for (const Change::Face& face : change.added) {
+        std::int32_t f = face.origin;
+        if (has_face(f)) {
+            f = corners_.add_list();
+            cells_.emplace_back();
+            surface_.emplace_back();
+            shapes_.emplace_back();
+        }
+        corners_.set(f, change.loop(face));
+        cells_[index(f)] = face.cells;
+        surface_[index(f)] = face.surface;
+        shapes_[index(f)] = face.shape;
+        for (const std::int32_t v : corners(f))
+            vertex_faces_.push(v, f);
+        for (const std::int32_t c : face.cells) {
+            if (c >= 0) cell_faces_.push(c, f);
+        }
+        touch(face.cells);
+    }
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    for (const std::int32_t c : touched)
+        cell_shapes_[index(c)] = measured(c);
+}
+
+ComplexCounts EditableComplex::counts() const {
+    ComplexCounts found;
+    for (std::int32_t f = 0; f < face_count(); ++f)
+        found.faces += has_face(f);
+    for (std::int32_t c = 0; c < cell_count(); ++c)
+        found.cells += has_cell(c);
+    std::vector<std::int32_t> ends;
+    for (std::int32_t v = 0; v < vertex_count(); ++v) {
+        ends.clear();
+        for (const std::int32_t f : vertex_faces(v)) {
+            const auto loop = corners(f);
+            const auto at =
+                static_cast<std::size_t>(std::find(loop.begin(), loop.end(), v) - loop.begin());
+            for (const std::size_t step : {std::size_t{1}, loop.size() - 1}) {
+                const std::int32_t w = loop[(at + step) % loop.size()];
+                if (w > v) ends.push_back(w);
+            }
+        }
+        std::sort(ends.begin(), ends.end());
+        found.edges +=
+            static_cast<std::size_t>(std::unique(ends.begin(), ends.end()) - ends.begin());
+    }
+    return found;
+}
+
+std::vector<double> EditableComplex::block_volumes() const {
+    std::vector<double> found(model_.blocks, 0.0);
+    for (std::int32_t c = 0; c < cell_count(); ++c) {
+        if (has_cell(c)) found[index(block(c))] += cell(c).volume;
+    }
+    return found;
+}
+
+CleanedCells EditableComplex::taken() const {
+    CleanedCells made;
+    CellComplex& out = made.complex;
+    out.cell_kind = model_.cell_kind;
+    std::vector<std::int32_t> vertex(points_.size(), -1), cell(cell_faces_.size(), -1);
+    for (std::int32_t v = 0; v < vertex_count(); ++v) {
+        if (vertex_faces(v).empty()) continue;
+        vertex[index(v)] = static_cast<std::int32_t>(out.vertices.size());
+        out.vertices.push_back(model_.vertex(v));
+    }
+    for (std::int32_t c = 0; c < cell_count(); ++c) {
+        if (!has_cell(c)) continue;
+        cell[index(c)] = static_cast<std::int32_t>(out.cell_block.size());
+        out.cell_block.push_back(block(c));
+        made.cell_origin.push_back(c);
+    }
+    out.face_offsets.push_back(0);
+    for (std::int32_t f = 0; f < face_count(); ++f) {
+        if (!has_face(f)) continue;
+        for (const std::int32_t v : corners(f))
+            out.face_vertices.push_back(vertex[index(v)]);
+        out.face_offsets.push_back(static_cast<std::int64_t>(out.face_vertices.size()));
+        const auto [first, second] = cells(f);
+        out.face_cells.push_back({cell[index(first)], second < 0 ? -1 : cell[index(second)]});
+        out.face_surface.push_back(surface(f));
+    }
+    out.volumes = block_volumes();
+    return made;
+}
+
+}  // namespace realmodel::simulation

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes for simulation from the panel: the same as in batch, with progress, Esc and errors."""
+
+import time
+
+from panel_case import SAMPLES, PanelCase, ops
+from realmodel.bl.display import shown_models
+from realmodel.bl.mesh_job import MeshJob
+from realmodel.core import Cancelled, UsageError, build, load_project
+from realmodel.core.batch_mesh import BatchMesh
+from realmodel.core.exporters.meshes import MESH_FORMATS, save_mesh
+
+PROJECT = SAMPLES / "two_layers" / "project.toml"
+OPTIONS = {"edge_length": 8.0, "minimum_thickness": 1.0, "layer_thickness": 4.0}
+
+
+class MeshExport(PanelCase):
+    def open_two_layers(self):
+        ops.open_project(filepath=str(PROJECT))
+        ops.build()
+
+    def test_every_format_is_what_the_core_writes(self):
+        self.open_two_layers()
+        mesh = build(load_project(PROJECT)).simulation_mesh(8.0, 1.0, layer_thickness=4.0)
+        for ending, known in MESH_FORMATS.items():
+            path, expected = self.folder / f"panel{ending}", self.folder / f"core{ending}"
+            self.assertEqual(ops.export_mesh(filepath=str(path), **OPTIONS), {"FINISHED"})
+            save_mesh(mesh, expected)
+            if not known.folder:
+                self.assertEqual(path.read_bytes(), expected.read_bytes(), ending)
+            else:
+                points = "constant/polyMesh/points"
+                self.assertEqual((path / points).read_bytes(), (expected / points).read_bytes())
+
+    def test_layers_and_elements(self):
+        self.open_two_layers()
+        path = self.folder / "m.msh"
+        ops.export_mesh(filepath=str(path), edge_length=8.0, layers=3, elements="TETRAHEDRA")
+        expected = self.folder / "e.msh"
+        model = build(load_project(PROJECT))
+        save_mesh(model.simulation_mesh(8.0, 0.8, layers=3, elements="tetrahedra"), expected)
+        self.assertEqual(path.read_bytes(), expected.read_bytes())
+
+    def test_what_cannot_be_is_refused(self):
+        self.refused(ops.export_mesh, "press Build first", filepath=str(self.folder / "m.vtu"))
+        self.open_two_layers()
+        self.refused(ops.export_mesh, "the name must end in .vtu or .foam", filepath=str(self.folder / "m.x"))
+        self.refused(ops.export_mesh, "no file for the output", filepath="")
+        nowhere = str(self.folder / "none" / "m.vtu")
+        self.refused(ops.export_mesh, "there is no folder", filepath=nowhere)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_a_job_tells_progress_and_stops(self):
+        self.open_two_layers()
+        model = shown_models.whole(self.scene)
+        path = self.folder / "m.vtu"
+        job = MeshJob(model, BatchMesh(path, 0.25, 0.05, None, 0.1), "m")
+        job.start()
+        while job.state()[0] == 0 and not job.done:
+            time.sleep(0.005)
+        self.assertFalse(job.done)
+        job.cancel()
+        job.wait()
+        with self.assertRaises(Cancelled):
+            job.finish()
+        self.assertEqual(list(self.folder.iterdir()), [])
+        job = MeshJob(model, BatchMesh(path, 8.0), "m")
+        job.start()
+        job.wait()
+        while not job.done:
+            time.sleep(0.01)
+        self.assertGreater(job.finish().cells, 100)
+        self.assertTrue(path.is_file())
+        with self.assertRaisesRegex(UsageError, "meshes are not written as"):
+            MeshJob(model, BatchMesh(self.folder / "m.xyz"), "m")
+
+    def test_maps_and_their_interval(self):
+        self.open_two_layers()
+        path, expected = self.folder / "m.gpkg", self.folder / "e.gpkg"
+        ops.export(filepath=str(path), contour_interval=5.0)
+        shown_models.whole(self.scene).save(expected, contour_interval=5.0)
+        self.assertEqual(path.read_bytes(), expected.read_bytes())
+
+    def test_cells_are_cleaned_to_a_tolerance(self):
+        self.open_two_layers()
+        path, expected = self.folder / "m.vtu", self.folder / "e.vtu"
+        ops.export(filepath=str(path), cell_tolerance=0.5)
+        shown_models.whole(self.scene).save(expected, tolerance=0.5)
+        self.assertEqual(path.read_bytes(), expected.read_bytes())
+        ops.export(filepath=str(expected))
+        self.assertLess(path.stat().st_size, expected.stat().st_size)
+        self.refused(
+            ops.export, "takes no tolerance", filepath=str(self.folder / "m.stl"), cell_tolerance=0.5
+        )
